@@ -24,7 +24,7 @@ thead th { border-top: 2px solid #111; border-bottom: 1px solid #111; vertical-a
 tbody tr:last-child > * { border-bottom: 2px solid #111; }
 tbody th { font-weight: normal; }
 tbody th.group { font-weight: bold; padding-top: .5rem; border-top: 1px solid #888; }
-figure { margin: 1rem 0 1.6rem; }
+figure { margin: 1rem 0 1.6rem; overflow-x: auto; }
 figure svg { max-width: 100%; height: auto; }
 figcaption, .note { font-size: .88rem; }
 .badge { font-size: .72rem; font-weight: bold; letter-spacing: .03em; border: 2px solid #111; border-radius: .3rem; padding: .05rem .4rem; white-space: nowrap; vertical-align: middle; }
@@ -33,12 +33,19 @@ figcaption, .note { font-size: .88rem; }
 .refused { border-left: .4rem solid #666; background: #f3f3f3; padding: .4rem .8rem; margin: .6rem 0; }
 .apa li { margin: .15rem 0; }
 .number, .ordinal { white-space: nowrap; }
+sub, sup { line-height: 0; }
+.formula { margin: .4rem 0 .8rem 1.5rem; overflow-x: auto; }
+details { margin: .6rem 0; }
+summary { cursor: pointer; }
 .hash { font-family: "DejaVu Sans Mono", monospace; font-size: .8rem; overflow-wrap: anywhere; }
 @media screen and (max-width: 640px) {
   body { padding: .5rem .7rem 3rem; }
   nav ul { columns: 1; }
   .wide table { width: max-content; }
   .wide th, .wide td { max-width: 15rem; }
+  .wide caption { max-width: calc(100vw - 2rem); }
+  /* As drawn, so that its words keep their size; a wide one scrolls in its own frame. */
+  figure svg { max-width: none; }
 }
 @media print {
   html { font-size: 9.5pt; }
@@ -106,6 +113,10 @@ std::string paragraph(const std::string& html) { return element("p", html) + "\n
 
 std::string figure(const svg::Picture& picture, const std::string& caption) {
   return "<figure>\n" + svg::element(picture) + element("figcaption", caption) + "\n</figure>\n";
+}
+
+std::string details(const std::string& summary, const std::string& body) {
+  return element("details", "\n" + element("summary", summary) + "\n" + body) + "\n";
 }
 
 std::string list(const std::vector<std::string>& items) {

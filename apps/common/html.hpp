@@ -31,6 +31,8 @@ std::string subsection(const std::string& title, const std::string& body);
 std::string paragraph(const std::string& html);
 /// `caption` is HTML.
 std::string figure(const svg::Picture& picture, const std::string& caption);
+/// What is shown when the reader opens it; printed as it stands.
+std::string details(const std::string& summary, const std::string& body);
 std::string list(const std::vector<std::string>& items);
 /// `body` between the page's head with its style sheet and its end. What a reader comes for has the id
 /// "main".

@@ -58,7 +58,8 @@ Json document(const ReportCommand& command) {
   } else if (!command.plan.empty()) {
     request.plan = read_plan(command.plan);
   }
-  const auto study = study::read_tasks(command.file());
+  auto study = study::read_tasks(command.file());
+  study::read_about_people(command.file(), study);
   Results results = make_results(study, request);
   if (results.json.at("flow").empty()) {
     std::string ids;

@@ -69,7 +69,17 @@ Two ids are kept for questions whose answers the program obeys. They stand in a 
 - `data_shared`: may the data be part of public exports (BIDS, Psych-DS). Whoever answered 0, or was asked
   and has not answered, is left out of them whole. Those whom no protocol asked are in them.
 
-`vip-study consent` changes both later.)"},
+`vip-study consent` changes both later.
+
+`vip-stats` finds what it analyses by these questions of the stimulus block. Other questions are exported and
+may stand beside them.
+
+| study | needs | and uses |
+|---|---|---|
+| pilot: one method at several frame rates | a question of kind scale; `vip-stats fit-ptpe --question ID` takes one of several | |
+| Task 1: methods shown one by one | `realism`, of kind scale; for H1 to H3 also `disorientation`, `unrealism`, `dizziness` and `confusion`, on one scale | |
+| Task 2: pairs | a question of kind choice with two anchors, the lower one for the first interval | |
+| all | | questions of kind number and choice in blocks of kind demographics, such as `age` and `gender`: the report describes the participants by them, in summary |)"},
       {"block.question.anchors", "anchors",
        R"(Words by score, as in `anchors = {1 = "poor", 7 = "good"}`.)"}};
   return texts;
@@ -143,8 +153,9 @@ const std::vector<KeyReference>& protocol_reference() {
       {"design", "never_adjacent", "list of texts", "", where_needed,
        "needed under constrained: method, effects, mean_fps, sd_fps; neighbours share none of them"},
       {"design", "assignment", "text", "\"balanced\", \"paper_random\"", "\"balanced\"",
-       "balanced: sequences of groups, rows and the order within pairs are dealt by quota over all who "
-       "count. paper_random: drawn for each participant"},
+       "balanced: sequences of groups, rows and the order within pairs are dealt by quota over all in the "
+       "database who took part and did not drop out; another database has a quota of its own. paper_random: "
+       "drawn for each participant"},
 
       {"design.moments", "scene", "text", "", "", "as in design.scene"},
       {"design.moments", "method", "text", "", "", "as in design.method"},

@@ -10,7 +10,7 @@
 /// Order, for each commit: the rows and {"ready": n}, brought to the disk where answers are concerned; the
 /// commit;
 /// {"kept": n}. So nothing that is said to be kept stands in one place alone. Rows that are ready and not
-/// kept, the last in the file, were under way when the program ended: the next opening for writing commits
+/// kept, the last in the file, were under way when the program ended: the next AnswerJournal commits
 /// them, so that they are neither lost nor asked again. A cut last line is left out. Rows that were kept and
 /// are not in the database mean that the database is not the one that was written: opening it for writing is
 /// then an error that names salvage.

@@ -60,6 +60,18 @@ void check_schema(sqlite::Connection& file) {
 
 }  // namespace
 
+std::vector<PersonalEntry> read_personal(const fs::path& database) {
+  const fs::path path = PersonalFile::beside(database);
+  if (!fs::exists(path)) return {};
+  sqlite::Connection file(path, sqlite::Open::Read);
+  std::vector<PersonalEntry> entries;
+  if (file.integer("SELECT count(*) FROM sqlite_schema WHERE name = 'personal'") == 0) return entries;
+  for (Statement row(file, "SELECT participant, question, wording, answer FROM personal ORDER BY 1, 2");
+       row.step();)
+    entries.push_back({row.text(0), row.text(1), row.text(2), row.text(3)});
+  return entries;
+}
+
 PersonalFile::PersonalFile(const fs::path& database) {
   const fs::path path = beside(database);
   make_private(path);

@@ -16,6 +16,10 @@ struct PersonalEntry {
   std::string participant, question, wording, answer;
 };
 
+/// All that stands beside the database, which is not changed, in the order of participants and questions;
+/// empty where there is no such file. base::Error: it cannot be read.
+std::vector<PersonalEntry> read_personal(const std::filesystem::path& database);
+
 /// "<database>.personal": a SQLite file of its own, readable by its owner only. Deleting it takes nothing
 /// from the study.
 class PersonalFile {

@@ -48,7 +48,7 @@ constexpr const char* showing_sql =
     "FROM presentation WHERE trial_id = ? AND attempt = ? AND interval = ? AND state = 'played'";
 
 constexpr const char* answers_sql =
-    "SELECT q.code, r.score FROM judgement j JOIN question q USING (question_id) "
+    "SELECT q.code, r.score, r.response_time_s FROM judgement j JOIN question q USING (question_id) "
     "LEFT JOIN response r USING (response_id) "
     "WHERE j.unit_id = ? AND q.kind IN ('scale', 'choice', 'number') AND q.personal = 0 ORDER BY j.place";
 
@@ -154,7 +154,9 @@ class Reader {
     answer_.bind_all(unit);
     while (answer_.step()) {
       out.push_back({answer_.text(0), {}});
-      if (!answer_.is_null(1)) out.back().score = static_cast<int>(answer_.integer(1));
+      if (answer_.is_null(1)) continue;
+      out.back().score = static_cast<int>(answer_.integer(1));
+      if (!answer_.is_null(2)) out.back().response_time_s = answer_.real(2);
     }
     return out;
   }
@@ -213,6 +215,36 @@ std::vector<Question> trial_questions(const Protocol& protocol) {
   return out;
 }
 
+std::vector<Question> questions_about_people(const Protocol& protocol) {
+  std::vector<Question> out;
+  for (const auto& [block, question] : all_questions(protocol)) {
+    const bool summed = question->kind == AnswerKind::Number || question->kind == AnswerKind::Choice;
+    if (summed && protocol.blocks.at(static_cast<std::size_t>(block)).kind == BlockKind::Demographics)
+      out.push_back(*question);
+  }
+  return out;
+}
+
+/// Those that stand in the database itself, in words as the file of personal data has them.
+void add_stored(Connection& database, const TaskProtocol& protocol, std::vector<PersonalEntry>& out) {
+  Statement row(
+      database,
+      "SELECT s.participant, r.score FROM response r JOIN question q USING (question_id) JOIN unit u "
+      "USING (unit_id) JOIN session s USING (session_id) JOIN protocol p ON p.protocol_id = "
+      "s.protocol_id WHERE p.sha256 = ? AND q.code = ? AND "
+      "r.score IS NOT NULL ORDER BY s.participant, s.visit");
+  for (const Question& question : protocol.about_people) {
+    if (question.personal) continue;
+    row.reset();
+    for (row.bind_all(protocol.sha256, question.id); row.step();) {
+      std::string answer = std::to_string(row.integer(1));
+      for (const auto& [score, words] : question.anchors)
+        if (question.kind == AnswerKind::Choice && score == row.integer(1)) answer = words;
+      out.push_back({row.text(0), question.id, question.text, answer});
+    }
+  }
+}
+
 TaskProtocol describe(const Protocol& protocol) {
   TaskProtocol out;
   out.name = protocol.name;
@@ -222,6 +254,7 @@ TaskProtocol describe(const Protocol& protocol) {
   out.participants = protocol.participants;
   out.content_step_s = protocol.content.content_step_s;
   out.questions = trial_questions(protocol);
+  out.about_people = questions_about_people(protocol);
   out.effects = protocol.design.effects;
   out.paint_temperature = protocol.design.paint_temperature;
   for (const Cell& cell : protocol.design.cells) {
@@ -248,6 +281,12 @@ TaskStudy read_tasks(const StudyFile& file) {
     study.protocols.push_back(std::move(out));
   }
   return study;
+}
+
+void read_about_people(const StudyFile& file, TaskStudy& study) {
+  study.about_people = read_personal(file.path);
+  const auto database = open_study(file).database;
+  for (const TaskProtocol& protocol : study.protocols) add_stored(*database, protocol, study.about_people);
 }
 
 }  // namespace study

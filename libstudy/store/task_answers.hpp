@@ -12,6 +12,7 @@
 #include "libstudy/protocol/design.hpp"
 #include "libstudy/protocol/question.hpp"
 #include "libstudy/store/frame_costs.hpp"
+#include "libstudy/store/personal.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/study_file.hpp"
 
@@ -36,6 +37,8 @@ struct TaskShowing {
 struct TaskAnswer {
   std::string question;
   std::optional<int> score;
+  std::optional<double> response_time_s =
+      {};  ///< from the page's showing to the last change; none: no answer
 };
 
 /// TaskTrial::excluded of a trial that the protocol's policy left out after an interruption.
@@ -101,18 +104,26 @@ struct TaskProtocol {
   std::vector<StimulusSpec> treatments =
       {};  ///< of `methods`, method and effects alone; empty without levels
 
+  /// Of pages of kind demographics, answered by a number or a choice.
+  std::vector<Question> about_people = {};
+
   /// One method (with one level of effects) under several frame rates, shown one by one.
   bool pilot() const { return methods.size() < 2; }
 };
 
 struct TaskStudy {
   std::vector<TaskProtocol> protocols;
-  int withdrawn = 0;    ///< participants who withdrew, from whatever protocol
-  std::string lacking;  ///< what the database lacks of its journal (open_study.hpp); empty: nothing
+  int withdrawn = 0;  ///< participants who withdrew, from whatever protocol
+  std::string lacking = {};  ///< what the database lacks of its journal (open_study.hpp); empty: nothing
+  /// Answers to TaskProtocol::about_people, after read_about_people().
+  std::vector<PersonalEntry> about_people = {};
 };
 
 /// Of several showings of a trial that counts which the schema's view trial_showing says. base::Error
 /// naming the file: missing, not a database of this program, damaged, or newer than this program.
 TaskStudy read_tasks(const StudyFile& file);
+/// Adds what people answered about themselves: from the file of personal data, and from the database where
+/// the protocol does not call it personal. base::Error as read_tasks().
+void read_about_people(const StudyFile& file, TaskStudy& study);
 
 }  // namespace study

@@ -90,7 +90,7 @@ void correct_all(std::span<MethodComparison> family) {
       family, [](const MethodComparison& one) { return one.p().value_or(missing); },
       &MethodComparison::p_holm, &MethodComparison::p_bh);
   correct(
-      family, [](const MethodComparison& one) { return one.wilcoxon ? one.wilcoxon->p_default : missing; },
+      family, [](const MethodComparison& one) { return one.wilcoxon ? one.wilcoxon->p() : missing; },
       &MethodComparison::wilcoxon_p_holm, &MethodComparison::wilcoxon_p_bh);
   correct(
       family, [](const MethodComparison& one) { return one.mixed ? one.mixed->p : missing; },

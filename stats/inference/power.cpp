@@ -184,4 +184,27 @@ Result<BinomialPower> binomial_power(double n, double p1, double p0, double alph
   return out;
 }
 
+Result<double> t_detectable(double n, double power, double alpha, Design design, Alternative alternative) {
+  const auto without = t_power(n, 0, alpha, design, alternative);
+  if (!without) return without;
+  if (!(power > alpha && power < 1)) return Refusal{"the power must lie between alpha and 1"};
+  const double sign = alternative == Alternative::Less ? -1 : 1;
+  const auto lacking = [&](double d) { return t_power_of(n, sign * d, alpha, design, alternative) - power; };
+  double high = 1;
+  while (lacking(high) < 0) high *= 2;
+  return find_root(lacking, 0, high);
+}
+
+Result<double> binomial_detectable(int n, double power, double alpha) {
+  if (!open_unit(power)) return Refusal{"the power must lie between 0 and 1"};
+  const auto at_one = binomial_power(n, 1, 0.5, alpha);
+  if (!at_one) return Refusal{at_one.reason()};
+  if (at_one->power < power)
+    return Refusal{"too few answers: not even a choice by all is significant at this level"};
+  const auto lacking = [&](double p) { return binomial_power(n, p, 0.5, alpha)->power - power; };
+  // It is at its least, alpha or below, where nothing is preferred, and grows from there.
+  if (lacking(0.5) >= 0) return 0.5;
+  return find_root(lacking, 0.5, 1);
+}
+
 }  // namespace stats

@@ -18,6 +18,11 @@ enum class Design { OneSample, Paired, TwoSample };
 Result<double> t_power(double n, double d, double alpha = 0.05, Design design = Design::Paired,
                        Alternative alternative = Alternative::TwoSided);
 
+/// The smallest d > 0 that the t-test finds with this power. Refused: as t_power, or a power outside
+/// (alpha, 1).
+Result<double> t_detectable(double n, double power, double alpha = 0.05, Design design = Design::Paired,
+                            Alternative alternative = Alternative::TwoSided);
+
 struct SampleSize {
   double n_real = 0;  ///< where the power is met exactly
   int n = 0;          ///< the smallest whole number that meets it
@@ -56,5 +61,9 @@ struct BinomialPower {
 /// alpha outside (0, 1).
 Result<BinomialPower> binomial_power(double n, double p1, double p0 = 0.5, double alpha = 0.05,
                                      Alternative alternative = Alternative::TwoSided);
+
+/// The smallest true proportion above one half from which on the exact two-sided test against one half has
+/// this power. Refused: n < 1, a power or alpha outside (0, 1), n too small for any result to be significant.
+Result<double> binomial_detectable(int n, double power, double alpha = 0.05);
 
 }  // namespace stats

@@ -100,10 +100,8 @@ Result<RepeatedAnova> repeated_anova(std::span<const double> rows, int k) {
   out.epsilon_gg = greenhouse_geisser(d.residuals, static_cast<std::size_t>(k));
   out.epsilon_hf = huynh_feldt(out.epsilon_gg, out.n, out.df1);
   out.p_gg = fisher_upper(out.f, out.epsilon_gg * out.df1, out.epsilon_gg * out.df2);
-  if (out.epsilon_hf) {
-    const double epsilon = std::min(1.0, *out.epsilon_hf);
-    out.p_hf = fisher_upper(out.f, epsilon * out.df1, epsilon * out.df2);
-  }
+  if (const auto epsilon = out.epsilon_hf_capped())
+    out.p_hf = fisher_upper(out.f, *epsilon * out.df1, *epsilon * out.df2);
   out.partial_eta2 = static_cast<double>(conditions / (conditions + error));
   out.generalized_eta2 = static_cast<double>(conditions / (conditions + subjects + error));
   for (const auto mean : d.condition_means)

@@ -1,6 +1,7 @@
 #pragma once
 /// One-way analysis of variance with repeated measures.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,8 +21,13 @@ struct RepeatedAnova {
   double epsilon_gg = 0;    ///< Greenhouse and Geisser 1959, 1 / (k-1) to 1; 1 means sphericity
   /// Huynh and Feldt 1976, not capped: may exceed 1. Empty where its denominator is 0 (n = 2).
   std::optional<double> epsilon_hf{};
+  /// The one that corrects degrees of freedom: at most 1, since no departure from sphericity is less than
+  /// none.
+  std::optional<double> epsilon_hf_capped() const {
+    return epsilon_hf ? std::optional(std::min(1.0, *epsilon_hf)) : std::nullopt;
+  }
   double p_gg = 0;               ///< with both df times epsilon_gg
-  std::optional<double> p_hf{};  ///< with both df times min(1, epsilon_hf)
+  std::optional<double> p_hf{};  ///< with both df times epsilon_hf_capped()
   double partial_eta2 = 0;       ///< ss_conditions / (ss_conditions + ss_error)
   double generalized_eta2 = 0;   ///< ss_conditions / total (Olejnik and Algina 2003)
   std::vector<double> means{};   ///< of each condition

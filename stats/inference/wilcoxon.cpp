@@ -97,8 +97,7 @@ Cut averages_to_cut(std::size_t n, double tail) {
 
 void fill_location(SignedRank& out, std::span<const double> differences, double confidence) {
   auto walsh = walsh_averages(differences);
-  const bool plain = !out.has_ties && out.n == out.n_nonzero && out.n <= largest_exact_n;
-  if (plain) {
+  if (out.n <= largest_exact_n) {
     std::sort(walsh.begin(), walsh.end());
     const auto cut = averages_to_cut(out.n, (1 - confidence) / 2);
     out.hodges_lehmann_ci = {walsh[cut.averages], walsh[walsh.size() - 1 - cut.averages]};
@@ -150,8 +149,6 @@ Result<SignedRank> signed_rank(std::span<const double> differences, double confi
   }
   out.p_normal = normal_p(s.plus - s.mean(), s.variance(), 0.5);
   out.p_normal_uncorrected = normal_p(s.plus - s.mean(), s.variance(), 0);
-  out.default_is_exact = out.n_nonzero < 50 && !out.has_ties && out.n_nonzero == out.n;
-  out.p_default = out.default_is_exact ? *out.p_exact : out.p_normal;
   fill_pratt(out, sample->values);
   fill_location(out, sample->values, confidence);
   return out;

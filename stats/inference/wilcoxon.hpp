@@ -22,18 +22,18 @@ struct SignedRank {
   std::optional<double> p_exact, p_exact_less, p_exact_greater;  ///< two-sided: twice the smaller, at most 1
   double p_normal = 0;              ///< two-sided, tie-corrected, with continuity correction
   double p_normal_uncorrected = 0;  ///< without continuity correction
-  /// What R's wilcox.test takes: exact below 50 values without ties and zeros, otherwise p_normal.
-  double p_default = 0;
-  bool default_is_exact = false;
+  /// The p that is reported: exact where there is one, else normal.
+  double p() const { return p_exact.value_or(p_normal); }
   /// Zeros ranked with the others, their ranks then dropped (Pratt 1959).
   double pratt_w_plus = 0, pratt_z = 0, pratt_p_normal = 0;
   std::optional<double> pratt_p_exact;
   double hodges_lehmann = 0;  ///< median of all Walsh averages (d_i + d_j) / 2, i <= j, zeros included
-  /// Order statistics of the Walsh averages by the exact distribution, at least the confidence asked for, or
-  /// all of them when n is too small for it; empty with ties or zeros, and beyond n = 1000.
+  /// Order statistics of the Walsh averages by the exact distribution, both ends included, at least the
+  /// confidence asked for, or all of them when n is too small for it; empty beyond n = 1000.
   std::optional<std::array<double, 2>> hodges_lehmann_ci;
-  /// The share of samples in which that interval holds the centre, exactly: above the confidence asked for,
-  /// or 1 - 2^(1 - n) where n is too small for it (below 6 at .95).
+  /// The share of samples in which that interval holds the centre: above the confidence asked for, or
+  /// 1 - 2^(1 - n) where n is too small for it (below 6 at .95). Exact without ties and zeros; with them the
+  /// interval holds the centre at least as often (Noether 1967, J. Am. Stat. Assoc. 62, 184-188).
   double hodges_lehmann_level = 0;
 };
 

@@ -66,6 +66,37 @@ TEST(Certificate, MarksCellsThatFailedByAWord) {
   EXPECT_THAT(text, Not(HasSubstr("\033"))) << "colour where there is no terminal";
 }
 
+TEST(Certificate, NamesWhatDistinguishesItsRowsAndWhatTheyShare) {
+  std::vector<study::CertificateRow> rows;
+  for (const char* scene : {"data/scenes/single_dam.toml", "data/scenes/faucet.toml"}) {
+    for (const char* method : {"Ours", "Ours-TSp"}) {
+      rows.push_back(cell_with(0, 0));
+      rows.back().what = {scene, method, "32k", ""};
+    }
+  }
+  const auto text = format_certificate(rows, study::FpsMean::Harmonic, false);
+  EXPECT_THAT(text, HasSubstr("Timing certificate of 32k (harmonic"));
+  EXPECT_THAT(text, HasSubstr("\nscene       method        mu  delta"));
+  EXPECT_THAT(text, HasSubstr("\nsingle_dam  Ours          50      5"));
+  EXPECT_THAT(text, HasSubstr("\nfaucet      Ours-TSp      50      5"));
+
+  rows.resize(1);
+  EXPECT_THAT(format_certificate(rows, study::FpsMean::Harmonic, false),
+              AllOf(HasSubstr("of single_dam, 32k, Ours (harmonic"), HasSubstr("\n    50      5")));
+  rows.push_back(rows[0]);
+  rows[1].what.scene = "mine/single_dam.toml";
+  EXPECT_THAT(format_certificate(rows, study::FpsMean::Harmonic, false),
+              AllOf(HasSubstr("\ndata/scenes/single_dam.toml "), HasSubstr("\nmine/single_dam.toml ")));
+}
+
+TEST(Certificate, HasNoNominalRateWhereTheMethodRanAsFastAsItCould) {
+  auto row = cell_with(0, 0);
+  row.nominal = {};
+  row.mean_worst = 49.5;
+  EXPECT_THAT(format_certificate({row}, study::FpsMean::Harmonic, false),
+              AllOf(HasSubstr("\n     -      -       4   49.500       - "), Not(HasSubstr(" 0      0 "))));
+}
+
 TEST(Certificate, IsRedOnATerminalWhereATrialFailed) {
   const auto coloured = [](const study::CertificateRow& row) {
     return format_certificate({row}, study::FpsMean::Harmonic, true);

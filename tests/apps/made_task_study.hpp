@@ -55,12 +55,39 @@ inline int rounded(double value, int min, int max) {
   return std::clamp(static_cast<int>(std::lround(value)), min, max);
 }
 
+/// Asked on a page, kept as personal data.
+inline std::vector<study::Question> questions_about_people() {
+  study::Question age = scale("age", 10, 110), gender;
+  age.kind = study::AnswerKind::Number;
+  age.text = "Your age in years";
+  gender.id = "gender";
+  gender.text = "Your gender";
+  gender.kind = study::AnswerKind::Choice;
+  gender.anchors = {{0, "female"}, {1, "male"}, {2, "another"}, {3, "I would rather not say"}};
+  for (auto* question : {&age, &gender}) question->personal = true;
+  return {age, gender};
+}
+
+/// Half female, half male, but that the first gave another answer; of 20 to 31 years. The last gave none.
+inline std::vector<study::PersonalEntry> about_people(int participants) {
+  std::vector<study::PersonalEntry> out;
+  for (int person = 0; person + 1 < participants; ++person) {
+    out.push_back({code(person), "age", "Your age in years", std::to_string(20 + person % 12)});
+    out.push_back({code(person), "gender", "Your gender",
+                   person == 0       ? "another"
+                   : person % 2 == 0 ? "female"
+                                     : "male"});
+  }
+  return out;
+}
+
 /// One scene at each n_*, five showings each. The experimenter was not blind to the second participant.
 inline study::TaskProtocol task1(int participants, const std::string& gaze = "tracked", unsigned seed = 1) {
   study::TaskProtocol out{"task1", "1.0",   std::string(64, '1'), false, participants,
                           scenes,  methods, {"16k", "32k"},       {},    {}};
   out.questions.push_back(scale("realism", 1, 7));
   for (const auto& item : items) out.questions.push_back(scale(item, 0, 3));
+  out.about_people = questions_about_people();
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
   for (int person = 0; person < participants; ++person) {
@@ -77,6 +104,7 @@ inline study::TaskProtocol task1(int participants, const std::string& gaze = "tr
       trial.answers.push_back({"realism", rounded(4 + quality[method] + level + normal(generator), 1, 7)});
       for (const auto& item : items)
         trial.answers.push_back({item, rounded(0.8 - 0.5 * quality[method] + 0.7 * normal(generator), 0, 3)});
+      for (auto& answer : trial.answers) answer.response_time_s = 1.5 + 0.25 * (person % 4) + 0.1 * position;
       visit.trials.push_back(trial);
     }
     if (person == 1) visit.unblinded = "mirror opened and setting revealed";

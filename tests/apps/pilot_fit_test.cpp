@@ -333,7 +333,7 @@ TEST(HeatMap, ShowsEveryCellBothContoursAndTheCurve) {
     EXPECT_NE(svg.find(value), std::string::npos) << value;
   }
   for (const char* words :
-       {"contour at 4.0", "contour at 5.0", "a exp(b", "mean frame rate", "(simulated)"}) {
+       {"contour at 4.0", "contour at 5.0", ">b \xCE\xB4</tspan>", "mean frame rate", "(simulated)"}) {
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   }
   EXPECT_EQ(svg.find("nan"), std::string::npos);

@@ -44,11 +44,23 @@ inline std::vector<Case> pilot() {
        "the "
        "scores and the fitted curve.",
        set("/pilot/cells", Json::array())},
-      {"# \u03bc = a exp(b \u03b4), intervals over participants",
-       all({set("/pilot/estimators", Json::array()), set("/pilot/means", Json::object())})},
+      {"# Estimates of \u03bc(\u03b4) = a\u2009eb\u2009\u03b4, intervals over participants",
+       all({set("/pilot/estimators", Json::array()), set("/pilot/means", Json::object()),
+            set("/pilot/a", nullptr)})},
       {"Shape of the scores: #.", refused("/pilot/lack_of_fit")},
       {"# The curve \u03bc(\u03b4) with its bands, frames/s", set("/pilot/bands", Json::array())},
-      {"# (bootstrap: # resamples, seed #).", failed},
+      {"Model of the direct estimate, least squares of all ratings with a participant's ratings of one "
+       "setting "
+       "averaged, at the realised \u03bc and \u03b4:",
+       set("/pilot/estimator", nullptr)},
+      {"E[[]score] = level + *", set("/pilot/estimator", nullptr)},
+      {"Intervals: # (bootstrap: # resamples, seed #).", failed},
+      {"# How often each score was given, by setting (mean and standard deviation of the frame rate, "
+       "frames/s).",
+       set("/pilot/distributions", Json::array())},
+      {"A bar for each line of names: the shares of its answers that gave each score, from the lowest at the "
+       "left to the highest at the right, with how many they were.",
+       all({set("/pilot/distributions", Json::array()), set("/task1/distributions", Json::array())})},
       {"# Scores of the settings, over participants", set("/pilot/cells", Json::array())},
   };
 }
@@ -117,6 +129,35 @@ inline std::vector<Case> task1() {
        "Holm over the pairs of levels of one factor, score and n[*], not over the table",
        set("/task1/factors", Json::array()), set("/task1/factors", {score_factor()})},
       {"# Scores by scene (not averaged, not tested)", set("/task1/by_scene", Json::array())},
+      {"# # by scene: means of participants with their intervals, not tested.", secondary},
+      {"A line for each scene over the methods within each n[*]: means of the participants who judged it "
+       "there, "
+       "with their intervals.",
+       secondary},
+      {"The table of scores by scene holds the numbers.", secondary},
+      {"# # of each participant: thin lines; thick line and X: means.", secondary},
+      {"A thin line for each participant over the methods within each n[*], so that it is seen who differs "
+       "how; "
+       "the thick line with an X joins the means.",
+       secondary},
+      {"# How often each score of # was given, by n[*] and method; single answers, not averaged.",
+       set("/task1/distributions", Json::array())},
+      {"# Whether the difference of two methods depends on n[*]: the difference at the first less that at "
+       "the "
+       "second, paired within participants",
+       set("/task1/by_n_star", Json::array())},
+      {"Holm over the pairs of methods of one score.", set("/task1/by_n_star", Json::array())},
+      {"Where a participant sees another scene at each n[*], the scene is part of the difference.",
+       set("/task1/by_n_star", Json::array())},
+      {"# Reliability of the scores of several items: Cronbach's \u03b1",
+       set("/task1/reliability", Json::array())},
+      {"Of each participant's mean answers to the items over all reports at this n[*]; intervals after "
+       "Feldt.",
+       set("/task1/reliability", Json::array())},
+      {"# The smallest difference that a paired t test of so many participants finds",
+       set("/task1/detectable", Json::array())},
+      {"# Time from the page's showing to the last change of the answer, s",
+       set("/response_times", Json::array())},
       {"# Repeated showings", set("/task1/retest", Json::array()),
        set("/task1/retest", {{{"score", "realism"}, {"pairs", 4}}})},
   };
@@ -178,6 +219,14 @@ inline std::vector<Case> task2() {
        "over the pairs of levels of one factor, not over the table",
        set("/task2/factors", Json::array()), set("/task2/factors", {preference_factor()})},
       {"# Choices by scene (not tested)", set("/task2/by_scene", Json::array())},
+      {"The exact test of # answers at \u03b1 = # finds a true preference of # with a power of #.",
+       set("/task2/detectable", nullptr)},
+      {"Not given: too few answers: not even a choice by all is significant at this level.",
+       set("/task2/detectable", nullptr),
+       set("/task2/detectable",
+           {{"n", 5},
+            {"share", nullptr},
+            {"reason", "too few answers: not even a choice by all is significant at this level"}})},
       {"Of # pairs shown again, # were answered alike.", set("/task2/retest", nullptr),
        set("/task2/retest", {{"pairs", 4}, {"same", 0.5}})},
   };

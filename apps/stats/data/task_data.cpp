@@ -96,8 +96,11 @@ class Collector {
     answered_.insert(session.participant);
     ++data_.flow.trials_answered;
     ++(excluded ? data_.flow.trials_excluded : data_.flow.trials_analysed);
-    if (analysed) add_answered(session, trial);
-    return analysed && add_answer(session, trial, record.answer);
+    if (!analysed) return false;
+    add_answered(session, trial);
+    for (const study::TaskAnswer& answer : trial.answers)
+      if (answer.response_time_s) data_.response_times[answer.question].push_back(*answer.response_time_s);
+    return add_answer(session, trial, record.answer);
   }
 
   void add_answered(const TaskSession& session, const TaskTrial& trial) {

@@ -74,6 +74,8 @@ struct TaskData {
   std::vector<stats::PairChoice> choices;   ///< Task 2
   std::vector<stats::PilotRating> ratings;  ///< pilot
   study::Question question;                 ///< ChosenTask::question
+  /// Of the answers that count, by question, s: from the page's showing to the last change.
+  std::map<std::string, std::vector<double>> response_times;
   /// Repeated showings: answers of the original and of the repeat, by question (Task 2: 1 / 2).
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 

@@ -221,7 +221,12 @@ std::string legend(const HeatMap& map, const Frame& frame) {
     y += 26;
   }
   out += line({x, y}, {x + 34, y}, fit_style);
-  out += text({x + 42, y + 5}, "\xCE\xBC = a exp(b \xCE\xB4)", "font-size=\"14\"");
+  out += svg::marked_text({x + 42, y + 5},
+                          "<tspan font-style=\"italic\">\xCE\xBC</tspan>(<tspan "
+                          "font-style=\"italic\">\xCE\xB4</tspan>) = <tspan "
+                          "font-style=\"italic\">a</tspan> e<tspan dy=\"-5\" font-size=\"11\" "
+                          "font-style=\"italic\">b \xCE\xB4</tspan>",
+                          "font-size=\"14\"");
   out += svg::marked_text({x, y + 30}, interval(map, "a", map.a, map.a_ci, 2), "font-size=\"14\"");
   out += svg::marked_text({x, y + 50}, interval(map, "b", map.b, map.b_ci, 4), "font-size=\"14\"");
   out +=

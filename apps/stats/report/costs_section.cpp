@@ -39,8 +39,8 @@ std::string error_of(const Field& error) {
 
 std::string costs_table(const Rows& rows, const char* title, bool pairs) {
   Table table(std::string(title) + ": what frames cost, what error they carried, what people said",
-              {"Method", "n*", "Setting", "Made, ms", "p95, ms", "Shown, ms", "Error of the setting file",
-               said_heading(pairs)});
+              {"Method", n_star_sign, "Setting", "Made, ms", "p95, ms", "Shown, ms",
+               "Error of the setting file", said_heading(pairs)});
   std::string scene;
   for (const Field& row : rows) {
     if (row["scene"].words() != scene) table.group(words(row["scene"]));
@@ -88,10 +88,10 @@ std::string sweep_tables_of(const Field& root, const Rows& rows, const char* tit
                  price["reference_n_star"].number(), price["seconds"].number()}]
           .emplace_back(row, price);
     if (row["sweep"].json().is_object())
-      missing.push_back(words(row["method"]) + " at n* " + words(row["n_star"]) + " in " +
+      missing.push_back(words(row["method"]) + " at " + n_star_sign + " " + words(row["n_star"]) + " in " +
                         words(row["scene"]) + ": " + words(row["sweep"]["refused"]) + ".");
   }
-  std::vector<std::string> columns{"Method", "n*", "ms", "p95, ms", "Times HiRes"};
+  std::vector<std::string> columns{"Method", n_star_sign, "ms", "p95, ms", "Times HiRes"};
   for (const auto& [name, heading] : root["sweep"]["errors"].members()) columns.push_back(words(heading));
   columns.emplace_back(said_heading(pairs));
   std::string out;
@@ -99,7 +99,7 @@ std::string sweep_tables_of(const Field& root, const Rows& rows, const char* tit
     const Field& first = some.front().second;
     Table table(std::string(title) + ": cost and error in the sweep on " + words(first["machine"]) +
                     ", program " + words(first["program"]) + ", pictures " + words(first["picture"]) +
-                    ", reference of n* " + count(first["reference_n_star"]),
+                    ", reference of " + n_star_sign + " " + count(first["reference_n_star"]),
                 columns);
     std::string scene;
     for (const auto& [row, price] : some) {

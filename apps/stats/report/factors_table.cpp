@@ -45,9 +45,10 @@ std::string preference_factors(const Field& task2) {
 std::string score_factors(const Field& task1) {
   Table table(
       "What each level is worth over another, all else alike: participants' differences against nought; Holm "
-      "over the pairs of levels of one factor, score and n*, not over the table",
-      {"Factor: pair of levels", "Score", "n*", "Participants", "Difference [CI]", "<i>t</i>", "<i>df</i>",
-       "<i>p</i>", "<i>p</i><sub>Holm</sub>"});
+      "over the pairs of levels of one factor, score and " +
+          n_star_sign + ", not over the table",
+      {"Factor: pair of levels", "Score", n_star_sign, "Participants", "Difference [CI]", "<i>t</i>",
+       "<i>df</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>"});
   for (const Field& line : task1["factors"].entries()) {
     const std::string name = name_of(line, " \xE2\x88\x92 ");
     if (!line["p"].is_number()) {

@@ -1,5 +1,7 @@
 #include "apps/stats/report/field.hpp"
 
+#include <regex>
+
 #include "apps/common/svg.hpp"
 
 namespace apps::report {
@@ -105,6 +107,19 @@ std::string p_value(double p) {
   return without_zero(svg::number(p, 3));
 }
 
+std::string typeset(std::string html) {
+  const auto holds = [&](const char* sign) { return html.find(sign) != std::string::npos; };
+  if (!holds("n_*") && !holds("mu") && !holds("delta") && !holds("+-")) return html;
+  static const std::vector<std::pair<std::regex, std::string>> signs{
+      {std::regex("\\bn_\\*"), n_star_sign},
+      {std::regex("\\bmu\\(delta\\)"), "<i>\xCE\xBC</i>(<i>\xCE\xB4</i>)"},
+      {std::regex("\\bmu\\b"), "<i>\xCE\xBC</i>"},
+      {std::regex("\\bdelta\\b"), "<i>\xCE\xB4</i>"},
+      {std::regex("\\+-"), "\xC2\xB1"}};
+  for (const auto& [pattern, sign] : signs) html = std::regex_replace(html, pattern, sign);
+  return html;
+}
+
 std::string fixed(const Field& field, int decimals) {
   return field.is_number() ? number_span(field, decimal(field.number(), decimals)) : dash(field);
 }
@@ -134,7 +149,10 @@ std::string interval(const Field& field, int decimals) {
          "]</span>";
 }
 
-std::string words(const Field& field) { return field.words().empty() ? "" : span(field, field.words()); }
+std::string words(const Field& field) {
+  if (field.words().empty()) return "";
+  return "<span" + data_field(field) + ">" + typeset(svg::escaped(field.words())) + "</span>";
+}
 
 std::string yes_no(const Field& field) {
   return field.json().is_boolean() ? span(field, field.yes() ? "yes" : "no") : dash(field);

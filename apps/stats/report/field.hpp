@@ -49,6 +49,18 @@ std::string decimal(double value, int decimals);
 /// A p value as the APA prints it: ".029", "< .001", "1.000" as "> .999".
 std::string p_value(double p);
 
+/// Formulas as they stand in texts of the results ("n_*", "mu(delta)", "+-3 %"), in italics and with the
+/// signs of print. `html`: escaped.
+std::string typeset(std::string html);
+
+/// What particles there are when all are coarsest, as the paper writes it.
+inline const std::string n_star_sign = "<i>n</i><sub>*</sub>";
+
+/// mu(delta) = a e^(b delta), the curve of the pilot.
+inline const std::string pilot_curve =
+    "<i>\xCE\xBC</i>(<i>\xCE\xB4</i>) = <i>a</i>\xE2\x80\x89"
+    "e<sup><i>b</i>\xE2\x80\x89<i>\xCE\xB4</i></sup>";
+
 // As HTML with data-field. What is not there is a dash that says why.
 std::string fixed(const Field& field, int decimals);
 std::string count(const Field& field);
@@ -59,6 +71,7 @@ std::string p(const Field& field);
 std::string p_bare(const Field& field);
 /// "[0.12, 0.34]"; open ends as infinity.
 std::string interval(const Field& field, int decimals);
+/// A text, its formulas typeset.
 std::string words(const Field& field);
 /// "yes" or "no".
 std::string yes_no(const Field& field);

@@ -12,10 +12,20 @@ namespace apps::report {
 /// brackets with stars over pairs that differ. `score`: an entry of task1.scores.
 svg::Picture box_plot(const Field& task1, const Field& score);
 
+/// One score of Task 1: a line for each participant over the methods, within each n_*, and the mean.
+svg::Picture person_lines(const Field& task1, const Field& score);
+
+/// One score of Task 1: the mean of each method in each scene, with its interval, within each n_*.
+svg::Picture scene_lines(const Field& task1, const Field& score);
+
+/// A bar for each entry of a list of distributions: how often each score was given. `names`: of the bars.
+svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
+                         const std::string& id, const std::string& title);
+
 /// Task 2 as in the paper's Fig. 10: how often each of a pair was chosen, with the interval of the share.
 svg::Picture preference_bars(const Field& pairs);
 
-/// Verdicts on the timing of each method's showings, over scenes, for each task.
+/// Verdicts on the timing of each method's showings, over scenes, where one was degraded or failed.
 svg::Picture timing_chart(const Field& timing, const std::string& task);
 
 /// What became of those who began, as CONSORT draws it. `flow`: flow.task1 or flow.task2.

@@ -7,6 +7,7 @@
 
 namespace apps::report {
 
+using html::details;
 using html::figure;
 using html::list;
 using html::paragraph;

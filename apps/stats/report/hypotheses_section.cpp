@@ -92,7 +92,7 @@ std::string one(const Field& hypothesis, bool registered) {
   const Field paper = hypothesis["paper"];
   const bool preference = hypothesis["kind"].words() == "preference";
   std::string body = paragraph("<q>" + words(hypothesis["title"]) + "</q>");
-  body += paragraph(badge(registered) + " <strong>" + words(hypothesis["status"]) + ".</strong> " +
+  body += paragraph(badge(registered) + " Decision: <strong>" + words(hypothesis["status"]) + "</strong>. " +
                     words(hypothesis["status_text"]));
   if (hypothesis["status_if_testable"].there() && hypothesis["status"].words() == "not testable")
     body += paragraph(
@@ -134,7 +134,7 @@ std::string decision_words(const Field& plan) {
 std::string decisions_section(const Field& root) {
   if (root["hypotheses"].entries().empty()) return "";
   Table table("Decisions on the hypotheses", {"Hypothesis", "Kind", "Plan", "Decision", "Tests that hold",
-                                              "In words", "<i>p</i> of the claim", "after Holm over H1 to H6",
+                                              "In words", "<i>p</i> of the claim", "After Holm over H1 to H6",
                                               "The paper's uncorrected procedure", "Published"});
   for (const Field& hypothesis : root["hypotheses"].entries()) {
     table.row({words(hypothesis["id"]), words(hypothesis["kind"]),

@@ -100,8 +100,9 @@ std::string exclusion_rules(const Field& root) {
 
 std::string pilot_text(const Field& pilot) {
   if (pilot["status"].words() != "ok") return "";
-  return "The pilot's curve \xCE\xBC = <i>a</i> exp(<i>b</i> \xCE\xB4) was estimated by " +
-         words(pilot["estimator"]) + "; its intervals by " + words(pilot["interval"]["method"]) + ". ";
+  return "The pilot's curve " + pilot_curve +
+         " was estimated by least squares of all ratings (the model stands under Pilot); its intervals by " +
+         words(pilot["interval"]["method"]) + ". ";
 }
 
 std::string tests_of_task1(const Field& root) {
@@ -124,7 +125,8 @@ std::string factors_text(const Field& root) {
 std::string task1_text(const Field& root) {
   if (!root["task1"].there()) return "";
   const Field plan = root["plan"];
-  return "Answers of Task 1 were averaged over scenes within each participant, n* and method before any "
+  return "Answers of Task 1 were averaged over scenes within each participant, " + n_star_sign +
+         " and method before any "
          "paired test; methods were compared by paired <i>t</i> tests, with Wilcoxon's signed-rank and "
          "Welch's tests beside them. Equivalence was tested by two one-sided tests with margins of " +
          fixed(plan["margins"]["realism"], 2) + " points on realism and " +

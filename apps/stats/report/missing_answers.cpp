@@ -19,7 +19,7 @@ std::string people(const Field& task1) {
   std::vector<std::string> lines;
   for (const Field& one : task1["people"].entries()) {
     if (!one["differ"].yes()) continue;
-    lines.push_back(score_label(task1, one) + ", n* = " + words(one["n_star"]) +
+    lines.push_back(score_label(task1, one) + ", " + n_star_sign + " = " + words(one["n_star"]) +
                     ": pairs rest on different people, " + count(one["fewest"]) + " to " +
                     count(one["most"]) + " of " + count(one["planned"]) + " planned; " + count(one["all"]) +
                     " judged every method");
@@ -36,7 +36,7 @@ void by_score(Table& table, const Field& task1, Wanted wanted, Row row) {
   for (const Field& c : task1["comparisons"].entries()) {
     if (!wanted(c)) continue;
     const std::string key = c["score"].words() + c["n_star"].words();
-    if (key != last) table.group(score_label(task1, c) + ", n* = " + words(c["n_star"]));
+    if (key != last) table.group(score_label(task1, c) + ", " + n_star_sign + " = " + words(c["n_star"]));
     last = key;
     row(c);
   }

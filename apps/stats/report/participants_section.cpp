@@ -76,6 +76,45 @@ std::string distribution(const Field& cell) {
   return out;
 }
 
+bool flawed(const Field& cell) { return cell["degraded"].number() + cell["fail"].number() > 0; }
+
+/// Cells of a part, or only those in which a showing was degraded or failed.
+std::string certificate(const Field& root, const Field& total, const std::string& caption, bool only_flawed) {
+  Table table(caption, {"Scene", n_star_sign, "Method", "Nominal mean", "SD (frames/s)", "Showings", "Pass",
+                        "Degraded", "Fail", "Not judged", "Grades", "Realised mean", "SD (frames/s)",
+                        "Longest (ms)", "Late frames", "Solved", "Tau (frames/s)"});
+  for (const Field& c : root["timing"].entries()) {
+    if (c["task"].words() != total["task"].words() || (only_flawed && !flawed(c))) continue;
+    table.row({words(c["scene"]), words(c["n_star"]), words(c["method"]), fixed(c["nominal_mean_fps"], 2),
+               fixed(c["nominal_sd_fps"], 2), count(c["showings"]), count(c["pass"]), count(c["degraded"]),
+               count(c["fail"]), count(c["unjudged"]), counts(c["grades"]), fixed(c["realised_mean_fps"], 2),
+               fixed(c["realised_sd_fps"], 2), fixed(c["longest_ms"], 1), count(c["late_frames"]),
+               percent(c["active_fraction"]), fixed(c["tau_fps"], 2)});
+  }
+  return table.html();
+}
+
+/// What failed in full, the rest in a table to be opened.
+std::string timing_of(const Field& root, const Field& total) {
+  const std::string key = total["task"].words();
+  std::string title = key;
+  for (const auto& [part, name] : all_parts)
+    if (key == part) title = name;
+  std::string body =
+      paragraph("Of " + count(total["showings"]) + " showings " + count(total["pass"]) + " passed, " +
+                count(total["degraded"]) + " were degraded, " + count(total["fail"]) + " failed and " +
+                count(total["unjudged"]) + " could not be judged. In " + count(total["flawed_cells"]) +
+                " of " + count(total["cells"]) + " cells a showing was degraded or failed.");
+  if (total["flawed_cells"].number() > 0)
+    body += figure(timing_chart(root["timing"], key),
+                   title + ": verdicts by " +
+                       (key == "pilot" ? std::string("setting") : "method and " + n_star_sign) +
+                       ", where a showing was degraded or failed.") +
+            certificate(root, total, title + ": cells in which a showing was degraded or failed", true);
+  return subsection(title, body + details("The certificate of all cells of " + title,
+                                          certificate(root, total, "Timing certificate, " + title, false)));
+}
+
 }  // namespace
 
 std::string descriptives_section(const Field& root) {
@@ -86,7 +125,7 @@ std::string descriptives_section(const Field& root) {
       if (question["task"].words() != key) continue;
       const std::string text = words(question["text"]);
       Table table("Answers to " + words(question["question"]) + (text.empty() ? "" : ": " + text),
-                  {"Shown", "Scene", "n*", "<i>n</i>", "Participants", "Mean", "<i>SD</i>", "Median",
+                  {"Shown", "Scene", n_star_sign, "<i>n</i>", "Participants", "Mean", "<i>SD</i>", "Median",
                    "Answers: how often"});
       for (const Field& c : question["cells"].entries())
         table.row({words(c["shown"]), words(c["scene"]), words(c["n_star"]), count(c["n"]),
@@ -101,7 +140,8 @@ std::string descriptives_section(const Field& root) {
   if (body.empty()) return "";
   return section("descriptives", "Answers by cell",
                  paragraph("Every answer to a trial that is analysed, whatever else is computed from it. A "
-                           "cell is what was shown in one scene at one n*; <i>n</i> counts answers.") +
+                           "cell is what was shown in one scene at one " +
+                           n_star_sign + "; <i>n</i> counts answers.") +
                      body);
 }
 
@@ -124,7 +164,7 @@ std::string participants_section(const Field& root) {
       body += figure(flow_chart(flow, std::string("flow-") + key, title),
                      std::string("What became of those who began: ") + title + ".");
   }
-  body += exclusions_table(root) + untouched(root);
+  body += people_tables(root) + exclusions_table(root) + untouched(root);
   return body.empty() ? "" : section("participants", "Participants and exclusions", body);
 }
 
@@ -136,24 +176,7 @@ std::string timing_section(const Field& root) {
       std::string(any_judged(timing) ? "Its frames were judged against the protocol's tolerance. " : "") +
       (any_unjudged(timing) ? "Without a schedule there is nothing to judge by. " : "") +
       "Grades of evidence: A photodiode, B display feedback, C compositor, D submission by the program.");
-  for (const auto& [key, title] : all_parts) {
-    Table table(std::string("Timing certificate, ") + title,
-                {"Scene", "n*", "Method", "Nominal mean", "SD (frames/s)", "Showings", "Pass", "Degraded",
-                 "Fail", "Not judged", "Grades", "Realised mean", "SD (frames/s)", "Longest (ms)",
-                 "Late frames", "Solved", "Tau (frames/s)"});
-    for (const Field& c : timing.entries()) {
-      if (c["task"].words() != key) continue;
-      table.row({words(c["scene"]), words(c["n_star"]), words(c["method"]), fixed(c["nominal_mean_fps"], 2),
-                 fixed(c["nominal_sd_fps"], 2), count(c["showings"]), count(c["pass"]), count(c["degraded"]),
-                 count(c["fail"]), count(c["unjudged"]), counts(c["grades"]),
-                 fixed(c["realised_mean_fps"], 2), fixed(c["realised_sd_fps"], 2), fixed(c["longest_ms"], 1),
-                 count(c["late_frames"]), percent(c["active_fraction"]), fixed(c["tau_fps"], 2)});
-    }
-    if (table.empty()) continue;
-    const std::string by = std::string(key) == "pilot" ? "setting" : "method and n*";
-    body +=
-        figure(timing_chart(timing, key), std::string(title) + ": verdicts by " + by + ".") + table.html();
-  }
+  for (const Field& total : root["timing_totals"].entries()) body += timing_of(root, total);
   return section("timing", "Timing", body);
 }
 

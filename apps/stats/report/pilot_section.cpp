@@ -33,6 +33,10 @@ stats::ScoreGrid grid_of(const Field& cells) {
 std::string a_with_interval(const Field& e) { return fixed(e["a"], 2) + " " + interval(e["a_ci"], 2); }
 std::string b_with_interval(const Field& e) { return fixed(e["b"], 4) + " " + interval(e["b_ci"], 4); }
 
+std::string for_solver(const Field& pilot) {
+  return pilot["doubts"].entries().empty() ? "For the solver" : "Not for a solver";
+}
+
 void estimate_row(Table& table, const std::string& name, const Field& e) {
   if (!e["a"].is_number()) {
     const std::string reason = e.reason().empty() ? e["a"].reason() : e.reason();
@@ -42,28 +46,47 @@ void estimate_row(Table& table, const std::string& name, const Field& e) {
   table.row({name, a_with_interval(e), b_with_interval(e)});
 }
 
+/// The model of the direct estimate.
+std::string model_of(const Field& pilot) {
+  if (pilot["estimator"].words().empty()) return "";
+  const std::string mu = typeset("mu"), delta = typeset("delta"), u = "<i>u</i>";
+  return paragraph(
+             "Model of the direct estimate, least squares of all ratings with a participant's ratings of one "
+             "setting averaged, at the realised " +
+             mu + " and " + delta + ":") +
+         "<p class=\"formula\">E[score] = level + <i>k</i>\xE2\x80\x89" + u + " + <i>m</i>\xE2\x80\x89" + u +
+         "\xE2\x80\x89" + delta + " + <i>q</i>\xE2\x80\x89" + u + "\xC2\xB2, with " + u +
+         " = log\xE2\x80\x89" + mu +
+         " \xE2\x88\x92 log\xE2\x80\x89<i>a</i> \xE2\x88\x92 <i>b</i>\xE2\x80\x89" + delta + "</p>\n";
+}
+
 std::string estimates(const Field& pilot) {
-  Table table("\xCE\xBC = <i>a</i> exp(<i>b</i> \xCE\xB4), intervals over participants",
-              {"Estimator", "<i>a</i> [CI], frames/s", "<i>b</i> [CI], s/frame"});
+  Table table("Estimates of " + pilot_curve + ", intervals over participants",
+              {"Estimate", "<i>a</i> [CI], frames/s", "<i>b</i> [CI], s/frame"});
+  // The solver's interval may be wider than that of the estimate which it belongs to.
+  if (pilot["a"].is_number())
+    table.row({"<strong>" + for_solver(pilot) + "</strong>, level " + fixed(pilot["level"], 1),
+               a_with_interval(pilot), b_with_interval(pilot)});
   for (const Field& e : pilot["estimators"].entries())
     estimate_row(table,
                  words(e["label"]) + ", level " + fixed(e["level"], 1) +
-                     (e["main"].yes() ? " <strong>(for the solver)</strong>" : ""),
+                     (e["main"].yes() ? ", with its own interval" : ""),
                  e);
   const bool listed = !pilot["estimators"].entries().empty();  // with the harmonic mean
   for (const char* mean : {"harmonic", "arithmetic"}) {
     if (listed && std::string(mean) == "harmonic") continue;
     for (const Field& e : pilot["means"][mean].entries())
       estimate_row(table,
-                   "contour of means with the " + std::string(mean) + " mean, level " + fixed(e["level"], 1),
+                   "Contour of means with the " + std::string(mean) + " mean, level " + fixed(e["level"], 1),
                    e);
   }
   return table.empty() ? "" : table.html();
 }
 
 std::string bands(const Field& pilot) {
-  Table table("The curve \xCE\xBC(\xCE\xB4) with its bands, frames/s",
-              {"\xCE\xB4", "\xCE\xBC", "CI at this \xCE\xB4", "band over all \xCE\xB4"});
+  const std::string mu = typeset("mu"), delta = typeset("delta");
+  Table table("The curve " + typeset("mu(delta)") + " with its bands, frames/s",
+              {delta, mu, "CI at this " + delta, "Band over all " + delta});
   std::string level;
   for (const Field& point : pilot["bands"].entries()) {
     const std::string here = svg::number(point["level"].number(), 4);
@@ -122,9 +145,8 @@ std::string pilot_section(const Field& root) {
   }
   std::string body =
       paragraph(count(pilot["n_participants"]) + " participants gave " + count(pilot["n_ratings"]) +
-                " ratings of " + count(pilot["n_settings"]) + " settings. " +
-                (pilot["doubts"].entries().empty() ? "For the solver" : "Not for a solver") + ", at level " +
-                fixed(pilot["level"], 1) + ": <i>a</i> = " + a_with_interval(pilot) +
+                " ratings of " + count(pilot["n_settings"]) + " settings. " + for_solver(pilot) +
+                ", at level " + fixed(pilot["level"], 1) + ": <i>a</i> = " + a_with_interval(pilot) +
                 " frames/s, <i>b</i> = " + b_with_interval(pilot) + " s/frame.");
   for (const Field& flag : pilot["flags"].entries())
     body += "<p class=\"warning\">" + words(flag["text"]) + "</p>\n";
@@ -138,10 +160,12 @@ std::string pilot_section(const Field& root) {
     body += paragraph("Shape of the scores: " + words(pilot["lack_of_fit"]["text"]) + ".");
   body += bands(pilot);
   const Field resampling = pilot["bootstrap"].there() ? pilot["bootstrap"] : pilot["interval"];
-  body += paragraph(words(pilot["estimator"]) + ". " + words(pilot["interval"]["method"]) +
+  body += model_of(pilot);
+  body += paragraph("Intervals: " + words(pilot["interval"]["method"]) +
                     " (bootstrap: " + count(resampling["resamples"]) + " resamples, seed " +
                     count(resampling["seed"]) + "). " + words(pilot["means"]["note"]));
-  return section("pilot", "Pilot: tolerance of frame rates", body + cells(pilot));
+  return section("pilot", "Pilot: tolerance of frame rates",
+                 body + cells(pilot) + pilot_ratings(pilot) + response_times(root, "pilot"));
 }
 
 }  // namespace apps::report

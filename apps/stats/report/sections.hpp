@@ -45,6 +45,17 @@ std::string missing_answers(const Field& root);
 std::string task2_section(const Field& root);
 /// Of the sections of the tasks, where effects are a factor: what a method is, and what each level is worth.
 std::string treatment_note(const Field& task);
+/// Of the sections of the parts: ratings by how often each was given, times of response, reliability of
+/// scores of several items, methods at one n_* and another, the smallest effect that could be found.
+std::string pilot_ratings(const Field& pilot);
+std::string score_ratings(const Field& task1, const Field& score);
+std::string response_times(const Field& root, const std::string& task);
+std::string reliability(const Field& task1);
+std::string by_n_star(const Field& task1);
+std::string detectable_scores(const Field& task1);
+std::string detectable_preference(const Field& task2);
+/// Of the section of participants: what they answered about themselves.
+std::string people_tables(const Field& root);
 std::string score_factors(const Field& task1);
 std::string preference_factors(const Field& task2);
 std::string sickness_section(const Field& root);

@@ -22,7 +22,7 @@ std::string by_n_star(Table table, const Field& task1, const std::string& list, 
                       Row row) {
   bool any = false;
   for (const Field& n_star : task1["n_stars"].entries()) {
-    table.group("n* = " + words(n_star));
+    table.group(n_star_sign + " = " + words(n_star));
     for (const Field& entry : task1[list].entries()) {
       if (!of(entry, score, n_star.words())) continue;
       row(table, entry);
@@ -123,11 +123,11 @@ std::string apa_lines(const Field& task1, const std::string& score) {
 std::string omnibus(const Field& task1) {
   std::map<std::string, Field> labels;
   for (const Field& score : task1["scores"].entries()) labels.emplace(score["code"].words(), score["label"]);
-  Table table(
-      "All methods at once",
-      {"Score, n*", "<i>n</i>", "incomplete", "Friedman \xCF\x87\xC2\xB2 (<i>df</i>)", "<i>p</i>",
-       "Kendall's <i>W</i>", "<i>F</i> (<i>df</i>)", "<i>p</i>", "GG \xCE\xB5", "<i>p</i><sub>GG</sub>",
-       "HF \xCE\xB5", "<i>p</i><sub>HF</sub>", "partial \xCE\xB7\xC2\xB2", "generalised \xCE\xB7\xC2\xB2"});
+  Table table("All methods at once",
+              {"Score, " + n_star_sign, "<i>n</i>", "Incomplete", "Friedman \xCF\x87\xC2\xB2 (<i>df</i>)",
+               "<i>p</i>", "Kendall's <i>W</i>", "<i>F</i> (<i>df</i>)", "<i>p</i>", "GG \xCE\xB5",
+               "<i>p</i><sub>GG</sub>", "HF \xCE\xB5 (at most 1)", "<i>p</i><sub>HF</sub>",
+               "Partial \xCE\xB7\xC2\xB2", "Generalised \xCE\xB7\xC2\xB2"});
   std::vector<std::string> lines;
   for (const Field& o : task1["omnibus"].entries()) {
     const Field f = o["friedman"], a = o["anova"];
@@ -182,17 +182,27 @@ std::string ordinal(const Field& task1) {
 }
 
 std::string by_scene(const Field& task1) {
-  Table table("Scores by scene (not averaged, not tested)",
-              {"Scene", "Method", "<i>n</i>", "<i>M</i>", "<i>SD</i>"});
+  Table table(
+      "Scores by scene (not averaged, not tested)",
+      {"Scene", "Method", "<i>n</i>", "<i>M</i>", "<i>SD</i>", "CI (<i>t</i>, of participants' means)"});
   std::string last;
   for (const Field& c : task1["by_scene"].entries()) {
-    const std::string group = words(c["score"]) + ", n* = " + words(c["n_star"]);
+    const std::string group = words(c["score"]) + ", " + n_star_sign + " = " + words(c["n_star"]);
     const std::string key = c["score"].words() + c["n_star"].words();
     if (key != last) table.group(group);
     last = key;
-    table.row({words(c["scene"]), words(c["method"]), count(c["n"]), fixed(c["mean"], 2), fixed(c["sd"], 2)});
+    table.row({words(c["scene"]), words(c["method"]), count(c["n"]), fixed(c["mean"], 2), fixed(c["sd"], 2),
+               interval(c["ci"], 2)});
   }
-  return table.empty() ? "" : subsection("By scene", table.html());
+  std::string pictures;
+  for (const Field& score : task1["scores"].entries()) {
+    if (score["primary"].yes())
+      pictures +=
+          figure(scene_lines(task1, score), words(score["label"]) +
+                                                " by scene: means of participants with their intervals, "
+                                                "not tested.");
+  }
+  return table.empty() ? "" : subsection("By scene", pictures + table.html());
 }
 
 std::string retest(const Field& task1) {
@@ -215,7 +225,12 @@ std::string one_score(const Field& task1, const Field& score) {
                    "and median; whiskers: last values within one and a half interquartile ranges; circles: "
                    "values beyond; X and number: mean. Brackets: paired <i>t</i> tests, uncorrected, * "
                    "<i>p</i> &lt; .05, ** <i>p</i> &lt; .01, *** <i>p</i> &lt; .001; solid: still below "
-                   ".05 after Holm over the pairs within n*, dashed: not.");
+                   ".05 after Holm over the pairs within " +
+                   n_star_sign + ", dashed: not.");
+  if (primary)
+    body += figure(person_lines(task1, score),
+                   words(score["label"]) + " of each participant: thin lines; thick line and X: means.");
+  if (primary) body += score_ratings(task1, score);
   body += cells_table(task1, score) + t_tests(task1, score);
   if (primary) body += apa_lines(task1, score["code"].words());
   body += other_tests(task1, score);
@@ -238,7 +253,8 @@ std::string task1_section(const Field& root) {
   for (const Field& score : task1["scores"].entries()) body += one_score(task1, score);
   return section("task1", "Task 1: realism and cybersickness",
                  body + score_factors(task1) + omnibus(task1) + missing_answers(root) + ordinal(task1) +
-                     by_scene(task1) + retest(task1));
+                     by_n_star(task1) + by_scene(task1) + reliability(task1) + detectable_scores(task1) +
+                     response_times(root, "task1") + retest(task1));
 }
 
 }  // namespace apps::report

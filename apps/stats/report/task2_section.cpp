@@ -148,7 +148,8 @@ std::string task2_section(const Field& root) {
                  "interval. Stars: exact binomial test, uncorrected / after Holm over all pairs.") +
           pairs_table(pairs) + apa_lines(pairs) + preference_factors(task2) +
           interval_bias(task2["interval_bias"]) + bradley_terry(task2["bradley_terry"]) +
-          triads(task2["triads"]) + by_scene(task2) + retest(task2["retest"]));
+          triads(task2["triads"]) + by_scene(task2) + detectable_preference(task2) +
+          response_times(root, "task2") + retest(task2["retest"]));
 }
 
 }  // namespace apps::report

@@ -91,13 +91,15 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
     if (fresh) order.push_back(name);
     for (std::size_t i = 0; i < verdicts.size(); ++i) at->second.n[i] += cell[verdicts[i].key].number();
   }
+  // What only passed needs no bar.
+  std::erase_if(order, [&](const std::string& name) { return lines[name].n[1] + lines[name].n[2] <= 0; });
   svg::Picture picture{.width = left + width + 20, .id = "timing-" + task};
   picture.title = "Verdicts on the timing of the showings";
   picture.description =
       std::string("A bar for each ") +
       (task == "pilot" ? "setting, mean and SD in frames/s" : "method and n*, over scenes") +
-      ": the shares of its showings whose timing passed, was degraded, failed or could not be judged. The "
-      "table below holds the counts of each cell.";
+      ", in which a showing was degraded or failed: the shares of its showings whose timing passed, was "
+      "degraded, failed or could not be judged. The table below holds the counts of each cell.";
   picture.definitions = patterns(picture.id);
   double y = top;
   for (const auto& name : order) {

@@ -182,6 +182,8 @@ namespace {
 void write_document(const Json& results, const std::filesystem::path& folder, const WriteFile& write) {
   std::vector<std::pair<std::string, Json>> lists{
       {"timing", results.at("timing")},
+      {"timing_totals", results.value("timing_totals", Json::array())},
+      {"response_times", results.value("response_times", Json::array())},
       {"hypotheses", tests_of(results.at("hypotheses"))},
       {"sensitivity", sensitivity_lines(results.at("sensitivity"))}};
   const Json descriptives = entries_of(results.value("descriptives", Json::array()), "cells");
@@ -198,6 +200,10 @@ void write_document(const Json& results, const std::filesystem::path& folder, co
     for (const char* name :
          {"participant_means", "cells", "by_scene", "people", "comparisons", "omnibus", "retest"})
       lists.emplace_back(std::string("task1_") + name, task.at(name));
+    for (const char* name : {"by_n_star", "reliability", "detectable"})
+      lists.emplace_back(std::string("task1_") + name, task.value(name, Json::array()));
+    lists.emplace_back("task1_distributions",
+                       entries_of(task.value("distributions", Json::array()), "counts"));
     lists.emplace_back("task1_ordinal", entries_of(task.at("ordinal"), "effects"));
     lists.emplace_back("task1_mixed", entries_of(task.at("mixed"), "terms"));
     lists.emplace_back("task1_factors", task.value("factors", Json::array()));

@@ -262,4 +262,19 @@ Json timing_json(const TaskData& data) {
   return list;
 }
 
+Json timing_totals_json(const Json& timing) {
+  Json list = Json::array();
+  for (const Json& cell : timing) {
+    if (list.empty() || list.back().at("task") != cell.at("task"))
+      list.push_back({{"task", cell.at("task")}, {"cells", 0}, {"flawed_cells", 0}});
+    Json& total = list.back();
+    const auto add = [&](const char* key, int n) { total[key] = total.value(key, 0) + n; };
+    for (const char* key : {"showings", "pass", "degraded", "fail", "unjudged"})
+      add(key, cell.at(key).get<int>());
+    add("cells", 1);
+    add("flawed_cells", cell.at("degraded").get<int>() + cell.at("fail").get<int>() > 0 ? 1 : 0);
+  }
+  return list;
+}
+
 }  // namespace apps

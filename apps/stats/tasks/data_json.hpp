@@ -19,5 +19,7 @@ Json roster_json(const study::TaskStudy& study, const std::multimap<std::string,
 /// Lists.
 Json exclusions_json(const TaskData& data);
 Json timing_json(const TaskData& data);
+/// One entry for each part in a list of timing_json(): its sums, and in how many cells every showing passed.
+Json timing_totals_json(const Json& timing);
 
 }  // namespace apps

@@ -4,7 +4,9 @@
 #include "apps/stats/tasks/costs_json.hpp"
 #include "apps/stats/tasks/data_json.hpp"
 #include "apps/stats/tasks/descriptives_json.hpp"
+#include "apps/stats/tasks/exploration_json.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
+#include "apps/stats/tasks/people_json.hpp"
 #include "apps/stats/tasks/sensitivity.hpp"
 #include "apps/stats/tasks/task1_json.hpp"
 #include "apps/stats/tasks/task2_json.hpp"
@@ -47,8 +49,10 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
     stats::BootstrapOptions bootstrap;
     bootstrap.seed = plan.seed;
     bootstrap.confidence = plan.confidence;
-    return fit_json(
+    Json fitted = fit_json(
         fit_pilot(data, level_of({data.task, {}, plan, {}, request.level}, data.question), bootstrap));
+    fitted["distributions"] = distributions_json(data);
+    return fitted;
   }
   if (data.task == TaskKind::Task1) {
     const auto results = analyse_task1(data, plan);
@@ -111,7 +115,8 @@ Json not_analysed_json(const TaskPart& part) {
   return list;
 }
 
-Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts) {
+Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
+              const std::vector<study::PersonalEntry>& about_people) {
   std::vector<const TaskData*> data;
   std::vector<std::string> protocols;
   for (const TaskPart& part : parts) {
@@ -125,7 +130,9 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
             {"study", study_json(request.database.filename().string(), data)},
             {"flow", Json::object()},
             {"exclusions", Json::array()},
+            {"people", people_json(data, about_people)},
             {"timing", Json::array()},
+            {"response_times", Json::array()},
             {"costs", Json::array()}};
   if (request.sweep) json["sweep"] = sweep_json(request.sweep_file, *request.sweep);
   json["descriptives"] = Json::array();
@@ -134,10 +141,12 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts)
     json["flow"][task_name(part.data.task)] = flow_json(part.data.flow);
     append(json["exclusions"], exclusions_json(part.data));
     append(json["timing"], timing_json(part.data));
+    append(json["response_times"], response_times_json(part.data));
     append(json["costs"], costs_json(part.data, request.sweep.get()));
     append(json["descriptives"], descriptives_json(part.data, part.described));
     append(json["not_analysed"], not_analysed_json(part));
   }
+  json["timing_totals"] = timing_totals_json(json["timing"]);
   for (const TaskPart& part : parts) json[task_name(part.data.task)] = part.results;
   json["hypotheses"] = Json::array();
   json["sensitivity"] = Json::array();
@@ -166,7 +175,10 @@ std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>&
 }  // namespace
 
 Results study_results(const ResultsRequest& request) {
-  return make_results(study::read_tasks({request.database, request.incomplete}), request);
+  const study::StudyFile file(request.database, request.incomplete);
+  auto study = study::read_tasks(file);
+  study::read_about_people(file, study);
+  return make_results(study, request);
 }
 
 Results make_results(const study::TaskStudy& study, const ResultsRequest& request) {
@@ -181,13 +193,13 @@ Results make_results(const study::TaskStudy& study, const ResultsRequest& reques
     for (const ChosenTask& one : *chosen)
       (&one == &chosen->front() ? first : others).push_back(analyse(study, one, request, out.missing));
   }
-  out.json = assemble(request, first);
+  out.json = assemble(request, first, study.about_people);
   out.json["roster"] = roster_json(study, sections_of(first, others));
   if (!others.empty()) out.json["apart"] = Json::array();
   for (TaskPart& part : others) {
     std::vector<TaskPart> alone;
     alone.push_back(std::move(part));
-    Json document = assemble(request, alone);
+    Json document = assemble(request, alone, study.about_people);
     document["section"] = apart_name(out.json["apart"].size());
     out.json["apart"].push_back(std::move(document));
   }

@@ -1,9 +1,8 @@
 #include "apps/stats/tasks/task1_json.hpp"
 
 #include <cmath>
-#include <map>
-#include <tuple>
 
+#include "apps/stats/tasks/exploration_json.hpp"
 #include "apps/stats/tasks/factors_json.hpp"
 #include "apps/stats/tasks/missing_json.hpp"
 #include "apps/stats/tasks/retest.hpp"
@@ -149,7 +148,8 @@ Json anova_json(const stats::RepeatedAnova& test) {
           {"p", test.p},
           {"epsilon_gg", test.epsilon_gg},
           {"p_gg", test.p_gg},
-          {"epsilon_hf", json_number(test.epsilon_hf)},
+          {"epsilon_hf", json_number(test.epsilon_hf_capped())},
+          {"epsilon_hf_uncapped", json_number(test.epsilon_hf)},
           {"p_hf", json_number(test.p_hf)},
           {"partial_eta2", test.partial_eta2},
           {"generalised_eta2", test.generalized_eta2}};
@@ -162,27 +162,6 @@ Json omnibus_json(const ScoreTable& table, const stats::Omnibus& one) {
           {"n_incomplete", one.n_incomplete},
           {"friedman", json_result(one.friedman, friedman_json)},
           {"anova", json_result(one.anova, anova_json)}};
-}
-
-/// Reports as they were given, cell by cell.
-Json by_scene_json(const TaskData& data, const ScoreTable& table) {
-  std::map<std::tuple<int, int, int>, std::vector<double>> cells;
-  for (const auto& score : report_scores(data, table.scale().items)) {
-    if (!std::isnan(score.sum)) cells[{score.n_star, score.scene, score.method}].push_back(score.value());
-  }
-  Json list = Json::array();
-  for (const auto& [key, values] : cells) {
-    const auto& [n_star, scene, method] = key;
-    const auto summary = stats::describe(values);
-    list.push_back({{"score", table.scale().code},
-                    {"n_star", table.n_stars()[static_cast<std::size_t>(n_star)]},
-                    {"scene", data.scenes[static_cast<std::size_t>(scene)]},
-                    {"method", table.methods()[static_cast<std::size_t>(method)]},
-                    {"n", values.size()},
-                    {"mean", summary->mean},
-                    {"sd", json_number(summary->sd)}});
-  }
-  return list;
 }
 
 /// One line for each participant, n_* and method that has a score.
@@ -249,12 +228,15 @@ Json ordinal_json(const TaskData& data, const OrdinalModel& model) {
 
 Json signed_rank_json(const stats::SignedRank& test) {
   return {{"w", test.w_plus},
-          {"p", test.p_default},
-          {"method", test.default_is_exact ? "exact" : "normal, with ties and continuity corrected"},
+          {"p", test.p()},
+          {"method", test.p_exact ? "exact" : "normal, with ties and continuity corrected"},
           {"p_exact", json_number(test.p_exact)},
+          {"p_normal", test.p_normal},
           {"location", test.hodges_lehmann},
           {"ci", json_interval(test.hodges_lehmann_ci)},
           {"ci_level", test.hodges_lehmann_ci ? Json(test.hodges_lehmann_level) : Json()},
+          {"ci_reason",
+           test.hodges_lehmann_ci ? "" : "more differences than the exact distribution is computed for"},
           {"rank_biserial", test.rank_biserial},
           {"n_used", test.n_nonzero},
           {"n_zero", test.n - test.n_nonzero}};
@@ -275,7 +257,8 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
     const auto& analysis = results.analyses[i];
     json["scores"].push_back(score_json(table.scale()));
     for (const auto& cell : analysis.cells) json["cells"].push_back(cell_json(table, cell));
-    for (const auto& line : by_scene_json(data, table)) json["by_scene"].push_back(line);
+    for (const auto& line : score_by_scene_json(data, table, plan.confidence))
+      json["by_scene"].push_back(line);
     for (const auto& one : analysis.comparisons)
       json["comparisons"].push_back(comparison_json(table, one, plan.alpha));
     for (const auto& one : analysis.omnibus) json["omnibus"].push_back(omnibus_json(table, one));
@@ -284,6 +267,10 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
   }
   for (const auto& model : results.ordinal) json["ordinal"].push_back(ordinal_json(data, model));
   json["participant_means"] = participant_means_json(data, results.tables);
+  json["by_n_star"] = n_star_differences_json(results.tables, plan);
+  json["distributions"] = distributions_json(data);
+  json["reliability"] = reliability_json(data, results.tables, plan);
+  json["detectable"] = detectable_scores_json(results.tables, results.analyses, plan);
   json["retest"] = rating_retest_json(data);
   if (Json factors = score_factors_json(data, results.tables, plan); !factors.empty())
     json["factors"] = factors;

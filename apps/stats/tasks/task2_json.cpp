@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "apps/stats/tasks/exploration_json.hpp"
 #include "apps/stats/tasks/factors_json.hpp"
 #include "apps/stats/tasks/retest.hpp"
 #include "stats/analysis/hypotheses.hpp"
@@ -245,6 +246,7 @@ Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
             {"triads", triads_json(data, analysis)},
             {"by_scene", by_scene_json(data)},
             {"choices", choices_json(data)},
+            {"detectable", detectable_preference_json(analysis, plan)},
             {"retest", choice_retest_json(data)}};
   if (Json factors = preference_factors_json(data, plan); !factors.empty()) json["factors"] = factors;
   return json;

@@ -205,6 +205,22 @@ TEST(BinomialPower, IsTheSumOverTheCountsThatAreSignificant) {
   EXPECT_EQ(*stats::binomial_power(6, 0.7)->k_critical_lower, 0);
 }
 
+// R 4.2.2: power.t.test(n = 26, power = .8, type = "paired", strict = TRUE, tol = 1e-14)$delta, and the root
+// of the power of binom.test's rejections over dbinom.
+TEST(Power, TheSmallestEffectThatIsFoundIsThatOfR) {
+  EXPECT_NEAR(*stats::t_detectable(26, 0.8), 0.571704834713, 1e-9);
+  EXPECT_NEAR(*stats::binomial_detectable(26, 0.8), 0.778848249382, 1e-10);
+  for (const double power : {0.3, 0.8, 0.95}) {
+    EXPECT_NEAR(*stats::t_power(12, *stats::t_detectable(12, power, 0.01), 0.01), power, 1e-12);
+    EXPECT_NEAR(stats::binomial_power(17, *stats::binomial_detectable(17, power))->power, power, 1e-12);
+  }
+  EXPECT_EQ(stats::binomial_detectable(5, 0.8).reason(),
+            "too few answers: not even a choice by all is significant at this level");
+  EXPECT_NE(stats::t_detectable(1, 0.8).reason(), "");
+  EXPECT_NE(stats::t_detectable(26, 0.05).reason(), "");
+  EXPECT_NE(stats::t_detectable(26, 1).reason(), "");
+}
+
 TEST(Power, RefusesWhatHasNoAnswer) {
   for (const double n : {1.0, 0.0, -3.0, unknown}) {
     EXPECT_NE(stats::t_power(n, 0.5).reason(), "");

@@ -57,19 +57,16 @@ signed_tails <- function(d) {
 signed_ranks <- function(whole, denominator) {
   used <- whole[whole != 0]
   if (length(used) == 0) return(NULL)
-  plain <- length(used) == length(whole) && !any(duplicated(abs(used)))
-  test <- suppressWarnings(wilcox.test(whole, correct = TRUE))
+  test <- suppressWarnings(wilcox.test(whole, exact = FALSE, correct = TRUE))
   walsh <- outer(whole, whole, "+") / 2
   walsh <- sort(walsh[lower.tri(walsh, diag = TRUE)])
   ranks <- rank(abs(used))
   n <- length(whole)
-  ci <- level <- NA
-  if (plain) {
-    cut <- max(qsignrank(alpha / 2, n), 1)
-    ci <- c(walsh[cut], walsh[length(walsh) + 1 - cut]) / denominator
-    level <- 1 - 2 * psignrank(cut - 1, n)
-  }
-  list(w = unname(test$statistic), p = test$p.value, p_exact = min(1, 2 * min(signed_tails(used))),
+  cut <- max(qsignrank(alpha / 2, n), 1)
+  ci <- c(walsh[cut], walsh[length(walsh) + 1 - cut]) / denominator
+  level <- 1 - 2 * psignrank(cut - 1, n)
+  exact <- min(1, 2 * min(signed_tails(used)))
+  list(w = unname(test$statistic), p = exact, p_exact = exact, p_normal = test$p.value,
        location = median(walsh) / denominator, ci = ci, ci_level = level,
        rank_biserial = (sum(ranks[used > 0]) - sum(ranks[used < 0])) / sum(ranks), n_used = length(used),
        n_zero = n - length(used))
@@ -166,7 +163,8 @@ omnibus <- function(rows) {
   rest <- n - 1 - (k - 1) * gg
   hf <- if (rest < 1e-9 * n) NA else (n * (k - 1) * gg - 2) / ((k - 1) * rest)
   out$anova <- list(f = f, df1 = k - 1, df2 = (k - 1) * (n - 1), p = tail(1), epsilon_gg = gg, p_gg = tail(gg),
-                    epsilon_hf = hf, p_hf = if (is.na(hf)) NA else tail(min(1, hf)),
+                    epsilon_hf = if (is.na(hf)) NA else min(1, hf),
+                    epsilon_hf_uncapped = hf, p_hf = if (is.na(hf)) NA else tail(min(1, hf)),
                     partial_eta2 = conditions / (conditions + error),
                     generalised_eta2 = conditions / (conditions + subjects + error))
   out

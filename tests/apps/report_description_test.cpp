@@ -1,0 +1,270 @@
+/// What describes a study on the report: people, distributions, lines, reliability, detectable effects,
+/// times; and how its page is set.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/stats/report/page.hpp"
+#include "apps/stats/tasks/people_json.hpp"
+#include "apps/stats/tasks/results.hpp"
+#include "stats/inference/t_test.hpp"
+#include "tests/apps/html_reader.hpp"
+#include "tests/apps/made_task_study.hpp"
+#include "tests/apps/report_blocks.hpp"
+#include "tests/apps/simulated_pilot.hpp"
+
+namespace apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::Pair;
+
+constexpr int people = 26;
+
+const Json& made() {
+  static const Json json = [] {
+    PlanInForce plan;
+    plan.plan.resamples = 200;
+    return make_results({{testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7),
+                          made_study::task1(people), made_study::task2(people)},
+                         0,
+                         made_study::about_people(people)},
+                        {"s.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+        .json;
+  }();
+  return json;
+}
+
+const std::string& page() {
+  static const std::string html = report::results_page(made());
+  return html;
+}
+
+TEST(PeopleOfTheReport, SmallGroupsAreTakenTogetherWithTheNextSmallest) {
+  const auto groups = [](std::vector<std::pair<std::string, int>> counts) {
+    return pool_small_groups(std::move(counts));
+  };
+  auto got = groups({{"f", 13}, {"m", 12}, {"another", 1}});
+  EXPECT_THAT(got.shown, ElementsAre(Pair("f", 13)));
+  EXPECT_THAT(got.pooled, ElementsAre("another", "m"));
+  EXPECT_EQ(got.pooled_people, 13) << "else the group of one follows from the sum";
+  got = groups({{"f", 13}, {"m", 12}, {"another", 0}});
+  EXPECT_THAT(got.shown, ElementsAre(Pair("f", 13), Pair("m", 12)));
+  EXPECT_THAT(got.pooled, IsEmpty());
+  got = groups({{"f", 9}, {"m", 4}, {"another", 2}, {"none", 1}});
+  EXPECT_THAT(got.shown, ElementsAre(Pair("f", 9), Pair("m", 4)));
+  EXPECT_EQ(got.pooled_people, 3);
+  EXPECT_THAT(groups({{"f", 1}, {"m", 1}}).shown, IsEmpty());
+}
+
+// Whatever the counts: no group, no pool and no difference of the sums is smaller than smallest_group.
+TEST(PeopleOfTheReport, NoGroupThatIsShownOrFollowsIsSmaller) {
+  for (int f = 0; f <= 9; ++f) {
+    for (int m = 0; m <= 9; ++m) {
+      for (int other = 0; other <= 5; ++other) {
+        const auto got = pool_small_groups({{"f", f}, {"m", m}, {"other", other}});
+        int shown = 0;
+        for (const auto& [answer, n] : got.shown) {
+          EXPECT_GE(n, smallest_group);
+          shown += n;
+        }
+        EXPECT_EQ(shown + got.pooled_people, f + m + other);
+        if (!got.pooled.empty() && !got.shown.empty()) {
+          EXPECT_GE(got.pooled_people, smallest_group);
+        }
+      }
+    }
+  }
+}
+
+TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
+  const Json& task1 = made().at("people").at(0);  // the pilot asks nothing
+  EXPECT_EQ(task1.at("task"), "task1");
+  EXPECT_EQ(task1.at("participants"), people);
+  const Json &age = task1.at("questions").at(0), &gender = task1.at("questions").at(1);
+  EXPECT_EQ(age.at("n"), 25);
+  EXPECT_EQ(age.at("missing"), 1);
+  double sum = 0, squares = 0;
+  for (int person = 0; person < 25; ++person) sum += 20 + person % 12;
+  for (int person = 0; person < 25; ++person) squares += std::pow(20 + person % 12 - sum / 25, 2);
+  EXPECT_NEAR(age.at("mean"), sum / 25, 1e-12);
+  EXPECT_NEAR(age.at("sd"), std::sqrt(squares / 24), 1e-12);
+  EXPECT_EQ(age.at("range"), Json({20, 35})) << "20 to 31, in whole fives: the ends are single people";
+  EXPECT_EQ(gender.at("groups"), Json::array({{{"answer", "male"}, {"n", 12}}}));
+  EXPECT_EQ(gender.at("pooled").at("n"), 13);
+  EXPECT_THAT(page(), HasSubstr("What the analysed participants answered about themselves"));
+
+  PlanInForce plan;
+  plan.plan.resamples = 100;
+  const auto few = make_results({{made_study::task1(4)}, 0, made_study::about_people(4)},
+                                {"s.db", {TaskKind::Task1}, "", plan})
+                       .json.at("people")
+                       .at(0)
+                       .at("questions");
+  EXPECT_FALSE(few.at(0).contains("mean"));
+  EXPECT_THAT(few.at(0).at("refused").get<std::string>(), HasSubstr("fewer than 5"));
+  EXPECT_THAT(few.at(1).at("groups"), IsEmpty());
+}
+
+TEST(DescriptionOfTheReport, DistributionsCountEveryAnswer) {
+  const auto study = made_study::task1(people);
+  std::map<std::string, int> wanted;  // of realism at 16k
+  for (const auto& session : study.sessions)
+    for (const auto& trial : session.trials)
+      if (trial.first.what.n_star == "16k")
+        ++wanted[trial.first.what.method + " " + std::to_string(*trial.answers.at(0).score)];
+  int seen = 0, all = 0;
+  for (const Json& cell : made().at("task1").at("distributions")) {
+    int n = 0;
+    for (const Json& one : cell.at("counts")) {
+      n += one.at("n").get<int>();
+      if (cell.at("question") != "realism" || cell.at("n_star") != "16k") continue;
+      const auto key = cell.at("method").get<std::string>() + " " + one.at("score").dump();
+      EXPECT_EQ(one.at("n"), wanted[key]) << key;
+      ++seen;
+    }
+    EXPECT_EQ(n, cell.at("n"));
+    all += n;
+  }
+  EXPECT_EQ(seen, 5 * 7);
+  EXPECT_EQ(all, people * 10 * 5);
+  int ratings = 0;
+  for (const Json& cell : made().at("pilot").at("distributions")) ratings += cell.at("n").get<int>();
+  EXPECT_EQ(ratings, 16 * 21);
+}
+
+TEST(DescriptionOfTheReport, MethodsByNStarAreDifferencesOfDifferences) {
+  std::map<std::string, std::map<std::string, double>> scores;  // participant, "n_star method"
+  for (const Json& mean : made().at("task1").at("participant_means"))
+    scores[mean.at("participant")]
+          [mean.at("n_star").get<std::string>() + mean.at("method").get<std::string>()] = mean.at("realism");
+  std::vector<double> differences;
+  for (auto& [person, of] : scores)
+    differences.push_back((of["16kLoRes"] - of["16kOurs"]) - (of["32kLoRes"] - of["32kOurs"]));
+  const auto wanted = stats::t_test_one(differences);
+  int found = 0;
+  for (const Json& one : made().at("task1").at("by_n_star")) {
+    EXPECT_GE(one.at("p_holm").get<double>(), one.at("p").get<double>());
+    if (one.at("score") != "realism" || one.at("a") != "LoRes" || one.at("b") != "Ours") continue;
+    EXPECT_NEAR(one.at("difference"), wanted->estimate, 1e-12);
+    EXPECT_NEAR(one.at("p"), wanted->p, 1e-12);
+    ++found;
+  }
+  EXPECT_EQ(found, 1);
+}
+
+TEST(DescriptionOfTheReport, ReliabilityDetectableEffectsAndTimesAreGiven) {
+  const Json& task1 = made().at("task1");
+  ASSERT_EQ(task1.at("reliability").size(), 4u) << "four items and three, at two n_*";
+  for (const Json& one : task1.at("reliability")) {
+    EXPECT_LT(one.at("ci")[0], one.at("alpha"));
+    EXPECT_GT(one.at("ci")[1], one.at("alpha"));
+    EXPECT_EQ(one.at("n"), people);
+  }
+  for (const Json& one : task1.at("detectable")) {
+    EXPECT_NEAR(one.at("d_z"), 0.571704834713, 1e-9) << "R's power.t.test for 26";
+    EXPECT_NEAR(one.at("points").get<double>(),
+                one.at("d_z").get<double>() * one.at("sd_difference").get<double>(), 1e-12);
+  }
+  EXPECT_NEAR(made().at("task2").at("detectable").at("share"), 0.778848249382, 1e-9);
+  const Json& times = made().at("response_times");
+  ASSERT_EQ(times.size(), 5u) << "the questions of Task 1; the others have no times";
+  EXPECT_EQ(times[0].at("n"), people * 10);
+  EXPECT_DOUBLE_EQ(times[0].at("min").get<double>(), 1.5);
+  EXPECT_DOUBLE_EQ(times[0].at("max").get<double>(), 1.5 + 0.75 + 0.9);
+}
+
+TEST(DescriptionOfTheReport, EachPictureOfTask1HasEveryMethodAndPerson) {
+  const auto has = [](const std::string& id) {
+    return page().find("id=\"" + id + "-title\"") != std::string::npos;
+  };
+  for (const char* score : {"realism", "sickness"}) {
+    EXPECT_TRUE(has(std::string("person-lines-") + score));
+    EXPECT_TRUE(has(std::string("scene-lines-") + score));
+  }
+  for (const char* question : {"realism", "disorientation", "unrealism", "dizziness", "confusion", "pilot"})
+    EXPECT_TRUE(has(std::string("ratings-") + question)) << question;
+  const auto from = page().find("id=\"person-lines-realism-title\"");
+  const auto picture = page().substr(from, page().find("</svg>", from) - from);
+  std::size_t lines = 0;
+  for (auto at = picture.find("stroke-opacity"); at != std::string::npos;
+       at = picture.find("stroke-opacity", at + 1))
+    ++lines;
+  EXPECT_EQ(lines, 2u * people) << "one for each participant at each n_*";
+}
+
+// The row for the solver had the direct estimate's own interval, the sentence above it the wider one.
+TEST(PageOfTheReport, TheSolversRowHasTheSolversInterval) {
+  const auto from = page().find("For the solver</strong>");
+  ASSERT_NE(from, std::string::npos);
+  const auto row = page().substr(from, page().find("</tr>", from) - from);
+  for (const char* field :
+       {"/pilot/a\"", "/pilot/a_ci/0", "/pilot/a_ci/1", "/pilot/b\"", "/pilot/b_ci/0", "/pilot/b_ci/1"})
+    EXPECT_THAT(row, HasSubstr(field));
+  EXPECT_THAT(page(), Not(HasSubstr("(for the solver)")));
+}
+
+TEST(PageOfTheReport, EveryPairHasTheIntervalOfItsLocationOrAReason) {
+  for (const Json& pair : made().at("task1").at("comparisons")) {
+    const Json& ranks = pair.at("wilcoxon");
+    EXPECT_EQ(ranks.at("p"), ranks.at("p_exact"));
+    EXPECT_EQ(ranks.at("method"), "exact");
+    EXPECT_EQ(ranks.at("ci").size(), 2u);
+    EXPECT_EQ(ranks.at("ci_reason"), "");
+  }
+  for (const Json& all : made().at("task1").at("omnibus")) {
+    EXPECT_LE(all.at("anova").at("epsilon_hf"), 1);
+    EXPECT_GE(all.at("anova").at("epsilon_hf_uncapped"), all.at("anova").at("epsilon_hf"));
+  }
+}
+
+TEST(PageOfTheReport, SentencesBeginWithACapital) {
+  for (const auto& block : report_blocks::blocks_of(made())) {
+    for (const auto& sentence : report_blocks::sentences_of(block.words)) {
+      const auto first = sentence.find_first_not_of(" ");
+      if (first == std::string::npos || sentence.size() < 12) continue;
+      EXPECT_FALSE(std::islower(static_cast<unsigned char>(sentence[first])))
+          << sentence << "\nof " << block.words;
+    }
+  }
+}
+
+TEST(PageOfTheReport, FormulasAreSet) {
+  for (const auto& text : html_reader::read(page()).texts) {
+    if (text.within("style")) continue;
+    for (const char* typed : {"n_*", "mu(", "^2", "exp(", "+-", " delta", "p_Holm"})
+      EXPECT_THAT(text.words, Not(HasSubstr(typed)));
+  }
+  EXPECT_THAT(page(), HasSubstr("<i>n</i><sub>*</sub>"));
+  EXPECT_THAT(page(), HasSubstr("e<sup><i>b</i>"));
+}
+
+TEST(PageOfTheReport, TimingComesAfterTheResultsAndShowsFailuresAlone) {
+  EXPECT_GT(page().find("id=\"timing\""), page().find("id=\"hypotheses\""));
+  EXPECT_THAT(page(), Not(HasSubstr("id=\"timing-task1-title\""))) << "every showing passed";
+  auto study = made_study::task1(6);
+  study.sessions[2].trials[3].first.verdict = study::Verdict::Fail;
+  PlanInForce plan;
+  plan.plan.resamples = 100;
+  const Json json = make_results({{study}, 0}, {"s.db", {TaskKind::Task1}, "", plan}).json;
+  EXPECT_EQ(json.at("timing_totals").at(0).at("fail"), 1);
+  EXPECT_EQ(json.at("timing_totals").at(0).at("flawed_cells"), 1);
+  const auto html = report::results_page(json);
+  const auto from = html.find("cells in which a showing was degraded or failed</caption>");
+  ASSERT_NE(from, std::string::npos);
+  const auto table = html.substr(from, html.find("</table>", from) - from);
+  std::size_t rows = 0;
+  for (auto at = table.find("<tr>"); at != std::string::npos; at = table.find("<tr>", at + 1)) ++rows;
+  EXPECT_EQ(rows, 2u) << "the heading and the cell that failed";
+  EXPECT_THAT(html, HasSubstr("id=\"timing-task1-title\""));
+}
+
+}  // namespace
+}  // namespace apps
