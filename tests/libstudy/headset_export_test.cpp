@@ -81,7 +81,7 @@ TEST(HeadsetExports, OfASingleSampleHaveTheDisplaysRateInBidsOrNoPlaceThere) {
     EXPECT_EQ(json["SamplingFrequency"], 89.5);
   }
   Connection(path, Open::Write).execute("DELETE FROM headset; UPDATE session SET refresh_hz = NULL");
-  export_bids(path, folder / "unknown", true);
+  export_bids({path, true}, folder / "unknown", true);
   EXPECT_THAT(::test::BidsRules::broken_by(folder / "unknown"), IsEmpty());
   for (const std::string& recording : recordings)
     EXPECT_FALSE(fs::exists(folder / "unknown" / session / (recording + ".json"))) << recording;
