@@ -29,6 +29,9 @@ constexpr char format_of_logs = 2;
 constexpr std::uint32_t first_marked_version = 7;
 /// A cookie goes on by one for each change of the schema and each VACUUM.
 constexpr std::int64_t most_changes = 10'000;
+/// Commits of single statements, and of other programs, write the first page where they change its counts
+/// alone.
+constexpr std::size_t most_unmarked = 8;
 constexpr int tries = 5;
 constexpr std::chrono::milliseconds between_tries{20};
 
@@ -59,14 +62,17 @@ std::string problem_of_log(const Log& log, std::string_view header) {
   if (log.page_bytes() != page_bytes(header)) return "is of a database with other pages";
   const std::vector<std::string> heads = log.heads();
   if (heads.empty()) {
-    return u32(header, version_at) >= first_marked_version && log.commits() > 1
+    return u32(header, version_at) >= first_marked_version && log.commits() > most_unmarked
                ? "does not say of which database it is"
                : "";
   }
   for (const std::string& head : heads) {
     if (!is_ours(head)) return "is not of a database of vip-study";
-    if (has_identity(header) && !same_identity(head, header)) return "is of another database";
+    if (has_identity(header) && has_identity(head) && !same_identity(head, header))
+      return "is of another database";
   }
+  // The log in which an older database was given its number holds commits from before.
+  if (has_identity(header) && !has_identity(heads.back())) return "is of another database";
   if (behind(header, heads.front()) > 1) return "is of a later state of the database than the file";
   if (behind(heads.back(), header) > 0) return "is of an earlier state of the database than the file";
   return {};

@@ -147,7 +147,7 @@ TEST(Recovery, WhereNothingMayBeWrittenAClosedFileAndABackupAreRead) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db", backup = folder / "study.db.v3.bak";
   Store(path, Open::Create).add_run(test::run_plan(test::pilot(), {"P01"}));
-  open_database(path, Open::Write, steps)->execute("VACUUM INTO '" + backup.string() + "'");
+  Connection(path, Open::Write).execute("VACUUM INTO '" + backup.string() + "'");
   const auto files = std::distance(fs::directory_iterator(folder.path()), {});
   const auto count_trials = [&](const fs::path& which) {
     return as_reader(path, [&] {
