@@ -55,7 +55,7 @@ bool is_export(const fs::path& folder) {
   if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 24)
     return false;
   const auto json = base::parse_json<Json>(base::read_file(description, 1u << 24));
-  return json.is_object() && json.value("creator", "") == "vip-study";
+  return json.is_object() && json.contains("creator") && json["creator"] == "vip-study";
 }
 
 bool is_our_name(const std::string& name) {
