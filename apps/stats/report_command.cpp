@@ -44,7 +44,10 @@ void add_preregistration(Json& json, const report::Bundle& bundle,
 }
 
 Json document(const ReportCommand& command) {
-  ResultsRequest request{command.database, {all_tasks.begin(), all_tasks.end()}, command.choice.protocol, {}};
+  ResultsRequest request;
+  request.database = command.database;
+  request.tasks.assign(all_tasks.begin(), all_tasks.end());
+  request.protocol = command.choice.protocol;
   request.question = command.choice.question;
   request.level = command.choice.level;
   if (!command.sweep.empty()) {

@@ -123,7 +123,10 @@ void run(const TaskCommand& command) {
   if (!command.json.empty() &&
       std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
     throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
-  ResultsRequest request{command.database, {command.task}, command.choice.protocol, {}};
+  ResultsRequest request;
+  request.database = command.database;
+  request.tasks = {command.task};
+  request.protocol = command.choice.protocol;
   request.question = command.choice.question;
   request.level = command.choice.level;
   request.incomplete = command.incomplete;

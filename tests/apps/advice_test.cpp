@@ -143,7 +143,9 @@ std::vector<std::string> wrong_advice(const Programs& known, const std::string& 
   for (std::sregex_iterator at(text.begin(), text.end(), named), none; at != none; ++at) {
     const auto& match = *at;
     const auto place = static_cast<std::size_t>(match.position());
-    if (text.substr(end, place - end).find_first_of(";:,()") != std::string::npos) command.clear();
+    const std::string between = text.substr(end, place - end);
+    if (between.find_first_of(";:()") != std::string::npos || between.find(". ") != std::string::npos)
+      command.clear();
     end = place + static_cast<std::size_t>(match.length());
     const std::string program = match[1], option = match[3];
     if (!program.empty()) {

@@ -113,7 +113,7 @@ TEST_F(BakeE2e, WrongInputIsOneErrorAndLeavesNothing) {
       {{"--pictures", "640"}, "is not a size"},
       {{"--pictures", "640x360x3"}, "is not a size"},
       {{"--pictures", "9000x360"}, "is not a size"},
-      {{"--method", "MidRes"}, "use LoRes, HiRes, FovFluid, Ours or Ours-TSp"}};
+      {{"--method", "MidRes"}, "use one of \"LoRes\", \"HiRes\", \"FovFluid\", \"Ours\", \"Ours-TSp\""}};
   for (const auto& [more, message] : cases) {
     const Ended ended = apps::test::run_program(command(more));
     EXPECT_EQ(ended.exit_code, 1);
