@@ -11,12 +11,13 @@
 #include <vector>
 
 #include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::IsEmpty;
 using Words = std::set<std::string>;
 
@@ -211,6 +212,62 @@ TEST(AdviceE2e, AnOptionThatIsNotThereWouldBeSeen) {
   EXPECT_EQ(wrong("stats/base/file.cpp", "use vip-study export --fmt"), 1u);
   EXPECT_EQ(literals_of("f(\"use --no\" // a comment\n \"-such\", x, \"b\")"),
             (std::vector<std::string>{"use --no-such", "b"}));
+}
+
+/// A pilot of six settings with a second question; the version is part of the text.
+std::string two_questions(const std::string& version) {
+  std::string text = short_protocol("1");
+  text = replaced(text, "version = \"2.0\"", "version = \"" + version + "\"");
+  text = replaced(text, "\"ask satisfaction\"", "\"ask satisfaction smoothness\"");
+  const std::string first = "[[block.question]]\nid = \"satisfaction\"";
+  return replaced(text, first,
+                  "[[block.question]]\nid = \"smoothness\"\nkind = \"scale\"\ntext = \"How smooth?\"\nscale "
+                  "= [0, 3]\n\n" +
+                      first);
+}
+
+/// Words of the list behind `advice`, to the end of its line or sentence.
+std::vector<std::string> listed(const std::string& out, const std::string& advice) {
+  const auto at = out.find(advice);
+  if (at == std::string::npos) return {};
+  const auto from = at + advice.size();
+  const std::string list = out.substr(from, out.find('\n', from) - from);
+  static const std::regex item(R"([^,]+)");
+  return {std::sregex_token_iterator(list.begin(), list.end(), item), std::sregex_token_iterator()};
+}
+
+std::string last_word(const std::string& text) { return text.substr(text.find_last_of(' ') + 1); }
+
+// The advice to choose is followed, each choice in turn.
+TEST(AdviceE2e, ChoosingAsAdvisedIsTaken) {
+  const TemporaryFolder folder;
+  const auto at = [&](const std::string& name) { return (folder / name).string(); };
+  for (const char* version : {"3.0", "3.1"}) {
+    base::write_file_atomically(folder / "p.toml", two_questions(version));
+    const auto ran = run_shell(vip_study + " run " + at("p.toml") + " --db " + at("s.db") +
+                               " --participants 6 --observer ptpe:a=24,b=0.02");
+    ASSERT_EQ(ran.exit_code, 0) << ran.out;
+  }
+  const std::string fit = VIP_BIN_DIR "/vip-stats fit-ptpe " + at("s.db") + " --json " + at("fit.json");
+  const auto protocols = listed(run_shell(fit).out, "choose one with --protocol: ");
+  ASSERT_EQ(protocols.size(), 2u);
+  for (const auto& protocol : protocols) {
+    const std::string chosen = fit + " --protocol " + last_word(protocol);
+    const auto questions = listed(run_shell(chosen).out, "choose one with --question: ");
+    ASSERT_EQ(questions.size(), 2u);
+    for (const auto& question : questions) {
+      const auto ended = run_shell(chosen + " --question " + last_word(question));
+      EXPECT_EQ(ended.out.find("choose one"), std::string::npos) << ended.out;
+      EXPECT_TRUE(fs::exists(folder / "fit.json"));
+      const auto outside = run_shell(chosen + " --question " + last_word(question) + " --level 9");
+      EXPECT_EQ(outside.exit_code, 1);
+      EXPECT_NE(outside.out.find("choose a --level above "), std::string::npos) << outside.out;
+    }
+  }
+  // Without files of one fit each protocol and question is fitted by itself.
+  const auto all = run_shell(VIP_BIN_DIR "/vip-stats fit-ptpe " + at("s.db"));
+  for (const char* words : {"3.0, question \"satisfaction\":", "3.1, question \"smoothness\":"})
+    EXPECT_NE(all.out.find(words), std::string::npos) << all.out;
 }
 
 }  // namespace
