@@ -1,6 +1,7 @@
 #include "tests/faults/crashes.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 
@@ -27,6 +28,8 @@ void take_acknowledged(const std::vector<Call>& calls, std::size_t count,
 Crashes::Crashes(const Command& command, const fs::path& folder)
     : command_(command), now_(folder / "now"), peek_(folder / "peek") {
   fs::create_directories(now_);
+  // The register of exports is a file like the others: a power cut may take it back.
+  ::setenv("VIP_STATE_DIR", (now_ / "state").c_str(), 1);
   const Ended prepared = run(command.prepare);
   if (prepared.how != Ended::How::Done)
     throw std::runtime_error(command.name + " cannot be prepared: " + prepared.problem);

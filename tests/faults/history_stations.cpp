@@ -1,5 +1,7 @@
 #include "tests/faults/history_stations.hpp"
 
+#include <cstdlib>
+
 #include "tests/faults/crash_states.hpp"
 #include "tests/faults/crashes.hpp"
 
@@ -38,6 +40,8 @@ Stations::Stations(const fs::path& folder)
     fs::create_directories(root_ / name);
   }
   fs::create_directories(kept_);
+  // The register of exports is a file like the others: a power cut may take it back.
+  ::setenv("VIP_STATE_DIR", (root_ / "state").c_str(), 1);
 }
 
 fs::path Stations::kept(std::size_t number) const { return kept_ / std::to_string(number); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -111,6 +112,7 @@ Problems check_exports(const DatabaseFacts& facts, const fs::path& station, cons
   CallPlan plan;
   plan.log = &log;
   const Ended ended = run_child(plan, [&] {
+    ::setenv("VIP_STATE_DIR", (peek / "state").c_str(), 1);
     study::export_csv(database, out / "csv", {true, true});
     study::export_bids(database, out / "bids", true);
     study::export_psych_ds(database, out / "psych");
