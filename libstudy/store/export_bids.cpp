@@ -204,7 +204,6 @@ constexpr ExportKind bids_kind{"bids", is_export, is_our_name};
 }  // namespace
 
 PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool gaze) {
-  finish_cut_commit(study);
   open_study(study);  // refuses a file that is not sound before anything is written to it
   label_everybody(study.path);
   const auto database = open_study(study).database;

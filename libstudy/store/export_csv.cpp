@@ -227,7 +227,6 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
 
 std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& folder,
                                      const CsvChoice& choice) {
-  finish_cut_commit(study);
   const auto database = open_study(study).database;
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");

@@ -113,7 +113,6 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
 }  // namespace
 
 PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
-  finish_cut_commit(study);
   open_study(study);  // refuses a file that is not sound before anything is written to it
   label_everybody(study.path);
   const auto database = open_study(study).database;

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -12,8 +13,8 @@
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/export_rows.hpp"
+#include "libstudy/store/journal_file.hpp"
 #include "libstudy/store/open_study.hpp"
-#include "libstudy/store/settling.hpp"
 #include "libstudy/store/writer_lock.hpp"
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
@@ -112,17 +113,6 @@ std::set<std::string> everybody(Connection& database) {
   return people;
 }
 
-void finish_cut_commit(const StudyFile& study) {
-  try {
-    const fs::path file = real_file(study.path);
-    if (study.incomplete || read_journal(journal_beside(file)).pending.empty()) return;
-    const WriterLock lock(file);
-    settle_before_writing(*open_database(file, Open::Write, read_schema_steps()));
-  } catch (const base::Error&) {
-    // A session is at work, or who opens the study next is refused as well.
-  }
-}
-
 void label_everybody(const fs::path& database) {
   const auto file = open_register(database);
   Transaction transaction(*file);
@@ -142,12 +132,17 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
            .sha256 = {},
            .people = people} {
   own_.draft = draft.empty() ? fs::path(own_.path.string() + ".tmp" + own_.id) : without_links(draft);
+  const JournalContent journal = read_journal(journal_beside(database_));
+  const std::int64_t journal_event = std::max(last_event(journal.kept), last_event(journal.pending));
   const auto file = open_register(database_);
   keep_own();
   Transaction transaction(*file);
   enter(*file, own_.kind, own_.path, own_.people);
-  Statement(*file, "INSERT INTO event (utc, kind, detail) VALUES (?, 'export', ?)")
-      .bind_all(base::utc_now(), own_.path.string())
+  // Rows that the journal alone holds, of a commit that was cut short or lost, keep their numbers.
+  Statement(*file,
+            "INSERT INTO event (event_id, utc, kind, detail) SELECT max(coalesce(max(event_id), 0), ?) + 1, "
+            "?, 'export', ? FROM event")
+      .bind_all(journal_event, base::utc_now(), own_.path.string())
       .run();
   transaction.commit();
 }
@@ -216,10 +211,8 @@ void RegisteredExport::is_in_place() {
   forget_replaced(own_);
 }
 
-RegisteredFiles::RegisteredFiles(const StudyFile& study) : database_(study.path) {
-  finish_cut_commit(study);
-  people_ = everybody(*open_study(study).database);
-}
+RegisteredFiles::RegisteredFiles(const StudyFile& study)
+    : database_(study.path), people_(everybody(*open_study(study).database)) {}
 
 void RegisteredFiles::write(const std::string& kind, const fs::path& path, const std::string& bytes) const {
   std::set<std::string> people = everybody(*open_register(database_));

@@ -16,11 +16,6 @@ namespace study {
 /// session.person of everybody who stands in a database.
 std::set<std::string> everybody(sqlite::Connection& database);
 
-/// Finishes a commit that a kill cut short, before an export writes down its own event: rows of the journal
-/// that are under way have their numbers already. Does nothing beside a session, which finishes its own. To
-/// be called before this process opens the database in another way. Never throws: opening the study says what
-/// is wrong.
-void finish_cut_commit(const StudyFile& study);
 /// Stores labels of whom and what has none yet (export_labels.hpp), before a public export is read. The
 /// database is written for a moment; base::Error as RegisteredExport.
 void label_everybody(const std::filesystem::path& database);

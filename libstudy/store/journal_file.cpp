@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -170,6 +171,16 @@ JournalContent read_journal(const fs::path& path) {
     at = end + 1;
   }
   return std::move(reader.content);
+}
+
+std::int64_t last_event(const JournalRows& rows) {
+  std::int64_t last = 0, id = 0;
+  for (const auto& [key, row] : rows) {
+    if (row.table->name != std::string("event")) continue;
+    const auto read = std::from_chars(row.key.data(), row.key.data() + row.key.size(), id);
+    if (read.ec == std::errc()) last = std::max(last, id);
+  }
+  return last;
 }
 
 std::string journal_head(std::int64_t schema) {

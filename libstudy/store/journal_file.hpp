@@ -35,6 +35,9 @@ std::filesystem::path journal_beside(const std::filesystem::path& database);
 /// A missing file is an empty content. base::Error: a link, not a file, unreadable.
 JournalContent read_journal(const std::filesystem::path& path);
 
+/// Largest number of an event; 0: none.
+std::int64_t last_event(const JournalRows& rows);
+
 /// Lines that are no rows.
 std::string journal_head(std::int64_t schema);
 std::string ready_line(std::int64_t number);

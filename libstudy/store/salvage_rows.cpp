@@ -58,17 +58,6 @@ void fuller_first(std::vector<Values>& rows) {
                    [&](const Values& a, const Values& b) { return empty(a) < empty(b); });
 }
 
-std::int64_t last_event(const JournalRows& rows) {
-  std::int64_t last = 0;
-  for (const auto& [key, row] : rows) {
-    if (row.table->name != std::string("event")) continue;
-    std::int64_t number = 0;  // stays so where the key is no whole number
-    std::from_chars(row.key.data(), row.key.data() + row.key.size(), number);
-    last = std::max(last, number);
-  }
-  return last;
-}
-
 /// What tells a row apart in copies of the database.
 const char* identity_of(const Table& table) {
   const std::string name = table.name;

@@ -94,6 +94,10 @@ TEST_F(OpeningToRead, WithoutItsLogIsRefusedByEveryReaderAndGoesOnOnlyWhenTold) 
   EXPECT_THAT(read_tasks({copy, true}).lacking, HasSubstr("1 answers and "));
   EXPECT_EQ(read_status({copy, true}).lacking, lacking_of(copy));
   EXPECT_EQ(merge({copy}, folder_ / "merged.db", true).sessions, 3);
+  // An export writes an event of its own, which takes no number of what the journal alone holds.
+  const std::string lacking = lacking_of(copy);
+  export_csv({copy, true}, folder_ / "csv");
+  EXPECT_EQ(lacking_of(copy), lacking);
   // What the message advises.
   EXPECT_EQ(salvage(copy, folder_ / "whole.db").answers_journal, 1);
   EXPECT_EQ(lacking_of(folder_ / "whole.db"), "");
