@@ -33,7 +33,8 @@ constexpr const char* sessions_sql =
     "degrees by %s', width_px, height_px, camera_angle_deg, coalesce(renderer, 'a renderer not known')), "
     "' and ') AS words FROM framing f WHERE f.session_id = session.session_id GROUP BY scene HAVING "
     "count(DISTINCT cells) > 1 ORDER BY scene)), stimulus, (SELECT detail FROM event e WHERE e.session_id = "
-    "session.session_id AND kind = ?4 ORDER BY event_id DESC LIMIT 1) "
+    "session.session_id AND kind = ?4 ORDER BY event_id DESC LIMIT 1), "
+    "max(coalesce(not_before_utc, ''), (SELECT started_utc FROM run r WHERE r.run_id = session.run_id)) "
     "FROM session WHERE protocol_id = ?1 ORDER BY participant, visit";
 
 constexpr const char* trials_sql =
@@ -99,7 +100,8 @@ class Reader {
                      .mixed_pictures = session_.text(12),
                      .stimulus = session_.text(13),
                      .settings = run_settings(database_, session_.integer(0)),
-                     .frame_costs = frame_costs()});
+                     .frame_costs = frame_costs(),
+                     .not_before_utc = session_.text(15)});
     }
     return out;
   }

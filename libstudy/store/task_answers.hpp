@@ -86,6 +86,9 @@ struct TaskSession {
   std::string stimulus;                 ///< what was shown, as the session was planned
   std::vector<RunSetting> settings;     ///< solver settings that its live fluid ran at
   std::vector<FrameCosts> frame_costs;  ///< as its station measured them last; empty: not measured
+  /// Latest time among the rows that were written before the first answer: by their order the answer was not
+  /// before it, whatever the clock said then. Empty: not known.
+  std::string not_before_utc = {};
 };
 
 /// A protocol with all its sessions by participant and visit.

@@ -7,6 +7,7 @@
 #include "apps/common/setting_file.hpp"
 #include "apps/stats/data/planned.hpp"
 #include "apps/stats/data/trial_record.hpp"
+#include "stats/base/utc.hpp"
 
 namespace apps {
 
@@ -20,6 +21,20 @@ std::string setting_words(const study::RunSetting& setting) {
   const auto file = parse_setting_file(setting.text, "setting " + setting.sha256.substr(0, 12));
   const std::string words = to_text(file.setting);  // begins with the scene that it was chosen in
   return words.substr(words.find(' ') + 1) + " (setting " + setting.sha256 + ")";
+}
+
+/// Clocks are put right by so much while they run.
+constexpr std::int64_t small_step_s = 3600;
+
+std::optional<DoubtfulTime> doubt_about(const TaskSession& session) {
+  const auto told_s = base::seconds_of_utc(session.first_answer_utc);
+  const auto least_s = base::seconds_of_utc(session.not_before_utc);
+  const bool impossible =
+      !session.first_answer_utc.empty() && session.first_answer_utc < base::before_vip_lab_utc;
+  const bool back = told_s && least_s && *told_s < *least_s - small_step_s;
+  if (session.not_before_utc.empty() || (!impossible && !back)) return {};
+  return DoubtfulTime{session.participant, session.station, session.first_answer_utc, session.not_before_utc,
+                      impossible};
 }
 
 /// Fills a TaskData from the sessions that may be pooled.
@@ -52,6 +67,10 @@ class Collector {
     for (const TaskSession& session : sessions) {
       ++data_.flow.by_state[session.state];
       const std::string& utc = session.first_answer_utc;
+      if (const auto doubt = doubt_about(session)) {
+        data_.doubtful_times.push_back(*doubt);
+        continue;
+      }
       if (!utc.empty() && (data_.first_answer_utc.empty() || utc < data_.first_answer_utc))
         data_.first_answer_utc = utc;
     }

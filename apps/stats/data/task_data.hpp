@@ -44,6 +44,14 @@ struct AnsweredTrial {
   std::vector<study::TaskAnswer> answers;
 };
 
+/// The first answer of a session whose clock contradicts the order in which its database was written.
+struct DoubtfulTime {
+  std::string participant, station;
+  std::string told_utc;        ///< by the clock
+  std::string not_before_utc;  ///< by the order of the rows
+  bool impossible = false;     ///< ViP-Lab is younger: the clock was wrong then, not before
+};
+
 /// Task 1: one page.
 struct Report {
   int participant = 0, visit = 1, position = 0;
@@ -64,7 +72,8 @@ struct TaskData {
   std::vector<std::string> observers;     ///< different models
   std::map<std::string, int> gaze, stations, displays, angles, settings, unblinded,
       mixed_pictures;            ///< sessions
-  std::string first_answer_utc;  ///< of the sessions analysed; empty: none
+  std::string first_answer_utc;  ///< of the sessions analysed, the doubtful left out; empty: none
+  std::vector<DoubtfulTime> doubtful_times;
   TaskFlow flow;
   std::vector<stats::Exclusion> exclusions;
   std::vector<TimedShowing> showings;

@@ -19,4 +19,8 @@ std::string bundle_text(const std::vector<study::Protocol>& protocols, const sta
                         const nlohmann::ordered_json& hypotheses, const std::vector<std::string>& untested,
                         bool with_power, const std::string& frozen_utc);
 
+/// Whether the bundle is older than the first answer of a part, by the clocks of both, or by the order of
+/// rows where these disagree: an entry of "times". `used`: of the results' study.protocols.
+nlohmann::ordered_json time_json(const std::string& frozen_utc, const nlohmann::ordered_json& used);
+
 }  // namespace apps::report

@@ -192,22 +192,6 @@ bool same_level(const Bundle& bundle, const Json& results, Json& differences) {
   return false;
 }
 
-/// Whether the bundle is older than the first answer of a part, by the clocks of both; an entry of "times".
-Json time_json(const std::string& frozen, const Json& used) {
-  const std::string title = used.at("title");
-  if (!used.at("first_answer_utc").is_string())
-    return {{"task", used.at("task")},
-            {"frozen_before", nullptr},
-            {"text", "No time of an answer of " + title + " is recorded."}};
-  const std::string first = used.at("first_answer_utc");
-  const bool before = frozen < first;
-  return {{"task", used.at("task")},
-          {"first_answer_utc", first},
-          {"frozen_before", before},
-          {"text", "The bundle was " + std::string(before ? "" : "not ") +
-                       "frozen before the first answer of " + title + ", given " + first + "."}};
-}
-
 }  // namespace
 
 Bundle read_bundle(const fs::path& folder) {
@@ -238,6 +222,7 @@ Json compare_with_bundle(const Bundle& bundle, const std::vector<study::Protocol
                          const Json& results) {
   Json differences = Json::array(), tasks = Json::object(), times = Json::array();
   const std::string frozen = bundle.about.value("frozen_utc", "");
+  std::size_t unknowns = 0;
   for (const auto& name : bundle.altered)
     differences.push_back(name + " was changed or removed after the bundle was frozen");
   for (const Json& used : results.at("study").value("protocols", Json::array())) {
@@ -250,10 +235,12 @@ Json compare_with_bundle(const Bundle& bundle, const std::vector<study::Protocol
                                  (task != "pilot" || same_level(bundle, results, differences));
     const Json time = time_json(frozen, used);
     const bool late = time.at("frozen_before") == false;
+    const bool unknown = time.at("frozen_before").is_null() && time.at("clocks_disagree") == true;
     const bool covered = protocol_holds || task != "pilot";
     if (covered) times.push_back(time);
-    if (covered && late) differences.push_back(time.at("text"));
-    tasks[task] = protocol_holds && hypotheses_hold && bundle.altered.empty() && !late;
+    if (covered && (late || unknown)) differences.push_back(time.at("text"));
+    if (covered && unknown) ++unknowns;
+    tasks[task] = protocol_holds && hypotheses_hold && bundle.altered.empty() && !late && !unknown;
   }
   const bool holds = differences.empty();
   return {{"sha256", bundle.sha256},
@@ -263,7 +250,10 @@ Json compare_with_bundle(const Bundle& bundle, const std::vector<study::Protocol
           {"summary",
            holds ? "Protocols, hypotheses, margins and rules are those of the bundle, which is older than "
                    "the answers."
-                 : "The study or its analysis differs from the bundle."},
+           : unknowns == differences.size()
+               ? "Protocols, hypotheses, margins and rules are those of the bundle; whether it is older than "
+                 "the answers cannot be told, as clocks disagree."
+               : "The study or its analysis differs from the bundle."},
           {"tasks", tasks},
           {"times", times},
           {"differences", differences}};

@@ -21,8 +21,19 @@ Json effects_json(const TaskData& data) {
   return json;
 }
 
+Json doubtful_json(const TaskData& data) {
+  Json json = Json::array();
+  for (const DoubtfulTime& one : data.doubtful_times)
+    json.push_back({{"participant", one.participant},
+                    {"station", one.station},
+                    {"told_utc", one.told_utc},
+                    {"not_before_utc", one.not_before_utc},
+                    {"impossible", one.impossible}});
+  return json;
+}
+
 Json protocol_json(const TaskData& data) {
-  return {
+  Json json{
       {"task", task_name(data.task)},
       {"title", task_title(data.task)},
       {"name", data.protocol.name},
@@ -42,6 +53,8 @@ Json protocol_json(const TaskData& data) {
       {"mixed_pictures", data.mixed_pictures},
       {"effects", effects_json(data)},
       {"overlay", data.protocol.paint_temperature ? Json("temperature") : Json()}};
+  if (!data.doubtful_times.empty()) json["doubtful_times"] = doubtful_json(data);
+  return json;
 }
 
 /// The pilot shows one method, which refines nothing by gaze. Another design may show none that does.
@@ -59,6 +72,9 @@ std::vector<std::string> notes_of(const TaskData& data) {
   if (!data.simulated.empty())
     notes.push_back(task + counted(data.simulated.size(), "participant") +
                     " simulated by an observer model.");
+  for (const DoubtfulTime& one : data.doubtful_times)
+    notes.push_back(task + "the clock told " + one.told_utc + " at the first answer of " + one.participant +
+                    ", after rows of the database of " + one.not_before_utc + ".");
   for (const std::string& protocol : data.set_aside)
     notes.push_back(task + "protocol " + protocol + " left out: it holds no real answers.");
   if (data.flow.test_left_out > 0)
