@@ -32,10 +32,9 @@ const Json& made() {
   static const Json json = [] {
     PlanInForce plan;
     plan.plan.resamples = 200;
-    return make_results({{testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7),
-                          made_study::task1(people), made_study::task2(people)},
-                         0,
-                         made_study::about_people(people)},
+    return make_results({.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7),
+                                       made_study::task1(people), made_study::task2(people)},
+                         .about_people = made_study::about_people(people)},
                         {"s.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
         .json;
   }();
@@ -103,11 +102,12 @@ TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
 
   PlanInForce plan;
   plan.plan.resamples = 100;
-  const auto few = make_results({{made_study::task1(4)}, 0, made_study::about_people(4)},
-                                {"s.db", {TaskKind::Task1}, "", plan})
-                       .json.at("people")
-                       .at(0)
-                       .at("questions");
+  const auto few =
+      make_results({.protocols = {made_study::task1(4)}, .about_people = made_study::about_people(4)},
+                   {"s.db", {TaskKind::Task1}, "", plan})
+          .json.at("people")
+          .at(0)
+          .at("questions");
   EXPECT_FALSE(few.at(0).contains("mean"));
   EXPECT_THAT(few.at(0).at("refused").get<std::string>(), HasSubstr("fewer than 5"));
   EXPECT_THAT(few.at(1).at("groups"), IsEmpty());

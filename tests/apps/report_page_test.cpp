@@ -35,7 +35,9 @@ const OrderedJson& made() {
     plan.plan.resamples = 200;
     const auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
     auto out =
-        make_results({{pilot, made_study::task1(26), made_study::task2(26)}, 1, made_study::about_people(26)},
+        make_results({.protocols = {pilot, made_study::task1(26), made_study::task2(26)},
+                      .withdrawn = 1,
+                      .about_people = made_study::about_people(26)},
                      {"folder/study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
             .json;
     out["sickness"] = sickness_json(made_study::sickness(26), plan.plan);

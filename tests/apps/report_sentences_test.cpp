@@ -33,11 +33,11 @@ const Json& whole_study() {
     plan.plan.resamples = 200;
     auto task1 = made_study::task1(16);
     task1.sessions[0].trials[2].excluded = "looked away";
-    auto out = make_results(
-                   {{testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 12, 7), task1, made_study::task2(16)},
-                    1,
-                    made_study::about_people(16)},
-                   {"study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+    auto out = make_results({.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 12, 7), task1,
+                                           made_study::task2(16)},
+                             .withdrawn = 1,
+                             .about_people = made_study::about_people(16)},
+                            {"study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
                    .json;
     out["sickness"] = sickness_json(made_study::sickness(16), plan.plan);
     return out;

@@ -47,6 +47,7 @@ inline std::vector<Case> pilot() {
       {"# Estimates of \u03bc(\u03b4) = a\u2009eb\u2009\u03b4, intervals over participants",
        all({set("/pilot/estimators", Json::array()), set("/pilot/means", Json::object()),
             set("/pilot/a", nullptr)})},
+      {"About the fit: #*", set("/pilot/flags", Json::array())},
       {"Shape of the scores: #.", refused("/pilot/lack_of_fit")},
       {"# The curve \u03bc(\u03b4) with its bands, frames/s", set("/pilot/bands", Json::array())},
       {"Model of the direct estimate, least squares of all ratings with a participant's ratings of one "

@@ -28,12 +28,12 @@ std::string choices_of(const Field& question) {
   for (const Field& answer : pooled["answers"].entries())
     names += (names.empty() ? "" : " or ") + words(answer);
   const std::string taken =
-      pooled.there() ? names + ": " + count(pooled["n"]) : svg::escaped(pooled.reason());
+      pooled.there() ? names + ": " + count(pooled["n"]) : typeset(svg::escaped(pooled.reason()));
   return out + (out.empty() ? "" : "; ") + taken;
 }
 
 std::string numbers_of(const Field& question) {
-  if (!question["mean"].is_number()) return svg::escaped(question.reason());
+  if (!question["mean"].is_number()) return typeset(svg::escaped(question.reason()));
   return "<i>M</i> = " + fixed(question["mean"], 1) + ", <i>SD</i> = " + fixed(question["sd"], 1) +
          ", range within " + interval(question["range"], 0);
 }
@@ -109,7 +109,7 @@ std::string reliability(const Field& task1) {
   for (const Field& one : task1["reliability"].entries()) {
     const std::string name = at_n_star(task1, one);
     if (!one["alpha"].is_number()) {
-      table.refused(name, "not given: " + svg::escaped(one["alpha"].reason()));
+      table.refused(name, "not given: " + typeset(svg::escaped(one["alpha"].reason())));
       continue;
     }
     table.row(
@@ -138,7 +138,7 @@ std::string by_n_star(const Field& task1) {
     last = key;
     const std::string pair = words(one["a"]) + " \xE2\x88\x92 " + words(one["b"]);
     if (!one["p"].is_number()) {
-      table.refused(pair, "no test: " + svg::escaped(one["p"].reason()));
+      table.refused(pair, "no test: " + typeset(svg::escaped(one["p"].reason())));
       continue;
     }
     table.row({pair, count(one["n"]), fixed(one["difference"], 2) + " " + interval(one["ci"], 2),
@@ -168,7 +168,7 @@ std::string detectable_preference(const Field& task2) {
   if (!one.there()) return "";
   if (!one["share"].is_number())
     return subsection("Smallest detectable preference",
-                      paragraph("Not given: " + svg::escaped(one["share"].reason()) + "."));
+                      paragraph("Not given: " + typeset(svg::escaped(one["share"].reason())) + "."));
   return subsection("Smallest detectable preference",
                     paragraph("The exact test of " + count(one["n"]) + " answers at \xCE\xB1 = " +
                               fixed(one["alpha"], 3) + " finds a true preference of " +

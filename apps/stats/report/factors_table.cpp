@@ -13,7 +13,7 @@ std::string name_of(const Field& line, const char* between) {
   return out;
 }
 
-std::string refusal(const Field& line) { return "no test: " + svg::escaped(line["p"].reason()); }
+std::string refusal(const Field& line) { return "no test: " + typeset(svg::escaped(line["p"].reason())); }
 
 }  // namespace
 

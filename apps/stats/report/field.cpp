@@ -172,7 +172,7 @@ std::string why_not(const Field& field) {
   if (field.there()) return "";
   const std::string reason = field.reason();
   return "<p class=\"refused\">Not given: " +
-         (reason.empty() ? "the results hold no such part" : svg::escaped(reason)) + ".</p>\n";
+         (reason.empty() ? "the results hold no such part" : typeset(svg::escaped(reason))) + ".</p>\n";
 }
 
 }  // namespace apps::report

@@ -180,7 +180,7 @@ std::string sensitivity_section(const Field& root) {
     }
     for (const Field& id : variant["changed"].entries()) changed += (changed.empty() ? "" : ", ") + words(id);
     if (variant["hypotheses"].entries().empty() && !variant.reason().empty())
-      decisions = svg::escaped(variant.reason());
+      decisions = typeset(svg::escaped(variant.reason()));
     overview.row({words(variant["label"]), words(variant["task"]), count(variant["participants"]),
                   count(variant["answers"]), decisions,
                   !variant["changed"].there() ? ""

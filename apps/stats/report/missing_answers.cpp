@@ -50,7 +50,7 @@ std::string comparisons(const Field& task1) {
   by_score(table, task1, all, [&](const Field& c) {
     const Field m = c["mixed"];
     if (!m.there()) {
-      table.refused(pair_name(c), "no test: " + svg::escaped(m.reason()));
+      table.refused(pair_name(c), "no test: " + typeset(svg::escaped(m.reason())));
       return;
     }
     table.row({pair_name(c), fixed(m["estimate"], 2) + " " + interval(m["ci"], 2), fixed(m["se"], 2),
@@ -64,7 +64,7 @@ std::string models(const Field& task1) {
               {"Term", "Estimate [CI]", "<i>SE</i>", "<i>t</i>", "<i>df</i>", "<i>p</i>"});
   for (const Field& model : task1["mixed"].entries()) {
     if (!model["n"].is_number()) {
-      table.refused(score_label(task1, model), "not fitted: " + svg::escaped(model.reason()));
+      table.refused(score_label(task1, model), "not fitted: " + typeset(svg::escaped(model.reason())));
       continue;
     }
     std::string title = score_label(task1, model) + ": " + count(model["n"]) + " answers of " +

@@ -40,7 +40,7 @@ std::string for_solver(const Field& pilot) {
 void estimate_row(Table& table, const std::string& name, const Field& e) {
   if (!e["a"].is_number()) {
     const std::string reason = e.reason().empty() ? e["a"].reason() : e.reason();
-    table.refused(name, "no estimate: " + svg::escaped(reason));
+    table.refused(name, "no estimate: " + typeset(svg::escaped(reason)));
     return;
   }
   table.row({name, a_with_interval(e), b_with_interval(e)});
@@ -141,7 +141,7 @@ std::string pilot_section(const Field& root) {
   if (!pilot.there() || pilot["status"].words() != "ok") {
     const std::string reason = pilot.there() ? pilot["reason"].words() : pilot.reason();
     return section("pilot", "Pilot: tolerance of frame rates",
-                   "<p class=\"refused\">No fit: " + svg::escaped(reason) + ".</p>\n");
+                   "<p class=\"refused\">No fit: " + typeset(svg::escaped(reason)) + ".</p>\n");
   }
   std::string body =
       paragraph(count(pilot["n_participants"]) + " participants gave " + count(pilot["n_ratings"]) +
@@ -149,7 +149,7 @@ std::string pilot_section(const Field& root) {
                 ", at level " + fixed(pilot["level"], 1) + ": <i>a</i> = " + a_with_interval(pilot) +
                 " frames/s, <i>b</i> = " + b_with_interval(pilot) + " s/frame.");
   for (const Field& flag : pilot["flags"].entries())
-    body += "<p class=\"warning\">" + words(flag["text"]) + "</p>\n";
+    body += "<p class=\"warning\">About the fit: " + words(flag["text"]) + "</p>\n";
   if (!pilot["cells"].entries().empty() && pilot["a_ci"].entries().size() == 2)
     body +=
         figure(pilot_map(pilot),

@@ -62,7 +62,7 @@ std::string t_tests(const Field& task1, const Field& score) {
   return by_n_star(
       std::move(table), task1, "comparisons", score["code"].words(), [](Table& t, const Field& c) {
         if (!c["p"].is_number()) {
-          t.refused(pair_name(c), "no test: " + svg::escaped(c["t"].reason()));
+          t.refused(pair_name(c), "no test: " + typeset(svg::escaped(c["t"].reason())));
           return;
         }
         t.row({pair_name(c) + sign_test(c), count(c["n"]),
@@ -83,7 +83,7 @@ std::string other_tests(const Field& task1, const Field& score) {
                    [](Table& t, const Field& c) {
                      const Field w = c["wilcoxon"], welch = c["welch"], tost = c["tost"];
                      const auto why = [](const Field& part, const std::string& shown) {
-                       return part.there() ? shown : svg::escaped(part.reason());
+                       return part.there() ? shown : typeset(svg::escaped(part.reason()));
                      };
                      t.row({pair_name(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
                             fixed(w["location"], 2) + " " + interval(w["ci"], 2) +
@@ -135,7 +135,7 @@ std::string omnibus(const Field& task1) {
     const std::string name =
         (label == labels.end() ? words(o["score"]) : words(label->second)) + ", " + words(o["n_star"]);
     const auto why = [](const Field& part, const std::string& shown) {
-      return part.there() ? shown : svg::escaped(part.reason());
+      return part.there() ? shown : typeset(svg::escaped(part.reason()));
     };
     table.row({name, count(o["n"]), count(o["n_incomplete"]),
                why(f, fixed(f["chi2"], 2) + " (" + count(f["df"]) + ")"), p_bare(f["p"]),
@@ -161,7 +161,7 @@ std::string ordinal(const Field& task1) {
     const std::string name = words(model["question"]) + ", " + words(model["n_star"]);
     if (!model["effects"].there()) {
       const std::string reason = model.reason().empty() ? model["effects"].reason() : model.reason();
-      table.refused(name, "not fitted: " + svg::escaped(reason));
+      table.refused(name, "not fitted: " + typeset(svg::escaped(reason)));
       continue;
     }
     const Field overall = model["overall"];

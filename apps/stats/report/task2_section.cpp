@@ -18,7 +18,7 @@ std::string pairs_table(const Field& pairs) {
     const std::string name =
         pair_name(pair) + (warning.empty() ? "" : " <em>(" + words(pair["warning"]) + ")</em>");
     if (!pair["p"].is_number() && !pair["share"].is_number()) {
-      table.refused(name, "no test: " + svg::escaped(pair["p"].reason()));
+      table.refused(name, "no test: " + typeset(svg::escaped(pair["p"].reason())));
       continue;
     }
     table.row({name, count(pair["k"]) + " of " + count(pair["n"]), percent(pair["share"]),
@@ -84,7 +84,7 @@ std::string bradley_terry(const Field& model) {
           : "Errors and intervals take all answers as independent: " + words(people["why_independent"]) +
                 ".");
   const auto test = [](const std::string& name, const Field& part) {
-    if (!part.there()) return part.reason().empty() ? "" : name + ": " + svg::escaped(part.reason());
+    if (!part.there()) return part.reason().empty() ? "" : name + ": " + typeset(svg::escaped(part.reason()));
     return name + ": \xCF\x87\xC2\xB2(" + count(part["df"]) + ") = " + fixed(part["chi2"], 2) +
            ", <i>p</i> " + p(part["p"]);
   };
