@@ -45,6 +45,7 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   // As a version planned them that took such codes.
   sqlite::Connection(path, sqlite::Open::Write)
       .execute("UPDATE session SET participant = 'P_01' WHERE participant = 'Q_01'; DELETE FROM label");
+  fs::remove(path.string() + ".answers.jsonl");  // which knows the codes and labels of before
   return path;
 }
 

@@ -211,6 +211,7 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
     const std::string name = "'/e" + std::to_string(vfs.calls()) + "'";
     try {
       Connection now(path, Open::Write);
+      now.mark_commits();  // as every program of ours does
       now.execute("PRAGMA busy_timeout = 0");
       now.execute("INSERT INTO export (kind, path, host, sha256, utc, tackled) VALUES ('csv', " + name +
                   ", 'here', '', '2026-01-01T00:00:00Z', 0)");

@@ -44,6 +44,9 @@ std::vector<test::SoundText> sound_protocols() {
       const std::string stimulus = "kind = \"stimulus\"\n";
       if (const auto at = text.bytes.find(stimulus); at != std::string::npos)
         text.bytes.insert(at + stimulus.size(), "on_interruption = \"invalidate\"\n");
+      const std::string scale = "scale = [1, 7]\n";
+      if (const auto at = text.bytes.find(scale); at != std::string::npos)
+        text.bytes.insert(at + scale.size(), "level = 4.5\n");
       try {
         study::parse_protocol(text.bytes, text.name);
         out.push_back(text);
