@@ -58,7 +58,9 @@ TEST_F(IncompleteE2e, IsSaidByEveryReaderThatGoesOnOnlyWhenTold) {
     command.emplace_back("--incomplete");
     const Ended done = Process(command).wait();
     EXPECT_EQ(done.exit_code, 0) << done.err;
-    if (command[1] != "report") EXPECT_THAT(done.out, HasSubstr("stand in the journal alone"));
+    if (command[1] != "report") {
+      EXPECT_THAT(done.out, HasSubstr("stand in the journal alone"));
+    }
   }
   EXPECT_THAT(base::read_file(page_, 1u << 30), HasSubstr("stand in the journal alone"));
   for (const std::string& file : {json_, task_}) {

@@ -48,7 +48,12 @@ bool HistoryRun::command(const Step& step, bool always, const Work& work) {
   here().ahead_s += recovery_s;
   if (stations_.has_database(station_)) {
     const auto own = stations_.own_people(station_);
-    ended = stations_.perform(step, station_, false, [&] { resume(database(), own); });
+    const auto open = [&] {
+      return stations_.perform(step, station_, false, [&] { resume(database(), own); });
+    };
+    ended = open();
+    // Exports with gaze that is refused now are named once, with exit status 1.
+    if (ended.problem.find("named above") != std::string::npos) ended = open();
     const bool unmade = ended.problem.find("is not a database of vip-study") != std::string::npos;
     if (ended.how != How::Done && !here().restored && !(unmade && here().people.empty()))
       wrong("cannot be opened after a fault: " + ended.problem);

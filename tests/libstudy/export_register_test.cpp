@@ -213,8 +213,10 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
       Connection now(path, Open::Write);
       now.mark_commits();  // as every program of ours does
       now.execute("PRAGMA busy_timeout = 0");
+      sqlite::Transaction transaction(now);
       now.execute("INSERT INTO export (kind, path, host, sha256, utc, tackled) VALUES ('csv', " + name +
                   ", 'here', '', '2026-01-01T00:00:00Z', 0)");
+      transaction.commit();
       entered.push_back(name);
     } catch (const sqlite::LockedOut&) {
       ++refused;

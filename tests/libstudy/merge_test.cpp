@@ -39,8 +39,8 @@ Lines select(const fs::path& path, const std::string& sql) {
   return lines;
 }
 
-/// Every row of every table, with row numbers. Not the labels: those of the database that takes others in stay,
-/// so they depend on which one that is (GivenLabels).
+/// Every row of every table, with row numbers. Not the labels: those of the database that takes others in
+/// stay, so they depend on which one that is (GivenLabels).
 Lines everything(const fs::path& path) {
   Lines all;
   for (const std::string& table :
