@@ -91,9 +91,9 @@ bool open_standard_streams() {
 }
 
 bool finish_output() {
-  std::cout.flush();
   errno = 0;
-  const bool flushed = std::fflush(stdout) == 0;
+  std::cout.flush();  // which writes past PlainOutput
+  const bool flushed = std::fflush(stdout) == 0 && std::cout.good();
   const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
   if (flushed && !std::ferror(stdout)) return true;
   if (reader_left()) return false;

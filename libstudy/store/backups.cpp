@@ -152,6 +152,8 @@ void bury(Connection& database, const std::string& person, std::int64_t version)
             "JOIN run USING (run_id) WHERE person = ? ORDER BY run.started_utc, session.uid LIMIT 1")
       .bind_all(base::utc_now(), person)
       .run();
+  if (version >= 7)
+    Statement(database, "DELETE FROM label WHERE kind = 'person' AND owner = ?").bind_all(person).run();
   delete_sessions(database, version);
 }
 

@@ -45,6 +45,8 @@ class Giving {
     given.push_back({kind, owner, label});
   }
 
+  void reserve(const std::string& kind, const std::string& label) { taken_.emplace(kind, lower(label)); }
+
   std::vector<GivenLabel> given;
 
  private:
@@ -55,6 +57,9 @@ Giving stored_labels(Connection& database) {
   Giving labels;
   for (Statement row(database, "SELECT kind, owner, label FROM label ORDER BY kind, owner"); row.step();)
     labels.give(row.text(0), row.text(1), row.text(2));
+  // A published label is not given to somebody else after a withdrawal.
+  for (Statement row(database, "SELECT participant FROM tombstone"); row.step();)
+    labels.reserve("person", letters_of(row.text(0)));
   return labels;
 }
 

@@ -38,7 +38,11 @@ void add_labels(const Content& content, sqlite::Connection& target) {
     list.insert(list.end(), found.begin(), found.end());
   }
   sort_labels(others, content);
-  store_labels(target, joined_labels(first, others));
+  std::vector<GivenLabel> joined = joined_labels(first, others);
+  std::erase_if(joined, [&](const GivenLabel& one) {
+    return one.kind == "person" && content.tombstones.contains(one.owner);
+  });
+  store_labels(target, joined);
 }
 
 }  // namespace study::merging

@@ -107,9 +107,24 @@ inline std::vector<const Json*> documents(const Json& json) {
 
 /// Texts with a digit that is neither marked with its place in the JSON nor part of a name or definition.
 inline std::vector<std::string> unmarked_numbers(const html_reader::Page& page, const Json& json) {
-  std::vector<std::string> known{"Task 1",   "Task 2",   "Fig. 6",    "Fig. 9",         "Fig. 10", "(1993)",
-                                 "< .05",    "< .01",    "below .05", ".05 after Holm", "< .001",  "SHA-256",
-                                 "H1 to H6", "H1 to H3", "p95, ms",   "at most 1"};
+  std::vector<std::string> known{"Task 1",
+                                 "Task 2",
+                                 "Fig. 6",
+                                 "Fig. 9",
+                                 "Fig. 10",
+                                 "(1993)",
+                                 "< .05",
+                                 "< .01",
+                                 "below .05",
+                                 ".05 after Holm",
+                                 "< .001",
+                                 "SHA-256",
+                                 "H1 to H6",
+                                 "H1 to H3",
+                                 "p95, ms",
+                                 "at most 1",
+                                 "fewer than 5 answers",
+                                 "needs at least 4 of them, not 3"};
   for (const Json* document : documents(json)) {
     for (const auto& protocol : document->at("study").at("protocols")) {
       // Sessions are counted by these words of theirs, which are the results' own.

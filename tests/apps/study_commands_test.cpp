@@ -221,7 +221,11 @@ TEST_F(StudyCommandsE2e, AReadOnlyFolderIsAnErrorForAnUnprivilegedUserAndStillRe
   };
   fs::permissions(folder_.path(), fs::perms(0555));
   expect_error(run_arguments(folder_ / "short.toml", folder_ / "new.db", {}), "new.db", become_nobody);
-  fs::permissions(database_, fs::perms(0444));  // as made, it is the owner's alone
+  // As made, both are the owner's alone. Who may not read the journal cannot know who withdrew.
+  fs::permissions(database_, fs::perms(0444));
+  expect_error({vip_study, "status", "--db", database_}, "study.db.answers.jsonl: cannot be read",
+               become_nobody);
+  fs::permissions(database_ + ".answers.jsonl", fs::perms(0444));
   expect_error({vip_study, "resume", "--db", database_}, "study.db", become_nobody);
   const std::vector<std::string> into{vip_study, "export", "--db", database_, "--csv"};
   const auto to = [&into](const std::string& out) {

@@ -121,7 +121,8 @@ void names_of(const Json& json, const std::string& name, std::set<std::string>& 
 bool is_left_to_others(const std::string& name) {
   for (const std::string part :
        {".task1.ordinal", ".task1.mixed", ".task1.comparisons.mixed", ".task1.comparisons.tipping",
-        ".hypotheses.tests.tipping", ".task1.people", ".bca"})
+        ".hypotheses.tests.tipping", ".task1.people", ".bca", ".by_n_star", ".by_scene", ".detectable",
+        ".distributions", ".reliability"})
     if (name.find(part) != std::string::npos) return true;
   return false;
 }

@@ -104,8 +104,8 @@ TEST(VipStudyCheckE2e, AMethodThatIsNotThereIsNamed) {
   std::ofstream(file) << text;
   const auto outcome = vip_study("check " + file.string());
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.out, testing::HasSubstr("p.toml: design"));
-  EXPECT_THAT(outcome.out, testing::HasSubstr("LoRes, HiRes"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("'design.method[0]' = \"Best\""));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("\"LoRes\", \"HiRes\""));
 }
 
 TEST(VipStudyCheckE2e, EveryShippedProtocolIsSound) {

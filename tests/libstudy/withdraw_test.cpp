@@ -75,9 +75,9 @@ TEST(Withdraw, LeavesNoTraceOfTheAnswers) {
   EXPECT_EQ(look.text("SELECT participant FROM tombstone"), leaver);
   look.execute("PRAGMA foreign_keys = ON");
   EXPECT_EQ(look.integer("SELECT count(*) FROM pragma_foreign_key_check"), 0);
-  // The code stands in the tombstone twice, in its index, and as often in the journal's tombstone; and as the
-  // label that nobody else gets, in its table, its index and the journal; nowhere else.
-  EXPECT_EQ(occurrences(folder.path(), leaver), 8);
+  // The code stands in the tombstone twice, in its index, and as often in the journal's tombstone, nowhere
+  // else.
+  EXPECT_EQ(occurrences(folder.path(), leaver), 5);
 }
 
 TEST(Withdraw, LeavesTheOthersAsTheyWere) {

@@ -1,5 +1,7 @@
 #include "apps/stats/report/bundle_parts.hpp"
 
+#include <fmt/format.h>
+
 #include "apps/common/claims.hpp"
 #include "apps/common/svg.hpp"
 #include "apps/stats/data/plan_file.hpp"
@@ -29,7 +31,7 @@ std::string curves_text(const study::Protocol& protocol, const stats::AnalysisPl
   std::string out;
   for (const auto& question : curve_questions(protocol)) {
     out += "- " + protocol.name + ": the curve of question " + question.id + " is fitted at level " +
-           svg::number(plan.levels.at(question.id), 3) + " of its scale, " +
+           fmt::format("{}", plan.levels.at(question.id)) + " of its scale, " +
            std::to_string(question.scale_min) + " to " + std::to_string(question.scale_max) + "\n";
   }
   return out;

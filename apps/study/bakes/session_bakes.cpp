@@ -40,11 +40,11 @@ BakeOrder order_for(const study::Protocol& protocol, const PlannedStimulus& one,
 void check_one_stimulus(const std::vector<PlannedStimulus>& plan, const fs::path& bake) {
   for (const PlannedStimulus& one : plan) {
     if (one.what == plan.front().what) continue;
-    throw base::Error(
-        "--stimulus " + bake.string(),
-        "shows one scene, method, n_* and set of effects, but the protocol names several",
-        "bake them all: vip-study bake --protocol FILE --out FOLDER, then --stimulus FOLDER; or "
-        "run the protocol live");
+    throw base::Error("--stimulus " + bake.string(),
+                      "shows one scene, method, n_* and set of effects, but the protocol names several",
+                      "bake them all: vip-study bake --protocol FILE --out FOLDER, then vip-study run "
+                      "--stimulus FOLDER; or "
+                      "run the protocol live");
   }
 }
 
