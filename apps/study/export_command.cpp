@@ -89,9 +89,6 @@ void add_export_command(CLI::App& app) {
     const study::StudyFile file(options->database, options->incomplete);
     check_no_withdrawal_is_due(file);
     if (file.incomplete) print_lacking(file.path, study::lacking_of(file.path));
-    if (const auto why = study::why_not_registered())
-      std::fprintf(stderr, "exports cannot be registered, so that a withdrawal names and keeps them: %s\n",
-                   for_terminal(*why).c_str());
     if (!options->csv.empty()) {
       const study::CsvDialect dialect = options->excel ? study::excel_dialect() : study::CsvDialect{};
       print_files(study::export_csv(file, options->csv, {options->words, options->gaze, dialect}));
@@ -105,6 +102,9 @@ void add_export_command(CLI::App& app) {
     if (!options->psych_ds.empty()) {
       print_public(study::export_psych_ds(file, options->psych_ds), options->psych_ds);
     }
+    if (const auto why = study::why_not_registered())
+      std::fprintf(stderr, "exports cannot be registered, so that a withdrawal names and keeps them: %s\n",
+                   for_terminal(*why).c_str());
   });
 }
 
