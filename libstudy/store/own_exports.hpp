@@ -45,7 +45,7 @@ void forget_own_exports(const std::set<std::string>& ids);
 /// id. It stands in the folder itself, as marker_of() its kind, and lists all other files.
 std::string list_of_files(const std::filesystem::path& folder, const std::string& kind,
                           const std::string& id);
-/// Name of that list in a folder of a kind; empty: an export of that kind is a file.
+/// Name of the list of hashes in an exported folder of this kind; empty if this kind is a single file.
 std::string marker_of(const std::string& kind);
 /// Whether what stands at its path is this export, whole, unchanged and without any file of others.
 bool stands_unchanged(const OwnExport& made);

@@ -20,7 +20,7 @@ std::string letters_of(const std::string& code) {
   return letters;
 }
 
-/// Each number without the zeros before it.
+/// The text with leading zeros removed from each number in it.
 std::string without_zeros(const std::string& code) {
   std::string out;
   for (std::size_t i = 0; i < code.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The stations of a history: their folders, their clocks, and what each of them is to know.
+/// The stations of a history: their folders, their clocks, and the decisions that each one has learned of.
 
 #include <map>
 #include <set>

@@ -212,7 +212,7 @@ TEST(Repeats, NothingIsShownBeforeAnEyeTrackerSeesTheEyes) {
     EXPECT_THAT(one.events("paused by the program"),
                 ::testing::Each("the eye tracker does not see the eyes"));
     EXPECT_EQ(one.events("paused by the program").size(), 3u);
-    // Who does not allow gaze to be recorded needs none.
+    // Valid gaze is not required of a participant who refuses its recording.
     Flashing other;
     other.eyes.silent = silent;
     other.closed = [] { return true; };
