@@ -29,6 +29,15 @@ namespace {
                         : "the journal of answers must be a file in a folder that you may write to");
 }
 
+[[noreturn]] void fail_to_read(const fs::path& path, int reason) {
+  throw base::Error(
+      path.string(), std::string("cannot be read: ") + std::strerror(reason),
+      reason == EACCES || reason == EPERM
+          ? "ask its owner for the right to read it: it says who withdrew, and without it nothing "
+            "of the database is shown"
+          : "the journal of answers must be a file on a sound disk, and no link");
+}
+
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -57,7 +66,7 @@ int write_all(int fd, std::string_view bytes) {
 /// A regular file's size; an error otherwise.
 std::uintmax_t size_of(int fd, const fs::path& path) {
   struct stat status {};
-  if (::fstat(fd, &status) != 0) fail(path, "cannot be read", errno);
+  if (::fstat(fd, &status) != 0) fail_to_read(path, errno);
   if (!S_ISREG(status.st_mode))
     throw base::Error(path.string(), "is not a regular file",
                       "move it away: the journal of answers stands there");
@@ -68,13 +77,13 @@ std::string whole(const fs::path& path, bool& exists) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   exists = file.get() >= 0;
   if (!exists && errno == ENOENT) return {};
-  if (!exists) fail(path, "cannot be read", errno);
+  if (!exists) fail_to_read(path, errno);
   std::string bytes(size_of(file.get(), path), '\0');
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t n = ::read(file.get(), bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(path, "cannot be read", errno);
+    if (n < 0) fail_to_read(path, errno);
     if (n == 0) break;
     done += static_cast<std::size_t>(n);
   }

@@ -81,6 +81,8 @@ Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
     throw base::Error(path_.string(), "cannot be copied: out of memory", "close other programs");
   }
   protect();
+  // Its journal and tables on the side would be files even where it is small.
+  execute("PRAGMA journal_mode = MEMORY; PRAGMA temp_store = MEMORY");
 }
 
 Connection::~Connection() {

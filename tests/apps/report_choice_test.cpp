@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
@@ -17,8 +18,10 @@
 namespace apps {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 const std::vector<TaskKind> all_tasks{TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2, TaskKind::Own};
 
@@ -222,6 +225,25 @@ TEST(ReportChoice, PairsOverScenesAreDescribedBySceneAndTheTestSaysWhyItIsNone) 
   EXPECT_TRUE(json.at("hypotheses").empty());
   EXPECT_THAT(json.at("task2").at("pairs").at(0).at("warning").get<std::string>(),
               HasSubstr("3 times, as in several scenes"));
+}
+
+TEST(ReportChoice, ReasonsCallMethodsByTheirNames) {
+  const Json few = results_of({{made_study::task1(3)}, 2});
+  std::string refused;
+  for (const auto& model : few.at("task1").at("ordinal")) refused += model.value("refused", "") + "; ";
+  EXPECT_THAT(refused, AllOf(HasSubstr("overlap by LoRes, FovFluid"), Not(HasSubstr("method0"))));
+  auto pairs = made_study::task2(4);
+  for (auto& session : pairs.sessions) {
+    for (auto& trial : session.trials) {
+      const bool first = trial.first.what.method == "Ours", second = trial.second->what.method == "Ours";
+      if (first || second) trial.answers = {{"preference", first ? 1 : 2}};
+    }
+  }
+  const Json winner = results_of({{pairs}, 0});
+  EXPECT_EQ(winner.at("task2").at("bradley_terry").at("why_penalised"),
+            "Ours wins every comparison with the others");
+  expect_true_page(winner);
+  EXPECT_EQ(with_names("items 1, 3 together lose; method1:x", {"a", "b", "c"}), "a, c together lose; b:x");
 }
 
 TEST(ReportChoice, TablesOfWhatStandsApartHaveFoldersOfTheirOwn) {

@@ -239,19 +239,20 @@ std::size_t files_in(const std::filesystem::path& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-/// A folder with a finished study that everybody may read and nobody write.
+/// A folder with a finished study that all users may read and none may write.
 class LockedStudy {
  public:
   LockedStudy() {
     write_database(folder_ / "study.db", simulated("ptpe:a=24,b=0.02"));
-    std::filesystem::permissions(folder_ / "study.db", static_cast<std::filesystem::perms>(0444));
+    for (const char* file : {"study.db", "study.db.answers.jsonl"})
+      std::filesystem::permissions(folder_ / file, static_cast<std::filesystem::perms>(0444));
     std::filesystem::permissions(folder_.path(), read_only);
   }
   ~LockedStudy() { std::filesystem::permissions(folder_.path(), std::filesystem::perms::owner_all); }
   LockedStudy(const LockedStudy&) = delete;
   LockedStudy& operator=(const LockedStudy&) = delete;
   std::string database() const { return (folder_ / "study.db").string(); }
-  /// Root writes everywhere: become nobody.
+  /// Root may write anywhere, so the program runs as another user.
   static std::string unprivileged() {
     return geteuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups " : "";
   }

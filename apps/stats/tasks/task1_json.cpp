@@ -206,7 +206,7 @@ Json ordinal_json(const TaskData& data, const OrdinalModel& model) {
   Json json{{"question", model.question},
             {"n_star", data.protocol.n_stars[static_cast<std::size_t>(model.n_star)]}};
   if (!model.effects) {
-    json["refused"] = model.effects.reason();
+    json["refused"] = with_names(model.effects.reason(), data.protocol.methods);
     return json;
   }
   const auto& effects = *model.effects;

@@ -102,7 +102,8 @@ Json interval_json(const stats::IntervalBias& bias) {
 }
 
 /// The interval's pull on the choice and its drift over the session, within the Bradley-Terry model.
-Json order_json(const stats::Result<stats::OrderBias>& model) {
+Json order_json(const stats::Result<stats::OrderBias>& model, const Names& methods) {
+  if (!model) return json_refused(with_names(model.reason(), methods));
   return json_result(model, [](const stats::OrderBias& bias) {
     Json json = order_term_json(bias.interval);
     json["first_probability"] = bias.first_probability;
@@ -155,14 +156,15 @@ Json bradley_terry_json(const stats::PreferenceAnalysis& analysis, const Names& 
   Json json = json_result(analysis.bradley_terry, [&](const stats::BradleyTerry& model) {
     return Json{
         {"penalised", model.bias_reduced},
-        {"why_penalised", model.why_bias_reduced},
+        {"why_penalised", with_names(model.why_bias_reduced, methods)},
         {"people", people_json(model)},
         {"abilities", abilities_json(model, methods)},
         {"differences", differences_json(model, methods)},
         {"overall", {{"chi2", model.lrt_chi2}, {"df", model.lrt_df}, {"p", model.lrt_p}}},
         {"fit", {{"chi2", model.gof_deviance}, {"df", model.gof_df}, {"p", json_number(model.gof_p)}}}};
   });
-  json["order"] = order_json(analysis.interval.model);
+  if (json.contains("refused")) json["refused"] = with_names(analysis.bradley_terry.reason(), methods);
+  json["order"] = order_json(analysis.interval.model, methods);
   return json;
 }
 
