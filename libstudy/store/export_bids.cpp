@@ -206,7 +206,7 @@ constexpr ExportKind bids_kind{"bids", is_export, is_our_name};
 PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool gaze) {
   open_study(study);  // refuses a file that is not sound before anything is written to it
   label_everybody(study.path);
-  const auto database = open_study(study).database;
+  const auto database = open_to_export(study);
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);

@@ -7,7 +7,6 @@
 #include <set>
 #include <sstream>
 
-#include "libstudy/store/open_study.hpp"
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
@@ -227,7 +226,7 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
 
 std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& folder,
                                      const CsvChoice& choice) {
-  const auto database = open_study(study).database;
+  const auto database = open_to_export(study);
   // One transaction: all tables from the same moment, though a session may be running.
   database->execute("BEGIN");
   ExportDraft draft({study.path, csv_kind, everybody(*database), Readers::Owner, choice.dialect}, folder);

@@ -115,7 +115,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
 PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
   open_study(study);  // refuses a file that is not sound before anything is written to it
   label_everybody(study.path);
-  const auto database = open_study(study).database;
+  const auto database = open_to_export(study);
   database->execute("BEGIN");
   const auto sessions = shared_sessions(*database);
   const SharingCount people = count_sharing(*database);

@@ -120,6 +120,19 @@ void label_everybody(const fs::path& database) {
   transaction.commit();
 }
 
+std::unique_ptr<Connection> open_to_export(const StudyFile& study) {
+  auto database = open_study(study).database;
+  if (database->text("PRAGMA journal_mode") != "delete") return database;
+  database.reset();
+  const fs::path file = real_file(study.path);
+  check_writable(file);
+  {
+    const WriterLock lock(file);
+    open_database(file, Open::Write, read_schema_steps());
+  }
+  return open_study(study).database;
+}
+
 RegisteredExport::RegisteredExport(const fs::path& database, const std::string& kind, const fs::path& path,
                                    const std::set<std::string>& people, const fs::path& draft)
     : database_(database),

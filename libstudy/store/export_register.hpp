@@ -3,6 +3,7 @@
 /// that a withdrawal finds them again.
 
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -19,6 +20,10 @@ std::set<std::string> everybody(sqlite::Connection& database);
 /// Stores labels of whom and what has none yet (export_labels.hpp), before a public export is read. The
 /// database is written for a moment; base::Error as RegisteredExport.
 void label_everybody(const std::filesystem::path& database);
+
+/// A study that is read while its export is registered. A database without a log, as other programs may leave
+/// it, is given one: no write would be let in while it is read. base::Error as RegisteredExport.
+std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 
 /// One export while it is made: `people` stand in it.
 ///

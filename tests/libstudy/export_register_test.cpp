@@ -188,6 +188,19 @@ TEST_F(Exports, DoNotOutliveAWithdrawalWhileTheyAreWritten) {
   EXPECT_FALSE(fs::exists(csv));
 }
 
+TEST_F(Exports, OfADatabaseWithoutALogAreMade) {
+  const auto without_log = [&] {
+    ASSERT_EQ(Connection(path, Open::Write).text("PRAGMA journal_mode = DELETE"), "delete");
+  };
+  without_log();
+  export_csv(path, csv);
+  without_log();
+  export_bids(path, folder / "bids");
+  without_log();
+  export_psych_ds(path, folder / "psych");
+  EXPECT_EQ(count("export"), 3);
+}
+
 TEST_F(Exports, OfASourceAreKnownAfterAMerge) {
   export_csv(path, csv);
   merge({path}, folder / "all.db");
