@@ -33,7 +33,9 @@ CutWords words_of(CutCause cause) {
 }
 
 void note_cut(std::optional<CutCause>& noted, CutCause cause) {
-  if (!noted || (*noted == CutCause::Focus && cause == CutCause::TakenOff)) noted = cause;
+  const bool explains = cause == CutCause::SessionLost ||  // pictures and focus go with the session
+                        (noted == CutCause::Focus && cause == CutCause::TakenOff);
+  if (!noted || explains) noted = cause;
 }
 
 }  // namespace study

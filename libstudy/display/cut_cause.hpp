@@ -28,7 +28,8 @@ struct CutWords {
 };
 CutWords words_of(CutCause cause);
 
-/// Keeps the first cause; that the headset was taken off says more than that its focus went before.
+/// Keeps the first cause. Two say more than what they bring with them: a session that was lost, and a headset
+/// that was taken off after its focus went.
 void note_cut(std::optional<CutCause>& noted, CutCause cause);
 
 }  // namespace study

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -265,11 +266,10 @@ void JournalFile::cut(std::uintmax_t end) {
 
 namespace {
 
+fs::path draft_of(const fs::path& journal) { return journal.string() + ".new"; }
+
 /// Deleting a file leaves its bytes on the disk: they are overwritten before.
-void overwrite(const fs::path& path) {
-  const Descriptor file(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  if (file.get() < 0 && errno == ENOENT) return;
-  if (file.get() < 0) fail(path, "cannot be overwritten", errno);
+void overwrite(const Descriptor& file, const fs::path& path) {
   const std::string zeros(1 << 16, '\0');
   for (std::uintmax_t left = size_of(file.get(), path); left > 0;) {
     const auto part = static_cast<std::size_t>(std::min<std::uintmax_t>(left, zeros.size()));
@@ -280,26 +280,50 @@ void overwrite(const fs::path& path) {
   if (::fsync(file.get()) != 0) fail(path, "cannot be overwritten", errno);
 }
 
+void overwrite(const fs::path& path) {
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const bool holds_bytes = file.get() >= 0 || (errno != ENOENT && errno != ELOOP && errno != ENXIO);
+  if (!holds_bytes) return;  // nothing, a link, a pipe
+  if (file.get() < 0) fail(path, "cannot be overwritten", errno);
+  overwrite(file, path);
+}
+
+void write_draft(const fs::path& draft, const fs::path& journal, const std::string& text) {
+  const Descriptor file(::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  if (file.get() < 0) fail(draft, "cannot be made", errno);
+  int reason = ::fchmod(file.get(), 0600) != 0 ? errno : write_all(file.get(), text);
+  if (reason == 0 && ::fsync(file.get()) != 0) reason = errno;
+  if (reason == 0) return;
+  ::unlink(draft.c_str());
+  fail(journal, "cannot be written", reason);
+}
+
 }  // namespace
 
+void remove_journal_draft(const fs::path& path) {
+  const fs::path draft = draft_of(path);
+  overwrite(draft);
+  if (::unlink(draft.c_str()) == 0) base::sync_folder_of(draft);
+}
+
 void replace_journal(const fs::path& path, const std::string& text) {
-  const fs::path next = path.string() + ".new";
-  ::unlink(next.c_str());
-  if (!text.empty()) {
-    const Descriptor file(::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
-    if (file.get() < 0) fail(next, "cannot be made", errno);
-    int reason = ::fchmod(file.get(), 0600) != 0 ? errno : write_all(file.get(), text);
-    if (reason == 0 && ::fsync(file.get()) != 0) reason = errno;
-    if (reason != 0) {
-      ::unlink(next.c_str());
-      fail(path, "cannot be written", reason);
-    }
+  const fs::path draft = draft_of(path);
+  remove_journal_draft(path);
+  if (text.empty()) {
+    overwrite(path);
+    if (::unlink(path.c_str()) != 0 && errno != ENOENT) fail(path, "cannot be deleted", errno);
+    return base::sync_folder_of(path);
   }
-  overwrite(path);
-  const bool placed = text.empty() ? ::unlink(path.c_str()) == 0 || errno == ENOENT
-                                   : ::rename(next.c_str(), path.c_str()) == 0;
-  if (!placed) fail(path, "cannot be replaced", errno);
-  base::sync_folder_of(path);
+  write_draft(draft, path, text);
+  // A power cut leaves the one or the other under the name, and both whole.
+  if (base::rename_durably(draft, path, fs::exists(fs::symlink_status(path)) ? RENAME_EXCHANGE : 0))
+    return remove_journal_draft(path);
+  // Network file systems know the plain rename alone.
+  const int reason = errno;
+  const Descriptor old(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (reason != EINVAL) fail(path, "cannot be replaced", reason);
+  if (!base::rename_durably(draft, path)) fail(path, "cannot be replaced", errno);
+  if (old.get() >= 0) overwrite(old, path);
 }
 
 }  // namespace study

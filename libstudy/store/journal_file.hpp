@@ -75,8 +75,11 @@ class JournalFile {
   std::uintmax_t size_ = 0;  ///< bytes, as this object left it
 };
 
-/// Puts a new file in the place of the old one, which is overwritten first; without `text` it is only
-/// deleted.
+/// Puts a new file in the place of the old one. At each moment one of them, whole, has the name, also after a
+/// power cut. Then the old one is overwritten and deleted. Without `text` the old one is only deleted.
 void replace_journal(const std::filesystem::path& path, const std::string& text);
+
+/// Overwrites and deletes what a kill in replace_journal left beside the journal.
+void remove_journal_draft(const std::filesystem::path& path);
 
 }  // namespace study

@@ -151,6 +151,7 @@ Settled bring_together(Connection& database, JournalFile& file) {
 
 Settled settle(Connection& database, JournalFile& file) {
   Settled settled = bring_together(database, file);
+  remove_journal_draft(file.path());
   database.keep_log(false);  // it holds nothing that the journal does not hold too
   return settled;
 }

@@ -76,6 +76,12 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
     return study::sqlite::Connection(database_, study::sqlite::Open::Read)
         .integer("SELECT count(*) FROM " + rows);
   }
+  std::string notes() const {
+    study::sqlite::Connection database(database_, study::sqlite::Open::Read);
+    study::sqlite::Statement row(database, "SELECT group_concat(words, '; ') FROM note");
+    row.step();
+    return row.text(0);
+  }
   /// Ten frames a second for 3 s, in the frames 90 to 150 or so.
   test::Ended real_session(const std::string& profile) {
     return study(
@@ -160,7 +166,8 @@ TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewAndItsTrialShownAgain) {
     const auto ended = session(trouble, protocol, "2");
     ASSERT_EQ(ended.exit_code, 0) << trouble << ": " << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("showings: 2, 1 of them count, 1 cut short; timing: 1 pass")) << trouble;
-    EXPECT_EQ(count("note WHERE words LIKE '%lost the session: %made anew%'"), 1);
+    EXPECT_EQ(count("note WHERE words LIKE '%lost the session: %made anew%'"), 1)
+        << trouble << ": " << notes();
     EXPECT_EQ(count("event WHERE kind = 'headset'"), 2) << trouble;
     EXPECT_EQ(count("frame JOIN presentation USING (presentation_id) WHERE state = 'interrupted'"), 13);
     // Nothing of the old world is seen in the new one: the black of three seconds before the repeat.

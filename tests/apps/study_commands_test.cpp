@@ -92,7 +92,7 @@ TEST_F(StudyCommandsE2e, CodesAndStationsAreWhatFilesAndPeopleCanTell) {
     expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant=" + code}),
                  "participant '" + code + "': is not a participant code");
   expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant", "p01"}),
-               "differs from P01 in upper and lower case alone");
+               "differs from P01 in case, punctuation or leading zeros alone");
   for (const std::string& station : {std::string(101, 'x'), std::string("lab\xFF"), std::string("lab\n1")}) {
     const Ended ended = run({"--participant", "P02", "--station", station});
     EXPECT_EQ(ended.exit_code, 2) << station;

@@ -9,6 +9,9 @@
 #include <exception>
 #include <stdexcept>
 
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/schema.hpp"
+
 namespace faults {
 
 using Say = std::function<void(const std::string&)>;
@@ -34,11 +37,24 @@ namespace {
   ::_exit(0);
 }
 
+/// Makes what a process keeps of each version of the schema, so that the children of this one find it made.
+/// Otherwise each would take as long for it as for its command.
+void make_schemas() {
+  const auto steps = study::read_schema_steps();
+  for (std::size_t version = 1; version <= steps.size(); ++version) {
+    const study::SchemaSteps first(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(version));
+    study::check_schema(*study::make_temporary_database("the schema", first), steps,
+                        static_cast<std::int64_t>(version));
+  }
+  study::columns_of("session");
+}
+
 }  // namespace
 
 bool spread(int jobs, const std::function<void(int, const Say&)>& work, const Say& take) {
   int pipe[2];
   if (::pipe(pipe) != 0) throw std::runtime_error("no pipe can be made");
+  make_schemas();
   std::fflush(stdout);
   std::vector<pid_t> children;
   for (int worker = 0; worker < jobs; ++worker) {

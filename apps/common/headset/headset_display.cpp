@@ -140,6 +140,7 @@ void HeadsetDisplay::heed() {
                         "start it again; vip-study resume continues a session");
     if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
     new_session_ |= event.kind == Kind::Lost;
+    if (event.kind == Kind::Lost && playing_) note_cut(spoilt_, study::CutCause::SessionLost);
     if (event.kind == Kind::Refresh && !new_session_) {
       refresh_hz_ = study::nominal_refresh(event.to_hz);
       // Also between pictures: the trial that has begun goes by the intervals of the rate before.
