@@ -23,6 +23,7 @@
 #include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 #include "stats/base/new_file.hpp"
 
 namespace apps {
@@ -106,7 +107,7 @@ void print_fit(const PilotFit& fit) {
 
 void write_json(const FitCommand& command, nlohmann::ordered_json json) {
   if (!command.lacking.empty()) json["incomplete"] = command.lacking;
-  if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
+  if (!command.json.empty()) base::write_file_atomically(command.json, base::json_text(json, 2) + "\n");
 }
 
 [[noreturn]] void no_fit(const FitCommand& command, const std::string& reason, const std::string& mend) {

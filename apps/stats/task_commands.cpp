@@ -14,6 +14,7 @@
 #include "apps/stats/tasks/results.hpp"
 #include "libstudy/store/export_register.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace apps {
 
@@ -144,7 +145,7 @@ void run(const TaskCommand& command) {
         command.database, results.missing.front().reason,
         "collect answers, or choose another --protocol, --question or --plan; nothing was written");
   }
-  if (!command.json.empty()) write(command.json, results.json.dump(2) + "\n");
+  if (!command.json.empty()) write(command.json, base::json_text(results.json, 2) + "\n");
   if (!command.csv.empty()) {
     for (const auto& folder : csv_folders(results.json, command.csv)) files->make_folder(folder);
     write_csv_folder(results.json, command.csv, write);

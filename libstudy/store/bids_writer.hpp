@@ -10,6 +10,7 @@
 
 #include "libstudy/store/export_folder.hpp"
 #include "libstudy/store/export_labels.hpp"
+#include "stats/base/json_depth.hpp"
 
 namespace study::bids {
 
@@ -41,7 +42,7 @@ class Writer {
   /// Without a header line, compressed by gzip: the same table gives the same bytes.
   void compressed_table(const std::string& name, const Table& rows);
   void text(const std::string& name, const std::string& text);
-  void json(const std::string& name, const Json& json) { text(name, json.dump(2) + "\n"); }
+  void json(const std::string& name, const Json& json) { text(name, base::json_text(json, 2) + "\n"); }
 
   std::vector<ExportedFile> files;
 

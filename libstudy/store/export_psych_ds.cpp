@@ -102,7 +102,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
                   {"creator", "vip-study"},
                   {"version", base::version()},
                   {"variableMeasured", variables(database, scored)}};
-  write_file(draft, description_file, json.dump(2) + "\n");
+  write_file(draft, description_file, base::json_text(json, 2) + "\n");
   write_file(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "

@@ -18,7 +18,7 @@ std::string format_frame_costs(const std::vector<FrameCosts>& costs) {
                     {"p95_ms", one.p95_ms}});
     if (!one.what.effects.empty()) json.back()["effects"] = one.what.effects;
   }
-  return json.dump();
+  return base::json_text(json);
 }
 
 std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::string& place) {

@@ -201,7 +201,7 @@ std::string kept_line(std::int64_t number) { return Json{{"kept", number}}.dump(
 std::string rewrite_line(const std::vector<std::string>& persons) {
   Json line;
   line["rewrite"] = Json(persons);
-  return line.dump() + '\n';
+  return base::json_text(line) + '\n';
 }
 
 JournalFile::~JournalFile() { close(); }

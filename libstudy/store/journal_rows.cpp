@@ -61,7 +61,7 @@ std::string key_of(const Table& table, const Json& line) {
   for (const std::string& name : table.key) {
     const auto value = line.find(name);
     if (value == line.end()) return {};
-    key += (key.empty() ? "" : " ") + value->dump(-1, ' ', false, Json::error_handler_t::replace);
+    key += (key.empty() ? "" : " ") + base::json_text(*value);
   }
   return key;
 }
@@ -77,7 +77,7 @@ Row row_of(const Table& table, const Statement& statement) {
       (context ? of : line)[name] = value_of(statement, i);
   }
   if (!of.empty()) line["of"] = of;
-  return {&table, key_of(table, line), line.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  return {&table, key_of(table, line), base::json_text(line)};
 }
 
 std::string selection(const Table& table, const std::string& condition) {
@@ -156,7 +156,7 @@ std::string column(const Row& row, const std::string& name) {
   const Json line = Json::parse(row.line);
   const auto value = line.find(name);
   if (value == line.end() || value->is_null()) return {};
-  return value->is_string() ? value->get<std::string>() : value->dump();
+  return value->is_string() ? value->get<std::string>() : base::json_text(*value);
 }
 
 bool put(Connection& database, const Row& row, Put how) {

@@ -13,6 +13,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/file_hash.hpp"
+#include "stats/base/json_depth.hpp"
 #include "stats/base/new_file.hpp"
 
 namespace study {
@@ -99,8 +100,7 @@ void change(const std::function<void(std::vector<OwnExport>&)>& how) {
   std::vector<OwnExport> all = read_all(file);
   how(all);
   std::string text;
-  for (const OwnExport& made : all)
-    text += json_of(made).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  for (const OwnExport& made : all) text += base::json_text(json_of(made)) + '\n';
   base::NewFile next(file, base::Readers::Owner);
   next.write(text);
   next.put_in_place();

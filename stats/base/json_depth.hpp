@@ -1,8 +1,9 @@
 #pragma once
-/// How deep a JSON text is nested, before a parser builds it: printing or comparing a tree goes down it by
-/// recursion, so that a deep one ends the program.
+/// JSON texts from outside and to outside. How deep a text is nested is known before a parser builds it:
+/// printing or comparing a tree goes down it by recursion, so that a deep one ends the program.
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace base {
@@ -36,6 +37,13 @@ template <class Json>
 Json parse_json(std::string_view text, int levels = most_json_levels) {
   if (nested_deeper_than(levels, text)) return Json(Json::value_t::discarded);
   return Json::parse(text, nullptr, false);
+}
+
+/// A value as text, on one line where `indent` is negative. A database may hold any bytes: those that are not
+/// UTF-8 become U+FFFD.
+template <class Json>
+std::string json_text(const Json& value, int indent = -1) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace base

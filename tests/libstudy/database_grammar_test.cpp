@@ -5,6 +5,9 @@
 
 #include <random>
 
+#include "libstudy/store/database.hpp"
+#include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/schema.hpp"
 #include "tests/fuzz/database_attack.hpp"
 #include "tests/libstudy/hostile_files.hpp"
 #include "tests/libstudy/journal_fixture.hpp"
@@ -35,6 +38,38 @@ void attack_many(std::uint64_t first_seed, int count) {
       made.insert(statement.substr(0, 8));
   }
   EXPECT_GE(made.size(), 5u) << "the grammar chooses among few statements";
+}
+
+/// All texts of a table that its constraints let be changed.
+void set_texts(const fs::path& path, const std::string& table) {
+  sqlite::Connection database(path, sqlite::Open::Write);
+  database.execute("PRAGMA foreign_keys = OFF");
+  for (const std::string& column : columns_of(table))
+    database.execute("UPDATE OR IGNORE " + table + " SET " + column +
+                     " = CAST(X'78ff79' AS TEXT) WHERE typeof(" + column + ") = 'text'");
+}
+
+TEST(DatabaseGrammar, TextsThatAreNotUtf8EndNoCommandUnsaid) {
+  const test::TemporaryFolder folder(::test::memory_folder());
+  const fs::path sound = folder / "sound.db";
+  test::write_small_study(sound);
+  for (const auto& [key, object] : schema_of(*make_temporary_database("the schema"))) {
+    if (key.first != "table" || key.second.starts_with("sqlite_")) continue;
+    SCOPED_TRACE(key.second);
+    const fs::path box = folder / "box", study = box / "study.db";
+    fs::remove_all(box);
+    fs::create_directories(box);
+    fs::copy_file(sound, study);
+    set_texts(study, key.second);
+    // Each is done, or refused with an error that names its mend: outcome_of lets no other exception through.
+    EXPECT_NO_THROW(fuzz::outcome_of([&] { read_status(study); }));
+    EXPECT_NO_THROW(fuzz::outcome_of([&] { export_csv(study, box / "csv"); }));
+    EXPECT_NO_THROW(fuzz::outcome_of([&] { export_bids(study, box / "bids", true); }));
+    EXPECT_NO_THROW(fuzz::outcome_of([&] { export_psych_ds(study, box / "psych"); }));
+    EXPECT_NO_THROW(fuzz::outcome_of([&] { merge({study}, box / "merged.db"); }));
+    EXPECT_NO_THROW(fuzz::outcome_of([&] { salvage(study, box / "new.db"); }));
+    EXPECT_NO_THROW(fuzz::outcome_of([&] { withdraw(study, "P02"); }));
+  }
 }
 
 TEST(DatabaseGrammar, SpoiltDatabasesAreRefusedOrRight) { attack_many(1, 6); }

@@ -48,7 +48,7 @@ void add_line(std::string& record, Json entry, const std::string& text) {
   entry["file"] = text;
   entry["file_sha256"] = base::sha256_hex(text);
   entry["previous_sha256"] = before.empty() ? "" : base::sha256_hex(before);
-  record += entry.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  record += base::json_text(entry) + "\n";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 #include "stats/base/new_file.hpp"
 #include "stats/base/text.hpp"
 
@@ -83,7 +84,7 @@ Files contents(const BundleRequest& request) {
       hypotheses.push_back(fixed_part(hypothesis_json(hypothesis)));
   }
   const auto plan = with_levels(request.plan, protocols);
-  files["hypotheses.json"] = hypotheses.dump(2) + "\n";
+  files["hypotheses.json"] = base::json_text(hypotheses, 2) + "\n";
   files["plan.toml"] = format_plan(plan, hashes);
   if (request.power) {
     files["power.json"] = base::read_file(*request.power, largest_file);
