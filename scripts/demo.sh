@@ -75,3 +75,12 @@ describe fit.json "every number of the fit"
 describe heat.svg "mean scores with the contours at 4 and 5"
 describe fitted.toml "a and b for the solver"
 describe pictures/frame_0060.png "SingleDam after 1 s"
+cat <<END
+
+Sixteen simulated people rated SingleDam at 21 settings of frame rate. The curve of acceptable rates was fitted to
+their ratings, and the solver drew its last picture with that curve. Next you can:
+  $bin/vip-view data/scenes/single_dam.toml --n-star 2k                  look at the fluid (needs a screen)
+  $bin/vip-stats report $out/study.db --html $out/report.html   read these people's study as one page
+  $bin/vip-study run protocols/ptpe_pilot.toml --db my.db --participant P01 \\
+    --stimulus $out/dam.bake --trial-seconds 3                           take part yourself (needs a screen)
+END

@@ -49,12 +49,12 @@ Lines commands_of(const std::string& program) {
   return commands.empty() ? Lines{program} : commands;
 }
 
-/// One for each row of the README's table of commands, capital letters (arguments) left out.
+/// One for each row of the table of commands, capital letters (arguments) left out.
 Lines commands_in_table() {
   static const std::regex row(R"(^\| `(vip-[a-z]+( [a-z][a-z0-9-]*)?)[ `].*)");
   Lines commands;
   std::smatch match;
-  for (const std::string& line : page(root / "README.md")) {
+  for (const std::string& line : page(root / "docs/commands.md")) {
     if (std::regex_match(line, match, row)) commands.push_back(match[1]);
   }
   return commands;
