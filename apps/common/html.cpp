@@ -42,6 +42,13 @@ summary { cursor: pointer; }
   body { padding: .5rem .7rem 3rem; }
   nav ul { columns: 1; }
   .wide table { width: max-content; }
+  /* A shade at an edge behind which there is more to scroll to. */
+  .wide, figure {
+    background: linear-gradient(to right, #fff 30%, transparent) 0 0 / 2.4rem 100% local no-repeat,
+      linear-gradient(to left, #fff 30%, transparent) 100% 0 / 2.4rem 100% local no-repeat,
+      linear-gradient(to right, #999, transparent) 1px 0 / .8rem 100% scroll no-repeat,
+      linear-gradient(to left, #999, transparent) calc(100% - 1px) 0 / .8rem 100% scroll no-repeat;
+  }
   .wide th, .wide td { max-width: 15rem; }
   .wide caption { max-width: calc(100vw - 2rem); }
   /* As drawn, so that its words keep their size; a wide one scrolls in its own frame. */

@@ -143,7 +143,8 @@ void run(const TaskCommand& command) {
   if (!results.missing.empty()) {
     throw base::Error(
         command.database, results.missing.front().reason,
-        "collect answers, or choose another --protocol, --question or --plan; nothing was written");
+        "collect answers, or choose another --protocol, --question or --plan; vip-stats report describes any "
+        "protocol; nothing was written");
   }
   if (!command.json.empty()) write(command.json, base::json_text(results.json, 2) + "\n");
   if (!command.csv.empty()) {

@@ -127,6 +127,9 @@ const std::vector<Place> shared_places{
 /// Of a program that is none of ours: nvidia-smi.
 const Words of_others{"--query-gpu", "--format"};
 
+/// Words behind a program's name that go on with the sentence.
+const Words words_of_sentences{"did", "does", "is", "made", "protocol", "read", "that"};
+
 std::vector<std::string> own_programs(const std::string& path) {
   for (const auto& program : programs)
     if (path.starts_with("apps/" + program.substr(4) + "/")) return {program};
@@ -150,8 +153,10 @@ std::vector<std::string> wrong_advice(const Programs& known, const std::string& 
     end = place + static_cast<std::size_t>(match.length());
     const std::string program = match[1], option = match[3];
     if (!program.empty()) {
-      const std::string whole = program + match[2].str();
+      const std::string word = match[2], whole = program + word;
       command = known.has(whole) ? whole : program;
+      if (command == program && !word.empty() && !words_of_sentences.contains(word.substr(1)))
+        wrong.push_back(path + ": " + program + " has no command" + word + ": " + text);
       continue;
     }
     if (of_others.contains(option)) continue;
@@ -210,6 +215,8 @@ TEST(AdviceE2e, AnOptionThatIsNotThereWouldBeSeen) {
   EXPECT_EQ(wrong("apps/stats/data/task_choice.cpp", "choose one with --exclude"), 3u);
   EXPECT_EQ(wrong("apps/study/run_command.cpp", "use --no-such-option"), 1u);
   EXPECT_EQ(wrong("stats/base/file.cpp", "use vip-study export --fmt"), 1u);
+  EXPECT_EQ(wrong("stats/base/file.cpp", "restore it by vip-study recover"), 1u);
+  EXPECT_EQ(wrong("stats/base/file.cpp", "another vip-study is running"), 0u);
   EXPECT_EQ(literals_of("f(\"use --no\" // a comment\n \"-such\", x, \"b\")"),
             (std::vector<std::string>{"use --no-such", "b"}));
 }

@@ -190,13 +190,13 @@ inline std::vector<Case> task2() {
       {"Over participants: mean share # [[]#, #], t(#) = #, p *.", refused(bias + "/by_participant")},
       {"Over participants: every share is #, #, p *.", set(bias + "/by_participant/test", "t test"),
        set(bias + "/by_participant/test", "exact sign test")},
-      {"# Abilities on the log-odds scale, their mean at nought", refused(model)},
+      {"# Abilities on the log-odds scale, with mean zero", refused(model)},
       {"A method or a group of methods was always or never chosen over all others: the estimates are "
        "Firth's, "
        "penalised.",
        set(model + "/penalised", false), set(model + "/penalised", true)},
-      {"Errors and intervals know whose answers they are of (sandwich over people, t of # degrees of "
-       "freedom).",
+      {"Errors and intervals allow for the likeness of one person's answers (sandwich over people, t with # "
+       "degrees of freedom).",
        all({set(model + "/people/errors", "independent answers"),
             set(model + "/people/why_independent", "too few")})},
       {"Errors and intervals take all answers as independent: #.", set(model + "/people/errors", "people"),

@@ -105,26 +105,21 @@ inline std::vector<const Json*> documents(const Json& json) {
   return out;
 }
 
+/// Reasons that stand in the results, as the page sets them: what they say is in the JSON word by word.
+inline void add_reasons(const Json& json, std::vector<std::string>& out) {
+  for (const auto& [key, value] : json.items()) {
+    const bool reason = json.is_object() && (key == "refused" || key.ends_with("reason"));
+    if (value.is_structured()) add_reasons(value, out);
+    if (reason && value.is_string() && !value.get<std::string>().empty())
+      out.push_back(as_set(value.get<std::string>()));
+  }
+}
+
 /// Texts with a digit that is neither marked with its place in the JSON nor part of a name or definition.
 inline std::vector<std::string> unmarked_numbers(const html_reader::Page& page, const Json& json) {
-  std::vector<std::string> known{"Task 1",
-                                 "Task 2",
-                                 "Fig. 6",
-                                 "Fig. 9",
-                                 "Fig. 10",
-                                 "(1993)",
-                                 "< .05",
-                                 "< .01",
-                                 "below .05",
-                                 ".05 after Holm",
-                                 "< .001",
-                                 "SHA-256",
-                                 "H1 to H6",
-                                 "H1 to H3",
-                                 "p95, ms",
-                                 "at most 1",
-                                 "fewer than 5 answers",
-                                 "needs at least 4 of them, not 3"};
+  std::vector<std::string> known{"Task 1",   "Task 2",   "Fig. 6",    "Fig. 9",         "Fig. 10", "(1993)",
+                                 "< .05",    "< .01",    "below .05", ".05 after Holm", "< .001",  "SHA-256",
+                                 "H1 to H6", "H1 to H3", "p95, ms",   "at most 1"};
   for (const Json* document : documents(json)) {
     for (const auto& protocol : document->at("study").at("protocols")) {
       // Sessions are counted by these words of theirs, which are the results' own.
@@ -132,6 +127,9 @@ inline std::vector<std::string> unmarked_numbers(const html_reader::Page& page, 
         for (const auto& [words, sessions] : protocol.at(by).items()) known.push_back(words);
     }
   }
+  add_reasons(json, known);
+  // A longer one may hold a shorter one.
+  std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   std::vector<std::string> out;
   for (const auto& text : page.texts) {
     if (!text.attribute("data-field").empty() || text.within("style") || text.within("svg")) continue;

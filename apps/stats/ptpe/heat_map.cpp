@@ -50,7 +50,7 @@ struct Colour {
   double r, g, b;
 };
 
-/// Purple - white - green (PRGn of Brewer 2003), told apart with every common colour vision.
+/// Purple - white - green (PRGn of Brewer 2003), distinguishable with every common colour vision.
 Colour colour_of(double share) {
   constexpr std::array<Colour, 9> anchors{{{118, 42, 131},
                                            {153, 112, 171},

@@ -7,23 +7,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is told of the sessions whose clock contradicts the order of the rows.
+/// What is known of the sessions whose clock contradicts the order of the rows.
 struct ByOrder {
-  bool told = true;  ///< of each it is known that the bundle is older
+  bool known = true;  ///< of each it is known that the bundle is older
   std::string text;
 };
 
 /// An impossible time is that of a clock that was wrong then, so that the rows before it hold. Of two other
-/// times nobody can say which is the wrong one.
+/// times it is not known which is the wrong one.
 ByOrder judge_by_order(const std::string& frozen, const Json& used) {
   ByOrder out;
   for (const Json& one : used.value("doubtful_times", Json::array())) {
-    const std::string told = one.at("told_utc"), least = one.at("not_before_utc"),
+    const std::string shown = one.at("told_utc"), least = one.at("not_before_utc"),
                       station = one.at("station");
-    const bool by_clock = frozen < told, by_order = one.at("impossible") == true && frozen < least;
-    out.told = out.told && (by_clock || by_order);
-    out.text += " The clock of " + (station.empty() ? "the station" : "station " + station) + " told " +
-                told + " at the first answer of " + std::string(one.at("participant")) +
+    const bool by_clock = frozen < shown, by_order = one.at("impossible") == true && frozen < least;
+    out.known = out.known && (by_clock || by_order);
+    out.text += " The clock of " + (station.empty() ? "the station" : "station " + station) + " showed " +
+                shown + " at the first answer of " + std::string(one.at("participant")) +
                 ", after rows of the database of " + least + ": ";
     out.text += by_clock   ? "the bundle is older than both."
                 : by_order ? "that time is not possible, and by the order of the rows the bundle is older."
@@ -39,7 +39,7 @@ Json time_json(const std::string& frozen, const Json& used) {
   const ByOrder order = judge_by_order(frozen, used);
   Json json{{"task", used.at("task")}};
   if (!used.at("first_answer_utc").is_string()) {
-    json["frozen_before"] = order.text.empty() || !order.told ? Json() : Json(true);
+    json["frozen_before"] = order.text.empty() || !order.known ? Json() : Json(true);
     json["clocks_disagree"] = !order.text.empty();
     json["text"] =
         order.text.empty() ? "No time of an answer of " + title + " is recorded." : title + ":" + order.text;
@@ -48,7 +48,7 @@ Json time_json(const std::string& frozen, const Json& used) {
   const std::string first = used.at("first_answer_utc");
   const bool before = frozen < first;
   json["first_answer_utc"] = first;
-  json["frozen_before"] = before && !order.told ? Json() : Json(before);
+  json["frozen_before"] = before && !order.known ? Json() : Json(before);
   json["clocks_disagree"] = !order.text.empty();
   json["text"] = "The bundle was " + std::string(before ? "" : "not ") +
                  "frozen before the first answer of " + title + ", given " + first + "." + order.text;

@@ -52,6 +52,10 @@ std::string costs_table(const Rows& rows, const char* title, bool pairs) {
   return table.html();
 }
 
+bool says_something(const Field& row) {
+  return row["made_ms"].is_number() || row["shown_ms"].is_number() || row["error"]["mean"].is_number();
+}
+
 std::string notes(const Rows& rows, const char* title) {
   std::string out;
   if (any(rows, [](const Field& row) { return row["made_ms"].is_number(); })) {
@@ -73,7 +77,7 @@ std::string notes(const Rows& rows, const char* title) {
         "and "
         "largest start. ";
   if (any(rows, [](const Field& row) { return row["setting"].words() == "usual"; }))
-    out += "A usual setting has no file in the record, which says no error of it. ";
+    out += "No setting file is stored for a usual setting, so its error is not known here. ";
   return "<p class=\"note\">" + out + "</p>\n";
 }
 
@@ -132,13 +136,15 @@ std::string costs_section(const Field& root) {
     const Rows rows = rows_of(root["costs"], task);
     if (rows.empty()) continue;
     const bool pairs = std::string(task) == "task2";
-    std::string part = costs_table(rows, title, pairs) + notes(rows, title);
+    std::string part =
+        (any(rows, says_something) ? costs_table(rows, title, pairs) : "") + notes(rows, title);
     if (root["sweep"].there()) part += sweep_tables_of(root, rows, title, pairs);
     body += subsection(title, part);
   }
   if (body.empty()) return "";
   if (!root["sweep"].there())
-    body += paragraph("No sweep file was given, which would say the errors of usual settings.");
+    body +=
+        paragraph("A sweep file (<code>--sweep</code>) holds the errors of usual settings; none was given.");
   std::vector<std::string> left_out;
   for (const Field& why : root["sweep"]["left_out"].entries()) left_out.push_back(words(why) + ".");
   if (!left_out.empty()) body += paragraph("Not taken from the sweep:") + list(left_out);

@@ -8,12 +8,6 @@ namespace apps::report {
 
 namespace {
 
-std::string label_of(const Field& task1, const Field& entry) {
-  for (const Field& score : task1["scores"].entries())
-    if (score["code"].words() == entry["score"].words()) return words(score["label"]);
-  return words(entry["score"]);
-}
-
 std::string at_n_star(const Field& task1, const Field& entry) {
   return label_of(task1, entry) + ", " + n_star_sign + " = " + words(entry["n_star"]);
 }
@@ -39,6 +33,12 @@ std::string numbers_of(const Field& question) {
 }
 
 }  // namespace
+
+std::string label_of(const Field& task1, const Field& entry) {
+  for (const Field& score : task1["scores"].entries())
+    if (score["code"].words() == entry["score"].words()) return words(score["label"]);
+  return words(entry["score"]);
+}
 
 std::string people_tables(const Field& root) {
   Table table("What the analysed participants answered about themselves",
@@ -95,7 +95,8 @@ std::string response_times(const Field& root, const std::string& task) {
       "Time from the page's showing to the last change of the answer, s",
       {"Question", "<i>n</i>", "Median", "Quartiles", "<i>M</i>", "<i>SD</i>", "Shortest", "Longest"});
   for (const Field& one : root["response_times"].entries()) {
-    if (one["task"].words() != task) continue;
+    // A simulated participant takes no time.
+    if (one["task"].words() != task || one["max"].number() == 0) continue;
     table.row({words(one["question"]), count(one["n"]), fixed(one["median"], 2),
                fixed(one["q1"], 2) + ", " + fixed(one["q3"], 2), fixed(one["mean"], 2), fixed(one["sd"], 2),
                fixed(one["min"], 2), fixed(one["max"], 2)});

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"
@@ -159,20 +160,28 @@ std::string hypotheses_text(const Field& root) {
          (by_holm ? "" : "Single tests were claimed after Holm's correction within their hypothesis. ");
 }
 
+bool has_intervals(const Field& root) {
+  const char* parts[] = {"pilot", "task1", "task2", "sickness"};
+  return std::any_of(std::begin(parts), std::end(parts),
+                     [&](const char* part) { return root[part].there(); });
+}
+
 }  // namespace
 
 std::string methods_section(const Field& root) {
-  std::string text = protocols_text(root["study"]) + people(root["flow"]) + exclusion_rules(root) +
-                     pilot_text(root["pilot"]) + task1_text(root);
-  if (root["task2"].there()) text += "Each pair of Task 2 was tested by an exact two-sided binomial test. ";
-  text += factors_text(root) + hypotheses_text(root);
-  if (root["plan"]["confidence"].is_number())
-    text += "Intervals hold " + percent(root["plan"]["confidence"]) +
-            " unless another share stands beside them. ";
+  std::string tests = factors_text(root) + hypotheses_text(root), end;
+  if (root["task2"].there())
+    tests = "Each pair of Task 2 was tested by an exact two-sided binomial test. " + tests;
+  if (root["plan"]["confidence"].is_number() && has_intervals(root))
+    end = "Intervals hold " + percent(root["plan"]["confidence"]) +
+          " unless another share stands beside them. ";
   if (root["versions"].there())
-    text += "The analysis was made with ViP-Lab " + words(root["versions"]["vip_lab"]) +
-            " and the GNU Scientific Library " + words(root["versions"]["gsl"]) + ".";
-  std::string body = paragraph(text);
+    end += "The analysis was made with ViP-Lab " + words(root["versions"]["vip_lab"]) +
+           " and the GNU Scientific Library " + words(root["versions"]["gsl"]) + ".";
+  std::string body;
+  for (const std::string& text : {protocols_text(root["study"]), people(root["flow"]), exclusion_rules(root),
+                                  pilot_text(root["pilot"]), task1_text(root), tests, end})
+    if (!text.empty()) body += paragraph(text);
   for (const Field& note : root["study"]["notes"].entries()) body += paragraph("Note: " + words(note));
   return section("methods", "Methods", body);
 }

@@ -70,7 +70,7 @@ std::string distribution(const Field& cell) {
   std::string out;
   for (const Field& one : cell["distribution"].entries()) {
     const Field answer = one["answer"];
-    out += (out.empty() ? "" : ", ") + (answer.is_number() ? count(answer) : words(answer)) + ": " +
+    out += (out.empty() ? "" : "; ") + (answer.is_number() ? count(answer) : words(answer)) + ": " +
            count(one["count"]);
   }
   return out;
@@ -136,6 +136,7 @@ std::string descriptives_section(const Field& root) {
                               : table.html();
     }
     if (!tables.empty()) body += subsection(title, tables);
+    if (std::string(key) == "own") body += response_times(root, key);
   }
   if (body.empty()) return "";
   return section("descriptives", "Answers by cell",
@@ -152,8 +153,9 @@ std::string not_analysed_section(const Field& root) {
                     ".");
   if (lines.empty()) return "";
   return section("not-analysed", "Not analysed",
-                 "<div class=\"warning\">" + paragraph("Of this study the shipped analyses do not tell:") +
-                     list(lines) + "</div>\n");
+                 "<div class=\"warning\">" +
+                     paragraph("The shipped analyses do not cover these parts of the study:") + list(lines) +
+                     "</div>\n");
 }
 
 std::string participants_section(const Field& root) {

@@ -13,7 +13,7 @@ using svg::text;
 
 constexpr double left = 190, width = 430, row = 24, bar = 18, top = 70;
 
-/// From blue at the lowest score over a light grey to orange at the highest: told apart with any common
+/// From blue at the lowest score over a light grey to orange at the highest: distinguishable with any common
 /// colour vision, and by lightness where there is none.
 struct Shade {
   std::array<double, 3> rgb{};

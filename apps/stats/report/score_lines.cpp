@@ -85,10 +85,25 @@ Line empty_line(const Panels& panels) {
   return Line(panels.n_stars.size(), std::vector<std::optional<double>>(panels.methods.size()));
 }
 
+/// With the score's name and the axes.
 svg::Picture picture_of(const Panels& panels, const Field& score, const std::string& id) {
   svg::Picture picture{.width = std::max(panels.right() + 12, 420.0), .height = panels.bottom() + below};
   picture.id = id + "-" + score["code"].words();
+  picture.body = text({8, 18}, score["label"].words(),
+                      "font-size=\"15\" font-weight=\"bold\"" + data_field(score["label"])) +
+                 frame(panels);
   return picture;
+}
+
+/// Calls `take` with each cell of the score in a panel, and the place of its method.
+template <class Take>
+void each_cell(const Panels& panels, const Field& cells, const Field& score, std::size_t panel, Take take) {
+  for (const Field& cell : cells.entries()) {
+    const std::size_t method = place(panels.methods, cell["method"].words());
+    if (cell["score"].words() == score["code"].words() && method < panels.methods.size() &&
+        cell["n_star"].words() == panels.n_stars[panel].words() && cell["mean"].is_number())
+      take(cell, method);
+  }
 }
 
 struct Style {
@@ -126,9 +141,6 @@ svg::Picture person_lines(const Field& task1, const Field& score) {
       "A thin line for each participant over the methods within each n*, so that it is seen who differs how; "
       "the "
       "thick line with an X joins the means.";
-  picture.body = text({8, 18}, score["label"].words(),
-                      "font-size=\"15\" font-weight=\"bold\"" + data_field(score["label"])) +
-                 frame(panels);
   for (std::size_t p = 0; p < panels.n_stars.size(); ++p) {
     std::size_t person = 0;
     for (const auto& [participant, means] : people) {
@@ -144,12 +156,9 @@ svg::Picture person_lines(const Field& task1, const Field& score) {
       picture.body += polyline(points, "stroke=\"#5b87a6\" stroke-width=\"0.9\" stroke-opacity=\"0.6\"");
     }
     std::vector<std::optional<Point>> means(panels.methods.size());
-    for (const Field& cell : task1["cells"].entries()) {
-      const std::size_t m = place(panels.methods, cell["method"].words());
-      if (cell["score"].words() == code && cell["n_star"].words() == panels.n_stars[p].words() &&
-          m < means.size() && cell["mean"].is_number())
-        means[m] = Point{panels.x(p, m), panels.y(cell["mean"].number())};
-    }
+    each_cell(panels, task1["cells"], score, p, [&](const Field& cell, std::size_t m) {
+      means[m] = Point{panels.x(p, m), panels.y(cell["mean"].number())};
+    });
     picture.body += polyline(means, "stroke=\"#b34700\" stroke-width=\"2.6\"");
     for (const auto& mean : means)
       if (mean) picture.body += svg::cross(*mean, 5, "stroke=\"#b34700\" stroke-width=\"2.6\" fill=\"none\"");
@@ -166,20 +175,14 @@ svg::Picture scene_lines(const Field& task1, const Field& score) {
       "A line for each scene over the methods within each n*: means of the participants who judged it there, "
       "with "
       "their intervals. The table of scores by scene holds the numbers.";
-  picture.body = text({8, 18}, score["label"].words(),
-                      "font-size=\"15\" font-weight=\"bold\"" + data_field(score["label"])) +
-                 frame(panels);
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     const Style& style = styles[s % styles.size()];
     const double aside =
         0.4 * step * ((static_cast<double>(s) + 0.5) / static_cast<double>(scenes.size()) - 0.5);
     for (std::size_t p = 0; p < panels.n_stars.size(); ++p) {
       std::vector<std::optional<Point>> points(panels.methods.size());
-      for (const Field& cell : task1["by_scene"].entries()) {
-        const std::size_t m = place(panels.methods, cell["method"].words());
-        if (cell["score"].words() != score["code"].words() || cell["scene"].words() != scenes[s].words() ||
-            cell["n_star"].words() != panels.n_stars[p].words() || m == points.size())
-          continue;
+      each_cell(panels, task1["by_scene"], score, p, [&](const Field& cell, std::size_t m) {
+        if (cell["scene"].words() != scenes[s].words()) return;
         points[m] = Point{panels.x(p, m, aside), panels.y(cell["mean"].number())};
         if (cell["ci"].entries().size() == 2) {
           const auto end = [&](std::size_t i) {
@@ -189,7 +192,7 @@ svg::Picture scene_lines(const Field& task1, const Field& score) {
                                attribute("stroke", style.colour) + " stroke-width=\"1.1\"");
         }
         picture.body += svg::circle(*points[m], 3, attribute("fill", style.colour));
-      }
+      });
       picture.body += polyline(points, stroke(style, "2"));
     }
     const double x = left + 190 * static_cast<double>(s % 3),

@@ -29,7 +29,7 @@ bool preregistered(const Field& root, const std::string& task);
 
 std::string head_section(const Field& root);
 std::string decisions_section(const Field& root);
-/// What the shipped analyses do not tell of the study, and why.
+/// What of the study the shipped analyses do not cover, and why.
 std::string not_analysed_section(const Field& root);
 std::string methods_section(const Field& root);
 std::string participants_section(const Field& root);
@@ -47,6 +47,8 @@ std::string task2_section(const Field& root);
 std::string treatment_note(const Field& task);
 /// Of the sections of the parts: ratings by how often each was given, times of response, reliability of
 /// scores of several items, methods at one n_* and another, the smallest effect that could be found.
+/// The name of the score that an entry of the results is about.
+std::string label_of(const Field& task1, const Field& entry);
 std::string pilot_ratings(const Field& pilot);
 std::string score_ratings(const Field& task1, const Field& score);
 std::string response_times(const Field& root, const std::string& task);

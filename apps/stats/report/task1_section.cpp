@@ -121,8 +121,6 @@ std::string apa_lines(const Field& task1, const std::string& score) {
 }
 
 std::string omnibus(const Field& task1) {
-  std::map<std::string, Field> labels;
-  for (const Field& score : task1["scores"].entries()) labels.emplace(score["code"].words(), score["label"]);
   Table table("All methods at once",
               {"Score, " + n_star_sign, "<i>n</i>", "Incomplete", "Friedman \xCF\x87\xC2\xB2 (<i>df</i>)",
                "<i>p</i>", "Kendall's <i>W</i>", "<i>F</i> (<i>df</i>)", "<i>p</i>", "GG \xCE\xB5",
@@ -131,9 +129,7 @@ std::string omnibus(const Field& task1) {
   std::vector<std::string> lines;
   for (const Field& o : task1["omnibus"].entries()) {
     const Field f = o["friedman"], a = o["anova"];
-    const auto label = labels.find(o["score"].words());
-    const std::string name =
-        (label == labels.end() ? words(o["score"]) : words(label->second)) + ", " + words(o["n_star"]);
+    const std::string name = label_of(task1, o) + ", " + words(o["n_star"]);
     const auto why = [](const Field& part, const std::string& shown) {
       return part.there() ? shown : typeset(svg::escaped(part.reason()));
     };
@@ -187,7 +183,7 @@ std::string by_scene(const Field& task1) {
       {"Scene", "Method", "<i>n</i>", "<i>M</i>", "<i>SD</i>", "CI (<i>t</i>, of participants' means)"});
   std::string last;
   for (const Field& c : task1["by_scene"].entries()) {
-    const std::string group = words(c["score"]) + ", " + n_star_sign + " = " + words(c["n_star"]);
+    const std::string group = label_of(task1, c) + ", " + n_star_sign + " = " + words(c["n_star"]);
     const std::string key = c["score"].words() + c["n_star"].words();
     if (key != last) table.group(group);
     last = key;

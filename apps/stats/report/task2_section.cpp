@@ -66,7 +66,7 @@ std::string interval_bias(const Field& bias) {
 std::string bradley_terry(const Field& model) {
   if (model.json().is_null()) return "";
   if (!model.there()) return subsection("Bradley-Terry model", why_not(model));
-  Table table("Abilities on the log-odds scale, their mean at nought",
+  Table table("Abilities on the log-odds scale, with mean zero",
               {"Method", "Estimate", "<i>SE</i>", "CI", "Worth (sums to one)"});
   for (const Field& ability : model["abilities"].entries())
     table.row({words(ability["method"]), fixed(ability["estimate"], 2), fixed(ability["se"], 2),
@@ -79,7 +79,8 @@ std::string bradley_terry(const Field& model) {
   const Field people = model["people"];
   body += paragraph(
       people["errors"].words() == "people"
-          ? "Errors and intervals know whose answers they are of (sandwich over people, <i>t</i> of " +
+          ? "Errors and intervals allow for the likeness of one person's answers (sandwich over people, "
+            "<i>t</i> with " +
                 fixed(people["people_df"], 0) + " degrees of freedom)."
           : "Errors and intervals take all answers as independent: " + words(people["why_independent"]) +
                 ".");

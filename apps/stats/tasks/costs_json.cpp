@@ -193,7 +193,7 @@ void add_said(Json& json, const TaskData& data, const Shown& shown) {
   json["said_reason"] = data.task == TaskKind::Own
                             ? "the answers of this design are described by question and cell"
                         : data.task == TaskKind::Task2 && data.protocol.n_stars.size() > 1
-                            ? "pairs of several n_* are not told apart"
+                            ? "pairs of several n_* are not distinguished"
                             : "no answer counts";
 }
 

@@ -73,7 +73,7 @@ std::vector<std::string> notes_of(const TaskData& data) {
     notes.push_back(task + counted(data.simulated.size(), "participant") +
                     " simulated by an observer model.");
   for (const DoubtfulTime& one : data.doubtful_times)
-    notes.push_back(task + "the clock told " + one.told_utc + " at the first answer of " + one.participant +
+    notes.push_back(task + "the clock showed " + one.told_utc + " at the first answer of " + one.participant +
                     ", after rows of the database of " + one.not_before_utc + ".");
   for (const std::string& protocol : data.set_aside)
     notes.push_back(task + "protocol " + protocol + " left out: it holds no real answers.");

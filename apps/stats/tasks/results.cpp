@@ -35,7 +35,8 @@ std::string why_not_analysed(const TaskData& data) {
                             : protocol.pairs   ? "shows pairs of one method"
                             : protocol.pilot() ? "asks no question on a scale"
                                                : "asks no question 'realism' on a scale";
-  return "protocol " + protocol.name + " " + lacks + ": no shipped analysis is about it";
+  return "protocol " + protocol.name + " " + lacks +
+         ", so no shipped analysis covers it; its answers are described by cell";
 }
 
 /// What stands under the task's own name, and its hypotheses. Refused with the reason.

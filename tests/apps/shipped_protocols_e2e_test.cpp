@@ -1,0 +1,83 @@
+/// Each protocol that is shipped, from check to report: each number of the page stands in the JSON, each
+/// session in a flow of participants.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "stats/base/file.hpp"
+#include "tests/apps/process.hpp"
+#include "tests/apps/report_walk.hpp"
+#include "tests/common/temporary_folder.hpp"
+
+namespace apps::test {
+namespace {
+
+using report_walk::Json;
+using ::testing::IsEmpty;
+
+const std::filesystem::path protocols = std::filesystem::path(VIP_TEST_DIR).parent_path() / "protocols";
+constexpr int people = 3;
+
+struct Walk {
+  std::string protocol, observer;
+};
+
+/// Each with an observer whose answers count, and one whose answers are all left out by the rules.
+std::vector<Walk> walks() {
+  std::vector<Walk> out{{"task2_lab", "random"}};
+  for (const auto& entry : std::filesystem::directory_iterator(protocols)) {
+    const std::string name = entry.path().stem();
+    if (entry.path().extension() == ".toml")
+      out.push_back({name, name.starts_with("task1") ? "frames" : "ptpe:a=24,b=0.02"});
+  }
+  std::sort(out.begin() + 1, out.end(), [](const Walk& a, const Walk& b) { return a.protocol < b.protocol; });
+  return out;
+}
+
+class ShippedProtocolsE2e : public ::testing::TestWithParam<Walk> {};
+
+TEST_P(ShippedProtocolsE2e, GoFromCheckToReport) {
+  const ::test::TemporaryFolder folder;
+  const std::string protocol = protocols / (GetParam().protocol + ".toml"), database = folder / "s.db";
+  const auto typed = [](const std::string& line) {
+    const Ended ended = run_shell(VIP_BIN_DIR "/" + line);
+    EXPECT_EQ(ended.exit_code, 0) << ended.out;
+  };
+  // The many schedules of a pilot take the check long; docs/pilot.md quotes it and is run.
+  if (!GetParam().protocol.starts_with("ptpe_pilot")) typed("vip-study check " + protocol);
+  typed("vip-study run " + protocol + " --db " + database + " --observer " + GetParam().observer +
+        " --seed 2 --participants " + std::to_string(people));
+  typed("vip-stats report " + database + " --html " + (folder / "r.html").string() + " --json " +
+        (folder / "r.json").string());
+  const Json json = Json::parse(base::read_file(folder / "r.json", 1 << 24));
+  const auto page = html_reader::read(base::read_file(folder / "r.html", 1 << 24));
+  EXPECT_THAT(report_walk::wrong_fields(page, json), IsEmpty());
+  EXPECT_THAT(report_walk::unmarked_numbers(page, json), IsEmpty());
+  EXPECT_EQ(report_walk::sessions_in_flows(json), people);
+  EXPECT_EQ(json.at("roster").at("participants"), people);
+  EXPECT_EQ(json.at("roster").at("protocols").at(0).at("simulated"), people);
+  const bool counts = GetParam().observer != "random";
+  EXPECT_EQ(json.at("study").at("simulated"), counts ? people : 0);
+  std::set<std::string> described;
+  for (const Json* document : report_walk::documents(json)) {
+    EXPECT_FALSE(document->at("timing").empty());
+    for (const auto& question : document->at("descriptives")) {
+      EXPECT_TRUE(described.insert(question.at("question")).second) << "described twice";
+      EXPECT_EQ(question.at("cells").empty(), !counts) << question.at("question");
+    }
+  }
+  EXPECT_FALSE(described.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ShippedProtocolsE2e, ::testing::ValuesIn(walks()), [](const auto& one) {
+  return one.param.protocol + (one.param.observer == "random" ? "_left_out" : "");
+});
+
+}  // namespace
+}  // namespace apps::test
