@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,6 +28,12 @@ constexpr int people = 3;
 struct Walk {
   std::string protocol, observer;
 };
+
+/// As the test's name has it.
+std::string name_of(const Walk& walk) {
+  return walk.protocol + (walk.observer == "random" ? "_left_out" : "");
+}
+void PrintTo(const Walk& walk, std::ostream* out) { *out << name_of(walk); }
 
 /// Each with an observer whose answers count, and one whose answers are all left out by the rules.
 std::vector<Walk> walks() {
@@ -75,9 +82,8 @@ TEST_P(ShippedProtocolsE2e, GoFromCheckToReport) {
   EXPECT_FALSE(described.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, ShippedProtocolsE2e, ::testing::ValuesIn(walks()), [](const auto& one) {
-  return one.param.protocol + (one.param.observer == "random" ? "_left_out" : "");
-});
+INSTANTIATE_TEST_SUITE_P(Of, ShippedProtocolsE2e, ::testing::ValuesIn(walks()),
+                         [](const auto& one) { return name_of(one.param); });
 
 }  // namespace
 }  // namespace apps::test
