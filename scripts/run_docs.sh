@@ -4,7 +4,7 @@
 # below with the reason; what is skipped names the test that runs it instead, which must exist.
 # usage: scripts/run_docs.sh [PAGE ...]      default: every page; copies, logs and durations go to out/docs
 # Takes the programs from $VIP_BUILD (default: build/dev). README.md alone starts from nothing: it builds its own.
-# VIP_DOCS_QUICK=1 leaves out what the table calls slow.
+# VIP_DOCS_QUICK=1 leaves out what the table calls slow, and changes what it calls quick.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -14,11 +14,14 @@ export VIP_STATE_DIR=$out/state  # no export of theirs in the register of whoeve
 [ $# -gt 0 ] || set -- README.md docs/*.md
 
 # PAGE | HOW A COMMAND BEGINS | WHAT RUNS INSTEAD | WHY | TEST
-# What runs instead: "person" (the command, answered by keys on a virtual screen), a sed script that changes it, "skip", or "slow"
-# (the command, but not in a quick run).
+# What runs instead: "person" (the command, answered by keys on a virtual screen), a sed script that changes it, "skip", "slow"
+# (the command, but not in a quick run), or "quick" and a sed script that changes it in a quick run alone.
 table="
 README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
 README.md|vip-study run|person||
+docs/accuracy.md|vip-bench accuracy --quick|quick s/--quick/--quick --seconds 0.1/|two dozen cells|DocsSlow.docs/accuracy.md
+docs/accuracy.md|key=|quick s/--quick/--quick --seconds 0.1/|two dozen cells|DocsSlow.docs/accuracy.md
+docs/accuracy.md|snakemake|quick s/--quick/--quick --seconds 0.1/|two dozen cells|DocsSlow.docs/accuracy.md
 docs/figures.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/methods.md|vip-view --headless data/scenes/boat.toml|s/frames 61 --every 60/frames 3 --every 2/; s/800x600/160x120/|it takes minutes on two cores|
@@ -26,6 +29,10 @@ docs/methods.md|vip-view --headless data/scenes/crates.toml|s/frames 81 --every 
 docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/3/; s/150/2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
+docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 4k --method HiRes|quick s/4k/256/; s/frames 120/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
+docs/performance.md|vip-bench frame data/scenes/single_dam.toml --n-star 4k|quick s/4k/256/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
+docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 4k --backend cpu|quick s/4k/256/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
+docs/performance.md|vip-bench frame --peers --backend cpu|quick s/cpu/cpu --frames 2/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
 docs/performance.md|vip-bench effects data/scenes/splash.toml --levels|s/512/64 --frames 2/|it takes minutes on two cores|
 docs/performance.md|vip-bench effects|s/4k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/performance.md|vip-bench growth|s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
@@ -119,6 +126,7 @@ run_command() {  # run_command COMMAND: in the page's folder
   fi
   case $how in
     slow) [ -n "${VIP_DOCS_QUICK:-}" ] && how=skip || how='' ;;
+    "quick "*) [ -n "${VIP_DOCS_QUICK:-}" ] && how=${how#quick } || how='' ;;
   esac
   case $how in
     skip) printf '%6s  %s\n        (%s; %s)\n' - "$command" "$why" "$test"; return ;;

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/run_settings.hpp"
@@ -113,10 +115,18 @@ bool is_export(const fs::path& folder) {
 
 constexpr ExportKind csv_kind{"csv", is_export, is_our_name};
 
+/// Found once for each table: each column of the ratings asks again for those of a table.
+const std::vector<ColumnMeaning>& known_meanings(const std::string& table, const std::string& create_sql) {
+  thread_local std::map<std::pair<std::string, std::string>, std::vector<ColumnMeaning>> known;
+  const auto [found, fresh] = known.try_emplace({table, create_sql});
+  if (fresh) found->second = column_meanings(table, create_sql);
+  return found->second;
+}
+
 std::vector<ColumnMeaning> columns_of(Connection& database, const Table& table) {
   Statement sql(database, "SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
   if (!sql.bind_all(table.name).step()) return {};
-  auto columns = column_meanings(table.name, sql.text(0));
+  auto columns = known_meanings(table.name, sql.text(0));
   std::erase_if(columns, [&](const ColumnMeaning& column) { return column.column == table.left; });
   return columns;
 }
