@@ -30,10 +30,10 @@ docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes m
 docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/3/; s/150/2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
 docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 4k --method HiRes|quick s/4k/256/; s/frames 120/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
-docs/performance.md|vip-bench frame data/scenes/single_dam.toml --n-star 4k|quick s/4k/256/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
+docs/performance.md|vip-bench frame data/scenes/single_dam.toml --n-star 4k|quick s/4k/64/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
 docs/performance.md|vip-bench frame data/scenes/peers_dam.toml --n-star 4k --backend cpu|quick s/4k/256/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
 docs/performance.md|vip-bench frame --peers --backend cpu|quick s/cpu/cpu --frames 2/|it takes most of a minute on two cores|DocsSlow.docs/performance.md
-docs/performance.md|vip-bench effects data/scenes/splash.toml --levels|s/512/64 --frames 2/|it takes minutes on two cores|
+docs/performance.md|vip-bench effects data/scenes/splash.toml --levels|s/512/64 --frames 2/; s/480x360/120x90/|it takes minutes on two cores|
 docs/performance.md|vip-bench effects|s/4k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/performance.md|vip-bench growth|s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/performance.md|vip-bench frame data/scenes/pool_light.toml|s/2k/64/; s/frames [0-9]*/frames 2/; s/960x540/160x90/|it takes a minute on two cores|

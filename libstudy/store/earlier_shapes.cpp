@@ -1,6 +1,7 @@
 #include "libstudy/store/earlier_shapes.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "libstudy/store/database.hpp"
 
@@ -32,23 +33,31 @@ EarlierShape placed(const Shape& shape, const std::vector<Shape>& now, std::size
   return out;
 }
 
-}  // namespace
-
-std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
-  std::vector<EarlierShape> out;
+/// Those of every schema before this program's.
+std::vector<Shape> shapes_before() {
+  std::vector<Shape> out;
   const SchemaSteps steps = read_schema_steps();
   for (std::size_t schema = first_schema; schema < steps.size(); ++schema) {
     const auto database =
         make_temporary_database("schema " + std::to_string(schema),
                                 {steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(schema)});
-    for (const Shape& shape : shapes_of(*database)) {
-      const auto table =
-          std::find_if(now.begin(), now.end(), [&](const Shape& one) { return one.table == shape.table; });
-      const bool known = table == now.end() || same(*table, shape) ||
-                         std::any_of(out.begin(), out.end(),
-                                     [&](const EarlierShape& one) { return same(one.shape, shape); });
-      if (!known) out.push_back(placed(shape, now, static_cast<std::size_t>(table - now.begin())));
-    }
+    for (Shape& shape : shapes_of(*database)) out.push_back(std::move(shape));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
+  static const std::vector<Shape> before = shapes_before();
+  std::vector<EarlierShape> out;
+  for (const Shape& shape : before) {
+    const auto table =
+        std::find_if(now.begin(), now.end(), [&](const Shape& one) { return one.table == shape.table; });
+    const bool known =
+        table == now.end() || same(*table, shape) ||
+        std::any_of(out.begin(), out.end(), [&](const EarlierShape& one) { return same(one.shape, shape); });
+    if (!known) out.push_back(placed(shape, now, static_cast<std::size_t>(table - now.begin())));
   }
   return out;
 }
