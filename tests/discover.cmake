@@ -1,6 +1,6 @@
 # cmake -P, after a test program is linked: writes its ctest entries to ENTRIES. A suite of the label `unit` is one entry, since its
 # tests take less time than a start of the program and of ctest's bookkeeping for each; GoogleTest names the test that failed. Every
-# other test is an entry: it runs side by side with others of its suite and has a time limit of its own.
+# other test is an entry, and with ONE_BY_ONE these too: it runs side by side with others of its suite, with a time limit of its own.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status TIMEOUT 60)
 if(NOT status EQUAL 0)
@@ -26,11 +26,11 @@ foreach(line IN LISTS listed)
     if(subject MATCHES "(Gl|Gpu|Slow|E2e)$")
       string(TOLOWER ${CMAKE_MATCH_1} label)
     endif()
-    if(label STREQUAL unit AND NOT subject IN_LIST suites)
+    if(label STREQUAL unit AND NOT ONE_BY_ONE AND NOT subject IN_LIST suites)
       list(APPEND suites ${subject})
-      add_entry(${subject} "${subject}.*:*/${subject}.*" unit 300)
+      add_entry(${subject} "${subject}.*:*/${subject}.*" unit 900)
     endif()
-  elseif(line MATCHES "^  ([^ ]+)$" AND NOT label STREQUAL unit)
+  elseif(line MATCHES "^  ([^ ]+)$" AND (ONE_BY_ONE OR NOT label STREQUAL unit))
     if(label STREQUAL LABEL)
       set(timeout 300)
     else()
