@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -16,7 +17,7 @@
 #include "apps/stats/commands.hpp"
 #include "apps/stats/data/plan_file.hpp"
 #include "apps/stats/ptpe/calibration_history.hpp"
-#include "apps/stats/ptpe/estimates_json.hpp"
+#include "apps/stats/ptpe/fit_text.hpp"
 #include "apps/stats/ptpe/heat_map.hpp"
 #include "apps/stats/ptpe/pilot_fit.hpp"
 #include "apps/stats/ptpe/truth.hpp"
@@ -36,6 +37,7 @@ struct FitCommand {
   std::optional<std::uint64_t> seed;   ///< instead of the plan's
   double max_width = 0.35;  ///< largest half width of the curve's band for the solver, as a share of mu
   bool force = false;
+  bool accept_form = false;
   bool incomplete = false;
   std::string lacking;  ///< of the database, where it is incomplete
   ChoiceOptions choice;
@@ -43,67 +45,20 @@ struct FitCommand {
   stats::BootstrapOptions bootstrap;
 
   bool too_wide(const PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
-  bool refused(const PilotFit& fit) const { return too_wide(fit) || !fit.doubts.empty(); }
+  /// Doubts about the ratings, which --force overrules; not that about the form.
+  bool doubted(const PilotFit& fit) const {
+    return std::any_of(fit.doubts.begin(), fit.doubts.end(),
+                       [](const auto& doubt) { return doubt.code != stats::form_rejected; });
+  }
+  bool other_form(const PilotFit& fit) const {
+    return std::any_of(fit.doubts.begin(), fit.doubts.end(),
+                       [](const auto& doubt) { return doubt.code == stats::form_rejected; });
+  }
+  /// What bars the solver's file and was not overruled.
+  bool barred(const PilotFit& fit) const {
+    return (!force && (too_wide(fit) || doubted(fit))) || (!accept_form && other_form(fit));
+  }
 };
-
-/// One line: a, b and their intervals, or the reason why there are none.
-void print_estimate(double level, const char* name, const std::string& reason, double a, double b,
-                    const std::array<double, 2>* a_ci, const std::array<double, 2>* b_ci) {
-  std::printf("  level %-4.3g %-26s ", level, name);
-  if (!reason.empty() && !a_ci) {
-    std::printf("%s\n", reason.c_str());
-    return;
-  }
-  std::printf("a = %.2f [%.2f, %.2f] frames/s, b = %.4f [%.4f, %.4f] s/frame\n", a, (*a_ci)[0], (*a_ci)[1], b,
-              (*b_ci)[0], (*b_ci)[1]);
-}
-
-void print_estimate(double level, const char* name, const stats::Result<stats::CurveSpread>& spread) {
-  if (!spread) return print_estimate(level, name, spread.reason(), 0, 0, nullptr, nullptr);
-  print_estimate(level, name, "", spread->curve.a(), spread->curve.b, &spread->a_ci, &spread->b_ci);
-}
-
-void print_contour(double level, const char* name, const stats::PilotEstimate& contour) {
-  if (!contour.spread) return print_estimate(level, name, contour.spread.reason(), 0, 0, nullptr, nullptr);
-  print_estimate(level, name, "", contour.fit->a, contour.fit->b, &contour.spread->a_ci,
-                 &contour.spread->b_ci);
-}
-
-/// The curve at the deviations shown, and whether the scores rise evenly.
-void print_curve(const PilotFit& fit) {
-  const auto& direct = fit.chosen().direct;
-  if (!direct.jackknife) return;
-  std::printf("  the direct curve at level %.3g:", fit.level);
-  for (const double delta : fit.deltas) {
-    const auto point = direct.jackknife->band(delta);
-    std::printf("%s mu(%g) = %.1f [%.1f, %.1f]", delta == fit.deltas.front() ? "" : ",", delta, point.mu,
-                point.pointwise[0], point.pointwise[1]);
-  }
-  std::printf("\n");
-  const auto test = lack_of_fit_json(direct);
-  if (test.contains("text"))
-    std::printf("  shape of the scores: %s\n", test["text"].get<std::string>().c_str());
-}
-
-void print_fit(const PilotFit& fit) {
-  std::printf(
-      "%d participants, %zu ratings of %zu settings\nmu = a exp(b delta) with %.0f %% intervals over "
-      "participants:\n",
-      fit.participants, fit.data.ratings.size(), fit.settings, 100 * fit.bootstrap.confidence);
-  for (const auto& [level, estimate] : fit.harmonic) {
-    print_estimate(level, "direct", estimate.direct.jackknife);
-    print_contour(level, "contour (the paper's)", estimate.contour);
-    print_estimate(level, "ordinal mixed", estimate.ordinal.jackknife);
-    print_estimate(level, "direct, arithmetic mean", fit.arithmetic.at(level).direct.jackknife);
-    print_contour(level, "contour, arithmetic mean", fit.arithmetic.at(level).contour);
-  }
-  const auto main = fit.main();
-  if (main.spread)
-    print_estimate(fit.level, fit.doubts.empty() ? "for the solver" : "not for a solver", "", main.fit->a,
-                   main.fit->b, &main.spread->a_ci, &main.spread->b_ci);
-  print_curve(fit);
-  for (const auto& flag : fit.flags) std::printf("  note: %s\n", flag.text.c_str());
-}
 
 void write_json(const FitCommand& command, nlohmann::ordered_json json) {
   if (!command.lacking.empty()) json["incomplete"] = command.lacking;
@@ -123,7 +78,8 @@ void report(const FitCommand& command, const PilotFit& fit, const std::optional<
   json["solver_file"] = {{"max_relative_half_width", command.max_width},
                          {"too_wide", fit.ok() && command.too_wide(fit)},
                          {"refused", refused},
-                         {"forced", command.force}};
+                         {"forced", command.force},
+                         {"form_accepted", command.accept_form}};
   std::optional<Recovery> recovery;
   if (truth && fit.ok()) recovery = check_recovery(fit, *truth);
   if (recovery) json["truth"] = recovery_json(*recovery);
@@ -135,20 +91,26 @@ void report(const FitCommand& command, const PilotFit& fit, const std::optional<
 /// A curve that the ratings do not bear, or that the participants leave too open, would only pretend to be a
 /// calibration.
 void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
-  if (!command.refused(fit) || command.force) return;
+  if (!command.barred(fit)) return;
+  const bool wide = command.too_wide(fit) && !command.force;
+  const bool form = command.other_form(fit) && !command.accept_form;
   std::string reasons;
-  for (const auto& doubt : fit.doubts) reasons += (reasons.empty() ? "" : "; ") + doubt.text;
-  if (command.too_wide(fit)) {
+  for (const auto& doubt : fit.doubts) {
+    if (doubt.code == stats::form_rejected ? command.accept_form : command.force) continue;
+    reasons += (reasons.empty() ? "" : "; ") + doubt.text;
+  }
+  if (wide) {
     reasons += fmt::format(
         "{}the interval is too wide for a calibration: mu(delta) is open by up to +-{:.0f} %, the limit is "
         "+-{:.0f} %",
         reasons.empty() ? "" : "; ", 100 * fit.relative_half_width(), 100 * command.max_width);
   }
-  throw base::Error(
-      command.database, reasons,
-      std::string("look at the ratings (--svg without --out draws them), collect more participants") +
-          (command.too_wide(fit) ? ", set --max-width" : "") +
-          ", or --force; no configuration and no figure were written");
+  std::string mend = "look at the ratings (--svg without --out draws them), collect more participants";
+  if (wide) mend += ", set --max-width";
+  if (form) mend += ", or take an exponential as an approximation by --accept-form";
+  if (!command.force && (wide || command.doubted(fit)))
+    mend += form ? ", and overrule the rest by --force" : ", or --force";
+  throw base::Error(command.database, reasons, mend + "; no configuration and no figure were written");
 }
 
 /// The record first: a calibration that is in force is always in it. Locked, so that of two fits neither
@@ -172,7 +134,8 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
                                 {"exclude", timing_rule_name(command.rules.exclusions.timing)},
                                 {"relative_half_width", fit.relative_half_width()},
                                 {"max_relative_half_width", command.max_width},
-                                {"forced", command.force && command.refused(fit)},
+                                {"forced", command.force && (command.too_wide(fit) || command.doubted(fit))},
+                                {"form_rejected", command.other_form(fit)},
                                 {"version", base::version()}};
   if (!command.lacking.empty()) record["incomplete"] = command.lacking;
   append_calibration(command.out, text, record);
@@ -196,7 +159,7 @@ void fit_one(const FitCommand& command, const study::TaskStudy& study, const Cho
     write_json(command, failed_fit_json(level, nothing));
     no_fit(command, nothing, "collect answers, or choose another --protocol or --exclude");
   }
-  const auto fit = fit_pilot(data, level, command.bootstrap);
+  const auto fit = fit_pilot(data, level, command.bootstrap, command.rules.pilot);
   if (truth) check_comparable(fit, command.truth);
   report(command, fit, truth);
   if (!fit.ok()) no_fit(command, fit.reason, mend_of(fit));
@@ -273,6 +236,9 @@ void add_fit_ptpe_command(CLI::App& app) {
       ->capture_default_str();
   fit->add_flag("--force", command->force,
                 "Write the solver's file although the curve is wider or the ratings do not bear it");
+  fit->add_flag(
+      "--accept-form", command->accept_form,
+      "Write the solver's file although the test of the form says that the curve is no exponential");
   fit->add_option("--json", command->json,
                   "File for every number of the fit, written whenever the database can be read")
       ->check(output_file());

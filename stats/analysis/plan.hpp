@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "stats/ptpe/pilot_people.hpp"
+
 namespace stats {
 
 /// Trials left out by timing verdict, the worse of two for a pair. Degraded trials stay by default: what was
@@ -71,6 +73,7 @@ struct AnalysisPlan {
   std::uint64_t seed = 1;
   /// Scores at which a pilot's curve is fitted, by id of the question; of others the protocol says it.
   std::map<std::string, double> levels = {};
+  PilotRules pilot = {};  ///< reverse coders, drift and lapses of a pilot
 };
 
 }  // namespace stats

@@ -84,6 +84,7 @@ void refuse_spread(DirectEstimate& estimate, const std::string& reason) {
   estimate.jackknife = Refusal{reason};
   estimate.bootstrap = Refusal{reason};
   estimate.lack_of_fit = Refusal{reason};
+  estimate.form = Refusal{reason};
 }
 
 /// Takes away the settings far above the curve.
@@ -165,6 +166,7 @@ DirectEstimate estimate_direct(std::span<const PilotObservation> observations, d
     if (without) {
       out.jackknife = spread_of(*out.fit, *without, options.confidence);
       out.lack_of_fit = lack_of_fit(*out.fit, *without);
+      out.form = form_test(reach.kept, out.fit->curve, level, options.confidence);
       out.bootstrap = bootstrap(model, *out.fit, options);
     } else {
       refuse_spread(out, without.reason());

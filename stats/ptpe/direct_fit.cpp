@@ -19,6 +19,7 @@ constexpr double delta_unit = 10;
 /// u = x - alpha - beta d with x = log mu - its centre and d = (delta - its centre) / delta_unit; the score
 /// less the level is u (k + m d + q u).
 struct DirectModel::Place {
+  static constexpr std::size_t terms = DirectModel::terms, parameters = 5;
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
 
   std::array<double, terms> coefficients() const {
@@ -36,6 +37,9 @@ struct DirectModel::Place {
              {-alpha, 1, -beta, 0, 0, 0},
              {0, 0, -alpha, 1, 0, -beta},
              {alpha * alpha, -2 * alpha, 2 * alpha * beta, -2 * beta, 1, beta * beta}}};
+  }
+  Place moved(const std::array<double, 5>& step) const {
+    return {alpha + step[0], beta + step[1], k + step[2], m + step[3], q + step[4]};
   }
   /// The other line on which the score is the level.
   Place other() const { return {alpha - k / q, beta - m / q, -k, -m, q}; }
@@ -60,14 +64,7 @@ DirectModel::DirectModel(std::span<const PilotObservation> observations, double 
   for (const auto& o : observations) {
     const double x = std::log(o.mu) - log_mu_centre_, d = (o.delta - delta_centre_) / delta_unit;
     const std::array<double, terms> row{1, x, d, x * d, x * x, d * d};
-    auto& sums = sums_[static_cast<std::size_t>(o.participant)];
-    const double y = o.score - level;
-    for (std::size_t i = 0; i < terms; ++i) {
-      sums.moment[i] += row[i] * y;
-      for (std::size_t j = 0; j < terms; ++j) sums.gram[i * terms + j] += row[i] * row[j];
-    }
-    sums.squares += y * y;
-    sums.n += 1;
+    sums_[static_cast<std::size_t>(o.participant)].add(row, o.score - level);
     log_mu_range_ = {std::min(log_mu_range_[0], std::log(o.mu)), std::max(log_mu_range_[1], std::log(o.mu))};
     delta_range_ = {std::min(delta_range_[0], o.delta), std::max(delta_range_[1], o.delta)};
   }
@@ -79,24 +76,9 @@ DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
   Sums out;
   for (std::size_t p = 0; p < sums_.size(); ++p) {
     const double w = weights.empty() ? 1 : weights[p];
-    if (w == 0) continue;
-    for (std::size_t i = 0; i < out.gram.size(); ++i) out.gram[i] += w * sums_[p].gram[i];
-    for (std::size_t i = 0; i < terms; ++i) out.moment[i] += w * sums_[p].moment[i];
-    out.squares += w * sums_[p].squares;
-    out.n += w * sums_[p].n;
+    if (w != 0) out.add(sums_[p], w);
   }
   return out;
-}
-
-double DirectModel::rss(const Sums& sums, const Place& at) {
-  const auto c = at.coefficients();
-  double value = sums.squares;
-  for (std::size_t i = 0; i < terms; ++i) {
-    double row = -2 * sums.moment[i];
-    for (std::size_t j = 0; j < terms; ++j) row += sums.gram[i * terms + j] * c[j];
-    value += c[i] * row;
-  }
-  return value;
 }
 
 /// Ordinary least squares on 1, x and d; empty when the settings do not determine it or the score does not
@@ -109,52 +91,6 @@ std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const 
   const auto c = solve_positive<3>(gram, {sums.moment[0], sums.moment[1], sums.moment[2]});
   if (!c || std::abs((*c)[1]) < 1e-12) return std::nullopt;
   return Place{-(*c)[0] / (*c)[1], -(*c)[2] / (*c)[1], (*c)[1], 0, 0};
-}
-
-/// Marquardt (1963): damped Gauss-Newton steps until they vanish.
-DirectModel::Place DirectModel::descend(const Sums& sums, Place at) {
-  double value = rss(sums, at), damping = 1e-4;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    const auto c = at.coefficients();
-    const auto J = at.jacobian();
-    std::array<double, terms> slope{};  // half the gradient by coefficients
-    for (std::size_t i = 0; i < terms; ++i) {
-      slope[i] = -sums.moment[i];
-      for (std::size_t j = 0; j < terms; ++j) slope[i] += sums.gram[i * terms + j] * c[j];
-    }
-    std::array<double, 25> normal{};
-    std::array<double, 5> down{};
-    for (std::size_t r = 0; r < 5; ++r) {
-      std::array<double, terms> gj{};
-      for (std::size_t i = 0; i < terms; ++i) {
-        down[r] -= J[r][i] * slope[i];
-        for (std::size_t j = 0; j < terms; ++j) gj[i] += sums.gram[i * terms + j] * J[r][j];
-      }
-      for (std::size_t s = 0; s < 5; ++s) {
-        for (std::size_t i = 0; i < terms; ++i) normal[r * 5 + s] += gj[i] * J[s][i];
-      }
-    }
-    bool moved = false;
-    for (; damping < 1e12 && !moved; damping *= 10) {
-      auto damped = normal;
-      for (std::size_t r = 0; r < 5; ++r) damped[r * 6] *= 1 + damping;
-      const auto step = solve_positive<5>(damped, down);
-      if (!step) continue;
-      const Place next{at.alpha + (*step)[0], at.beta + (*step)[1], at.k + (*step)[2], at.m + (*step)[3],
-                       at.q + (*step)[4]};
-      const double there = rss(sums, next);
-      double length = 0;
-      for (const double s : *step) length = std::max(length, std::abs(s));
-      if (length < 1e-10) return there < value ? next : at;
-      if (!(there < value)) continue;
-      at = next;
-      value = there;
-      damping = std::max(damping / 100, 1e-12);
-      moved = true;
-    }
-    if (!moved) return at;
-  }
-  return at;
 }
 
 /// Of the two lines on which the score is the level, the one along which it rises with mu.
@@ -173,7 +109,7 @@ Result<DirectFit> DirectModel::described(const Sums& sums, const Place& at) cons
   fit.m = at.m / delta_unit;
   fit.k = at.k - fit.m * delta_centre_;
   fit.q = at.q;
-  fit.rss = std::max(0.0, rss(sums, at));
+  fit.rss = std::max(0.0, sums.residuals(at.coefficients()));
   fit.n = sums.n;
   if (!std::isfinite(fit.curve.log_a) || !std::isfinite(fit.curve.b) || !std::isfinite(fit.rss))
     return Refusal{"the fit left the numbers that a computer holds"};
@@ -213,7 +149,7 @@ Result<DirectFit> DirectModel::fit(std::span<const double> weights, const Direct
   double least = std::numeric_limits<double>::infinity();
   for (const auto& from : starts) {
     const auto end = descend(sums, from);
-    const double value = rss(sums, end);
+    const double value = sums.residuals(end.coefficients());
     if (value < least - 1e-9 * sums.squares) {
       least = value;
       best = end;

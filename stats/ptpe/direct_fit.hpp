@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "stats/ptpe/curve.hpp"
+#include "stats/ptpe/form_test.hpp"
 #include "stats/ptpe/pilot.hpp"
+#include "stats/ptpe/term_sums.hpp"
 #include "stats/result.hpp"
 
 namespace stats {
@@ -50,16 +52,10 @@ class DirectModel {
 
  private:
   static constexpr std::size_t terms = 6;  ///< 1, x, d, x d, x^2, d^2
-  struct Sums {
-    std::array<double, terms * terms> gram{};
-    std::array<double, terms> moment{};
-    double squares = 0, n = 0;
-  };
+  using Sums = TermSums<terms>;
   struct Place;
   Sums weighted(std::span<const double> weights) const;
   std::optional<Place> straight(const Sums& sums) const;
-  static double rss(const Sums& sums, const Place& at);
-  static Place descend(const Sums& sums, Place at);
   Result<DirectFit> checked(const Sums& sums, const Place& at) const;
   Result<DirectFit> described(const Sums& sums, const Place& at) const;
 
@@ -87,6 +83,7 @@ struct DirectEstimate {
   Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
+  Result<FormTest> form = Refusal{"not computed"};  ///< whether log mu is a straight line in delta
   Result<DirectFit> straight = Refusal{"not computed"};
   Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
 

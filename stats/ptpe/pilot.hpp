@@ -21,6 +21,7 @@ struct PilotRating {
   double realised_mu_arithmetic = 0;  ///< as shown, mean of 1/dt
   double realised_delta = 0;
   double score = 0;
+  int position = -1;  ///< of the trial in its session; -1: not known
 };
 
 /// A participant's mean score of one setting, where it was really shown.

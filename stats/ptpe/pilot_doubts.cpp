@@ -149,6 +149,26 @@ void doubt_agreement(std::vector<PilotDoubt>& doubts, const std::vector<Interval
 
 }  // namespace
 
+std::string form_text(const FormTest& form) {
+  const std::string test =
+      fmt::format("c = {:+.3f} [{:.3f}, {:.3f}], t({}) = {:.2f}, p {} {:.3f}", form.c, form.ci[0], form.ci[1],
+                  form.df, form.t, form.p < 0.001 ? "<" : "=", std::max(form.p, 0.001));
+  const std::string reach = fmt::format(
+      "this test finds a bend of {:.3f} with a power of {:.2f}, that is a curve {:.0f} % off an "
+      "exponential in the middle and at both ends",
+      form.detectable, form_power, 50 * form.detectable);
+  if (!form.rejected()) return test + ": the ratings do not contradict an exponential; " + reach;
+  return fmt::format(
+      "{}: the threshold is no exponential of the standard deviation, it {}; an exponential is "
+      "about {:.0f} % off in the middle and at both ends; {}",
+      test, form.c < 0 ? "levels off" : "bends upwards more", 50 * std::abs(form.c), reach);
+}
+
+std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct) {
+  if (!direct.form || !direct.form->rejected()) return std::nullopt;
+  return PilotDoubt{form_rejected, "form of the curve: " + form_text(*direct.form)};
+}
+
 std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstimate& direct,
                                      const PilotEstimate& contour, const OrdinalPilotEstimate& ordinal) {
   std::vector<PilotDoubt> doubts;

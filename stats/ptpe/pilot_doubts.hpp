@@ -1,6 +1,7 @@
 #pragma once
 /// Why the fit of a pilot must not steer a solver, although numbers came out of it.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,5 +33,13 @@ inline constexpr int least_deltas_in_reach = 3;
 /// What cannot be computed raises no doubt: it is refused elsewhere.
 std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstimate& direct,
                                      const PilotEstimate& contour, const OrdinalPilotEstimate& ordinal);
+
+/// "form_rejected" where the test of the form says that the threshold is no exponential. Apart from the
+/// others, since a lab may accept another form as an approximation.
+inline constexpr const char* form_rejected = "form_rejected";
+std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct);
+
+/// The test in a sentence: c with its interval, what it means for the curve, and what could have been found.
+std::string form_text(const FormTest& form);
 
 }  // namespace stats

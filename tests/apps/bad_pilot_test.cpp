@@ -105,4 +105,47 @@ TEST(BadPilotE2e, APilotThatRisesIsNotRefused) {
   EXPECT_EQ(fitted.out.find("not for a solver"), std::string::npos) << fitted.out;
 }
 
+/// Scores that rise by a threshold that levels off.
+double levelling(double mu, double delta) { return 4 + 0.14 * (mu - 24 - 14 * (1 - std::exp(-delta / 5))); }
+
+TEST(BadPilotE2e, ACurveOfAnotherFormReachesNoSolverUnlessItIsAccepted) {
+  const TemporaryFolder folder;
+  testing_pilot::write_database(folder / "study.db", scored(levelling, 1), sixteen);
+  const std::string fit = VIP_BIN_DIR "/vip-stats fit-ptpe " + (folder / "study.db").string() +
+                          " --resamples 200 --out " + (folder / "ptpe.toml").string() + " --svg " +
+                          (folder / "heat.svg").string() + " --json " + (folder / "fit.json").string();
+  for (const std::string flags : {"", " --force"}) {
+    const auto refused = apps::test::run_shell(fit + flags);
+    EXPECT_EQ(refused.exit_code, 1) << refused.out;
+    EXPECT_THAT(refused.out, HasSubstr("the threshold is no exponential"));
+    EXPECT_THAT(refused.out, HasSubstr("the free curve at level 4: mu(0) = "));
+    EXPECT_THAT(refused.out, HasSubstr("--accept-form"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "ptpe.toml"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "ptpe.toml.history.jsonl"));
+  }
+  const auto json = nlohmann::json::parse(base::read_file(folder / "fit.json", 1 << 24));
+  EXPECT_EQ(json.at("form").at("rejected"), true);
+  EXPECT_LT(json.at("form").at("ci")[1], 0);
+  EXPECT_GT(json.at("form").at("detectable"), 0);
+  EXPECT_EQ(json.at("form").at("free_curve").size(), 21u);
+  EXPECT_EQ(json.at("solver_file").at("refused")[0].at("code"), "form_rejected");
+
+  const auto accepted = apps::test::run_shell(fit + " --accept-form");
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.out;
+  EXPECT_TRUE(std::filesystem::exists(folder / "ptpe.toml"));
+  const auto record = nlohmann::json::parse(base::read_file(folder / "ptpe.toml.history.jsonl", 1 << 24));
+  EXPECT_EQ(record.at("form_rejected"), true);
+  EXPECT_EQ(record.at("forced"), false);
+  EXPECT_THAT(base::read_file(folder / "heat.svg", 1 << 24), HasSubstr("free curve"));
+
+  const std::string page = (folder / "report.html").string();
+  EXPECT_EQ(apps::test::run_shell(VIP_BIN_DIR "/vip-stats report " + (folder / "study.db").string() +
+                                  " --html " + page)
+                .exit_code,
+            0);
+  const std::string report = base::read_file(page, 1 << 24);
+  EXPECT_THAT(report, HasSubstr("Not for a solver, at level"));
+  EXPECT_THAT(report, HasSubstr("The free curve, which has one parameter more"));
+}
+
 }  // namespace

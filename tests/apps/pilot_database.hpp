@@ -43,7 +43,7 @@ inline void write_database(const std::filesystem::path& path, const Score& score
       const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
       store.end_presentation(id, 0, 1, {}, verdict);
       study::Occasion occasion{
-          session.plan.participant, 7, unit.plan.position, study::BlockKind::Stimulus, {}};
+          session.plan.participant, 8, unit.plan.position, study::BlockKind::Stimulus, {}};
       occasion.shown.push_back({unit.trial->first, cell, verdict.realised, 0, 0});
       const study::KeptAnswer kept{question.id, {{score(question, occasion), ""}, 1}};
       store.answer(session.id, unit, 1, {&kept, 1}, true, 2);

@@ -275,6 +275,44 @@ TEST(PilotFit, ToleratesIncompleteParticipants) {
   EXPECT_TRUE(has_flag(fit, "incomplete_participants"));
 }
 
+// What the plan makes of people who use the scale the wrong way round, get tired, or press the lowest key.
+TEST(PilotFit, ReportsHowPeopleUsedTheScaleAndFollowsThePlan) {
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
+  for (auto& session : pilot.sessions)
+    std::rotate(session.trials.begin(), session.trials.begin() + (&session - pilot.sessions.data()),
+                session.trials.end());
+  int n = 0;
+  for (auto& session : pilot.sessions) {
+    int position = 0;
+    for (auto& trial : session.trials) {
+      trial.position = position++;
+      auto& score = trial.answers[0].score;
+      if (session.participant == "p3") score = 8 - *score;
+      if (++n % 12 == 0) score = 1;
+    }
+  }
+  const auto fit_with = [&](const stats::PilotRules& rules) {
+    return apps::fit_pilot(*apps::collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}}), 4, {200, 1, 0.95},
+                           rules);
+  };
+  const auto kept = fit_with({});
+  EXPECT_TRUE(has_flag(kept, "reverse_coders"));
+  EXPECT_TRUE(has_flag(kept, "lapses"));
+  auto raters = apps::fit_json(kept).at("raters");
+  EXPECT_EQ(raters.at("reverse_coders").at("found"), 1);
+  EXPECT_NE(raters.at("reverse_coders").at("text").get<std::string>().find("p3"), std::string::npos);
+  EXPECT_EQ(raters.at("reverse_coders").at("rule"), "keep");
+  EXPECT_TRUE(raters.at("drift").at("p").is_number());
+  EXPECT_EQ(raters.at("lapses").at("found"), true);
+  EXPECT_EQ(kept.participants, 16);
+  const auto followed = fit_with({true, true, true});
+  raters = apps::fit_json(followed).at("raters");
+  EXPECT_EQ(raters.at("reverse_coders").at("rule"), "exclude");
+  EXPECT_EQ(raters.at("lapses").at("rule"), "model");
+  EXPECT_EQ(followed.participants, 15);
+  EXPECT_LT(followed.main().fit->a, kept.main().fit->a - 0.5);
+}
+
 TEST(ContourPolylines, FollowTheLevelWithoutGaps) {
   // score = mu + delta on the unit spacing: the contour at 3.2 is one straight line.
   stats::ScoreGrid grid{{0, 1, 2, 3}, {0, 1, 2, 3}, {}};

@@ -30,6 +30,21 @@ inline Json score_factor() {
           {"reason", ""}};
 }
 
+/// A pilot whose threshold is no exponential, as its results tell it.
+inline Json other_form() {
+  return {{"rejected", true},
+          {"text", "c = -0.2, it levels off"},
+          {"free_curve",
+           {{{"delta", 0}, {"mu", 24.5}, {"ci", {22.5, 26.5}}, {"simultaneous_ci", {21.5, 27.5}}},
+            {{"delta", 1}, {"mu", 25.5}, {"ci", {23.5, 27.5}}, {"simultaneous_ci", {22.5, 28.5}}}}}};
+}
+
+inline Json raters() {
+  return {{"reverse_coders", {{"text", "no participant"}}},
+          {"drift", {{"text", "scores change by +0.1"}}},
+          {"lapses", {{"text", "0 of 100 answers"}}}};
+}
+
 inline std::vector<Case> pilot() {
   const Change failed = all({set("/pilot/status", "failed"), set("/pilot/reason", "no contour")});
   return {
@@ -49,6 +64,13 @@ inline std::vector<Case> pilot() {
             set("/pilot/a", nullptr)})},
       {"About the fit: #*", set("/pilot/flags", Json::array())},
       {"Shape of the scores: #.", refused("/pilot/lack_of_fit")},
+      {"Direction of the ratings: #.", set("/pilot/raters", Json::object()), set("/pilot/raters", raters())},
+      {"Drift over the session: #.", set("/pilot/raters", Json::object()), set("/pilot/raters", raters())},
+      {"Lapses to the lowest score: #.", set("/pilot/raters", Json::object()),
+       set("/pilot/raters", raters())},
+      {"Form of the curve: #.", refused("/pilot/form"), set("/pilot/form", other_form())},
+      {"# The free curve, which has one parameter more, with its bands, frames/s",
+       set("/pilot/form/rejected", false), set("/pilot/form", other_form())},
       {"# The curve \u03bc(\u03b4) with its bands, frames/s", set("/pilot/bands", Json::array())},
       {"Model of the direct estimate, least squares of all ratings with a participant's ratings of one "
        "setting "

@@ -276,6 +276,7 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   plan.repeated_pairs = stats::RepeatedPairs::Warn;
   plan.seed = 77;
   plan.levels = {{"satisfaction", 4}, {"smoothness", 1.5}};
+  plan.pilot = {.exclude_reverse_coders = true, .model_drift = false, .model_lapses = true};
   base::write_file_atomically(folder / "plan.toml", format_plan(plan, {std::string(64, '1')}));
   const auto read = read_plan(folder / "plan.toml");
   EXPECT_EQ(format_plan(read.plan, read.protocols), format_plan(plan, {std::string(64, '1')}));
@@ -287,6 +288,9 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   EXPECT_FALSE(read.plan.exclusions.max_repeat_difference.has_value());
   EXPECT_EQ(read.plan.repeated_pairs, stats::RepeatedPairs::Warn);
   EXPECT_EQ(read.plan.levels, plan.levels);
+  EXPECT_TRUE(read.plan.pilot.exclude_reverse_coders);
+  EXPECT_FALSE(read.plan.pilot.model_drift);
+  EXPECT_TRUE(read.plan.pilot.model_lapses);
   EXPECT_EQ(read.source, "plan.toml");
   EXPECT_EQ(read.sha256.size(), 64u);
 }

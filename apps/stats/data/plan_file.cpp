@@ -81,6 +81,14 @@ Json directional_json(stats::Directional directional) {
   return directional == stats::Directional::All;
 }
 
+stats::PilotRules read_pilot(const base::TomlTable& table) {
+  stats::PilotRules rules;
+  rules.exclude_reverse_coders = table.choice_or("reverse_coders", "keep", {"keep", "exclude"}) == "exclude";
+  rules.model_drift = table.choice_or("drift", "keep", {"keep", "model"}) == "model";
+  rules.model_lapses = table.choice_or("lapses", "keep", {"keep", "model"}) == "model";
+  return rules;
+}
+
 stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::string>& protocols) {
   stats::AnalysisPlan plan;
   root.integer("format", {1, 1});
@@ -101,11 +109,24 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
     plan.margin_sickness = margins.number_or("sickness", plan.margin_sickness, base::positive);
   }
   if (root.has("exclusions")) read_exclusions(root.table("exclusions"), plan.exclusions);
+  if (root.has("pilot")) plan.pilot = read_pilot(root.table("pilot"));
   if (root.has("levels")) {
     const auto levels = root.table("levels");
     for (const auto& question : levels.keys()) plan.levels[question] = levels.number(question);
   }
   return plan;
+}
+
+/// Left out where it says what holds without.
+std::string format_pilot(const stats::PilotRules& rules) {
+  if (!rules.exclude_reverse_coders && !rules.model_drift && !rules.model_lapses) return "";
+  return std::string("\n[pilot]\nreverse_coders = ") +
+         (rules.exclude_reverse_coders ? "\"exclude\"" : "\"keep\"") +
+         "   # who rates higher frame rates lower: keep or exclude\ndrift = " +
+         (rules.model_drift ? "\"model\"" : "\"keep\"") +
+         "              # of the scores over the session: keep, or model: taken off\nlapses = " +
+         (rules.model_lapses ? "\"model\"" : "\"keep\"") +
+         "             # to the lowest score: keep, or model: scores corrected by their rate\n";
 }
 
 std::string format_levels(const std::map<std::string, double>& levels) {
@@ -172,7 +193,7 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          std::to_string(rules.straight_lining_answers) +
          "     # one and the same answer to so many trials and all; 0: no such rule\nmin_answered = " +
          base::shortest(rules.min_answered) + "                # share of a visit's trials\n" +
-         format_levels(plan.levels);
+         format_pilot(plan.pilot) + format_levels(plan.levels);
 }
 
 Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& protocols) {

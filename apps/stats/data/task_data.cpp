@@ -187,8 +187,8 @@ class Collector {
   void add_rating(const TaskSession& session, const TaskTrial& trial, double score) {
     const auto& nominal = trial.first.nominal;
     const auto& shown = trial.first.realised;
-    data_.ratings.push_back(
-        {person(session), nominal.mean, nominal.sd, shown.mean, shown.mean_arithmetic, shown.sd, score});
+    data_.ratings.push_back({person(session), nominal.mean, nominal.sd, shown.mean, shown.mean_arithmetic,
+                             shown.sd, score, trial.position});
   }
 
   int person(const TaskSession& session) {

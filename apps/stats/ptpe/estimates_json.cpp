@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "stats/ptpe/solver_interval.hpp"
+
 namespace apps {
 
 namespace {
@@ -144,10 +146,38 @@ Json bands_json(const PilotFit& fit) {
                       {"delta", delta},
                       {"mu", point.mu},
                       {"ci", point.pointwise},
-                      {"simultaneous_ci", point.simultaneous}});
+                      {"simultaneous_ci", point.simultaneous},
+                      {"spanned_ci", stats::solver_band(*at.direct.jackknife, at.direct.form, delta)}});
     }
   }
   return list;
+}
+
+Json form_json(const PilotFit& fit) {
+  const auto& form = fit.chosen().direct.form;
+  if (!form) return {{"refused", form.reason()}};
+  Json curve = Json::array();
+  for (double delta = fit.deltas.front(); delta <= fit.deltas.back(); delta += 1) {
+    const auto point = form->curve.band(delta);
+    curve.push_back({{"delta", delta},
+                     {"mu", point.mu},
+                     {"ci", point.pointwise},
+                     {"simultaneous_ci", point.simultaneous}});
+  }
+  return {{"c", form->c},
+          {"ci", form->ci},
+          {"se", form->se},
+          {"t", form->t},
+          {"df", form->df},
+          {"p", form->p},
+          {"rejected", form->rejected()},
+          {"level_of_test", stats::form_level},
+          {"power", stats::form_power},
+          {"detectable", form->detectable},
+          {"delta_middle", form->curve.middle},
+          {"delta_half_range", form->curve.half},
+          {"text", stats::form_text(*form)},
+          {"free_curve", curve}};
 }
 
 Json lack_of_fit_json(const stats::DirectEstimate& estimate) {

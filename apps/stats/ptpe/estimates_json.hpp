@@ -19,6 +19,8 @@ nlohmann::ordered_json estimators_json(const PilotFit& fit);
 /// delta from the smallest to the largest shown, at every level.
 nlohmann::ordered_json bands_json(const PilotFit& fit);
 /// May the straight form be used? At the level wished.
+/// "form": the test of the exponential at the level wished, and the free curve at every whole frame/s.
+nlohmann::ordered_json form_json(const PilotFit& fit);
 nlohmann::ordered_json lack_of_fit_json(const stats::DirectEstimate& estimate);
 
 }  // namespace apps

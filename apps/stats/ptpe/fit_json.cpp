@@ -3,6 +3,7 @@
 #include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/ptpe/estimates_json.hpp"
 #include "apps/stats/ptpe/pilot_fit.hpp"
+#include "apps/stats/ptpe/pilot_people_json.hpp"
 #include "stats/base/file.hpp"
 #include "stats/gsl_errors.hpp"
 #include "stats/inference/describe.hpp"
@@ -128,6 +129,8 @@ Json fit_json(const PilotFit& fit) {
   if (fit.ok()) json["relative_half_width"] = fit.relative_half_width();
   if (fit.harmonic.contains(5.0)) json["level5"] = direct_json(fit.harmonic.at(5.0).direct);
   json["estimators"] = estimators_json(fit);
+  json["form"] = form_json(fit);
+  json["raters"] = raters_json(fit);
   json["lack_of_fit"] = lack_of_fit_json(fit.chosen().direct);
   json["bands"] = bands_json(fit);
   json["means"] = {{"note", mean_caveat},

@@ -94,6 +94,15 @@ std::string curve_path(const HeatMap& map, const Frame& frame) {
   return moves;
 }
 
+std::string free_path(const HeatMap& map, const Frame& frame) {
+  std::string moves;
+  for (const auto& point : map.free_curve)
+    moves += svg::move(moves.empty() ? 'M' : 'L', frame.at(point.delta, point.mu));
+  return moves;
+}
+
+constexpr const char* free_style =
+    "fill=\"none\" stroke=\"#0072b2\" stroke-width=\"3\" stroke-dasharray=\"10 5\"";
 constexpr const char* fit_style = "fill=\"none\" stroke=\"#c04000\" stroke-width=\"3\"";
 
 std::string contour_style(double level) {
@@ -220,6 +229,11 @@ std::string legend(const HeatMap& map, const Frame& frame) {
     out += text({x + 42, y + 5}, "points fitted", "font-size=\"14\"");
     y += 26;
   }
+  if (!map.free_curve.empty()) {
+    out += line({x, y}, {x + 34, y}, free_style);
+    out += text({x + 42, y + 5}, "free curve", "font-size=\"14\"");
+    y += 26;
+  }
   out += line({x, y}, {x + 34, y}, fit_style);
   out += svg::marked_text({x + 42, y + 5},
                           "<tspan font-style=\"italic\">\xCE\xBC</tspan>(<tspan "
@@ -234,15 +248,18 @@ std::string legend(const HeatMap& map, const Frame& frame) {
   return out;
 }
 
+std::string outlined(const std::string& moves, const char* style) {
+  return path(moves, "fill=\"none\" stroke=\"#ffffff\" stroke-width=\"6\"") + path(moves, style);
+}
+
 std::string curves(const HeatMap& map, const Frame& frame) {
   std::string out = "<g clip-path=\"url(#heat-map-plot)\">\n";
   for (const double level : map.levels) {
     const auto moves = contour_path(map.grid, frame, level);
     if (!moves.empty()) out += path(moves, contour_style(level));
   }
-  const auto curve = curve_path(map, frame);
-  out += path(curve, "fill=\"none\" stroke=\"#ffffff\" stroke-width=\"6\"");
-  out += path(curve, fit_style);
+  out += outlined(curve_path(map, frame), fit_style);
+  if (!map.free_curve.empty()) out += outlined(free_path(map, frame), free_style);
   for (const auto& point : map.points) out += circle(frame.at(point.delta, point.mu), 3, "fill=\"#000000\"");
   return out + "</g>\n";
 }
@@ -269,6 +286,10 @@ HeatMap heat_map_of(const PilotFit& fit) {
   map.a_ci = main.spread->a_ci;
   map.b_ci = main.spread->b_ci;
   map.confidence = fit.bootstrap.confidence;
+  const auto& form = fit.chosen().direct.form;
+  if (!form || !form->rejected()) return map;
+  for (double delta = fit.deltas.front(); delta <= fit.deltas.back(); delta += 1)
+    map.free_curve.push_back({delta, form->curve.mu(delta)});
   return map;
 }
 

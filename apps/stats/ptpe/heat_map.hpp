@@ -18,9 +18,10 @@ struct HeatMap {
   std::string title;
   stats::ScoreGrid grid;
   double scale_min = 1, scale_max = 7;
-  std::vector<double> levels;               ///< of the contours
-  std::vector<stats::ContourPoint> points;  ///< that the curve goes through
-  double a = 0, b = 0;                      ///< of mu = a exp(b delta); frames/s and s/frame
+  std::vector<double> levels;                   ///< of the contours
+  std::vector<stats::ContourPoint> points;      ///< that the curve goes through
+  std::vector<stats::ContourPoint> free_curve;  ///< by ascending delta; empty: not drawn
+  double a = 0, b = 0;                          ///< of mu = a exp(b delta); frames/s and s/frame
   std::array<double, 2> a_ci{}, b_ci{};
   double confidence = 0.95;
   /// JSON pointers behind the numbers, written as data-field: of the list of cells and of the estimate; empty

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "apps/common/program.hpp"
+#include "apps/stats/ptpe/pilot_people_json.hpp"
 #include "stats/base/file.hpp"
 #include "stats/ptpe/solver_interval.hpp"
 
@@ -117,6 +118,12 @@ void flag_direct(std::vector<FitFlag>& flags, const stats::DirectEstimate& direc
   }
 }
 
+void flag_form(std::vector<FitFlag>& flags, const stats::DirectEstimate& direct) {
+  if (direct.fit && !direct.form)
+    flags.push_back({"form_not_tested",
+                     "whether the curve is an exponential could not be tested: " + direct.form.reason()});
+}
+
 void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main, const PilotEstimate& contour) {
   if (!main.spread) return;
   if (!main.spread->spans_contour) {
@@ -151,13 +158,36 @@ std::string unusable(const PilotFit& fit, const TaskData& data, const stats::Pil
   return "";
 }
 
-LevelFit fit_level(const TaskData& data, const stats::PilotTable& table, PilotMean mean, double level,
+/// The ratings as categories, for the ordinal model: participants left out, no score corrected.
+struct Categories {
+  std::vector<stats::PilotRating> ratings;
+  double lapse_rate = 0, lowest = 1;
+
+  /// The level that a mean score with lapses has where it would be `level` without.
+  double with_lapses(double level) const { return (1 - lapse_rate) * level + lapse_rate * lowest; }
+};
+
+Categories categories_of(const TaskData& data, const stats::PilotPeople& people,
+                         const stats::PilotRules& rules) {
+  Categories out;
+  auto kept = rules;
+  kept.model_drift = kept.model_lapses = false;
+  out.ratings = stats::apply_rules(data.ratings, people, kept);
+  if (rules.model_lapses && people.lapses) {
+    out.lapse_rate = people.lapses->rate;
+    out.lowest = people.lapses->lowest;
+  }
+  return out;
+}
+
+LevelFit fit_level(const Categories& categories, const stats::PilotTable& table, PilotMean mean, double level,
                    const stats::BootstrapOptions& options) {
   LevelFit fit;
   fit.direct = stats::estimate_direct(table.observations(mean), level, options);
   fit.contour = stats::estimate_pilot(table, mean, level, options);
   if (mean == PilotMean::Harmonic)
-    fit.ordinal = stats::estimate_ordinal_pilot(data.ratings, mean, level, options.confidence);
+    fit.ordinal = stats::estimate_ordinal_pilot(categories.ratings, mean, categories.with_lapses(level),
+                                                options.confidence);
   return fit;
 }
 
@@ -180,9 +210,14 @@ double PilotFit::relative_half_width() const {
   return direct.jackknife->largest_relative_half_width(direct.in_reach_of(deltas));
 }
 
-PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap) {
-  const stats::PilotTable table(data.ratings);
+PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap,
+                   const stats::PilotRules& rules) {
   PilotFit fit;
+  fit.rules = rules;
+  fit.people = stats::pilot_people(data.ratings, bootstrap.confidence);
+  const auto categories = categories_of(data, fit.people, rules);
+  data.ratings = stats::apply_rules(data.ratings, fit.people, rules);
+  const stats::PilotTable table(data.ratings);
   fit.level = level;
   fit.bootstrap = bootstrap;
   fit.participants = table.participants();
@@ -199,21 +234,25 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
   auto options = bootstrap;
   options.progress = [&](int) { progress.update(++done); };
   for (const double at : levels) {
-    fit.harmonic[at] = fit_level(data, table, PilotMean::Harmonic, at, options);
-    fit.arithmetic[at] = fit_level(data, table, PilotMean::Arithmetic, at, options);
+    fit.harmonic[at] = fit_level(categories, table, PilotMean::Harmonic, at, options);
+    fit.arithmetic[at] = fit_level(categories, table, PilotMean::Arithmetic, at, options);
   }
   fit.reason = unusable(fit, data, table);
   if (fit.ok()) {
     const LevelFit& chosen = fit.chosen();
     fit.doubts = stats::pilot_doubts(table, chosen.direct, chosen.contour, chosen.ordinal);
+    if (auto form = stats::form_doubt(chosen.direct)) fit.doubts.push_back(std::move(*form));
   }
   for (const auto& doubt : fit.doubts) fit.flags.push_back({doubt.code, "not for a solver: " + doubt.text});
   flag_data(fit.flags, data, table);
   flag_direct(fit.flags, fit.chosen().direct);
+  flag_form(fit.flags, fit.chosen().direct);
   flag_main(fit.flags, fit.main(), fit.chosen().contour);
   flag_contour(fit.flags, fit.chosen().contour.contour);
   flag_resamples(fit.flags, fit.chosen().contour);
   fit.data = std::move(data);
+  const auto raters = rater_flags(fit);
+  fit.flags.insert(fit.flags.end(), raters.begin(), raters.end());
   return fit;
 }
 

@@ -14,6 +14,7 @@
 #include "stats/ptpe/ordinal_pilot.hpp"
 #include "stats/ptpe/pilot.hpp"
 #include "stats/ptpe/pilot_doubts.hpp"
+#include "stats/ptpe/pilot_people.hpp"
 
 namespace apps {
 
@@ -56,6 +57,8 @@ struct PilotFit {
   std::vector<std::vector<double>> scores;          ///< of the grid's nodes: a mean for each participant
   std::vector<double> deltas;                       ///< nominal, ascending
   std::map<double, LevelFit> harmonic, arithmetic;  ///< by level
+  stats::PilotPeople people;                        ///< of all ratings that count, before the rules
+  stats::PilotRules rules;  ///< what the plan makes of it; `data` holds the ratings after them
   std::vector<FitFlag> flags;
   std::string reason;                     ///< why there is no usable fit; empty = there is one
   std::vector<stats::PilotDoubt> doubts;  ///< why the fit there is must not steer a solver
@@ -71,7 +74,8 @@ struct PilotFit {
 };
 
 /// `level` is finite; outside the rating scale there is no fit.
-PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap);
+PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap,
+                   const stats::PilotRules& rules = {});
 
 /// The same for a database without usable data: only the reason is known.
 nlohmann::ordered_json failed_fit_json(std::optional<double> level, const std::string& reason);

@@ -98,6 +98,34 @@ std::string bands(const Field& pilot) {
   return table.empty() ? "" : table.html();
 }
 
+/// Whether the curve is an exponential, and beside it the curve that need not be one.
+std::string form(const Field& pilot) {
+  const Field test = pilot["form"];
+  if (!test.there()) return "";
+  std::string out = paragraph("Form of the curve: " + words(test["text"]) + ".");
+  if (!test["rejected"].yes()) return out;
+  const std::string mu = typeset("mu"), delta = typeset("delta");
+  Table table("The free curve, which has one parameter more, with its bands, frames/s",
+              {delta, mu, "CI at this " + delta, "Band over all " + delta});
+  for (const Field& point : test["free_curve"].entries())
+    table.row({fixed(point["delta"], 0), fixed(point["mu"], 2), interval(point["ci"], 2),
+               interval(point["simultaneous_ci"], 2)});
+  return out + table.html();
+}
+
+/// Reverse coders, drift and lapses.
+std::string raters(const Field& pilot) {
+  std::string out;
+  const Field all = pilot["raters"];
+  if (!all.there()) return out;
+  for (const auto& [name, part] : {std::pair{"Direction of the ratings", "reverse_coders"},
+                                   {"Drift over the session", "drift"},
+                                   {"Lapses to the lowest score", "lapses"}})
+    if (!all[part]["text"].words().empty())
+      out += paragraph(std::string(name) + ": " + words(all[part]["text"]) + ".");
+  return out;
+}
+
 std::string cells(const Field& pilot) {
   Table table("Scores of the settings, over participants",
               {"Setting: mean, frames/s", "SD, frames/s", "Realised mean", "Realised SD", "<i>n</i>",
@@ -130,6 +158,9 @@ svg::Picture pilot_map(const Field& pilot) {
   map.a_ci = {pilot["a_ci"][0].number(), pilot["a_ci"][1].number()};
   map.b_ci = {pilot["b_ci"][0].number(), pilot["b_ci"][1].number()};
   map.confidence = pilot["interval"]["confidence"].number();
+  if (pilot["form"]["rejected"].yes())
+    for (const Field& point : pilot["form"]["free_curve"].entries())
+      map.free_curve.push_back({point["delta"].number(), point["mu"].number()});
   map.cells_field = pilot.pointer() + "/cells";
   map.estimate_field = pilot.pointer();
   return heat_map(map);
@@ -158,7 +189,7 @@ std::string pilot_section(const Field& root) {
   body += estimates(pilot);
   if (pilot["lack_of_fit"].there())
     body += paragraph("Shape of the scores: " + words(pilot["lack_of_fit"]["text"]) + ".");
-  body += bands(pilot);
+  body += raters(pilot) + form(pilot) + bands(pilot);
   const Field resampling = pilot["bootstrap"].there() ? pilot["bootstrap"] : pilot["interval"];
   body += model_of(pilot);
   body += paragraph("Intervals: " + words(pilot["interval"]["method"]) +

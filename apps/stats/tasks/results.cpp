@@ -50,8 +50,8 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
     stats::BootstrapOptions bootstrap;
     bootstrap.seed = plan.seed;
     bootstrap.confidence = plan.confidence;
-    Json fitted = fit_json(
-        fit_pilot(data, level_of({data.task, {}, plan, {}, request.level}, data.question), bootstrap));
+    const double level = level_of({data.task, {}, plan, {}, request.level}, data.question);
+    Json fitted = fit_json(fit_pilot(data, level, bootstrap, plan.pilot));
     fitted["distributions"] = distributions_json(data);
     return fitted;
   }

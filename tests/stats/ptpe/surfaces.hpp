@@ -31,12 +31,31 @@ struct Population {
 
 inline double exponential(double a, double b, double delta) { return a * std::exp(b * delta); }
 
-/// The parametric observer (libstudy/observer/ptpe_observer.hpp).
-inline Population parametric(double a, double b) {
-  return {"parametric", [=](double mu, double delta, const Person& z) {
-            return level + 0.14 * (mu - exponential(a, b, delta)) + 0.5 * z[0];
+/// A threshold frame rate at each standard deviation.
+using Threshold = std::function<double(double delta)>;
+
+/// The parametric observer (libstudy/observer/ptpe_observer.hpp) with any threshold.
+inline Population with_threshold(const std::string& name, const Threshold& threshold) {
+  return {name, [=](double mu, double delta, const Person& z) {
+            return level + 0.14 * (mu - threshold(delta)) + 0.5 * z[0];
           }};
 }
+
+inline Population parametric(double a, double b) {
+  return with_threshold("parametric", [=](double delta) { return exponential(a, b, delta); });
+}
+
+/// An observer whose scores rise with the logarithm of the frame rate.
+inline Population logarithmic(double a, double b) {
+  return {"logarithmic", [=](double mu, double delta, const Person& z) {
+            return level + 2.4 * std::log2(mu / exponential(a, b, delta)) + 0.5 * z[0];
+          }};
+}
+
+/// Thresholds that are no exponential: one that levels off, one that begins to grow at 10, a straight line.
+inline const Threshold saturating = [](double delta) { return 24 + 14 * (1 - std::exp(-delta / 5)); };
+inline const Threshold hinged = [](double delta) { return 24 + 1.2 * std::max(0.0, delta - 10); };
+inline const Threshold linear = [](double delta) { return 24 + 0.6 * delta; };
 
 /// Surfaces outside every estimator's family, about a = 23.68, b = 0.02.
 inline std::vector<Population> strange() {
@@ -116,6 +135,11 @@ inline double mean_score(const Population& population, double mu, double delta) 
   return sum / people;
 }
 
+/// Where the population's mean score is the level.
+inline double mean_threshold(const Population& population, double delta) {
+  return stats::find_root([&](double at) { return mean_score(population, at, delta) - level; }, 2, 200);
+}
+
 /// The population mean's contour at the standard deviations shown, and the exponential nearest to it (least
 /// squares of log mu) over those at which it runs through the frame rates shown.
 struct Truth {
@@ -127,8 +151,7 @@ inline Truth truth_of(const Population& population) {
   Truth out;
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const double delta : deviations) {
-    const double mu =
-        stats::find_root([&](double at) { return mean_score(population, at, delta) - level; }, 2, 200);
+    const double mu = mean_threshold(population, delta);
     const double lowest =
         *std::find_if(rates.begin(), rates.end(), [&](double rate) { return rate > delta; });
     if (mu < lowest / stats::reach_margin || mu > rates.back() * stats::reach_margin) continue;

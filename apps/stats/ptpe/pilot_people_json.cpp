@@ -1,0 +1,116 @@
+#include "apps/stats/ptpe/pilot_people_json.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string p_text(double p) { return fmt::format("p {} {:.3f}", p < 0.001 ? "<" : "=", std::max(p, 0.001)); }
+
+std::string code_of(const PilotFit& fit, int participant) {
+  return fit.data.participants.at(static_cast<std::size_t>(participant));
+}
+
+std::string reversed_text(const PilotFit& fit) {
+  std::string list;
+  for (const auto& one : fit.people.slopes)
+    if (one.reversed)
+      list += fmt::format("{}{} ({:+.2f} points for each doubling, one-sided {})", list.empty() ? "" : ", ",
+                          code_of(fit, one.participant), one.slope, p_text(one.p));
+  const auto limit =
+      stats::reverse_level / std::max<double>(1, static_cast<double>(fit.people.slopes.size()));
+  return list.empty() ? fmt::format(
+                            "no participant rated higher frame rates lower (slope within each person, "
+                            "one-sided p below {:.2g})",
+                            limit)
+                      : "rated higher frame rates lower: " + list;
+}
+
+std::string drift_text(const stats::SessionDrift& drift) {
+  return fmt::format(
+      "scores change by {:+.2f} [{:.2f}, {:.2f}] points from the first to the last trial, "
+      "t({}) = {:.2f}, {}",
+      drift.change, drift.ci[0], drift.ci[1], drift.df, drift.t, p_text(drift.p));
+}
+
+std::string lapse_text(const stats::LapseCount& lapses) {
+  return fmt::format(
+      "{} of {} answers for which it is improbable are at the lowest score, {:.1f} expected, {} "
+      "(lapses in {:.1f} %)",
+      lapses.lapsed, lapses.at_risk, lapses.expected, p_text(lapses.p), 100 * lapses.rate);
+}
+
+}  // namespace
+
+Json raters_json(const PilotFit& fit) {
+  Json slopes = Json::array();
+  for (const auto& one : fit.people.slopes)
+    slopes.push_back({{"participant", code_of(fit, one.participant)},
+                      {"slope", one.slope},
+                      {"t", std::isfinite(one.t) ? Json(one.t) : Json()},
+                      {"df", one.df},
+                      {"p", one.p},
+                      {"reversed", one.reversed}});
+  Json drift{{"rule", fit.rules.model_drift ? "model" : "keep"}};
+  if (fit.people.drift) {
+    const auto& test = *fit.people.drift;
+    drift.update({{"change", test.change},
+                  {"ci", test.ci},
+                  {"t", test.t},
+                  {"df", test.df},
+                  {"p", test.p},
+                  {"found", test.found()},
+                  {"text", drift_text(test)}});
+  } else {
+    drift["refused"] = fit.people.drift.reason();
+  }
+  Json lapses{{"rule", fit.rules.model_lapses ? "model" : "keep"}};
+  if (fit.people.lapses) {
+    const auto& count = *fit.people.lapses;
+    lapses.update({{"at_risk", count.at_risk},
+                   {"lapsed", count.lapsed},
+                   {"expected", count.expected},
+                   {"p", count.p},
+                   {"rate", count.rate},
+                   {"found", count.found()},
+                   {"text", lapse_text(count)}});
+  } else {
+    lapses["refused"] = fit.people.lapses.reason();
+  }
+  return {{"reverse_coders",
+           {{"rule", fit.rules.exclude_reverse_coders ? "exclude" : "keep"},
+            {"found", fit.people.reversed()},
+            {"slopes", slopes},
+            {"text", reversed_text(fit)}}},
+          {"drift", drift},
+          {"lapses", lapses}};
+}
+
+std::vector<FitFlag> rater_flags(const PilotFit& fit) {
+  std::vector<FitFlag> out;
+  if (fit.people.reversed() > 0)
+    out.push_back(
+        {"reverse_coders", reversed_text(fit) + (fit.rules.exclude_reverse_coders
+                                                     ? "; left out, as the plan says"
+                                                     : "; kept, as the plan does not exclude them")});
+  if (fit.people.drift && fit.people.drift->found())
+    out.push_back(
+        {"drift", drift_text(*fit.people.drift) +
+                      (fit.rules.model_drift ? "; taken off the scores, as the plan says"
+                                             : "; kept in the scores, as the plan does not model it")});
+  if (fit.people.lapses && fit.people.lapses->found())
+    out.push_back(
+        {"lapses", lapse_text(*fit.people.lapses) +
+                       (fit.rules.model_lapses ? "; the scores are corrected by that rate, as the plan says"
+                                               : "; kept in the scores, as the plan does not model them")});
+  return out;
+}
+
+}  // namespace apps

@@ -1,0 +1,16 @@
+#pragma once
+/// How the participants of a pilot used the scale: as JSON and in sentences.
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "apps/stats/ptpe/pilot_fit.hpp"
+
+namespace apps {
+
+/// "raters": reverse coders, drift and lapses, each with its test, the plan's rule and a text.
+nlohmann::ordered_json raters_json(const PilotFit& fit);
+/// Of those that were found, with what the plan makes of them.
+std::vector<FitFlag> rater_flags(const PilotFit& fit);
+
+}  // namespace apps

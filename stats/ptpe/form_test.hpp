@@ -1,0 +1,63 @@
+#pragma once
+/// Whether the threshold is an exponential: log mu = log a + b delta is tested against a curve with one
+/// parameter more.
+///
+///   log mu(delta) = log a + b delta + c (e^2 - 1/2),   e = (delta - middle) / half
+///
+/// where middle and half are those of the range of the standard deviations shown: 10 and 10 for 0 to 20
+/// frames/s. At c > 0 the curve lies c / 2 above an exponential at both ends, in parts of mu, and c / 2 below
+/// it in the middle. At c < 0 it levels off.
+
+#include <array>
+#include <span>
+
+#include "stats/ptpe/curve.hpp"
+#include "stats/ptpe/pilot.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+/// log mu(delta) = level + slope e + bend e^2, with the jackknife's covariance of the three.
+struct FreeCurve {
+  double middle = 10, half = 10;       ///< e = (delta - middle) / half, frames/s
+  std::array<double, 3> at{};          ///< level, slope, bend
+  std::array<double, 9> covariance{};  ///< row-major
+  int participants = 0;
+  double confidence = 0.95;
+
+  double mu(double delta) const;
+  /// Pointwise with Student's t, simultaneous with Hotelling's T^2 for the three coefficients.
+  BandPoint band(double delta) const;
+};
+
+/// The test of c = 0: jackknife over participants with Student's t.
+struct FormTest {
+  double c = 0, se = 0, t = 0;
+  int df = 0;
+  double p = 1;                ///< two-sided
+  std::array<double, 2> ci{};  ///< at FreeCurve::confidence
+  double detectable = 0;       ///< the smallest |c| that this test finds with form_power, were `se` its error
+  FreeCurve curve;
+
+  bool rejected() const;
+};
+
+/// Level of the test, two-sided, and the power of FormTest::detectable.
+inline constexpr double form_level = 0.05;
+inline constexpr double form_power = 0.80;
+
+/// Settings below this part of the curve are left out of the test. Towards the bottom of the scale the scores
+/// level off, and the surface that follows them there bends the curve (of exponentials with a = 30, b = 0.03
+/// .22 were rejected with them).
+inline constexpr double far_below_factor = 2.46;
+
+/// Least squares of ratings as for the direct estimate, E[score] = level + k u + m u e + q u^2 with u =
+/// log mu - log mu(delta) of the free curve. `observations` are within reach (direct_fit.hpp) and `curve` is
+/// the direct estimate. Of them, settings far below the curve are left out, and standard deviations at which
+/// the curve lies above the frame rates shown. Refused: fewer than least_participants, or than three standard
+/// deviations left; settings that do not determine the surface; scores that do not rise with the frame rate
+/// along the curve; participants who agree.
+Result<FormTest> form_test(std::span<const PilotObservation> observations, const Curve& curve, double level,
+                           double confidence);
+
+}  // namespace stats

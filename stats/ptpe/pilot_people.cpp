@@ -1,0 +1,233 @@
+#include "stats/ptpe/pilot_people.hpp"
+
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "stats/gsl_errors.hpp"
+#include "stats/inference/t_test.hpp"
+#include "stats/quantiles.hpp"
+
+namespace stats {
+
+namespace {
+
+using Setting = std::pair<double, double>;
+
+Setting setting_of(const PilotRating& rating) { return {rating.mu, rating.delta}; }
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return sorted_quantile(values, 0.5);
+}
+
+std::map<int, std::vector<const PilotRating*>> by_person(std::span<const PilotRating> ratings) {
+  std::map<int, std::vector<const PilotRating*>> out;
+  for (const auto& rating : ratings) out[rating.participant].push_back(&rating);
+  return out;
+}
+
+/// Least squares of the scores on log2 mu with a mean of its own for each standard deviation.
+std::optional<PersonSlope> slope_of(const std::vector<const PilotRating*>& ratings) {
+  struct Column {
+    double n = 0, x = 0, y = 0;
+  };
+  std::map<double, Column> columns;
+  for (const auto* rating : ratings) {
+    auto& column = columns[rating->delta];
+    column.n += 1;
+    column.x += std::log2(rating->mu);
+    column.y += rating->score;
+  }
+  double xx = 0, xy = 0, yy = 0;
+  for (const auto* rating : ratings) {
+    const auto& column = columns[rating->delta];
+    const double x = std::log2(rating->mu) - column.x / column.n, y = rating->score - column.y / column.n;
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+  }
+  PersonSlope out;
+  out.participant = ratings.front()->participant;
+  out.df = static_cast<int>(ratings.size()) - static_cast<int>(columns.size()) - 1;
+  if (out.df < 2 || !(xx > 0)) return std::nullopt;
+  out.slope = xy / xx;
+  const double rest = yy - xy * out.slope;
+  const double error = std::sqrt(std::max(rest, 0.0) / out.df / xx);
+  if (error > 1e-12 * (1 + std::abs(out.slope))) {
+    use_gsl_codes();
+    out.t = out.slope / error;
+    out.p = gsl_cdf_tdist_P(out.t, out.df);
+  } else {
+    out.t = out.slope == 0 ? 0 : std::copysign(std::numeric_limits<double>::infinity(), out.slope);
+    out.p = out.slope < 0 ? 0 : 1;
+  }
+  return out;
+}
+
+std::vector<PersonSlope> slopes_of(std::span<const PilotRating> ratings) {
+  std::vector<PersonSlope> out;
+  for (const auto& [person, own] : by_person(ratings))
+    if (auto slope = slope_of(own)) out.push_back(*slope);
+  for (auto& one : out) one.reversed = one.p < reverse_level / static_cast<double>(out.size());
+  return out;
+}
+
+/// Place of a trial in its session, -1/2 to 1/2.
+std::map<int, std::pair<double, double>> sessions_of(std::span<const PilotRating> ratings) {
+  std::map<int, std::pair<double, double>> out;  // first and last position
+  for (const auto& rating : ratings) {
+    const double at = rating.position;
+    auto& [first, last] = out.try_emplace(rating.participant, at, at).first->second;
+    first = std::min(first, at);
+    last = std::max(last, at);
+  }
+  return out;
+}
+
+double place_of(const PilotRating& rating, const std::pair<double, double>& session) {
+  const double length = session.second - session.first;
+  return length > 0 ? (rating.position - session.first) / length - 0.5 : 0;
+}
+
+Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confidence) {
+  if (std::any_of(ratings.begin(), ratings.end(), [](const auto& rating) { return rating.position < 0; }))
+    return Refusal{"the positions of the trials are not known"};
+  std::map<Setting, std::pair<double, double>> settings;  // number and sum of the scores
+  for (const auto& rating : ratings) {
+    auto& [n, sum] = settings[setting_of(rating)];
+    n += 1;
+    sum += rating.score;
+  }
+  const auto sessions = sessions_of(ratings);
+  std::vector<double> slopes;
+  for (const auto& [person, own] : by_person(ratings)) {
+    std::vector<std::array<double, 2>> points;  // place, score less the others' mean
+    for (const auto* rating : own) {
+      const auto& [n, sum] = settings[setting_of(*rating)];
+      if (n < 2) continue;
+      points.push_back(
+          {place_of(*rating, sessions.at(person)), rating->score - (sum - rating->score) / (n - 1)});
+    }
+    double x = 0, y = 0, xx = 0, xy = 0;
+    for (const auto& point : points) {
+      x += point[0] / static_cast<double>(points.size());
+      y += point[1] / static_cast<double>(points.size());
+    }
+    for (const auto& point : points) {
+      xx += (point[0] - x) * (point[0] - x);
+      xy += (point[0] - x) * (point[1] - y);
+    }
+    if (xx > 0) slopes.push_back(xy / xx);
+  }
+  const auto test = t_test_one(slopes, {.confidence = confidence, .effect_intervals = false});
+  if (!test) return Refusal{test.reason()};
+  return SessionDrift{test->mean, test->t, test->p, static_cast<int>(test->df), test->ci};
+}
+
+/// What is expected of each answer without lapses.
+std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
+  std::map<Setting, std::vector<double>> settings;
+  for (const auto& rating : ratings) settings[setting_of(rating)].push_back(rating.score);
+  std::map<Setting, double> middle;
+  for (const auto& [setting, scores] : settings) middle[setting] = median(scores);
+  std::map<int, std::vector<double>> distances;
+  for (const auto& rating : ratings)
+    distances[rating.participant].push_back(rating.score - middle[setting_of(rating)]);
+  std::map<int, double> own;
+  for (const auto& [person, list] : distances) own[person] = median(list);
+  std::vector<double> out;
+  for (const auto& rating : ratings) out.push_back(middle[setting_of(rating)] + own[rating.participant]);
+  return out;
+}
+
+/// Standard deviation of the answers about what is expected, where that is in the middle half of the scores:
+/// towards the ends they scatter less. Residuals beyond `clip` add no more, so that lapses hardly widen it.
+double spread_about(std::span<const PilotRating> ratings, const std::vector<double>& expected, double lowest,
+                    double highest) {
+  constexpr double clip = 2.5;
+  const double quarter = (highest - lowest) / 4;
+  double sum = 0, n = 0;
+  for (std::size_t i = 0; i < ratings.size(); ++i) {
+    if (expected[i] < lowest + quarter || expected[i] > highest - quarter) continue;
+    sum += std::min(clip, std::abs(ratings[i].score - expected[i]));
+    n += 1;
+  }
+  return n > 0 ? std::sqrt(M_PI / 2) * sum / n : 0;
+}
+
+Result<LapseCount> lapses_of(std::span<const PilotRating> all, const std::vector<PersonSlope>& slopes) {
+  std::set<int> reversed;
+  for (const auto& one : slopes)
+    if (one.reversed) reversed.insert(one.participant);
+  std::vector<PilotRating> ratings;
+  for (const auto& rating : all)
+    if (!reversed.contains(rating.participant)) ratings.push_back(rating);
+  if (ratings.empty()) return Refusal{"every participant is a reverse coder"};
+  LapseCount out;
+  out.lowest = ratings.front().score;
+  double highest = ratings.front().score;
+  for (const auto& rating : ratings) {
+    out.lowest = std::min(out.lowest, rating.score);
+    highest = std::max(highest, rating.score);
+  }
+  const auto expected = expected_scores(ratings);
+  const double sd = spread_about(ratings, expected, out.lowest, highest);
+  if (!(sd > 0)) return Refusal{"the answers to a setting do not differ"};
+  for (std::size_t i = 0; i < ratings.size(); ++i) {
+    const double chance = normal_probability((out.lowest + 0.5 - expected[i]) / sd);
+    if (chance >= lapse_tail) continue;
+    ++out.at_risk;
+    out.lapsed += ratings[i].score == out.lowest;
+    out.expected += chance;
+  }
+  if (out.at_risk == 0) return Refusal{"the lowest score is improbable at no setting"};
+  use_gsl_codes();
+  if (out.lapsed > 0) out.p = gsl_cdf_poisson_Q(static_cast<unsigned>(out.lapsed - 1), out.expected);
+  out.rate = std::max(0.0, (out.lapsed - out.expected) / (out.at_risk - out.expected));
+  return out;
+}
+
+}  // namespace
+
+bool SessionDrift::found() const { return p < drift_level; }
+bool LapseCount::found() const { return p < lapse_level; }
+
+int PilotPeople::reversed() const {
+  return static_cast<int>(
+      std::count_if(slopes.begin(), slopes.end(), [](const auto& one) { return one.reversed; }));
+}
+
+PilotPeople pilot_people(std::span<const PilotRating> ratings, double confidence) {
+  if (ratings.empty()) return {{}, Refusal{"no ratings"}, Refusal{"no ratings"}};
+  auto slopes = slopes_of(ratings);
+  auto lapses = lapses_of(ratings, slopes);
+  return {std::move(slopes), drift_of(ratings, confidence), std::move(lapses)};
+}
+
+std::vector<PilotRating> apply_rules(std::span<const PilotRating> ratings, const PilotPeople& people,
+                                     const PilotRules& rules) {
+  std::set<int> reversed;
+  for (const auto& one : people.slopes)
+    if (one.reversed) reversed.insert(one.participant);
+  const auto sessions = sessions_of(ratings);
+  const double rate = rules.model_lapses && people.lapses ? people.lapses->rate : 0;
+  std::vector<PilotRating> out;
+  for (auto rating : ratings) {
+    if (rules.exclude_reverse_coders && reversed.contains(rating.participant)) continue;
+    if (rules.model_drift && people.drift)
+      rating.score -= people.drift->change * place_of(rating, sessions.at(rating.participant));
+    if (rate > 0) rating.score = (rating.score - rate * people.lapses->lowest) / (1 - rate);
+    out.push_back(rating);
+  }
+  return out;
+}
+
+}  // namespace stats

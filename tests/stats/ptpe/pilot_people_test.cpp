@@ -1,0 +1,192 @@
+/// Reverse coders, drift over the session and lapses: found where they are, and what the plan's rules mend.
+#include "stats/ptpe/pilot_people.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "stats/ptpe/direct_fit.hpp"
+#include "tests/stats/ptpe/simulated_ratings.hpp"
+
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Raters {
+  int people = 16;
+  int reversed = 0;   ///< the first ones answer 8 - score
+  double drift = 0;   ///< points from the first to the last trial
+  double lapses = 0;  ///< share of answers that are the lowest whatever was shown
+};
+
+/// The parametric observer's pilot, every person's settings in an order of their own.
+std::vector<stats::PilotRating> pilot(const Raters& raters, std::uint64_t seed) {
+  const simulated::Truth truth;
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  const auto settings = simulated::pilot(truth, 1, 1);
+  std::vector<stats::PilotRating> ratings;
+  for (int p = 0; p < raters.people; ++p) {
+    const double person = truth.participant_sd * normal(engine);
+    auto order = settings;
+    std::shuffle(order.begin(), order.end(), engine);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      auto rating = order[i];
+      rating.participant = p;
+      rating.position = static_cast<int>(i);
+      const double tau = rating.mu - truth.a * std::exp(truth.b * rating.delta);
+      const double place = static_cast<double>(i) / static_cast<double>(order.size() - 1) - 0.5;
+      const double x = 4 + truth.slope * tau + person + raters.drift * place + truth.noise * normal(engine);
+      rating.score = std::clamp(std::round(x), 1.0, 7.0);
+      if (p < raters.reversed) rating.score = 8 - rating.score;
+      if (uniform(engine) < raters.lapses) rating.score = 1;
+      ratings.push_back(rating);
+    }
+  }
+  return ratings;
+}
+
+TEST(PilotPeople, OrdinaryRatersAreLeftAlone) {
+  const auto people = stats::pilot_people(pilot({}, 1), 0.95);
+  EXPECT_EQ(people.slopes.size(), 16u);
+  EXPECT_EQ(people.reversed(), 0);
+  ASSERT_TRUE(people.drift) << people.drift.reason();
+  EXPECT_FALSE(people.drift->found());
+  ASSERT_TRUE(people.lapses) << people.lapses.reason();
+  EXPECT_FALSE(people.lapses->found());
+}
+
+// y = 3 x + noise about two columns, worked out by least squares in the closed form.
+TEST(PilotPeople, ASlopeIsOfOnePersonWithinStandardDeviations) {
+  std::vector<stats::PilotRating> ratings;
+  const std::vector<std::array<double, 3>> given{{10, 0, 1}, {20, 0, 3}, {40, 0, 4},
+                                                 {20, 5, 2}, {40, 5, 5}, {80, 5, 6}};
+  for (const auto& [mu, delta, score] : given) ratings.push_back({3, mu, delta, mu, mu, delta, score, 0});
+  const auto people = stats::pilot_people(ratings, 0.95);
+  ASSERT_EQ(people.slopes.size(), 1u);
+  // x is -1, 0, 1 in both columns; slope = (3 + 4) / 4; the rest is 2/3 + 6 - ... = sum y^2 - 7^2 / 4.
+  const double slope = 7.0 / 4, yy = 14.0 / 3 + 26.0 / 3, rest = yy - slope * 7;
+  EXPECT_NEAR(people.slopes[0].slope, slope, 1e-12);
+  EXPECT_EQ(people.slopes[0].df, 3);
+  EXPECT_NEAR(people.slopes[0].t, slope / std::sqrt(rest / 3 / 4), 1e-10);
+}
+
+TEST(PilotPeople, AReverseCoderIsFoundAndLeftOutByTheRule) {
+  const auto ratings = pilot({.reversed = 2}, 2);
+  const auto people = stats::pilot_people(ratings, 0.95);
+  EXPECT_EQ(people.reversed(), 2);
+  EXPECT_TRUE(people.slopes[0].reversed && people.slopes[1].reversed);
+  EXPECT_EQ(stats::apply_rules(ratings, people, {}).size(), ratings.size());
+  EXPECT_EQ(stats::apply_rules(ratings, people, {.exclude_reverse_coders = true}).size(), 14u * 21);
+}
+
+TEST(PilotPeople, ADriftIsFoundAndTakenOffAboutTheMiddleOfTheSession) {
+  const auto ratings = pilot({.drift = -3}, 3);
+  const auto people = stats::pilot_people(ratings, 0.95);
+  ASSERT_TRUE(people.drift);
+  EXPECT_TRUE(people.drift->found());
+  EXPECT_NEAR(people.drift->change, -3, 1);
+  const auto mended = stats::apply_rules(ratings, people, {.model_drift = true});
+  const auto after = stats::pilot_people(mended, 0.95);
+  EXPECT_NEAR(after.drift->change, 0, 0.1);
+  double sum = 0;  // the middle of the session keeps its scores
+  for (std::size_t i = 0; i < ratings.size(); ++i) {
+    sum += mended[i].score - ratings[i].score;
+    if (ratings[i].position == 10) {
+      EXPECT_EQ(mended[i].score, ratings[i].score);
+    }
+  }
+  EXPECT_NEAR(sum, 0, 1e-9);
+}
+
+TEST(PilotPeople, LapsesAreFoundAndMoveNoMeanUnderTheRule) {
+  const auto ratings = pilot({.people = 40, .lapses = 0.08}, 4), clean = pilot({.people = 40}, 4);
+  const auto people = stats::pilot_people(ratings, 0.95);
+  ASSERT_TRUE(people.lapses) << people.lapses.reason();
+  EXPECT_TRUE(people.lapses->found());
+  EXPECT_NEAR(people.lapses->rate, 0.08, 0.03);
+  const auto mean = [](const std::vector<stats::PilotRating>& list) {
+    double sum = 0;
+    for (const auto& rating : list) sum += rating.score / static_cast<double>(list.size());
+    return sum;
+  };
+  const double lost = mean(clean) - mean(ratings);
+  EXPECT_GT(lost, 0.15);
+  EXPECT_NEAR(mean(stats::apply_rules(ratings, people, {.model_lapses = true})), mean(clean), 0.5 * lost);
+}
+
+TEST(PilotPeople, WithoutPositionsThereIsNoDrift) {
+  const auto people = stats::pilot_people(simulated::pilot({}, 8, 1), 0.95);
+  EXPECT_THAT(people.drift.reason(), HasSubstr("positions"));
+}
+
+struct Found {
+  double reversed = 0, false_alarms = 0, drift = 0, lapses = 0;  ///< reversed: all of them, and no other
+  double bias = 0, bias_mended = 0;                              ///< of a, frames/s
+};
+
+Found found_in(const Raters& raters, int pilots) {
+  Found sum;
+  int fitted = 0;
+  for (int i = 0; i < pilots; ++i) {
+    const auto ratings = pilot(raters, static_cast<std::uint64_t>(i) + 1);
+    const auto people = stats::pilot_people(ratings, 0.95);
+    bool all = true, other = false;
+    for (const auto& one : people.slopes)
+      (one.participant < raters.reversed ? all : other) =
+          one.participant < raters.reversed ? all && one.reversed : other || one.reversed;
+    sum.reversed += all;
+    sum.false_alarms += other;
+    sum.drift += people.drift && people.drift->found();
+    sum.lapses += people.lapses && people.lapses->found();
+    const auto fit_of = [](const std::vector<stats::PilotRating>& list) {
+      return stats::estimate_direct(stats::PilotTable(list).observations(stats::PilotMean::Harmonic), 4, {0})
+          .fit;
+    };
+    const auto before = fit_of(ratings),
+               after =
+                   fit_of(stats::apply_rules(ratings, people, {true, raters.drift != 0, raters.lapses > 0}));
+    if (!before || !after) continue;
+    ++fitted;
+    sum.bias += before->curve.a() - 24;
+    sum.bias_mended += after->curve.a() - 24;
+  }
+  for (double* share : {&sum.reversed, &sum.false_alarms, &sum.drift, &sum.lapses}) *share /= pilots;
+  sum.bias /= fitted;
+  sum.bias_mended /= fitted;
+  return sum;
+}
+
+TEST(PilotPeopleSlow, SizeAndPower) {
+  const char* given = std::getenv("VIP_PILOTS");
+  const int pilots = given ? std::atoi(given) : 500;
+  std::printf(
+      "| people | reverse coders | drift | lapses | reverse coders found | others called so | drift found | "
+      "lapses found | bias of a | with the rule that fits |\n");
+  for (const int people : {12, 16, 24}) {
+    for (const Raters& raters :
+         {Raters{people}, Raters{people, 1}, Raters{people, 3}, Raters{people, 0, -2}, Raters{people, 0, -4},
+          Raters{people, 0, 4}, Raters{people, 0, 0, 0.05}, Raters{people, 0, 0, 0.1}}) {
+      const auto found = found_in(raters, pilots);
+      std::printf("| %d | %d | %g | %g | %.3f | %.3f | %.3f | %.3f | %+.2f | %+.2f |\n", people,
+                  raters.reversed, raters.drift, raters.lapses, found.reversed, found.false_alarms,
+                  found.drift, found.lapses, found.bias, found.bias_mended);
+      std::fflush(stdout);
+      EXPECT_LE(found.false_alarms, 0.02);
+      EXPECT_GE(found.reversed, raters.reversed > 0 ? 0.85 : 0);
+      EXPECT_GE(found.drift, raters.drift == 0 ? 0 : 0.95);
+      EXPECT_LE(found.drift, raters.drift == 0 ? 0.09 : 1);
+      EXPECT_GE(found.lapses, raters.lapses > 0 ? 0.9 : 0);
+    }
+  }
+}
+
+}  // namespace
