@@ -60,7 +60,7 @@ void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& opt
         "shows each pair to a participant in " + std::to_string(design.groups) +
             " scenes, and the plan refuses tests of a pair with several answers of one person: no test would "
             "ever hold",
-        "write more_than_one_trial = \"warn\" into a plan and give it with --plan, or groups = 1 into the "
+        "write more_than_one_trial = \"share\" into a plan and give it with --plan, or groups = 1 into the "
         "protocol");
   if (task2 && request.effect && !(*request.effect > 0 && *request.effect < 1))
     refuse("--effect", "is a preference in Task 2, above 0 and below 1", "write --effect 0.7");

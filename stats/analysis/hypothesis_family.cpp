@@ -188,7 +188,7 @@ std::vector<std::optional<double>> holm_over_pairs(
     if (!chosen(methods[static_cast<std::size_t>(pairs[i].a)], methods[static_cast<std::size_t>(pairs[i].b)]))
       continue;
     ++family;
-    if (pairs[i].test) p[i] = pairs[i].test->p;
+    if (const auto own = pairs[i].p()) p[i] = *own;
   }
   std::vector<std::optional<double>> out(pairs.size());
   const auto holm = adjust(p, Adjustment::Holm, family);

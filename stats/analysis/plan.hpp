@@ -16,7 +16,12 @@ enum class TimingRule { None, Fail, Degraded };
 
 /// A participant with several answers to one pair breaks the binomial test's independence (pooled blocks: 9.6
 /// % false alarms at 5 %).
-enum class RepeatedPairs { Refuse, Warn };
+enum class RepeatedPairs {
+  Refuse,
+  Warn,   ///< the binomial test all the same
+  Share,  ///< each person's share is tested over people (share_test.hpp)
+  First   ///< the first answer of each person counts alone
+};
 
 struct ExclusionRules {
   TimingRule timing = TimingRule::Fail;
@@ -68,7 +73,7 @@ struct AnalysisPlan {
   double margin_realism = 0.5;    ///< points on 1 to 7, > 0
   double margin_sickness = 0.25;  ///< points on 0 to 3, > 0
   ExclusionRules exclusions;
-  RepeatedPairs repeated_pairs = RepeatedPairs::Refuse;
+  RepeatedPairs repeated_pairs = RepeatedPairs::Share;
   int resamples = 10000;  ///< of BCa intervals
   std::uint64_t seed = 1;
   /// Scores at which a pilot's curve is fitted, by id of the question; of others the protocol says it.

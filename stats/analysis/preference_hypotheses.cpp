@@ -7,6 +7,23 @@ namespace stats {
 
 namespace {
 
+/// By each person's share of a, as some answered more than once.
+FamilyTest shares_of(HypothesisTest test, const PairPreference& pair, bool forwards, Alternative side,
+                     double alpha) {
+  std::vector<PersonChoices> people = pair.people;
+  for (auto& one : people)
+    if (!forwards) one.k = one.n - one.k;
+  const auto own = share_test(people, side, test.ci_confidence);
+  test.method = "exact test of each person's share";
+  test.estimate = own->share;
+  test.ci = own->ci;
+  test.p = own->p;
+  test.paper_p = pair.shares->p;
+  const bool right = own->share > 0.5;
+  test.paper_holds = *test.paper_p < alpha && right;
+  return {test, right};
+}
+
 /// One answer of Task 2: a preferred to b.
 FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<std::string>& methods,
                       const std::string& a, const std::string& b, const Family& family) {
@@ -25,6 +42,7 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
     if (!forwards && !(first == b && second == a)) continue;
     test.n = static_cast<std::size_t>(pair.n);
     test.k = forwards ? pair.k : pair.n - pair.k;
+    if (pair.shares) return shares_of(std::move(test), pair, forwards, side, plan.alpha);
     test.reason = pair.test.reason();
     if (!pair.test) return {test};
     const auto own = binomial_test(*test.k, pair.n, 0.5, side, test.ci_confidence);

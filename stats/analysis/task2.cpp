@@ -11,27 +11,43 @@ namespace stats {
 
 namespace {
 
-PairPreference count_pair(std::span<const PairChoice> choices, int a, int b) {
+PairPreference count_pair(std::span<const PairChoice> choices, int a, int b, const AnalysisPlan& plan) {
   PairPreference out;
   out.a = a;
   out.b = b;
-  std::map<int, int> per_participant;
+  std::map<int, PersonChoices> people;
   for (const PairChoice& choice : choices) {
     const bool forwards = choice.first == a && choice.second == b;
     if (!forwards && !(choice.first == b && choice.second == a)) continue;
+    auto& person = people[choice.participant];
+    if (plan.repeated_pairs == RepeatedPairs::First && person.n > 0) continue;
+    ++person.n;
+    person.k += choice.first_chosen == forwards ? 1 : 0;
     ++out.n;
     out.a_first += forwards ? 1 : 0;
     out.first_chosen += choice.first_chosen ? 1 : 0;
     out.k += choice.first_chosen == forwards ? 1 : 0;
-    out.max_per_participant = std::max(out.max_per_participant, ++per_participant[choice.participant]);
+    out.max_per_participant = std::max(out.max_per_participant, person.n);
   }
-  out.participants = static_cast<int>(per_participant.size());
+  for (const auto& [participant, person] : people) out.people.push_back(person);
+  out.participants = static_cast<int>(people.size());
   return out;
 }
 
 void test_pair(PairPreference& pair, const AnalysisPlan& plan) {
   pair.test = binomial_test(pair.k, pair.n, 0.5, Alternative::TwoSided, plan.confidence);
   if (pair.max_per_participant <= 1) return;
+  if (plan.repeated_pairs == RepeatedPairs::Share) {
+    const auto shares = share_test(pair.people, Alternative::TwoSided, plan.confidence);
+    pair.test =
+        Refusal{shares ? "each person's share is tested in place of single answers" : shares.reason()};
+    if (!shares) return;
+    pair.shares = *shares;
+    pair.warning = "one participant answered this pair " + std::to_string(pair.max_per_participant) +
+                   " times: each person's share is tested over " + std::to_string(shares->participants) +
+                   " people, by an exact test";
+    return;
+  }
   pair.warning =
       "one participant answered this pair " + std::to_string(pair.max_per_participant) +
       " times, as in several scenes: answers of one person are not independent, and the binomial test then "
@@ -41,13 +57,12 @@ void test_pair(PairPreference& pair, const AnalysisPlan& plan) {
 
 void correct(std::vector<PairPreference>& pairs) {
   std::vector<double> p;
-  for (const auto& pair : pairs)
-    p.push_back(pair.test ? pair.test->p : std::numeric_limits<double>::quiet_NaN());
+  for (const auto& pair : pairs) p.push_back(pair.p().value_or(std::numeric_limits<double>::quiet_NaN()));
   const auto holm = adjust(p, Adjustment::Holm, p.size());
   const auto bh = adjust(p, Adjustment::BenjaminiHochberg, p.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (holm && pairs[i].test) pairs[i].p_holm = holm->p[i];
-    if (bh && pairs[i].test) pairs[i].p_bh = bh->p[i];
+    if (holm && pairs[i].p()) pairs[i].p_holm = holm->p[i];
+    if (bh && pairs[i].p()) pairs[i].p_bh = bh->p[i];
   }
 }
 
@@ -91,12 +106,17 @@ void count_triads(PreferenceAnalysis& out, std::span<const PairChoice> choices, 
 
 }  // namespace
 
+std::optional<double> PairPreference::p() const {
+  if (shares) return shares->p;
+  return test ? std::optional(test->p) : std::nullopt;
+}
+
 std::vector<PairPreference> count_preferences(std::span<const PairChoice> choices, int methods,
                                               const AnalysisPlan& plan) {
   std::vector<PairPreference> pairs;
   for (int a = 0; a < methods; ++a) {
     for (int b = a + 1; b < methods; ++b) {
-      pairs.push_back(count_pair(choices, a, b));
+      pairs.push_back(count_pair(choices, a, b, plan));
       test_pair(pairs.back(), plan);
     }
   }

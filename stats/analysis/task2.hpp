@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stats/analysis/plan.hpp"
+#include "stats/analysis/share_test.hpp"
 #include "stats/inference/binomial.hpp"
 #include "stats/inference/t_test.hpp"
 #include "stats/inference/unanimous.hpp"
@@ -34,11 +35,16 @@ struct PairPreference {
   int a_first = 0;       ///< a shown first
   int first_chosen = 0;  ///< the first interval chosen, whichever method it held
   int max_per_participant = 0;
-  std::string warning;  ///< empty, or why the test does not hold as it stands
+  std::string warning;                ///< empty, or why the test does not hold as it stands
+  std::vector<PersonChoices> people;  ///< of each participant: a chosen, answers
   /// Exact, two-sided. Refused without answers, and with several of one participant under
-  /// RepeatedPairs::Refuse.
+  /// RepeatedPairs::Refuse and Share.
   Result<BinomialTest> test = Refusal{"not computed"};
+  /// In its place, two-sided: where a participant gave several answers, under RepeatedPairs::Share.
+  std::optional<ShareTest> shares;
   std::optional<double> p_holm, p_bh;  ///< over all pairs; a refused test counts as not significant
+
+  std::optional<double> p() const;  ///< of the test that decides
 };
 
 /// Whether the first interval drew choices, whatever it held.

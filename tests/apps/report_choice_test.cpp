@@ -224,7 +224,7 @@ TEST(ReportChoice, PairsOverScenesAreDescribedBySceneAndTheTestSaysWhyItIsNone) 
             (Json{{{"answer", "LoRes"}, {"count", 0}}, {{"answer", "HiRes"}, {"count", 6}}}));
   EXPECT_TRUE(json.at("hypotheses").empty());
   EXPECT_THAT(json.at("task2").at("pairs").at(0).at("warning").get<std::string>(),
-              HasSubstr("3 times, as in several scenes"));
+              HasSubstr("3 times: each person's share"));
 }
 
 TEST(ReportChoice, ReasonsCallMethodsByTheirNames) {

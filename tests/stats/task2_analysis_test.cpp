@@ -56,6 +56,7 @@ TEST(Task2, SeveralTrialsOfOnePersonAreRefusedOrWarnedOf) {
   test::add_pair(choices, 0, 1, 9, 10);
   choices.push_back(choices.back());
   AnalysisPlan plan;
+  plan.repeated_pairs = RepeatedPairs::Refuse;
   const auto refused = count_preferences(choices, 2, plan).at(0);
   EXPECT_FALSE(refused.test);
   EXPECT_THAT(refused.test.reason(), HasSubstr("2 times"));
@@ -67,6 +68,66 @@ TEST(Task2, SeveralTrialsOfOnePersonAreRefusedOrWarnedOf) {
   EXPECT_THAT(warned.warning, HasSubstr("not independent"));
   choices.pop_back();
   EXPECT_THAT(count_preferences(choices, 2, plan).at(0).warning, IsEmpty());
+}
+
+// By default a second visit costs no test: each person's share counts once.
+TEST(Task2, SecondVisitsAreTestedByEachPersonsShare) {
+  std::vector<PairChoice> choices;
+  test::add_pair(choices, 0, 1, 9, 10);
+  const auto once = count_preferences(choices, 2, {}).at(0);
+  EXPECT_FALSE(once.shares);
+  EXPECT_NEAR(*once.p(), 2 * 11 / 1024.0, 1e-15);
+  // Everybody answers as before: the same shares, and not twice the evidence.
+  for (auto again : std::vector<PairChoice>(choices)) choices.push_back(again);
+  const auto twice = count_preferences(choices, 2, {}).at(0);
+  ASSERT_TRUE(twice.shares);
+  EXPECT_EQ(twice.n, 20);
+  EXPECT_EQ(twice.shares->participants, 10);
+  EXPECT_NEAR(*twice.p(), *once.p(), 1e-15);
+  EXPECT_NEAR(twice.shares->share, 0.9, 1e-15);
+  EXPECT_NEAR(*twice.p_holm, *once.p(), 1e-15);
+  EXPECT_THAT(twice.warning, HasSubstr("each person's share"));
+  AnalysisPlan first;
+  first.repeated_pairs = RepeatedPairs::First;
+  const auto counted = count_preferences(choices, 2, first).at(0);
+  EXPECT_EQ(counted.n, 10);
+  EXPECT_NEAR(counted.test->p, *once.p(), 1e-15);
+  EXPECT_THAT(counted.warning, IsEmpty());
+}
+
+// All signs of the shares of two to seven people with one to three answers each.
+TEST(ShareTest, IsExactByGoingThroughAllSigns) {
+  const std::vector<PersonChoices> kinds{{0, 1}, {1, 1}, {0, 2}, {1, 2}, {2, 3}, {1, 3}};
+  for (int sample = 0; sample < 400; ++sample) {
+    std::vector<PersonChoices> people;
+    for (std::size_t i = 0; i < 2 + static_cast<std::size_t>(sample) % 6; ++i)
+      people.push_back(kinds[(static_cast<std::size_t>(sample) * (2 * i + 3) / (i + 2) + i) % kinds.size()]);
+    int seen = 0;  // in sixths, and twice
+    std::vector<int> values;
+    for (const auto& one : people) {
+      values.push_back((2 * one.k - one.n) * (6 / one.n));
+      seen += values.back();
+    }
+    int two_sided = 0, greater = 0;
+    for (int signs = 0; signs < 1 << people.size(); ++signs) {
+      int sum = 0;
+      for (std::size_t i = 0; i < people.size(); ++i) sum += (signs >> i & 1) ? values[i] : -values[i];
+      two_sided += std::abs(sum) >= std::abs(seen);
+      greater += sum >= seen;
+    }
+    const double all = 1 << people.size();
+    EXPECT_NEAR(share_test(people, Alternative::TwoSided, 0.95)->p, two_sided / all, 1e-14);
+    EXPECT_NEAR(share_test(people, Alternative::Greater, 0.95)->p, greater / all, 1e-14);
+  }
+}
+
+TEST(ShareTest, IsTheBinomialTestWhereEverybodyAnsweredOnce) {
+  for (int k = 0; k <= 12; ++k) {
+    std::vector<PersonChoices> people;
+    for (int i = 0; i < 12; ++i) people.push_back({i < k ? 1 : 0, 1});
+    for (const auto side : {Alternative::TwoSided, Alternative::Greater})
+      EXPECT_NEAR(share_test(people, side, 0.95)->p, binomial_test(k, 12, 0.5, side, 0.95)->p, 1e-13) << k;
+  }
 }
 
 TEST(Task2, PairsWithoutAnswersStandWithAReason) {

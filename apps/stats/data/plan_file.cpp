@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t largest_plan = 1u << 20;
 constexpr std::array timing_names{"none", "fail", "degraded"};
-constexpr std::array repeated_names{"refuse", "warn"};
+constexpr std::array repeated_names{"refuse", "warn", "share", "first"};
 constexpr std::array decision_names{"intersection-union", "holm"};
 constexpr std::array tests_names{"paired", "mixed"};
 constexpr const char* as_once_frozen = "H2, H3 and H6";
@@ -100,8 +100,8 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
   plan.resamples = static_cast<int>(root.integer_or("resamples", plan.resamples, {100, 1000000}));
   plan.seed = static_cast<std::uint64_t>(
       root.integer_or("seed", static_cast<std::int64_t>(plan.seed), base::non_negative));
-  const auto repeated =
-      root.choice_or("more_than_one_trial", "refuse", {repeated_names.begin(), repeated_names.end()});
+  const auto repeated = root.choice_or("more_than_one_trial", root.has("protocols") ? "refuse" : "share",
+                                       {repeated_names.begin(), repeated_names.end()});
   plan.repeated_pairs = static_cast<stats::RepeatedPairs>(index_in(repeated_names, repeated));
   if (root.has("margins")) {
     const auto margins = root.table("margins");
@@ -177,7 +177,8 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          "               # of intervals\nresamples = " + std::to_string(plan.resamples) +
          "               # of BCa intervals\nseed = " + std::to_string(plan.seed) +
          "\nmore_than_one_trial = \"" + repeated_names[static_cast<std::size_t>(plan.repeated_pairs)] +
-         "\"  # a participant with several answers to one pair: refuse or warn\n\n[margins]                  "
+         "\"  # a participant with several answers to one pair: share, first, refuse or warn\n\n[margins]    "
+         "              "
          "     # points on "
          "the scale\nrealism = " +
          base::shortest(plan.margin_realism) + "\nsickness = " + base::shortest(plan.margin_sickness) +

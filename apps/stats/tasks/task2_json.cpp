@@ -17,19 +17,30 @@ using Names = std::vector<std::string>;
 
 const std::string& name(const Names& methods, int index) { return methods[static_cast<std::size_t>(index)]; }
 
+const char* repeated_rule(stats::RepeatedPairs rule) {
+  switch (rule) {
+    case stats::RepeatedPairs::Refuse:
+      return "A pair that a participant answered more than once is not tested: answers of one person are not "
+             "independent.";
+    case stats::RepeatedPairs::Warn:
+      return "A pair that a participant answered more than once is tested with a warning: answers of one "
+             "person are not independent.";
+    case stats::RepeatedPairs::First:
+      return "Of a pair that a participant answered more than once, the first answer counts.";
+    case stats::RepeatedPairs::Share:
+      break;
+  }
+  return "Of a pair that a participant answered more than once, each person's share is tested against one "
+         "half, by an exact test over people.";
+}
+
 Json rules_json(const stats::AnalysisPlan& plan) {
   return {
       {"tests",
        "Exact binomial test for each pair against one half, two-sided; Clopper-Pearson and Wilson intervals; "
        "Holm "
        "and Benjamini-Hochberg over all pairs. Stars mark uncorrected p as in the paper."},
-      {"more_than_one_trial",
-       plan.repeated_pairs == stats::RepeatedPairs::Refuse
-           ? "A pair that a participant answered more than once is not tested: answers of one person are not "
-             "independent."
-           : "A pair that a participant answered more than once is tested with a warning: answers of one "
-             "person "
-             "are not independent."},
+      {"more_than_one_trial", repeated_rule(plan.repeated_pairs)},
       {"missing",
        "A pair counts those who answered it, also in sessions that ended early; circular triads those who "
        "answered every pair once."}};
@@ -37,28 +48,34 @@ Json rules_json(const stats::AnalysisPlan& plan) {
 
 Json pair_json(const stats::PairPreference& pair, const Names& methods) {
   const bool ok = static_cast<bool>(pair.test);
-  const std::optional<double> p = ok ? std::optional(pair.test->p) : std::nullopt;
-  return {{"a", name(methods, pair.a)},
-          {"b", name(methods, pair.b)},
-          {"n", pair.n},
-          {"participants", pair.participants},
-          {"k", pair.k},
-          {"share", pair.n > 0 ? Json(1.0 * pair.k / pair.n) : Json()},
-          {"p", json_number(p)},
-          {"stars", json_stars(p)},
-          {"p_holm", json_number(pair.p_holm)},
-          {"p_bh", json_number(pair.p_bh)},
-          {"stars_holm", json_stars(pair.p_holm)},
-          {"p_mid", ok ? Json(pair.test->p_mid) : Json()},
-          {"clopper_pearson", ok ? json_interval(pair.test->clopper_pearson) : Json()},
-          {"wilson", ok ? json_interval(pair.test->wilson) : Json()},
-          {"cohen_g", ok ? Json(pair.test->cohen_g) : Json()},
-          {"a_first", pair.a_first},
-          {"first_chosen", pair.first_chosen},
-          {"max_per_participant", pair.max_per_participant},
-          {"reason", pair.test.reason()},
-          {"warning", pair.warning},
-          {"paper", stats::in_paper_figure_10(name(methods, pair.a), name(methods, pair.b))}};
+  const auto p = pair.p();
+  Json json{{"a", name(methods, pair.a)},
+            {"b", name(methods, pair.b)},
+            {"n", pair.n},
+            {"participants", pair.participants},
+            {"k", pair.k},
+            {"share", pair.n > 0 ? Json(1.0 * pair.k / pair.n) : Json()},
+            {"p", json_number(p)},
+            {"stars", json_stars(p)},
+            {"p_holm", json_number(pair.p_holm)},
+            {"p_bh", json_number(pair.p_bh)},
+            {"stars_holm", json_stars(pair.p_holm)},
+            {"p_mid", ok ? Json(pair.test->p_mid) : Json()},
+            {"clopper_pearson", ok ? json_interval(pair.test->clopper_pearson) : Json()},
+            {"wilson", ok ? json_interval(pair.test->wilson) : Json()},
+            {"cohen_g", ok ? Json(pair.test->cohen_g) : Json()},
+            {"a_first", pair.a_first},
+            {"first_chosen", pair.first_chosen},
+            {"max_per_participant", pair.max_per_participant},
+            {"reason", pair.shares ? "" : pair.test.reason()},
+            {"warning", pair.warning},
+            {"paper", stats::in_paper_figure_10(name(methods, pair.a), name(methods, pair.b))}};
+  if (pair.shares)
+    json["by_person"] = {{"participants", pair.shares->participants},
+                         {"share", pair.shares->share},
+                         {"ci", json_interval(pair.shares->ci)},
+                         {"p", pair.shares->p}};
+  return json;
 }
 
 Json order_term_json(const stats::OrderTerm& term) {
