@@ -225,6 +225,10 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
             {"resamples", plan.resamples},
             {"seed", plan.seed}};
   if (!plan.levels.empty()) json["levels"] = plan.levels;
+  if (!format_pilot(plan.pilot).empty())
+    json["pilot"] = {{"reverse_coders", plan.pilot.exclude_reverse_coders ? "exclude" : "keep"},
+                     {"drift", plan.pilot.model_drift ? "model" : "keep"},
+                     {"lapses", plan.pilot.model_lapses ? "model" : "keep"}};
   return json;
 }
 
