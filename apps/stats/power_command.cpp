@@ -46,7 +46,7 @@ void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& opt
   };
   const bool task1 = kind == PowerKind::Task1, task2 = kind == PowerKind::Task2,
              pilot = kind == PowerKind::Pilot;
-  for (const char* option : {"--difference", "--sd", "--sd-sickness", "--shared-taste", "--answers"})
+  for (const char* option : {"--difference", "--sd", "--sd-sickness", "--answers"})
     only(option, task1, "Task 1");
   only("--interval-bias", task2, "Task 2");
   for (const char* option : {"--effect", "--world"}) only(option, !pilot, "Task 1 and Task 2");
@@ -185,12 +185,6 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
                  "Task 1: SD of a person's difference in cybersickness, points")
       ->capture_default_str()
       ->check(number_in(0.01, 10));
-  sub.add_option(
-         "--shared-taste", request.shared_taste,
-         "Task 1: share of an answer's variance that is the person's liking of the method, the same at "
-         "every n_*; an earlier study's linear_mixed has it")
-      ->capture_default_str()
-      ->check(number_in(0, 1));
   sub.add_option("--answers", command.answers, "Task 1: likert (whole scores) or continuous")
       ->capture_default_str()
       ->check(CLI::IsMember({"likert", "continuous"}));

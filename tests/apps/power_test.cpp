@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
-#include "apps/stats/power/answers.hpp"
 #include "apps/stats/power/power_figure.hpp"
 #include "apps/stats/power/power_json.hpp"
 #include "apps/stats/power/shown.hpp"
@@ -46,37 +44,6 @@ PowerRequest task2(std::vector<std::string> worlds, int studies) {
   auto request = request_for("protocols/task2.toml", {26}, studies);
   request.worlds = std::move(worlds);
   return request;
-}
-
-/// Correlation over people of the difference between two methods at one n_* with that at the other.
-double shared_between_n_stars(double shared_taste) {
-  auto request = task1({"null"}, 1);
-  request.shared_taste = shared_taste;
-  const apps::ShownFactors factors(request.protocol.design);
-  constexpr int people = 2000;
-  const auto trials = apps::planned_trials(request.protocol, 1, people);
-  const auto worlds = apps::make_worlds(request, factors);
-  const auto answers =
-      apps::answer_task1(trials, factors, worlds.at(0).scenarios.at(0), apps::task1_scatter(request), 5);
-  std::vector<std::array<double, 2>> difference(people);  // by n_*: method 0 less method 1
-  for (const auto& one : answers.realism)
-    if (one.method < 2)
-      difference[static_cast<std::size_t>(one.participant)][static_cast<std::size_t>(one.n_star)] +=
-          one.method == 0 ? one.sum : -one.sum;
-  double xy = 0, xx = 0, yy = 0;
-  for (const auto& [x, y] : difference) {
-    xy += x * y;
-    xx += x * x;
-    yy += y * y;
-  }
-  EXPECT_NEAR(std::sqrt(xx / people), request.sd_realism, 0.1);
-  return xy / std::sqrt(xx * yy);
-}
-
-TEST(PowerTastes, AreTheSameAtEveryNStarAndLeaveTheSpreadAsItWas) {
-  EXPECT_NEAR(shared_between_n_stars(0), 0, 0.09);
-  EXPECT_NEAR(shared_between_n_stars(0.5), 0.5, 0.08);
-  EXPECT_NEAR(shared_between_n_stars(1), 1, 1e-9);
 }
 
 /// Every test's uncorrected power against its formula.

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int sickness_items = 4;
 constexpr double rounding_variance = 1.0 / 12;
-constexpr std::uint64_t taste_key = 0x7461737465;  // the tastes' numbers are not the trials'
 
 /// The numbers of one participant: 0 to 9 are the person's own, then ten for each trial.
 class Draws {
@@ -59,12 +58,6 @@ double answer(const Task1Scatter& scatter, double latent, double low, double hig
   return std::clamp(std::round(latent), low, high);
 }
 
-/// A standard normal of which `share` of the variance is the person's and the method's, whatever the trial.
-double with_taste(const Draws& tastes, int method, int score, double share, double of_trial) {
-  if (share == 0) return of_trial;
-  return std::sqrt(share) * tastes.person(2 * method + score) + std::sqrt(1 - share) * of_trial;
-}
-
 double choose_first(double preferred, double bias) {
   return 1 / (1 + (1 - preferred) / preferred * std::exp(bias));
 }
@@ -74,7 +67,6 @@ double choose_first(double preferred, double bias) {
 Task1Scatter task1_scatter(const PowerRequest& request) {
   Task1Scatter out;
   out.answers = request.answers;
-  out.shared_taste = request.shared_taste;
   const double rounding = request.answers == AnswerScale::Likert ? rounding_variance : 0;
   const double realism = request.sd_realism * request.sd_realism / 2;
   const double sickness = request.sd_sickness * request.sd_sickness / 2;
@@ -103,14 +95,11 @@ Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors
     const auto& place = factors.cells[static_cast<std::size_t>(trial.first)];
     const auto cell = static_cast<std::size_t>(place.n_star) * factors.methods.size() +
                       static_cast<std::size_t>(place.method);
-    const Draws draws(key, trial.participant), tastes(key ^ taste_key, trial.participant);
-    const auto noise = [&](int score) {
-      return with_taste(tastes, place.method, score, scatter.shared_taste, draws.normal(trial, score));
-    };
+    const Draws draws(key, trial.participant);
     const double realism = truth.realism[cell] + scatter.participant_realism * draws.person(0) +
-                           scatter.noise_realism * noise(0);
+                           scatter.noise_realism * draws.normal(trial, 0);
     const double report = truth.sickness[cell] + scatter.participant_sickness * draws.person(1) +
-                          scatter.noise_sickness * noise(1);
+                          scatter.noise_sickness * draws.normal(trial, 1);
     double sickness = 0;
     for (int item = 0; item < sickness_items; ++item) {
       const double latent = report + scatter.noise_item * draws.normal(trial, 2 + item);

@@ -20,7 +20,6 @@ struct Task1Scatter {
   double participant_sickness = 0;
   double noise_sickness = 0;  ///< common to the four items of a report
   double noise_item = 0;
-  double shared_taste = 0;  ///< PowerRequest::shared_taste
   double realism_min = 1, realism_max = 7, item_min = 0, item_max = 3;
 };
 

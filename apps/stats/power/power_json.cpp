@@ -38,7 +38,6 @@ Json settings_json(const PowerRequest& request, PowerKind kind) {
     out["answers"] = request.answers == AnswerScale::Likert ? "likert" : "continuous";
     out["sd_realism"] = request.sd_realism;
     out["sd_sickness"] = request.sd_sickness;
-    out["shared_taste"] = request.shared_taste;
   }
   if (kind == PowerKind::Task2) {
     out["effect"] = json_number(request.effect);

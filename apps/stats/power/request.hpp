@@ -42,10 +42,6 @@ struct PowerRequest {
   AnswerScale answers = AnswerScale::Likert;
   double sd_realism = 1.3;  ///< of the difference between two methods' answers of one person, points
   double sd_sickness = 0.65;
-  /// Task 1: share of the variance of an answer, a person's own level aside, that is the person's liking of
-  /// the method and so the same at every n_*; 0 to 1. None by default: power for a claim of all n_* is then
-  /// not overstated.
-  double shared_taste = 0;
   double interval_bias = 0;  ///< Task 2: log odds in favour of the second interval
 
   study::PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: the paper's PTPE@4.0
