@@ -195,9 +195,11 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
       ->check(CLI::IsMember({"effect", "null", "margin", "paper"}));
   sub.add_option("--observer", command.observer, "Pilot: who rates, such as ptpe:a=24,b=0.02,noise=1");
   add_question_choice(sub, command.choice);
-  sub.add_option("--precision-a", request.precision_a, "Pilot: half width that a's interval is to reach, frames/s")
+  sub.add_option("--precision-a", request.precision_a,
+                 "Pilot: half width that a's interval is to reach, frames/s")
       ->check(number_in(1e-6, 1000));
-  sub.add_option("--precision-b", request.precision_b, "Pilot: half width that b's interval is to reach, s/frame")
+  sub.add_option("--precision-b", request.precision_b,
+                 "Pilot: half width that b's interval is to reach, s/frame")
       ->check(number_in(1e-9, 10));
   sub.add_option("--power", request.power, "Power to be reached")
       ->capture_default_str()

@@ -92,9 +92,9 @@ struct Hypothesis {
 
 /// H1 to H3. `untestable`: why H1 cannot be tested, such as gaze that was not tracked; empty: it can.
 /// Within each n_*, by paired t tests over participants, or by the mixed model of each score with the paired
-/// tests beside. Two-sided or one-sided as the plan says. Two-sided, H2 has twice the larger one-sided p, H3 the
-/// two-sided p against its margin, and both the interval of 1 - alpha. What the paper's rule says is of the
-/// paired tests.
+/// tests beside. Two-sided or one-sided as the plan says. Two-sided, H2 has twice the larger one-sided p, H3
+/// the two-sided p against its margin, and both the interval of 1 - alpha. What the paper's rule says is of
+/// the paired tests.
 std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
                                          const AnalysisPlan& plan, const std::string& untestable);
 

@@ -149,7 +149,8 @@ void try_calls(const Flow& flow, const Named& fault, long first, long step) {
   EXPECT_EQ(failed, 0) << flow.name << ", " << fault.name;
 }
 
-/// Some calls over the whole length of the flow, other ones for each kind of fault; FaultsSlow tries them all.
+/// Some calls over the whole length of the flow, other ones for each kind of fault; FaultsSlow tries them
+/// all.
 void try_some(const char* name) {
   constexpr long tries = 5;
   for (const Flow& flow : all_flows())

@@ -20,8 +20,8 @@ Json json_interval(const std::array<double, 2>& interval);
 Json json_interval(const std::optional<std::array<double, 2>>& interval);
 /// {"refused": reason}.
 Json json_refused(const std::string& reason);
-/// A reason in which methods go by their place, as stats has them ("method0, method2", "item 1", "items 1, 3"),
-/// with their names.
+/// A reason in which methods go by their place, as stats has them ("method0, method2", "item 1", "items 1,
+/// 3"), with their names.
 std::string with_names(const std::string& reason, const std::vector<std::string>& methods);
 /// "***", "**", "*" or ""; "" without p.
 std::string json_stars(const std::optional<double>& p);
