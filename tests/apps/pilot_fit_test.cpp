@@ -1,5 +1,6 @@
 #include "apps/stats/ptpe/pilot_fit.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "apps/stats/ptpe/contour_lines.hpp"
 #include "apps/stats/ptpe/heat_map.hpp"
+#include "apps/stats/ptpe/pilot_people_json.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
 namespace {
@@ -300,7 +302,10 @@ TEST(PilotFit, ReportsHowPeopleUsedTheScaleAndFollowsThePlan) {
   EXPECT_TRUE(has_flag(kept, "lapses"));
   auto raters = apps::fit_json(kept).at("raters");
   EXPECT_EQ(raters.at("reverse_coders").at("found"), 1);
-  EXPECT_NE(raters.at("reverse_coders").at("text").get<std::string>().find("p3"), std::string::npos);
+  EXPECT_THAT(raters.at("reverse_coders").at("text").get<std::string>(),
+              testing::StartsWith("1 of 16 participants rated higher frame rates lower"));
+  EXPECT_THAT(apps::reverse_coders(kept), testing::ElementsAre(testing::StartsWith("p3 (")));
+  EXPECT_EQ(apps::fit_json(kept).dump().find("p3"), std::string::npos) << "a fit names no one";
   EXPECT_EQ(raters.at("reverse_coders").at("rule"), "keep");
   EXPECT_TRUE(raters.at("drift").at("p").is_number());
   EXPECT_EQ(raters.at("lapses").at("found"), true);

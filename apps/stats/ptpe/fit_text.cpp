@@ -76,6 +76,7 @@ void print_raters(const PilotFit& fit) {
     std::replace(name.begin(), name.end(), '_', ' ');
     std::printf("  %s: %s\n", name.c_str(), text.c_str());
   }
+  for (const std::string& one : reverse_coders(fit)) std::printf("    reverse coder: %s\n", one.c_str());
 }
 
 }  // namespace

@@ -14,23 +14,13 @@ using Json = nlohmann::ordered_json;
 
 std::string p_text(double p) { return fmt::format("p {} {:.3f}", p < 0.001 ? "<" : "=", std::max(p, 0.001)); }
 
-std::string code_of(const PilotFit& fit, int participant) {
-  return fit.data.participants.at(static_cast<std::size_t>(participant));
-}
-
 std::string reversed_text(const PilotFit& fit) {
-  std::string list;
-  for (const auto& one : fit.people.slopes)
-    if (one.reversed)
-      list += fmt::format("{}{} ({:+.2f} points for each doubling, one-sided {})", list.empty() ? "" : ", ",
-                          code_of(fit, one.participant), one.slope, p_text(one.p));
-  const auto limit =
-      stats::reverse_level / std::max<double>(1, static_cast<double>(fit.people.slopes.size()));
-  return list.empty() ? fmt::format(
-                            "no participant rated higher frame rates lower (slope within each person, "
-                            "one-sided p below {:.2g})",
-                            limit)
-                      : "rated higher frame rates lower: " + list;
+  const auto& slopes = fit.people.slopes;
+  const auto limit = stats::reverse_level / std::max<double>(1, static_cast<double>(slopes.size()));
+  const std::string rule = fmt::format("slope within each person, one-sided p below {:.2g}", limit);
+  if (fit.people.reversed() == 0) return "no participant rated higher frame rates lower (" + rule + ")";
+  return fmt::format("{} of {} participants rated higher frame rates lower ({})", fit.people.reversed(),
+                     slopes.size(), rule);
 }
 
 std::string drift_text(const stats::SessionDrift& drift) {
@@ -50,14 +40,6 @@ std::string lapse_text(const stats::LapseCount& lapses) {
 }  // namespace
 
 Json raters_json(const PilotFit& fit) {
-  Json slopes = Json::array();
-  for (const auto& one : fit.people.slopes)
-    slopes.push_back({{"participant", code_of(fit, one.participant)},
-                      {"slope", one.slope},
-                      {"t", std::isfinite(one.t) ? Json(one.t) : Json()},
-                      {"df", one.df},
-                      {"p", one.p},
-                      {"reversed", one.reversed}});
   Json drift{{"rule", fit.rules.model_drift ? "model" : "keep"}};
   if (fit.people.drift) {
     const auto& test = *fit.people.drift;
@@ -87,10 +69,20 @@ Json raters_json(const PilotFit& fit) {
   return {{"reverse_coders",
            {{"rule", fit.rules.exclude_reverse_coders ? "exclude" : "keep"},
             {"found", fit.people.reversed()},
-            {"slopes", slopes},
+            {"tested", fit.people.slopes.size()},
             {"text", reversed_text(fit)}}},
           {"drift", drift},
           {"lapses", lapses}};
+}
+
+std::vector<std::string> reverse_coders(const PilotFit& fit) {
+  std::vector<std::string> out;
+  for (const auto& one : fit.people.slopes)
+    if (one.reversed)
+      out.push_back(fmt::format("{} ({:+.2f} points for each doubling, one-sided {})",
+                                fit.data.participants.at(static_cast<std::size_t>(one.participant)),
+                                one.slope, p_text(one.p)));
+  return out;
 }
 
 std::vector<FitFlag> rater_flags(const PilotFit& fit) {
