@@ -6,8 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <map>
-#include <mutex>
 #include <random>
 #include <string_view>
 #include <utility>
@@ -132,12 +130,6 @@ void give_identity(Connection& database) {
   sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
 }
 
-void mark(Connection& database, const SchemaSteps& steps, std::size_t version) {
-  database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
-  database.execute("PRAGMA user_version = " + std::to_string(version));
-  if (version == steps.size()) give_identity(database);
-}
-
 /// A step may make tables anew, so that rows point nowhere until it ends: they are checked before the commit.
 void take_step(Connection& database, const SchemaSteps& steps, std::size_t version) {
   sqlite::Transaction transaction(database);
@@ -147,33 +139,9 @@ void take_step(Connection& database, const SchemaSteps& steps, std::size_t versi
                       "cannot be upgraded: a row of " + lost.text(0) + " belongs to none of " + lost.text(2),
                       "restore a backup of it; the file was left as it is");
   }
-  mark(database, steps, version);
-  transaction.commit();
-}
-
-/// The SQL of each table, index, view and trigger that the steps leave in an empty database. Found once for
-/// each list of steps, since SQLite reads the whole schema again whenever a step changes a table.
-const std::vector<std::string>& whole_schema(const fs::path& shown, const SchemaSteps& steps) {
-  static std::mutex turn;
-  static std::map<SchemaSteps, std::vector<std::string>> known;
-  const std::lock_guard guard(turn);
-  if (const auto found = known.find(steps); found != known.end()) return found->second;
-  Connection database(shown, sqlite::Temporary{});
-  for (std::size_t version = 1; version <= steps.size(); ++version) take_step(database, steps, version);
-  std::vector<std::string> parts;
-  sqlite::Statement row(database,
-                        "SELECT sql FROM sqlite_schema WHERE sql IS NOT NULL AND name NOT GLOB 'sqlite_*' "
-                        "ORDER BY type <> 'table', rowid");
-  while (row.step()) parts.push_back(row.text(0));
-  return known.emplace(steps, std::move(parts)).first->second;
-}
-
-/// A new database as all steps leave it.
-void make_anew(Connection& database, const SchemaSteps& steps) {
-  const auto& parts = whole_schema(database.path(), steps);
-  sqlite::Transaction transaction(database);
-  for (const std::string& part : parts) database.execute(part);
-  mark(database, steps, steps.size());
+  database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
+  database.execute("PRAGMA user_version = " + std::to_string(version));
+  if (version == steps.size()) give_identity(database);
   transaction.commit();
 }
 
@@ -227,12 +195,9 @@ SchemaSteps read_schema_steps() {
 void upgrade(Connection& database, const SchemaSteps& steps) {
   // The switch has no effect within a transaction.
   database.execute("PRAGMA foreign_keys = OFF");
-  const auto version = static_cast<std::size_t>(database.integer("PRAGMA user_version"));
-  if (version == 0 && !steps.empty()) {
-    make_anew(database, steps);
-  } else {
-    for (std::size_t next = version + 1; next <= steps.size(); ++next) take_step(database, steps, next);
-  }
+  for (auto step = static_cast<std::size_t>(database.integer("PRAGMA user_version")); step < steps.size();
+       ++step)
+    take_step(database, steps, step + 1);
   database.execute("PRAGMA foreign_keys = ON");
 }
 

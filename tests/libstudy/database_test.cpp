@@ -5,7 +5,6 @@
 
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/salvage.hpp"
-#include "libstudy/store/schema.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
@@ -144,18 +143,6 @@ TEST(Database, UpgradeKeepsACopyAndTheData) {
   }
   ASSERT_THAT(copy.string(), HasSubstr("study.db.v" + version));
   EXPECT_EQ(test::trials_of(copy).size(), 21u);
-}
-
-/// A new database takes no steps (database.cpp): what it has instead is what they would have left.
-TEST(Database, ANewOneHasWhatTheStepsLeave) {
-  const test::TemporaryFolder folder;
-  const SchemaSteps steps = read_schema_steps();
-  open_database(folder / "old.db", Open::Create, {steps.front()});
-  const auto upgraded = open_database(folder / "old.db", Open::Write, steps);
-  const auto made = open_database(folder / "new.db", Open::Create, steps);
-  EXPECT_TRUE(schema_of(*made) == schema_of(*upgraded));
-  for (const std::string mark : {"PRAGMA application_id", "PRAGMA user_version"})
-    EXPECT_EQ(made->integer(mark), upgraded->integer(mark)) << mark;
 }
 
 TEST(Database, FailedUpgradeChangesNothing) {
