@@ -318,7 +318,7 @@ void replace_journal(const fs::path& path, const std::string& text) {
   // A power cut leaves the one or the other under the name, and both whole.
   if (base::rename_durably(draft, path, fs::exists(fs::symlink_status(path)) ? RENAME_EXCHANGE : 0))
     return remove_journal_draft(path);
-  // Network file systems know the plain rename alone.
+  // Network file systems cannot exchange two names, so the new journal replaces the old one.
   const int reason = errno;
   const Descriptor old(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (reason != EINVAL) fail(path, "cannot be replaced", reason);

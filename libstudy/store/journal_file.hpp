@@ -75,8 +75,8 @@ class JournalFile {
   std::uintmax_t size_ = 0;  ///< bytes, as this object left it
 };
 
-/// Puts a new file in the place of the old one. At each moment one of them, whole, has the name, also after a
-/// power cut. Then the old one is overwritten and deleted. Without `text` the old one is only deleted.
+/// Writes a new journal, gives it the name of the old one, then overwrites and deletes the old one. A power
+/// cut at any moment leaves a whole journal under the name. An empty `text` deletes the journal.
 void replace_journal(const std::filesystem::path& path, const std::string& text);
 
 /// Overwrites and deletes what a kill in replace_journal left beside the journal.

@@ -1,6 +1,6 @@
 #pragma once
-/// JSON texts from outside and to outside. How deep a text is nested is known before a parser builds it:
-/// printing or comparing a tree goes down it by recursion, so that a deep one ends the program.
+/// Reading and writing JSON that outsiders made. Nesting is limited before a text is parsed: printing or
+/// comparing a tree is recursive, and a deep tree overflows the stack.
 
 #include <cstddef>
 #include <string>

@@ -56,7 +56,7 @@ inline constexpr double far_below_factor = 2.46;
 /// the direct estimate. Of them, settings far below the curve are left out, and standard deviations at which
 /// the curve lies above the frame rates shown. Refused: fewer than least_participants, or than three standard
 /// deviations left; settings that do not determine the surface; scores that do not rise with the frame rate
-/// along the curve; participants who agree.
+/// along the curve; participants whose estimates are all the same.
 Result<FormTest> form_test(std::span<const PilotObservation> observations, const Curve& curve, double level,
                            double confidence);
 

@@ -39,7 +39,8 @@ std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstima
 inline constexpr const char* form_rejected = "form_rejected";
 std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct);
 
-/// The test in a sentence: c with its interval, what it means for the curve, and what could have been found.
+/// One sentence on the form test: c with its interval, how the curve differs, and the smallest |c|
+/// detectable.
 std::string form_text(const FormTest& form);
 
 }  // namespace stats

@@ -148,8 +148,9 @@ std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
   return out;
 }
 
-/// Standard deviation of the answers about what is expected, where that is in the middle half of the scores:
-/// towards the ends they scatter less. Residuals beyond `clip` add no more, so that lapses hardly widen it.
+/// Standard deviation of answers about their expected scores. Only expected scores in the middle half of the
+/// scale count, because answers near its ends scatter less. Residuals beyond `clip` add no more, so that
+/// lapses hardly widen it.
 double spread_about(std::span<const PilotRating> ratings, const std::vector<double>& expected, double lowest,
                     double highest) {
   constexpr double clip = 2.5;

@@ -48,8 +48,8 @@ struct TermSums {
   }
 };
 
-/// A local minimum after Marquardt (1963): damped Gauss-Newton steps until they vanish. A Place has `terms`,
-/// `parameters`, coefficients(), jacobian() with a row for each parameter, and moved(step).
+/// A local minimum after Marquardt (1963): damped Gauss-Newton steps until they vanish. The type Place
+/// provides `terms`, `parameters`, coefficients(), jacobian() (one row for each parameter) and moved(step).
 template <class Place>
 Place descend(const TermSums<Place::terms>& sums, Place at) {
   constexpr std::size_t T = Place::terms, P = Place::parameters;

@@ -37,8 +37,8 @@ namespace {
   ::_exit(0);
 }
 
-/// Makes what a process keeps of each version of the schema, so that the children of this one find it made.
-/// Otherwise each would take as long for it as for its command.
+/// Fills the process's cache of schemas, one for each version, before children are forked and share it.
+/// Without this each child spends half of its time on building them.
 void make_schemas() {
   const auto steps = study::read_schema_steps();
   for (std::size_t version = 1; version <= steps.size(); ++version) {

@@ -64,7 +64,8 @@ TEST(DatabaseGrammar, TextsThatAreNotUtf8EndNoCommandUnsaid) {
     fs::create_directories(box);
     fs::copy_file(sound, study);
     set_texts(study, key.second);
-    // Each is done, or refused with an error that names its mend: outcome_of lets no other exception through.
+    // Each command succeeds or throws base::Error, which outcome_of catches. Any other exception fails the
+    // test.
     EXPECT_NO_THROW(fuzz::outcome_of([&] { read_status(study); }));
     EXPECT_NO_THROW(fuzz::outcome_of([&] { export_csv(study, box / "csv"); }));
     EXPECT_NO_THROW(fuzz::outcome_of([&] { export_bids(study, box / "bids", true); }));

@@ -31,7 +31,7 @@ double share(const std::vector<char>& all) {
   return static_cast<double>(std::count(all.begin(), all.end(), 1)) / static_cast<double>(all.size());
 }
 
-/// Monte-Carlo standard errors that a share may lie off its bound.
+/// A share may miss its bound by this many Monte-Carlo standard errors.
 double slack(double share, std::size_t n) {
   return 3 * std::sqrt(share * (1 - share) / static_cast<double>(n));
 }

@@ -21,7 +21,7 @@ pilot <- function(people, threshold, drift) {
   rows
 }
 
-# The surface of stats/ptpe/form_test.hpp about the settings near 26 exp(0.02 delta).
+# Fits the surface that stats/ptpe/form_test.hpp defines to the settings near 26 exp(0.02 delta).
 fitted_bend <- function(rows, start) {
   fit <- nls(score ~ 4 + (log(mu) - l - s * e - g * e^2) * (k + m * e + q * (log(mu) - l - s * e - g * e^2)),
              data = rows, start = as.list(start), control = nls.control(maxiter = 500, tol = 1e-7, minFactor = 1e-12))
