@@ -121,8 +121,8 @@ std::array<bool, 3> round_about(const Triangles& mesh) {
 
 /// A row of nodes after another, each by whichever thread is free.
 void bake(const SurfaceTree& tree, DistanceGrid& out) {
-  const auto [nx, ny, nz] = out.nodes;
-  const int rows = ny * nz;
+  // Names of their own: clang 14 lets no lambda use a structured binding.
+  const int nx = out.nodes[0], ny = out.nodes[1], rows = ny * out.nodes[2];
   std::atomic<int> next = 0;
   const auto work = [&] {
     for (int row = next++; row < rows; row = next++) {

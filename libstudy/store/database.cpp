@@ -47,10 +47,30 @@ Identity identify(Connection& database) {
           database.integer("SELECT EXISTS (SELECT 1 FROM sqlite_schema)") == 0};
 }
 
+std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
+
+/// A power cut in the very first transaction leaves any bytes, and a journal that makes them none again.
+bool was_empty_before(const fs::path& journal) {
+  // The journal's head (sqlite.org/fileformat.html, section 3): magic, 8 bytes on the pages of the file.
+  std::ifstream file(journal, std::ios::binary);
+  std::string head(20, '\0');
+  constexpr std::string_view magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+  return file.read(head.data(), 20) && head.starts_with(magic) && big_endian(head, 16) == 0;
+}
+
 /// Throws unless the database is ours, or blank where one may be made, and not newer than the program.
 void recognise(const fs::path& path, const Identity& found, Open how, std::size_t newest) {
   const bool blank = found.empty && found.application == 0 && found.version == 0;
   if (blank && how == Open::Create) return;
+  if (holds_nothing(path)) {
+    throw base::Error(path.string(),
+                      "holds nothing: it is empty, or the command that was making it was cut off",
+                      "give that command again, vip-study run or merge: it makes the file anew");
+  }
   if (found.application != database_application_id) {
     throw base::Error(path.string(), "is not a database of vip-study",
                       "name the file that vip-study run wrote, or a new file");
@@ -63,25 +83,10 @@ void recognise(const fs::path& path, const Identity& found, Open how, std::size_
   }
 }
 
-std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
-  return value;
-}
-
 bool has_bytes(const fs::path& path) {
   std::error_code ignored;
   const auto bytes = fs::file_size(path, ignored);
   return !ignored && bytes > 0;
-}
-
-/// A power cut in the very first transaction leaves any bytes, and a journal that makes them none again.
-bool was_empty_before(const fs::path& journal) {
-  // The journal's head (sqlite.org/fileformat.html, section 3): magic, 8 bytes on the pages of the file.
-  std::ifstream file(journal, std::ios::binary);
-  std::string head(20, '\0');
-  constexpr std::string_view magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
-  return file.read(head.data(), 20) && head.starts_with(magic) && big_endian(head, 16) == 0;
 }
 
 /// Throws for what the file's own first bytes show not to be ours, before SQLite has used its log or journal.
@@ -182,6 +187,16 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
 }
 
 }  // namespace
+
+bool holds_nothing(const fs::path& path) {
+  if (!has_bytes(path)) return true;
+  if (!was_empty_before(path.string() + "-journal")) return false;
+  // Beside a database that has more than its first step, such a journal is of another file.
+  std::string head(header_bytes, '\0');
+  const bool whole = bool(std::ifstream(path, std::ios::binary).read(head.data(), header_bytes));
+  return !whole || !head.starts_with(sqlite_magic) ||
+         big_endian(head, application_at) != database_application_id || big_endian(head, version_at) <= 1;
+}
 
 SchemaSteps read_schema_steps() {
   SchemaSteps steps;

@@ -37,6 +37,10 @@ std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& p
                                                   const SchemaSteps& steps, std::int64_t max_pages = 0,
                                                   const sqlite::Waiting& waiting = {});
 
+/// Whether no commit was ever made: the file is missing, empty, or was being made when a kill or a power cut
+/// ended the program, so that its journal makes it empty again. Open::Create makes such a file anew.
+bool holds_nothing(const std::filesystem::path& path);
+
 /// Brings a database to the newest schema of `steps`, each step in one transaction.
 void upgrade(sqlite::Connection& database, const SchemaSteps& steps);
 

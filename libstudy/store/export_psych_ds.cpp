@@ -13,6 +13,7 @@
 #include "libstudy/store/sickness_table.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json_depth.hpp"
+#include "stats/base/new_file.hpp"
 
 namespace study {
 
@@ -124,7 +125,7 @@ PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
   ExportDraft draft({study.path, psych_ds_kind, people_of(sessions), Readers::AsUmask}, folder);
   std::vector<ExportedFile> files;
   std::set<std::string> named;
-  fs::create_directory(draft.path() / "data");
+  base::make_folder_of(draft.path() / "data" / "of sessions");
   for (const LabelledSession& session : sessions) {
     const std::string stem =
         "data/study-" + session.protocol + "_subject-" + session.subject + "_session-" + session.session;

@@ -85,6 +85,18 @@ void forget(const std::vector<OwnExport>& made) {
   forget_own_exports(ids);
 }
 
+/// Of what stands there no longer, the register keeps what this program deleted itself.
+void settle_gone(const std::vector<OwnExport>& made) {
+  std::vector<OwnExport> moved;
+  for (const OwnExport& one : made) {
+    if (one.deleted)
+      has_deleted_own_export(one);
+    else
+      moved.push_back(one);
+  }
+  forget(moved);
+}
+
 /// Whether this database has a say in what this installation made at a place: somebody of it withdrew from
 /// here, or it was made of this very file.
 bool concerns(Connection& database, const std::vector<OwnExport>& made) {
@@ -104,13 +116,17 @@ std::string remove_standing(Connection& database, const Leftover& one, const std
   if (here == made.end())
     return "is not as it was written: it was changed, or files were added\n  mend: delete it by hand";
   if (!anyone_withdrew(database, *here)) {
-    if (one.tackled || here->database == fs::weakly_canonical(database.path())) return "";
+    if (one.tackled || here->database == fs::weakly_canonical(database.path()) ||
+        was_deleted_here(one.path, one.sha256))
+      return "";
     return "is no longer there: another export stands in its place\n  mend: where it was moved or copied to, "
            "delete it";
   }
   mark_tackled(database, one);
+  will_delete_own_export(*here);
   remove_whole(*here);
   forget(made);
+  has_deleted_own_export(*here);
   return "";
 }
 
@@ -128,9 +144,9 @@ std::string remove_leftover(Connection& database, const Leftover& one) {
     return never_placed ? "" : remove_standing(database, one, made);
   }
   base::sync_folder_of(one.path);
-  if (concerned) forget(made);
+  if (concerned) settle_gone(made);
   const bool was_there = one.host.empty() || !one.sha256.empty();
-  if (one.tackled || !was_there) return "";
+  if (one.tackled || !was_there || was_deleted_here(one.path, one.sha256)) return "";
   return "is no longer there\n  mend: where it was moved or copied to, delete it";
 }
 

@@ -50,9 +50,8 @@ std::vector<fs::path> distinct(const std::vector<fs::path>& sources, const fs::p
 
 Content read_all(const std::vector<fs::path>& sources, const fs::path& into, bool incomplete) {
   Content content;
-  std::error_code ignored;
   std::vector<fs::path> paths = distinct(sources, into);
-  if (fs::exists(into, ignored) && fs::file_size(into, ignored) > 0) paths.push_back(into);
+  if (!holds_nothing(into)) paths.push_back(into);
   for (const fs::path& path : paths) {
     auto source = open_study({path, incomplete && path != into}).database;
     source->execute("BEGIN");  // one moment of it, though a session may be running

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -46,7 +47,8 @@ Json json_of(const OwnExport& made) {
           {"path", made.path.string()},
           {"draft", made.draft.string()},
           {"sha256", made.sha256},
-          {"people", made.people}};
+          {"people", made.people},
+          {"deleted", made.deleted}};
 }
 
 std::optional<OwnExport> read_line(const std::string& line) {
@@ -59,7 +61,8 @@ std::optional<OwnExport> read_line(const std::string& line) {
                      .path = json.at("path").get<std::string>(),
                      .draft = json.at("draft").get<std::string>(),
                      .sha256 = json.at("sha256"),
-                     .people = json.at("people")};
+                     .people = json.at("people"),
+                     .deleted = json.value("deleted", false)};
   } catch (const Json::exception&) {
     return {};
   }
@@ -106,6 +109,10 @@ void change(const std::function<void(std::vector<OwnExport>&)>& how) {
   next.put_in_place();
 }
 
+std::string digest(const fs::path& path, const std::string& sha256) {
+  return base::sha256_hex(path.string() + '\n' + sha256);
+}
+
 }  // namespace
 
 std::string new_export_id() { return base::random_digits() + base::random_digits(); }
@@ -141,6 +148,32 @@ void forget_own_exports(const std::set<std::string>& ids) {
   if (ids.empty()) return;
   change([&](std::vector<OwnExport>& all) {
     std::erase_if(all, [&](const OwnExport& made) { return ids.contains(made.id); });
+  });
+}
+
+void will_delete_own_export(OwnExport made) {
+  made.deleted = true;
+  keep_own_export(made);
+}
+
+void has_deleted_own_export(const OwnExport& made) {
+  keep_own_export({.id = made.id,
+                   .host = made.host,
+                   .kind = made.kind,
+                   .database = {},
+                   .path = {},
+                   .draft = {},
+                   .sha256 = digest(made.path, made.sha256),
+                   .people = {},
+                   .deleted = true});
+}
+
+bool was_deleted_here(const fs::path& path, const std::string& sha256) {
+  const auto all = read_all(own_exports_file());
+  return std::any_of(all.begin(), all.end(), [&](const OwnExport& made) {
+    if (!made.deleted || made.host != this_host()) return false;
+    return made.path.empty() ? made.sha256 == digest(path, sha256)
+                             : made.path == path && made.sha256 == sha256;
   });
 }
 

@@ -23,6 +23,7 @@ struct OwnExport {
   std::filesystem::path draft;   ///< where it stands until it is in place, and while it is deleted
   std::string sha256;            ///< of a file, of a folder's list of files; empty: not yet whole
   std::set<std::string> people;  ///< session.person of those in it
+  bool deleted = false;          ///< by this program, or about to be
 };
 
 /// 32 random hexadecimal digits.
@@ -40,6 +41,14 @@ std::vector<OwnExport> own_exports_at(const std::filesystem::path& path);
 void keep_own_export(const OwnExport& made);
 /// Takes exports out of the register, where they stand there.
 void forget_own_exports(const std::set<std::string>& ids);
+
+/// Notes that this program is about to delete an export.
+void will_delete_own_export(OwnExport made);
+/// Once it is deleted, the register keeps a digest of its place and content alone.
+void has_deleted_own_export(const OwnExport& made);
+/// Whether this installation deleted what a database says stands at a path. Another database, merged before,
+/// may name it still.
+bool was_deleted_here(const std::filesystem::path& path, const std::string& sha256);
 
 /// The list of a folder's files, "<SHA-256>  <name>" a line as sha256sum -c reads it, under a line with its
 /// id. It stands in the folder itself, as marker_of() its kind, and lists all other files.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Command {
   std::map<std::string, std::vector<Person>> gone{};
   /// Likewise once `other` is done; what holds in any case is found in tombstones.
   std::map<std::string, std::vector<Person>> gone_by_other{};
+  /// Whose permission the command gives; until it is settled, either answer holds.
+  std::set<std::string> allowed{};
   bool refuses = false;  ///< the command must be refused, and nothing changed
   bool is_read = true;   ///< exports can be made of the stations before the command is given again
 };

@@ -80,7 +80,11 @@ void Crashes::check(const When& when, const Gone& gone, Problems& problems) {
   for (const std::string& name : command_.stations) {
     Problems found;
     const fs::path station = now_ / name;
-    const DatabaseFacts facts = read_facts(station / "s.db", peek_, found);
+    DatabaseFacts facts = read_facts(station / "s.db", peek_, found);
+    // Exports obey the journal, which may be ahead of the database.
+    if (!when.settled)
+      for (const std::string& key : command_.allowed)
+        if (facts.sessions.contains(key)) facts.sessions[key].gaze = facts.sessions[key].sharing = {};
     std::vector<Person> people;
     if (const auto all = gone.find(name); all != gone.end()) people = all->second;
     const auto add = [&](const Problems& more) { found.insert(found.end(), more.begin(), more.end()); };

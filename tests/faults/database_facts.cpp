@@ -11,12 +11,14 @@ using study::sqlite::Statement;
 
 namespace {
 
-/// The last change counts, and without one the answer on the consent page.
+/// What holds now: 0 where a change that no later one supersedes refuses, as stations that did not know of
+/// each other may have said both; without changes, the last answer on the consent page.
 std::string decision_sql(const std::string& what, const std::string& question) {
-  return "coalesce((SELECT granted FROM permission_change c WHERE c.session_id = s.session_id AND what = '" +
+  return "coalesce((SELECT min(granted) FROM permission_change c WHERE c.session_id = s.session_id AND what "
+         "= '" +
          what +
-         "' ORDER BY permission_change_id DESC LIMIT 1), (SELECT score FROM response JOIN unit u USING "
-         "(unit_id) JOIN question q USING (question_id) WHERE u.session_id = s.session_id AND q.code = '" +
+         "' AND coalesce(superseded, 0) = 0), (SELECT score FROM response JOIN unit u USING (unit_id) JOIN "
+         "question q USING (question_id) WHERE u.session_id = s.session_id AND q.code = '" +
          question + "' ORDER BY response_id DESC LIMIT 1))";
 }
 

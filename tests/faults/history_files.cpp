@@ -1,7 +1,6 @@
 /// Commands of a history that go about whole databases.
 #include <algorithm>
 
-#include "libstudy/store/chores.hpp"
 #include "libstudy/store/merge.hpp"
 #include "libstudy/store/salvage.hpp"
 #include "tests/faults/history_run.hpp"
@@ -28,7 +27,7 @@ void HistoryRun::merge(const Step& step) {
   const Tree before = step.other ? read_tree(stations_.root()) : Tree();
   const auto work = [&] {
     const auto done = study::merge(sources, database());
-    study::check_nothing_left(database(), done.beside.left);
+    check_cleaned(database(), done.beside.left, export_was_cut_);
   };
   if (restored) {
     // It is refused, or nobody who withdrew comes back by it; there is no telling what else it brings.

@@ -2,7 +2,6 @@
 
 #include <iterator>
 
-#include "libstudy/store/chores.hpp"
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
@@ -52,12 +51,9 @@ bool HistoryRun::command(const Step& step, bool always, const Work& work) {
       return stations_.perform(step, station_, false, [&] { resume(database(), own); });
     };
     ended = open();
-    // Exports with gaze that is refused now are named once, with exit status 1.
-    if (ended.problem.find("named above") != std::string::npos) ended = open();
-    const bool unmade = ended.problem.find("is not a database of vip-study") != std::string::npos;
-    if (ended.how != How::Done && !here().restored && !(unmade && here().people.empty()))
-      wrong("cannot be opened after a fault: " + ended.problem);
+    if (ended.how != How::Done && !here().restored) wrong("cannot be opened after a fault: " + ended.problem);
     if (here().restored && ended.how != How::Done) return false;
+    here().restored = false;  // it is as the journal has it
   }
   if (!always && !step.other) return false;
   here().ahead_s += recovery_s;
@@ -117,7 +113,7 @@ void HistoryRun::consent(const Step& step) {
   (what == What::Gaze ? wish.gaze : wish.sharing) = step.yes;
   const bool done = command(step, false, [&] {
     const auto change = study::change_permissions(database(), before.participant, wish);
-    study::check_nothing_left(database(), change.left);
+    check_cleaned(database(), change.left, export_was_cut_);
   });
   const SessionFacts after = facts().sessions[key];
   const bool recorded = what == What::Gaze ? after.gaze_changes > before.gaze_changes
@@ -132,7 +128,7 @@ void HistoryRun::withdraw(const Step& step) {
   told_ += "withdrawal of " + key;
   const std::string code = facts().sessions[key].participant;
   const bool done = command(step, false, [&] {
-    study::check_nothing_left(database(), study::withdraw(database(), code).beside.left);
+    check_cleaned(database(), study::withdraw(database(), code).beside.left, export_was_cut_);
   });
   if (!done && !facts().withdrawn.contains(key)) return;
   here().people.erase(key);
@@ -144,6 +140,7 @@ void HistoryRun::write_export(const Step& step) {
   const std::string name = "out" + std::to_string(step.choice % 4);
   const fs::path out = stations_.folder_of(station_) / name;
   told_ += "export to " + name;
+  export_was_cut_ = export_was_cut_ || step.fault != Step::Fault::None;
   command(step, false, [&] {
     if (step.choice % 4 == 0) study::export_csv(database(), out, {true, step.yes});
     if (step.choice % 4 == 1) study::export_psych_ds(database(), out);

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "libstudy/store/database.hpp"
 #include "tests/faults/crash_states.hpp"
 #include "tests/faults/crashes.hpp"
 
@@ -46,10 +47,7 @@ Stations::Stations(const fs::path& folder)
 
 fs::path Stations::kept(std::size_t number) const { return kept_ / std::to_string(number); }
 
-bool Stations::has_database(std::size_t station) const {
-  std::error_code none;
-  return fs::exists(database_of(station), none) && fs::file_size(database_of(station), none) > 0;
-}
+bool Stations::has_database(std::size_t station) const { return !study::holds_nothing(database_of(station)); }
 
 Ended Stations::perform(const Step& step, std::size_t station, bool with_fault,
                         const std::function<void()>& command) {

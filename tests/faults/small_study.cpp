@@ -4,8 +4,8 @@
 #include <set>
 
 #include "libstudy/session/interruptions.hpp"
-#include "libstudy/store/chores.hpp"
 #include "libstudy/store/withdraw.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/faults/file_calls.hpp"
 #include "tests/libstudy/session_fixture.hpp"
@@ -201,6 +201,21 @@ std::string Person::mark() const { return "zq" + base::sha256_hex(key() + " mark
 
 double Person::place() const { return 0.1 + static_cast<double>(number_of(*this) % 800'000'000'007) / 1e12; }
 
+void check_cleaned(const fs::path& database, std::vector<std::string> left, bool export_was_cut) {
+  const auto says = [](const std::string& line, const char* words) {
+    return line.find(words) != std::string::npos;
+  };
+  std::erase_if(left, [&](const std::string& line) {
+    if (line.starts_with("backup ")) return says(line, ": holds gaze that ");
+    return line.starts_with("export ") &&
+           (says(line, ": may hold gaze that ") || (export_was_cut && says(line, " is no longer there")));
+  });
+  if (left.empty()) return;
+  std::string lines;
+  for (const std::string& line : left) lines += line + "; ";
+  throw base::Error(database.string(), "is not clean: " + lines, "none");
+}
+
 void play(const fs::path& database, const std::vector<Person>& people, int units) {
   const Protocol protocol = parse_protocol(small_protocol, "small.toml");
   const auto there = known(database);
@@ -213,14 +228,14 @@ void play(const fs::path& database, const std::vector<Person>& people, int units
   }
   if (!run.sessions.empty()) store.add_run(run);
   play_open(database, store, protocol, people, units);
-  check_nothing_left(database, store.left_to_clean());
+  check_cleaned(database, store.left_to_clean());
 }
 
 void resume(const fs::path& database, const std::vector<Person>& people) {
   const Protocol protocol = parse_protocol(small_protocol, "small.toml");
   Store store(database, sqlite::Open::Write);
   play_open(database, store, protocol, people, 1000);
-  check_nothing_left(database, store.left_to_clean());
+  check_cleaned(database, store.left_to_clean());
 }
 
 }  // namespace faults

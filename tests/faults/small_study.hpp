@@ -26,6 +26,11 @@ struct Person {
 /// resume do; at most so many units. Records "done <key> <position>" for each unit that is acknowledged.
 void play(const fs::path& database, const std::vector<Person>& people, int units = 1000);
 
+/// Throws, with each line, where something is left to clean that the command can clean itself. Exports and
+/// backups that hold gaze which is refused now are for the experimenter to delete. After an export that was
+/// cut off, the database may name one that never came into its place.
+void check_cleaned(const fs::path& database, std::vector<std::string> left, bool export_was_cut = false);
+
 /// Opens for writing and finishes what is open, as resume does.
 void resume(const fs::path& database, const std::vector<Person>& people);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "libstudy/store/export_csv.hpp"
+#include "libstudy/store/merge.hpp"
 #include "libstudy/store/salvage.hpp"
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/store.hpp"
@@ -99,6 +100,32 @@ TEST(Database, NameWithUriSyntaxIsAName) {
   const test::TemporaryFolder folder;
   open_database(folder / "a?mode=memory#%41.db", Open::Create, read_schema_steps());
   EXPECT_TRUE(fs::exists(folder / "a?mode=memory#%41.db"));
+}
+
+/// What a power cut leaves of the very first transaction: some pages without the first, and a journal by
+/// which the file was empty before.
+void put_unmade(const fs::path& path) {
+  base::write_file_atomically(path, std::string(4096, '\0') + std::string(8192, '\r'));
+  std::string journal("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7\0\0\0\0\0\0\0\1\0\0\0\0\0\0\2\0\0\0\x10\0", 28);
+  journal.resize(512, '\0');
+  base::write_file_atomically(path.string() + "-journal", journal);
+}
+
+TEST(Database, CutOffInItsFirstTransactionIsMadeAnew) {
+  const test::TemporaryFolder folder;
+  const fs::path path = make_study(folder), run = folder / "run.db", into = folder / "into.db";
+  for (const fs::path& one : {run, into}) put_unmade(one);
+  EXPECT_TRUE(holds_nothing(into));
+  EXPECT_FALSE(holds_nothing(path));
+  EXPECT_THAT([&] { export_csv(into, folder / "csv"); },
+              ThrowsMessage<base::Error>(HasSubstr("holds nothing")));
+  Store(run, Open::Create).add_run(test::run_plan(test::pilot(), {"P02"}));
+  EXPECT_EQ(merge({path, run}, into).sessions, 2);
+  // The same journal beside a whole database is of another file.
+  fs::copy_file(path, folder / "whole.db");
+  put_unmade(folder / "other.db");
+  fs::rename(folder / "other.db-journal", folder / "whole.db-journal");
+  EXPECT_FALSE(holds_nothing(folder / "whole.db"));
 }
 
 TEST(Database, FullAtItsCreationLeavesNoFile) {

@@ -157,6 +157,19 @@ TEST_F(OwnExports, OfAnotherStudyInTheSamePlaceStay) {
   EXPECT_THAT(withdraw(other, "Q01").beside.cleaned, ElementsAre(csv, folder / "r.json"));
 }
 
+TEST_F(OwnExports, ThatAreDeletedAlreadyRaiseNoAlarmInDatabasesOfBefore) {
+  export_csv(path, csv);
+  const fs::path all = folder / "all.db";
+  merge({path}, all);
+  EXPECT_THAT(withdraw(path, "P01").beside.cleaned, ElementsAre(csv));
+  EXPECT_THAT(test::bytes_of(own_exports_file()), ::testing::Not(HasSubstr(csv.string())));
+  EXPECT_THAT(merge({path}, all).beside.left, IsEmpty());
+  // What was moved away is named all the same.
+  export_csv(path, csv);
+  fs::rename(csv, folder / "moved");
+  EXPECT_THAT(withdraw(path, "P02").beside.left, ElementsAre(HasSubstr("no longer there")));
+}
+
 TEST_F(OwnExports, ThatWereEditedByHandAreNamedAndStay) {
   export_csv(path, csv);
   export_bids(path, folder / "bids");
