@@ -21,6 +21,7 @@ struct SessionCopy {
   int visit = 1;
   bool test_data = false;
   std::int64_t events = 0, frames = 0, played = 0;  ///< how far it went
+  std::int64_t gaze = 0;                            ///< samples, poses of the head and validations
   std::optional<StationNumber> station_number;
   bool counts = false;  ///< for the balance: Store::taken_slots()
 };

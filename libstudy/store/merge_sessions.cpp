@@ -20,7 +20,12 @@ constexpr const char* sessions_sql =
     "WHERE t.session_id = s.session_id), "
     "(SELECT count(*) FROM presentation q JOIN trial t USING (trial_id) WHERE t.session_id = s.session_id "
     "AND q.state = 'played'), s.station_number, s.station_count, "
-    "s.test_data = p.test_data AND s.state IN ('open', 'done', 'stopped') "
+    "s.test_data = p.test_data AND s.state IN ('open', 'done', 'stopped'), "
+    "(SELECT count(*) FROM gaze JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
+    "WHERE t.session_id = s.session_id) + "
+    "(SELECT count(*) FROM head JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
+    "WHERE t.session_id = s.session_id) + "
+    "(SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id) "
     "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
 
 /// Without changes of permissions, which go on in any copy: Union::add_permissions joins them.
@@ -34,8 +39,10 @@ std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   return log;
 }
 
+/// Of copies that went equally far, the one that kept its gaze: what a refusal concerns is left out of the
+/// union in any case (drop_unallowed_gaze).
 bool less_far(const SessionCopy& a, const SessionCopy& b) {
-  return std::tie(a.events, a.frames, a.played) < std::tie(b.events, b.frames, b.played);
+  return std::tie(a.events, a.frames, a.played, a.gaze) < std::tie(b.events, b.frames, b.played, b.gaze);
 }
 
 /// Each entry of the log is one commit, so that a copy is as old as its log is short.
@@ -111,6 +118,7 @@ void add_source(Content& content, std::unique_ptr<Connection> source) {
       copy.station_number =
           StationNumber{static_cast<int>(row.integer(13)), static_cast<int>(row.integer(14))};
     copy.counts = row.integer(15) != 0;
+    copy.gaze = row.integer(16);
     content.copies.push_back(std::move(copy));
   }
   Statement stone(*source, "SELECT person, code, station, withdrawn_utc FROM tombstone");

@@ -12,13 +12,20 @@ using study::sqlite::Statement;
 namespace {
 
 /// What holds now: 0 where a change that no later one supersedes refuses, as stations that did not know of
-/// each other may have said both; without changes, the last answer on the consent page.
-std::string decision_sql(const std::string& what, const std::string& question) {
-  return "coalesce((SELECT min(granted) FROM permission_change c WHERE c.session_id = s.session_id AND what "
-         "= '" +
-         what +
-         "' AND coalesce(superseded, 0) = 0), (SELECT score FROM response JOIN unit u USING (unit_id) JOIN "
-         "question q USING (question_id) WHERE u.session_id = s.session_id AND q.code = '" +
+/// each other may have said both; in schemas that do not say so, the last change. Without changes, the last
+/// answer on the consent page.
+std::string decision_sql(Connection& database, const std::string& what, const std::string& question) {
+  const bool says_which_holds =
+      database.integer(
+          "SELECT count(*) FROM pragma_table_info('permission_change') WHERE name = 'superseded'") > 0;
+  const std::string changes =
+      " FROM permission_change c WHERE c.session_id = s.session_id AND what = '" + what + "'";
+  return "coalesce((SELECT " +
+         (says_which_holds ? "min(granted)" + changes + " AND coalesce(superseded, 0) = 0"
+                           : "granted" + changes + " ORDER BY permission_change_id DESC LIMIT 1") +
+         "), (SELECT score FROM response JOIN unit u USING (unit_id) JOIN question q USING (question_id) "
+         "WHERE "
+         "u.session_id = s.session_id AND q.code = '" +
          question + "' ORDER BY response_id DESC LIMIT 1))";
 }
 
@@ -29,8 +36,9 @@ void read_sessions(Connection& database, DatabaseFacts& facts) {
   const std::string changes =
       "(SELECT count(*) FROM permission_change c WHERE c.session_id = s.session_id AND what = '";
   Statement row(database,
-                "SELECT person, participant, code, station, state, " + decision_sql("gaze", "gaze_kept") +
-                    ", " + decision_sql("sharing", "data_shared") + ", " + changes + "gaze'), " + changes +
+                "SELECT person, participant, code, station, state, " +
+                    decision_sql(database, "gaze", "gaze_kept") + ", " +
+                    decision_sql(database, "sharing", "data_shared") + ", " + changes + "gaze'), " + changes +
                     "sharing'), (SELECT count(*) FROM gaze" + of_session + " + (SELECT count(*) FROM head" +
                     of_session +
                     " + (SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id) FROM "

@@ -288,9 +288,11 @@ class Histories {
 };
 
 TEST(PermissionHistories, EndAsTheRuleSaysWhateverTheClocksSaid) {
-  for (unsigned seed = 1; seed <= 12 && !::testing::Test::HasFailure(); ++seed) {
+  // The last two once ended otherwise: by the order of the sources, and by what was merged first.
+  for (const unsigned seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 1368, 1816}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Histories(seed).run();
+    if (::testing::Test::HasFailure()) break;
   }
 }
 
