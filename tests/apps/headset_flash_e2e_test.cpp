@@ -22,7 +22,8 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
   void SetUp() override { bake_dam(dam_, 60); }
 
   /// Two showings of half a second without any black of their own, after a page of consent.
-  test::Ended session(const std::string& profile, const std::string& gaze) {
+  test::Ended session(const std::string& profile, const std::string& gaze,
+                      const std::string& clock = "virtual") {
     std::string text = study::test::asking_protocol().text;
     const auto set = [&](const std::string& from, const std::string& to) {
       text.replace(text.find(from), from.size(), to);
@@ -35,7 +36,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
     fs::remove(database_ + ".answers.jsonl");
     return study("size=32x32;" + profile,
                  {"run", folder_ / "asking.toml", "--db", database_, "--observer", "constant:1", "--display",
-                  "openxr", "--clock", "virtual", "--stimulus", dam_, "--participants", "1", "--gaze", gaze});
+                  "openxr", "--clock", clock, "--stimulus", dam_, "--participants", "1", "--gaze", gaze});
   }
   std::int64_t count(const std::string& rows) const {
     return study::sqlite::Connection(database_, study::sqlite::Open::Read)
@@ -104,6 +105,10 @@ TEST_F(HeadsetFlashE2e, WithoutTheEyesNothingIsShown) {
   const auto again = study("size=32x32", {"resume", "--db", database_});
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(count("presentation WHERE state = 'played'"), 2);
+  const auto real = session("clock=real;rates=60;rate=60;gaze_valid=0", "tracked", "real");
+  EXPECT_EQ(real.exit_code, 1);
+  EXPECT_THAT(real.err, HasSubstr("the eye tracker does not see the eyes"));
+  EXPECT_EQ(count("presentation"), 0);
   // Lost for good while it is shown.
   const auto lost = session("at=45:gaze_valid/0", "tracked");
   EXPECT_EQ(lost.exit_code, 1);
