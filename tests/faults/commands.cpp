@@ -12,6 +12,7 @@
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "tests/faults/file_calls.hpp"
 
 namespace faults {
 
@@ -140,6 +141,11 @@ std::vector<Command> make_commands() {
       cleo.key()};
   add("withdraw", prepare_withdrawal, on_north([](const fs::path& db) { withdraw(db, ben); })).gone = {
       {"north", {ben}}};
+  add("withdraw, no exchange", prepare_withdrawal, on_north([](const fs::path& db) {
+        refuse_exchanges();
+        withdraw(db, ben);
+      }))
+      .gone = {{"north", {ben}}};
   Command& merge = add("merge", prepare_merge, merge_all);
   merge.stations = {"all", "north", "south"};
   merge.gone = {{"all", {ben}}, {"north", {ben}}};
@@ -151,6 +157,15 @@ std::vector<Command> make_commands() {
       "export --bids", [](const fs::path& db, const fs::path& out) { study::export_bids(db, out, true); }));
   all.push_back(exports_as("export --psych-ds",
                            [](const fs::path& db, const fs::path& out) { study::export_psych_ds(db, out); }));
+  Command& over =
+      all.emplace_back(exports_as("export over, no exchange", [](const fs::path& db, const fs::path& out) {
+        refuse_exchanges();
+        study::export_csv(db, out, {true, true});
+      }));
+  over.prepare = [](const fs::path& folder) {
+    prepare_north(folder);
+    study::export_csv(at(folder, "north"), folder / "north" / "out", {true, true});
+  };
   add("status", on_north([](const fs::path& db) { play(db, north, 6); }),
       on_north([](const fs::path& db) { study::read_status(db); }));
   Command& restored =

@@ -25,6 +25,7 @@ struct State {
   std::atomic<bool> active{false};
   std::atomic<long> calls{0};
   std::atomic<bool> failed{false};
+  std::atomic<bool> exchanges{true};
   std::atomic<std::int64_t> clock_ahead_s{0};
   std::recursive_mutex turn;
 };
@@ -45,6 +46,7 @@ bool below(const std::string& path) {
 Turn::Turn() : guard_(state().turn) {}
 
 bool records() { return state().plan.record; }
+bool exchanges() { return state().exchanges; }
 std::int64_t clock_ahead_s() { return state().clock_ahead_s; }
 
 [[noreturn]] void die() {
@@ -124,6 +126,8 @@ void arm_calls(const CallPlan& plan) {
   now.clock_ahead_s = plan.clock_ahead_s;
   now.active = !plan.folder.empty();
 }
+
+void refuse_exchanges() { calls::state().exchanges = false; }
 
 long counted_calls() { return calls::state().calls; }
 

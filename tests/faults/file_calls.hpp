@@ -39,6 +39,8 @@ struct CallPlan {
 void arm_calls(const CallPlan& plan);
 /// Calls since then.
 long counted_calls();
+/// From now on no two names change places in this process, as on network file systems (EINVAL).
+void refuse_exchanges();
 /// Records words between the calls, e.g. that an answer was acknowledged. Nothing without a log.
 void record_words(const std::string& words);
 

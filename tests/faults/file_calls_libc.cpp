@@ -243,9 +243,17 @@ VIP_TWO_NAMES(link, Done::Link, (const char* from, const char* path), (from, pat
 VIP_TWO_NAMES(rename, Done::Rename, (const char* from, const char* path), (from, path), AT_FDCWD, AT_FDCWD)
 VIP_TWO_NAMES(renameat, Done::Rename, (int of, const char* from, int at, const char* path),
               (of, from, at, path), of, at)
-VIP_TWO_NAMES(renameat2, (flags & RENAME_EXCHANGE) ? Done::Exchange : Done::Rename,
-              (int of, const char* from, int at, const char* path, unsigned flags),
-              (of, from, at, path, flags), of, at)
+
+int renameat2(int of, const char* from, int at, const char* path, unsigned flags) noexcept {
+  const bool exchange = (flags & RENAME_EXCHANGE) != 0;
+  if (exchange && !exchanges()) {
+    errno = EINVAL;
+    return -1;
+  }
+  const auto call = next<int (*)(int, const char*, int, const char*, unsigned)>("renameat2");
+  return change_name(exchange ? Done::Exchange : Done::Rename, watched_at(of, from), watched_at(at, path),
+                     Need::Room, [&] { return call(of, from, at, path, flags); });
+}
 
 #define VIP_FOPEN(name)                                                                    \
   FILE* name(const char* path, const char* mode) {                                         \

@@ -35,6 +35,7 @@ struct stat look(const std::string& path);
 /// False of a file that is not there.
 inline bool stands(const struct stat& found) { return found.st_nlink > 0; }
 bool records();
+bool exchanges();  ///< whether two names may change places
 std::int64_t clock_ahead_s();
 /// Nothing where calls are not recorded.
 void record(Done kind, std::uint64_t file, std::int64_t at, std::string_view path, std::string_view to = {},
