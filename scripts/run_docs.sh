@@ -19,6 +19,9 @@ export VIP_STATE_DIR=$out/state  # no export of theirs in the register of whoeve
 table="
 README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
 README.md|vip-study run|person||
+docs/accuracy.md|vip-bench accuracy|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it takes more than a minute on two cores|DocsSlow.docs/accuracy.md
+docs/accuracy.md|key=|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it settles water for long|DocsSlow.docs/accuracy.md
+docs/accuracy.md|snakemake -s scripts/sweep.smk --cores 2|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it takes more than a minute on two cores|DocsSlow.docs/accuracy.md
 docs/figures.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/figures.md|vip-bench table1|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
 docs/methods.md|vip-view --headless data/scenes/boat.toml|s/frames 61 --every 60/frames 3 --every 2/; s/800x600/160x120/|it takes minutes on two cores|
