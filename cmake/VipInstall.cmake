@@ -4,3 +4,41 @@ install(DIRECTORY data/scenes data/meshes data/paper DESTINATION ${_share}/data)
 install(FILES data/peers.csv DESTINATION ${_share}/data)
 install(DIRECTORY shaders protocols docs DESTINATION ${_share})
 install(DIRECTORY libstudy/store/sql DESTINATION ${_share}/libstudy/store)
+
+# The licences: the project's, the one that GSL gives the programs, and those of the libraries that are compiled into them.
+set(_doc share/doc/vip-lab)
+install(FILES LICENSE DESTINATION ${_doc} RENAME copyright)
+install(FILES CHANGELOG.md DESTINATION ${_doc})
+if(EXISTS /usr/share/common-licenses/GPL-3)
+  install(FILES /usr/share/common-licenses/GPL-3 DESTINATION ${_doc}/licences RENAME GPL-3.txt)
+endif()
+foreach(package libcli11-dev libimgui-dev libopenxr-dev libtomlplusplus-dev nlohmann-json3-dev)
+  if(EXISTS /usr/share/doc/${package}/copyright)
+    install(FILES /usr/share/doc/${package}/copyright DESTINATION ${_doc}/licences RENAME ${package}.txt)
+  endif()
+endforeach()
+
+foreach(program study stats bench view)
+  install(FILES cmake/package/completion.bash DESTINATION share/bash-completion/completions RENAME vip-${program})
+endforeach()
+install(CODE "execute_process(COMMAND ${PROJECT_SOURCE_DIR}/cmake/package/man_pages.sh ${CMAKE_BINARY_DIR}/bin
+                              \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/man/man1 COMMAND_ERROR_IS_FATAL ANY)")
+
+# cpack -G DEB: vip-lab_VERSION_ARCHITECTURE.deb. It packs what is built, and does not build.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME vip-lab)
+set(CPACK_PACKAGE_CONTACT "The ViP-Lab authors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/package/check.cmake)
+set(CPACK_VIP_NATIVE ${VIP_NATIVE})
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# libepoxy opens these two at run time, where dpkg-shlibdeps does not see them.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1")
+# OpenGL without a GPU's driver, the type of the pages, and headsets.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1-mesa-dri, fonts-dejavu-core, libopenxr-loader1")
+include(CPack)

@@ -35,8 +35,8 @@ else
 fi
 [ ${#sources[@]} -gt 0 ] || { echo "tidy: nothing changed"; exit 0; }
 
-# Without precompiled headers, which clang cannot read from g++.
-cmake --preset dev -B build/tidy -DVIP_PRECOMPILE=OFF -DVIP_CUDA=OFF >/dev/null
+# Without precompiled headers, which clang cannot read from g++, and each source by itself.
+cmake --preset dev -B build/tidy -DVIP_PRECOMPILE=OFF -DVIP_UNITY=OFF -DVIP_CUDA=OFF >/dev/null
 known=()
 for source in "${sources[@]}"; do
   if grep -qF "\"$PWD/$source\"" build/tidy/compile_commands.json; then known+=("$source"); fi

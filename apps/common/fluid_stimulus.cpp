@@ -15,7 +15,7 @@ namespace {
 std::string or_none(const std::string& words) { return words.empty() ? "none" : words; }
 
 /// Where the bake's header tells them.
-std::string effects_told(const sim::BakeHeader& header) {
+std::string baked_effects(const sim::BakeHeader& header) {
   if (!header.effects && !header.picture_effects) return "";
   const sim::Scene scene = sim::baked_scene(header);
   std::string out;
@@ -29,7 +29,7 @@ std::string describe(const sim::BakeReader& bake, const char* what) {
   const sim::BakeHeader& h = bake.header();
   return std::string(what) + " of " + h.scene_name + ", " + h.method + ", n_* " + std::to_string(h.n_star) +
          ", computed on " + h.backend + ", bake " + bake.content_hash() + ", scene " + h.scene_sha256 +
-         effects_told(h);
+         baked_effects(h);
 }
 
 /// What is painted of a scene, if anything is.

@@ -14,7 +14,7 @@ namespace {
 /// Slope from the middle of a picture to its upper edge.
 double slope(double vertical_deg) { return std::tan(vertical_deg * std::numbers::pi / 360); }
 
-bool holds(const sim::View& view, const sim::Vec3d& point_m) {
+bool sees_point(const sim::View& view, const sim::Vec3d& point_m) {
   const auto place = place_in(view, point_m);
   return place && place->first >= 0 && place->first <= view.viewport.width && place->second >= 0 &&
          place->second <= view.viewport.height;
@@ -115,7 +115,8 @@ std::vector<std::string> cut_off(const sim::Scene& scene, const sim::View& view)
   for (const auto& box : scene.visible) {
     const auto corners = corners_of(box);
     // The box and the view are convex: its corners speak for it.
-    if (!std::all_of(corners.begin(), corners.end(), [&](const auto& corner) { return holds(view, corner); }))
+    if (!std::all_of(corners.begin(), corners.end(),
+                     [&](const auto& corner) { return sees_point(view, corner); }))
       out.push_back(box.name);
   }
   return out;

@@ -25,7 +25,7 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
 }
 
 /// Where there are any, or the choice says that there are none.
-std::string effects_told(const StimulusChoice& choice, const sim::Scene& scene) {
+std::string live_effects(const StimulusChoice& choice, const sim::Scene& scene) {
   const std::string water = sim::effects_in_words(scene.effects);
   const std::string picture = sim::picture_effects_in_words(scene.picture_effects);
   std::string out;
@@ -60,7 +60,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
   const std::string description =
       "live " + scene.name + ", " + sim::method_name(options.method) + ", n_* " +
       std::to_string(options.n_star) + ", on " + sim::backend_name(options.backend) + ", scene " +
-      scene.sha256 + effects_told(choice, scene) + (choice.setting ? ", at " + to_text(*choice.setting) : "");
+      scene.sha256 + live_effects(choice, scene) + (choice.setting ? ", at " + to_text(*choice.setting) : "");
   // Settled once; each rewind starts from that state.
   const auto make = [scene, options]() mutable {
     auto simulation = sim::make_simulation(scene, options);

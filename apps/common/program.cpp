@@ -15,6 +15,7 @@
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/utc.hpp"
 
 namespace apps {
 
@@ -46,6 +47,12 @@ void make_folder(const std::filesystem::path& folder) {
 }
 
 namespace {
+
+/// What --version prints: which version this is, and what it was built with.
+std::string version_text(const std::string& program) {
+  return program + " " + base::version() + "\nbuilt " + base::built_utc().substr(0, 10) +
+         ": " VIP_BUILD_OPTIONS;
+}
 
 /// Runs what the command line asks for; whether all of it came to its end.
 int run_commands(CLI::App& app, int argc, char** argv) {
@@ -84,7 +91,7 @@ int run_program(CLI::App& app, int argc, char** argv) {
   if (!open_standard_streams()) return 1;
   wait_passively(argv);
   const PlainOutput plain;
-  app.set_version_flag("--version", base::version());
+  app.set_version_flag("--version", [name = app.get_name()] { return version_text(name); });
   app.require_subcommand(0, 1);
   app.failure_message([](const CLI::App* failed, const CLI::Error& error) {
     return for_terminal(CLI::FailureMessage::simple(failed, error)) + "\n";

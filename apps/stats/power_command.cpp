@@ -15,6 +15,7 @@
 #include "apps/stats/power/power_figure.hpp"
 #include "apps/stats/power/power_text.hpp"
 #include "apps/stats/power/shard.hpp"
+#include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -70,7 +71,7 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (command.protocol.empty()) throw CLI::RequiredError("protocol");
   PowerRequest& request = command.request;
   if (!command.plan.empty()) request.plan = read_plan(command.plan);
-  request.protocol = study::read_protocol(base::find_input(command.protocol));
+  request.protocol = study::read_protocol(study::find_protocol(command.protocol));
   request.file = command.protocol;
   const PowerKind kind = power_kind(request.protocol);
   request.question = command.choice.question;
@@ -143,7 +144,7 @@ void check_outputs(const PowerCommand& command) {
   }
 }
 
-void run(PowerCommand& command, const CLI::App& options) {
+void run_power(PowerCommand& command, const CLI::App& options) {
   check_outputs(command);
   complete(command, options);
   const PowerRequest& request = command.request;
@@ -166,7 +167,8 @@ void merge(PowerCommand& command, const CLI::App& options) {
 /// Of the calculation and of its files, which `merge` has too.
 void add_request_options(CLI::App& sub, PowerCommand& command) {
   PowerRequest& request = command.request;
-  sub.add_option("protocol", command.protocol, "Protocol file");
+  sub.add_option("protocol", command.protocol,
+                 "Protocol file, or the name of one that comes with the program, such as task1");
   sub.add_option("--n", command.n,
                  "Participants: LOW:HIGH, LOW:HIGH:STEP or one number; without: the protocol's");
   sub.add_option(
@@ -239,7 +241,7 @@ void add_power_command(CLI::App& app) {
       ->check(CLI::ExistingFile);
   merge_command->callback([command, merge_command] { merge(*command, *merge_command); });
   sub->callback([command, sub, merge_command] {
-    if (!merge_command->parsed()) run(*command, *sub);
+    if (!merge_command->parsed()) run_power(*command, *sub);
   });
 }
 

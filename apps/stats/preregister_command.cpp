@@ -38,7 +38,9 @@ void add_preregister_command(CLI::App& app) {
   auto command = std::make_shared<PreregisterCommand>();
   auto* sub =
       app.add_subcommand("preregister", "Freeze protocol, hypotheses, rules and seed into one hashed folder");
-  sub->add_option("protocols", command->protocols, "Protocols of the study (TOML)")->required();
+  sub->add_option("protocols", command->protocols,
+                  "Protocols of the study: files, or names of those that come with the program")
+      ->required();
   sub->add_option("--out", command->out, "Folder to be made")->required()->check(output_folder());
   sub->add_option(
       "--plan", command->plan,

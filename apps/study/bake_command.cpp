@@ -12,6 +12,7 @@
 #include "apps/study/session_framing.hpp"
 #include "apps/study/session_player.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "libstudy/protocol/find_protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -32,7 +33,7 @@ struct BakeCommand {
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
-stats::PtpeModel model_of(const BakeCommand& command) {
+stats::PtpeModel ptpe_model(const BakeCommand& command) {
   return command.ptpe.empty() ? stats::PtpeModel{} : sim::read_ptpe_file(command.ptpe).model;
 }
 
@@ -45,7 +46,7 @@ BakeOrder order_of(const BakeCommand& command) {
   order.fluid.content_step_s = command.content_step_s;
   order.fluid.overview = command.camera == "overview";
   order.fluid.paint_temperature = command.overlay == "temperature";
-  order.fluid.model = model_of(command);
+  order.fluid.model = ptpe_model(command);
   if (!command.rate.empty()) order.fluid.fixed_rate = sim::parse_frame_rate(command.rate);
   order.frames = command.frames;
   order.pictures = !command.pictures.empty();
@@ -97,14 +98,14 @@ void bake(const BakeCommand& command) {
 
 void bake_all(const BakeCommand& command) {
   const StopSignals signals;
-  const std::string file = base::find_input(command.protocol).string();
+  const std::string file = study::find_protocol(command.protocol).string();
   const study::Protocol protocol = study::read_protocol(file);
   ProtocolBakes wish{file, command.out, {}, command.keep == "pictures"};
   wish.look.size = *command.size;
   wish.look.common.viewing =
       screen_viewing(command.screen_width_mm, command.viewing_distance_mm, protocol.true_angle);
   wish.look.common.backend = command.backend;
-  wish.look.common.model = model_of(command);
+  wish.look.common.model = ptpe_model(command);
   check_visible(frame_scenes(protocol, wish.look.common.viewing, wish.look.size));
   bake_protocol(protocol, wish, [&] {
     if (StopSignals::stop_wished())
@@ -176,9 +177,10 @@ void add_bake_command(CLI::App& app) {
       "bake", "Compute the frames of a scene, or of a protocol's scenes, into files, or check one");
   auto* scene = sub.add_option("scene", command->scene, "Scene file");
   auto* out = sub.add_option("--out", command->out, "Bake file to write; with --protocol a folder");
-  auto* protocol = sub.add_option("--protocol", command->protocol,
-                                  "Bake all stimuli of this protocol that can be, into the folder --out; "
-                                  "given again, goes on and mends");
+  auto* protocol =
+      sub.add_option("--protocol", command->protocol,
+                     "Bake all stimuli of this protocol (file or name) that can be, into the folder --out; "
+                     "given again, goes on and mends");
   protocol->excludes(scene);
   add_scene_options(sub, *command);
   add_protocol_options(sub, *command);

@@ -15,6 +15,7 @@
 #include "apps/study/preview.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/scene/scene.hpp"
+#include "libstudy/protocol/find_protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -115,7 +116,7 @@ void check_protocol(const CheckOptions& options) {
     throw base::Error("--measure", "needs the refresh of the display, which no method exceeds",
                       "add --refresh HZ");
   }
-  const auto path = base::find_input(options.protocol);
+  const auto path = study::find_protocol(options.protocol);
   const auto protocol = study::read_protocol(path);
   check_stimuli(protocol, path.string());
   const CheckReport report = make_report(options, protocol);
@@ -138,7 +139,10 @@ void add_check_command(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   auto* command =
       app.add_subcommand("check", "Say what a protocol comes to: blocks, duration, balance, timing");
-  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  command
+      ->add_option("protocol", options->protocol,
+                   "Protocol file, or the name of one that comes with the program, such as task1")
+      ->required();
   command
       ->add_option("--refresh", options->refresh_hz,
                    "The display's refresh in Hz: what it makes of each setting")

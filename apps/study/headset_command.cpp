@@ -14,6 +14,7 @@
 #include "apps/study/check/refresh_check.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/headset_show.hpp"
+#include "libstudy/protocol/find_protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -63,7 +64,8 @@ void print_offer(const HeadsetOffer& offer) {
 }
 
 /// One line a setting: "mean 40, SD 5 frames/s   exact at 90, 120 Hz".
-void print_settings(const std::vector<CheckedSetting>& settings, const std::vector<RefreshCheck>& checks) {
+void print_exact_settings(const std::vector<CheckedSetting>& settings,
+                          const std::vector<RefreshCheck>& checks) {
   for (std::size_t i = 0; i < settings.size(); ++i) {
     std::string exact;
     for (const RefreshCheck& check : checks) {
@@ -94,7 +96,7 @@ nlohmann::ordered_json offer_json(const HeadsetOffer& offer) {
 
 void print_headset(const HeadsetOptions& options) {
   std::optional<study::Protocol> protocol;
-  if (!options.protocol.empty()) protocol = study::read_protocol(base::find_input(options.protocol));
+  if (!options.protocol.empty()) protocol = study::read_protocol(study::find_protocol(options.protocol));
   const HeadsetOffer offer = read_headset_offer();
   print_offer(offer);
   nlohmann::ordered_json json = offer_json(offer);
@@ -115,7 +117,7 @@ void print_headset(const HeadsetOptions& options) {
                                   {"approximate", check.approximate},
                                   {"unreachable", check.unreachable}});
     }
-    if (!checks.empty()) print_settings(settings, checks);
+    if (!checks.empty()) print_exact_settings(settings, checks);
   }
   if (!options.json.empty()) base::write_file_atomically(options.json, json.dump(2) + "\n");
 }
@@ -125,7 +127,8 @@ void print_headset(const HeadsetOptions& options) {
 void add_headset_command(CLI::App& app) {
   auto options = std::make_shared<HeadsetOptions>();
   auto* command = app.add_subcommand("headset", "Say what the OpenXR headset on this machine offers");
-  command->add_option("protocol", options->protocol, "Protocol file: which of its settings are exact on it");
+  command->add_option("protocol", options->protocol,
+                      "Protocol file or name: which of its settings are exact on it");
   command->add_option("--json", options->json, "File for the same as JSON")->check(output_file());
   auto* show = command->add_option("--show", options->show.seconds,
                                    "Show a test scene in it for so many seconds, and say what happened");

@@ -105,7 +105,7 @@ std::vector<RunOptions> recorded_options(const std::vector<study::OpenRun>& runs
   return all;
 }
 
-Played play(const ResumeOptions& resume) {
+Played play_rest(const ResumeOptions& resume) {
   const PlayOptions& options = resume.play;
   const std::string place = options.database.string();
   study::Store store(options.database, study::sqlite::Open::Write, options.max_pages,
@@ -142,7 +142,7 @@ Played play(const ResumeOptions& resume) {
 
 void resume(const ResumeOptions& options) {
   const StopSignals signals;
-  end_command(options.play.database, play(options));
+  end_command(options.play.database, play_rest(options));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "apps/study/session_player.hpp"
 #include "apps/study/station_warnings.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/session/machine.hpp"
 #include "libstudy/session/session.hpp"
 #include "stats/base/error.hpp"
@@ -68,7 +69,7 @@ void take_size(const std::optional<PictureSize>& size, RunOptions& run) {
 }
 
 study::Protocol read_checked_protocol(const RunCommand& command) {
-  study::Protocol protocol = study::read_protocol(base::find_input(command.protocol));
+  study::Protocol protocol = study::read_protocol(study::find_protocol(command.protocol));
   if (command.trial_seconds) study::override_trial_seconds(protocol, *command.trial_seconds);
   return protocol;
 }
@@ -154,8 +155,9 @@ void check_station_number(study::Store& store, const study::Protocol& protocol,
                study::station_text(*common.station_number).c_str());
 }
 
-Played play(const RunCommand& command, const study::Protocol& protocol, const study::SessionPlan& common,
-            const std::vector<std::string>& codes, SessionSetup& setup) {
+Played play_planned(const RunCommand& command, const study::Protocol& protocol,
+                    const study::SessionPlan& common, const std::vector<std::string>& codes,
+                    SessionSetup& setup) {
   study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
                      tell_of_locks(command.play.database));
   print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
@@ -209,7 +211,7 @@ void run(RunCommand& command) {
   }
 
   const StopSignals signals;
-  end_command(command.play.database, play(command, protocol, common, codes, setup));
+  end_command(command.play.database, play_planned(command, protocol, common, codes, setup));
 }
 
 }  // namespace
@@ -237,7 +239,9 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
 void add_run_command(CLI::App& app) {
   auto command = std::make_shared<RunCommand>();
   CLI::App& sub = *app.add_subcommand("run", "Run a protocol and keep everything in a database");
-  sub.add_option("protocol", command->protocol, "Protocol file")->required();
+  sub.add_option("protocol", command->protocol,
+                 "Protocol file, or the name of one that comes with the program, such as task1")
+      ->required();
   add_play_options(sub, command->play);
   sub.get_option("--db")->check(output_file());
   auto* count = sub.add_option("--participants", command->participants,

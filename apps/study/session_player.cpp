@@ -178,7 +178,7 @@ class Steering {
 };
 
 /// On stderr, before the first step: how long what is left takes in real time.
-void tell_length(const study::OpenRun& run, const study::Protocol& protocol, const SessionSetup& setup) {
+void print_length(const study::OpenRun& run, const study::Protocol& protocol, const SessionSetup& setup) {
   const bool person = !setup.participant->simulated();
   const auto showing_s = showing_times(protocol, setup.rates);
   double seconds = 0;
@@ -189,7 +189,7 @@ void tell_length(const study::OpenRun& run, const study::Protocol& protocol, con
 }
 
 /// The session as it stands in the store now; none when nothing is left of it.
-std::optional<study::OpenSession> read_again(study::Store& store, std::int64_t id) {
+std::optional<study::OpenSession> read_open_session(study::Store& store, std::int64_t id) {
   for (study::OpenRun& run : store.open_runs()) {
     for (study::OpenSession& session : run.sessions) {
       if (session.id == id) return std::move(session);
@@ -240,7 +240,7 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
   std::optional<study::RealTimeScheduling> real_time;
   if (!setup.virtual_clock) {
     real_time.emplace();
-    tell_length(run, protocol, setup);
+    print_length(run, protocol, setup);
   }
   std::optional<study::PersonalFile> personal;
   if (asks_personal(protocol)) personal.emplace(options.database);
@@ -267,7 +267,7 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
                 setup.clock->now_ns());
     play(session);
     while (steering.take_reopened()) {
-      if (const auto again = read_again(store, session.id)) play(*again);
+      if (const auto again = read_open_session(store, session.id)) play(*again);
     }
   }
 }

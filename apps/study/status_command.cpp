@@ -27,7 +27,7 @@ std::string permissions_of(const study::SessionRow& session) {
   return text;
 }
 
-void print_session(const study::SessionRow& session) {
+void print_session_row(const study::SessionRow& session) {
   std::printf(
       "  %-12s visit %d  %3lld of %lld trials, %lld of %lld steps, %lld cut short, %lld excluded  %-12s  %s "
       "clock, %s%s%s\n",
@@ -50,7 +50,7 @@ void status(const std::string& database, bool incomplete) {
     std::printf("  %lld sessions, %lld of %lld trials answered\n", static_cast<long long>(protocol.sessions),
                 static_cast<long long>(protocol.answered), static_cast<long long>(protocol.trials));
     for (const study::SessionRow& session : found.sessions) {
-      if (session.protocol_id == protocol.id) print_session(session);
+      if (session.protocol_id == protocol.id) print_session_row(session);
     }
   }
   for (const std::string& code : found.withdrawn) std::printf("%s withdrew\n", code.c_str());

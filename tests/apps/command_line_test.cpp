@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using Arguments = std::vector<std::string>;
 
 const Arguments programs{"vip-study", "vip-stats", "vip-bench", "vip-view"};
@@ -23,7 +24,10 @@ TEST(ProgramsE2e, HelpAndVersionSucceed) {
     EXPECT_THAT(help.out, AllOf(HasSubstr("Usage: " + program), HasSubstr("--version"))) << program;
     const Ended version = run_program({path_of(program), "--version"});
     EXPECT_EQ(version.exit_code, 0) << program;
-    EXPECT_EQ(version.out, base::version() + "\n") << program;
+    EXPECT_THAT(version.out, StartsWith(program + " " + base::version() + "\nbuilt 20")) << program;
+    for (const char* option :
+         {" by ", ", CUDA O", ", windows O", ", effects O", ", instructions of one processor O"})
+      EXPECT_THAT(version.out, HasSubstr(option)) << program;
   }
 }
 

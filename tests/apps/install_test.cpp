@@ -11,6 +11,7 @@ namespace apps::test {
 
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class InstallE2e : public ::testing::Test {
@@ -45,6 +46,51 @@ TEST_F(InstallE2e, StudyFindsProtocolAndSchema) {
                             "--participants", "1", "--observer", "ptpe:a=24,b=0.02"});
   EXPECT_EQ(played.exit_code, 0) << played.err;
   EXPECT_EQ(answers_in(at("study.db")).size(), 22u);  // 21 ratings and the consent
+}
+
+TEST_F(InstallE2e, AProtocolIsFoundByItsName) {
+  const Ended checked = run({"vip-study", "check", "ptpe_pilot"});
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  const Ended frozen = run({"vip-stats", "preregister", "task1", "task2", "--out", at("bundle")});
+  EXPECT_EQ(frozen.exit_code, 0) << frozen.err;
+  const Ended unknown = run({"vip-study", "check", "ptpe_pilt"});
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_THAT(unknown.err, HasSubstr("the nearest is \"ptpe_pilot\""));
+}
+
+/// What bash offers after these words, the last of which is being typed.
+std::string offered_after(const fs::path& prefix, const std::string& words) {
+  const std::string script = "export PATH='" + (prefix / "bin").string() + "':$PATH; cd /; . '" +
+                             (prefix / "share/bash-completion/completions/vip-study").string() +
+                             "'; COMP_WORDS=(" + words +
+                             "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); "
+                             "_vip_lab ${COMP_WORDS[0]}; echo \" ${COMPREPLY[*]} \"";
+  const Ended ended = run_program({"/bin/bash", "-c", script});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  return ended.out;
+}
+
+TEST_F(InstallE2e, BashCompletesCommandsOptionsChoicesAndProtocols) {
+  const fs::path prefix = at("prefix");
+  EXPECT_THAT(offered_after(prefix, "vip-study ''"), AllOf(HasSubstr(" run "), HasSubstr(" salvage ")));
+  EXPECT_THAT(offered_after(prefix, "vip-study run --part"), HasSubstr(" --participants --participant "));
+  EXPECT_EQ(offered_after(prefix, "vip-study run x --clock ''"), " real virtual \n");
+  EXPECT_EQ(offered_after(prefix, "vip-study run ptpe_pilot_"), " ptpe_pilot_lab \n");
+  EXPECT_EQ(offered_after(prefix, "vip-study bake --protocol foa"), " foam \n");
+  EXPECT_THAT(offered_after(prefix, "vip-view --head"), HasSubstr(" --headless "));
+}
+
+TEST_F(InstallE2e, EveryCommandHasAManualPageAndTheLicencesAreThere) {
+  const fs::path pages = at("prefix/share/man/man1");
+  for (const char* name :
+       {"vip-study", "vip-study-run", "vip-stats-fit-ptpe", "vip-bench-table1", "vip-view"}) {
+    const Ended page = run_program({"/bin/gzip", "-dc", (pages / (std::string(name) + ".1.gz")).string()});
+    EXPECT_EQ(page.exit_code, 0) << page.err;
+    for (const char* part :
+         {".TH \"VIP\\-", ".SH NAME", ".SH SYNOPSIS", ".SH OPTIONS\n.TP\n.B \\-h,\\-\\-help"})
+      EXPECT_THAT(page.out, HasSubstr(part)) << name;
+  }
+  EXPECT_THAT(base::read_file(at("prefix/share/doc/vip-lab/copyright"), 1 << 20), HasSubstr("MIT License"));
 }
 
 TEST_F(InstallE2e, ViewFindsSceneAndShaders) {

@@ -17,7 +17,7 @@ namespace apps {
 namespace {
 
 constexpr std::chrono::seconds most_idle{30};
-constexpr std::chrono::milliseconds one_wait{100};
+constexpr std::chrono::milliseconds slot_wait{100};
 /// A picture that is on for so long was left behind by a program that hangs: it fades away, so that nobody
 /// stays in a world that stands still.
 constexpr double most_held_s = 2, fade_s = 0.3;
@@ -269,7 +269,7 @@ void FrameLoop::turn() {
     return;
   }
   std::unique_lock held(mutex_);
-  changed_.wait_for(held, one_wait, [this, before = slots_] { return slots_ > before || error_; });
+  changed_.wait_for(held, slot_wait, [this, before = slots_] { return slots_ > before || error_; });
   // Events that came before say better what happened.
   if (error_ && events_.empty()) std::rethrow_exception(error_);
 }

@@ -17,7 +17,7 @@ namespace apps {
 
 namespace {
 
-constexpr std::chrono::seconds most_idle{30};
+constexpr std::chrono::seconds most_idle_waiting{30};
 /// Slots in which a headset that is worn should have been ready, and a rate settled.
 constexpr int most_slots = 3000;
 
@@ -100,7 +100,7 @@ void HeadsetDisplay::check_time_stands_still() {
 void HeadsetDisplay::await(const std::function<bool()>& ready, const char* problem, const char* mend) {
   const auto since = std::chrono::steady_clock::now();
   for (int slots = 0; !ready(); ++slots) {
-    if (slots > most_slots || std::chrono::steady_clock::now() - since > most_idle)
+    if (slots > most_slots || std::chrono::steady_clock::now() - since > most_idle_waiting)
       throw base::Error("headset", problem, mend);
     turn();
   }

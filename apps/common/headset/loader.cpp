@@ -45,7 +45,7 @@ constexpr const char* runtime_mend =
     "file "
     "in XR_RUNTIME_JSON";
 
-bool holds(const std::vector<std::string>& list, const std::string& word) {
+bool lists_word(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
@@ -82,12 +82,12 @@ std::vector<std::string> offered_extensions() {
 XrConnection::XrConnection(const std::vector<std::string>& needed, const std::vector<std::string>& wanted)
     : get_(open_loader()), offered_(offered_extensions()) {
   for (const std::string& name : needed) {
-    if (!holds(offered_, name))
+    if (!lists_word(offered_, name))
       throw base::Error("OpenXR", "the runtime does not offer " + name, "use a runtime that does");
     enabled_.push_back(name);
   }
   for (const std::string& name : wanted) {
-    if (holds(offered_, name)) enabled_.push_back(name);
+    if (lists_word(offered_, name)) enabled_.push_back(name);
   }
   std::vector<const char*> names;
   for (const std::string& name : enabled_) names.push_back(name.c_str());
@@ -106,7 +106,7 @@ XrConnection::~XrConnection() {
     function<PFN_xrDestroyInstance>("xrDestroyInstance")(instance_);
 }
 
-bool XrConnection::has(const std::string& extension) const { return holds(enabled_, extension); }
+bool XrConnection::has(const std::string& extension) const { return lists_word(enabled_, extension); }
 
 PFN_xrVoidFunction XrConnection::find(const char* name) const {
   PFN_xrVoidFunction found = nullptr;

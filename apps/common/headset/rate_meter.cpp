@@ -13,8 +13,8 @@ constexpr int first_steps = 8;
 constexpr std::size_t window = 16;
 constexpr double multiple = 0.2;  // periods beside a whole number of them
 constexpr double most = 0.7;
-constexpr double same_rate = 0.04;  // share of a period within which two measures are of one rate
-constexpr double on_grid = 0.1;     // periods
+constexpr double same_rate_share = 0.04;  // share of a period within which two measures are of one rate
+constexpr double on_grid = 0.1;           // periods
 
 double whole_periods(std::int64_t step_ns, double period_ns) {
   return std::max(1.0, std::round(static_cast<double>(step_ns) / period_ns));
@@ -35,7 +35,7 @@ std::int64_t typical_step(std::vector<std::int64_t> steps_ns) {
   return steps_ns[steps_ns.size() / 2];
 }
 
-bool same(double a_ns, double b_ns) { return std::abs(a_ns - b_ns) <= same_rate * b_ns; }
+bool same(double a_ns, double b_ns) { return std::abs(a_ns - b_ns) <= same_rate_share * b_ns; }
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace apps {
 
 namespace {
 
-constexpr std::chrono::milliseconds one_wait{200};
+constexpr std::chrono::milliseconds system_wait{200};
 constexpr const char* mend = "see the log of the headset's software; vip-study resume continues a session";
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -31,7 +31,7 @@ std::unique_ptr<HeadsetSession> SessionMaker::make_anew() const {
       return std::make_unique<HeadsetSession>(gl_, choice_);
     } catch (const base::Error& error) {
       if (std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::sleep_for(one_wait);
+        std::this_thread::sleep_for(system_wait);
         continue;
       }
       throw base::Error("headset",

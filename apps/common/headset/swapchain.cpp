@@ -5,7 +5,7 @@
 namespace apps {
 
 namespace {
-constexpr std::chrono::milliseconds one_wait{100};
+constexpr std::chrono::milliseconds image_wait{100};
 }
 
 Swapchain::Swapchain(const SessionHandle& session, std::int64_t format, int width_px, int height_px)
@@ -61,7 +61,7 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
   session_.call<PFN_xrAcquireSwapchainImage>("xrAcquireSwapchainImage", swapchain_, &acquire, &index);
   XrSwapchainImageWaitInfo wait{};
   wait.type = XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO;
-  wait.timeout = std::chrono::nanoseconds(one_wait).count();
+  wait.timeout = std::chrono::nanoseconds(image_wait).count();
   const auto deadline = std::chrono::steady_clock::now() + limit;
   do {
     // A success may still say that the image is not free yet.

@@ -21,7 +21,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_mask_pixels = 100;
 constexpr double parting_share = 1.0 / 3;
 
-[[noreturn]] void refuse() {
+[[noreturn]] void refuse_pictures() {
   throw base::Error("the sweep", "has pictures that were taken at other instants or sizes, or are damaged",
                     "run its cells anew");
 }
@@ -82,7 +82,7 @@ struct Trace {
 };
 
 Trace trace_of(const CellRun& run, const Reference& reference) {
-  if (run.pictures.size() != reference.pictures.size()) refuse();
+  if (run.pictures.size() != reference.pictures.size()) refuse_pictures();
   Trace out;
   Picture before;
   for (std::size_t i = 0; i < run.pictures.size(); ++i) {
@@ -90,7 +90,7 @@ Trace trace_of(const CellRun& run, const Reference& reference) {
     const Picture& then = reference.pictures[i];
     if (std::abs(run.pictures[i].time_s - reference.times_s[i]) > 1e-9 || now.width != then.width ||
         now.height != then.height)
-      refuse();
+      refuse_pictures();
     const auto square = [&](const Mask& mask) {
       return stats::mean_squared_error(now.view(), then.view(), mask).value;
     };

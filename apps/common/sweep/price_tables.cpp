@@ -12,7 +12,7 @@ constexpr std::array<const char*, sweep_error_count> short_errors{
     "front %",   "centre %", "kinetic %", "density %", "picture %", "fovea %",
     "salient %", "SSIM %",   "FLIP %",    "film %",    "flicker %"};
 
-std::vector<std::size_t> errors_of(ErrorPart part) {
+std::vector<std::size_t> columns_of_errors(ErrorPart part) {
   const bool water = part == ErrorPart::Water;
   std::vector<std::size_t> out(water ? water_error_count : picture_error_count);
   std::iota(out.begin(), out.end(), water ? 0 : water_error_count);
@@ -106,7 +106,7 @@ TextTable price_table(const PriceList& list) {
 
 TextTable settings_to_read(const PriceList& list, ErrorPart part) {
   TextTable out{.head = {"method", "setting", "particles", "ms mean", "p95", "tau"}, .rows = {}};
-  for (const std::size_t e : errors_of(part)) out.head.emplace_back(short_errors[e]);
+  for (const std::size_t e : columns_of_errors(part)) out.head.emplace_back(short_errors[e]);
   for (const auto& one : list.settings) {
     auto& row = out.rows.emplace_back();
     row = {sim::method_name(one.setting.method),
@@ -115,14 +115,14 @@ TextTable settings_to_read(const PriceList& list, ErrorPart part) {
            number(one.ms_mean, 2),
            number(one.ms_p95, 2),
            number(one.tau, 1)};
-    for (const std::size_t e : errors_of(part)) row.push_back(in_words(one.errors[e]));
+    for (const std::size_t e : columns_of_errors(part)) row.push_back(in_words(one.errors[e]));
   }
   return out;
 }
 
 TextTable prices_to_read(const PriceList& list, ErrorPart part) {
   TextTable out{.head = {"method", "knob", "change", "ms [quartiles]"}, .rows = {}};
-  for (const std::size_t e : errors_of(part)) out.head.emplace_back(short_errors[e]);
+  for (const std::size_t e : columns_of_errors(part)) out.head.emplace_back(short_errors[e]);
   for (const auto& price : list.prices) {
     auto& row = out.rows.emplace_back();
     row = {sim::method_name(price.method), traits_of(price.knob).words,
@@ -130,7 +130,7 @@ TextTable prices_to_read(const PriceList& list, ErrorPart part) {
            price.free() ? "free"
                         : fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", price.ms, price.ms_low_quartile,
                                       price.ms_high_quartile)};
-    for (const std::size_t e : errors_of(part)) row.push_back(in_words(price.errors[e]));
+    for (const std::size_t e : columns_of_errors(part)) row.push_back(in_words(price.errors[e]));
   }
   return out;
 }

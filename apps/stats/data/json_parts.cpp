@@ -1,5 +1,6 @@
 #include "apps/stats/data/json_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
@@ -55,5 +56,9 @@ std::string with_names(const std::string& reason, const std::vector<std::string>
 }
 
 std::string json_stars(const std::optional<double>& p) { return p ? stats::stars(*p) : ""; }
+
+int place_in(const std::vector<std::string>& list, const std::string& item) {
+  return static_cast<int>(std::find(list.begin(), list.end(), item) - list.begin());
+}
 
 }  // namespace apps

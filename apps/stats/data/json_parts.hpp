@@ -26,6 +26,9 @@ std::string with_names(const std::string& reason, const std::vector<std::string>
 /// "***", "**", "*" or ""; "" without p.
 std::string json_stars(const std::optional<double>& p);
 
+/// Where `item` stands in `list`, from 0; the list's length where it does not.
+int place_in(const std::vector<std::string>& list, const std::string& item);
+
 /// What `write` makes of the value, or the refusal.
 template <class T, class Write>
 Json json_result(const stats::Result<T>& result, Write write) {

@@ -36,7 +36,7 @@ std::string number_or_none(const std::optional<double>& value) {
 Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
 template <class List>
-std::size_t index_in(const List& names, const std::string& name) {
+std::size_t index_of_name(const List& names, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
@@ -62,9 +62,9 @@ void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   if (frozen && !root.has("directional")) plan.directional = stats::Directional::H2H3H6;
   const auto* const fallback = decision_names[static_cast<std::size_t>(plan.decision)];
   const auto decision = root.choice_or("decision", fallback, {decision_names.begin(), decision_names.end()});
-  plan.decision = static_cast<stats::DecisionRule>(index_in(decision_names, decision));
+  plan.decision = static_cast<stats::DecisionRule>(index_of_name(decision_names, decision));
   const auto tests = root.choice_or("tests", "paired", {tests_names.begin(), tests_names.end()});
-  plan.tests = static_cast<stats::ScoreTests>(index_in(tests_names, tests));
+  plan.tests = static_cast<stats::ScoreTests>(index_of_name(tests_names, tests));
   if (!root.has("directional")) return;
   if (root.is_text("directional")) {
     if (root.string("directional") != as_once_frozen)
@@ -102,7 +102,7 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
       root.integer_or("seed", static_cast<std::int64_t>(plan.seed), base::non_negative));
   const auto repeated = root.choice_or("more_than_one_trial", root.has("protocols") ? "refuse" : "share",
                                        {repeated_names.begin(), repeated_names.end()});
-  plan.repeated_pairs = static_cast<stats::RepeatedPairs>(index_in(repeated_names, repeated));
+  plan.repeated_pairs = static_cast<stats::RepeatedPairs>(index_of_name(repeated_names, repeated));
   if (root.has("margins")) {
     const auto margins = root.table("margins");
     plan.margin_realism = margins.number_or("realism", plan.margin_realism, base::positive);
@@ -143,7 +143,7 @@ std::string format_levels(const std::map<std::string, double>& levels) {
 const char* timing_rule_name(stats::TimingRule rule) { return timing_names[static_cast<std::size_t>(rule)]; }
 
 stats::TimingRule timing_rule_of(const std::string& name) {
-  const auto at = index_in(timing_names, name);
+  const auto at = index_of_name(timing_names, name);
   if (at == timing_names.size())
     throw base::Error("timing rule", "\"" + name + "\" is none", "use none, fail or degraded");
   return static_cast<stats::TimingRule>(at);

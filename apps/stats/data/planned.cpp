@@ -18,7 +18,7 @@ int index_in(const std::vector<std::string>& list, const std::string& item) {
   return found == list.end() ? -1 : static_cast<int>(found - list.begin());
 }
 
-Key key_of(const Report& report) { return {report.participant, report.visit, report.position}; }
+Key key_of_report(const Report& report) { return {report.participant, report.visit, report.position}; }
 
 /// The session's trials without practice and repeats; periods count from 0 within the visit.
 std::vector<Report> planned_of(const study::TaskSession& session, const TaskData& data, int participant) {
@@ -58,11 +58,12 @@ void add_planned(TaskData& data) {
   for (const auto& session : data.protocol.sessions) {
     const int participant = index_in(data.participants, session.participant);
     if (participant < 0) continue;
-    for (const Report& report : planned_of(session, data, participant)) planned[key_of(report)] = report;
+    for (const Report& report : planned_of(session, data, participant))
+      planned[key_of_report(report)] = report;
   }
   count_over_visits(planned);
   for (Report& report : data.reports) {
-    const auto found = planned.find(key_of(report));
+    const auto found = planned.find(key_of_report(report));
     if (found == planned.end()) continue;
     report.period = found->second.period;
     planned.erase(found);

@@ -15,7 +15,7 @@ namespace apps {
 
 namespace {
 
-constexpr int sickness_items = 4;
+constexpr int sickness_item_count = 4;
 constexpr double rounding_variance = 1.0 / 12;
 
 /// The numbers of one participant: 0 to 9 are the person's own, then ten for each trial.
@@ -75,8 +75,8 @@ Task1Scatter task1_scatter(const PowerRequest& request) {
   out.noise_realism = std::sqrt(latent_variance("--sd", realism, rounding));
   // Half of the variance is the report's, half the items'.
   out.noise_sickness = std::sqrt(sickness / 2);
-  out.noise_item =
-      std::sqrt(latent_variance("--sd-sickness", sickness / 2, rounding / sickness_items) * sickness_items);
+  out.noise_item = std::sqrt(latent_variance("--sd-sickness", sickness / 2, rounding / sickness_item_count) *
+                             sickness_item_count);
   const auto& scale = question(request.protocol, "realism");
   const auto& item = question(request.protocol, "dizziness");
   out.realism_min = scale.scale_min;
@@ -101,7 +101,7 @@ Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors
     const double report = truth.sickness[cell] + scatter.participant_sickness * draws.person(1) +
                           scatter.noise_sickness * draws.normal(trial, 1);
     double sickness = 0;
-    for (int item = 0; item < sickness_items; ++item) {
+    for (int item = 0; item < sickness_item_count; ++item) {
       const double latent = report + scatter.noise_item * draws.normal(trial, 2 + item);
       sickness += answer(scatter, latent, scatter.item_min, scatter.item_max);
     }
@@ -109,7 +109,7 @@ Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors
                            answer(scatter, realism, scatter.realism_min, scatter.realism_max), 1,
                            trial.position, trial.period});
     out.sickness.push_back({trial.participant, place.scene, place.n_star, place.method, sickness,
-                            sickness_items, trial.position, trial.period});
+                            sickness_item_count, trial.position, trial.period});
   }
   return out;
 }

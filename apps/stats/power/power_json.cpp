@@ -16,7 +16,7 @@ void add_figure(Json& out, const std::string& name, const Estimated& figure) {
   out[name + "_se"] = json_number(figure.se);
 }
 
-Json notes_of(const PowerRequest& request, PowerKind kind) {
+Json power_notes(const PowerRequest& request, PowerKind kind) {
   Json notes =
       Json::array({"Every figure's *_se is its Monte-Carlo standard error; shares of k of n studies use (k + "
                    "1) / (n + 2).",
@@ -72,10 +72,10 @@ Json head_json(const PowerRequest& request, PowerKind kind) {
           {"kind", power_kind_name(kind)},
           {"settings", settings_json(request, kind)},
           {"plan", plan_json(request.plan, {protocol.sha256})},
-          {"notes", notes_of(request, kind)}};
+          {"notes", power_notes(request, kind)}};
 }
 
-Json test_json(const TestPower& test, const std::vector<int>& n) {
+Json test_power_json(const TestPower& test, const std::vector<int>& n) {
   Json out{{"label", test.label},
            {"score", test.score.empty() ? Json() : Json(test.score)},
            {"n_star", test.n_star.empty() ? Json() : Json(test.n_star)},
@@ -119,7 +119,7 @@ Json hypothesis_json(const HypothesisPower& hypothesis, const std::vector<int>& 
     if (!hypothesis.paper_rule.empty()) add_figure(point, "paper_rule", at.paper);
     out["curve"].push_back(std::move(point));
   }
-  for (const auto& test : hypothesis.tests) out["tests"].push_back(test_json(test, n));
+  for (const auto& test : hypothesis.tests) out["tests"].push_back(test_power_json(test, n));
   return out;
 }
 

@@ -27,7 +27,7 @@ int whole(const std::string& text, std::string_view part) {
   return value;
 }
 
-bool asks(const study::Protocol& protocol, const std::string& id) {
+bool has_question(const study::Protocol& protocol, const std::string& id) {
   const auto questions = study::all_questions(protocol);
   return std::any_of(questions.begin(), questions.end(),
                      [&](const auto& question) { return question.second->id == id; });
@@ -74,7 +74,7 @@ PowerKind power_kind(const study::Protocol& protocol) {
   }
   if (protocol.design.timing == study::TimingSource::Settings) return PowerKind::Pilot;
   for (const char* id : {"realism", "disorientation", "unrealism", "dizziness", "confusion"}) {
-    if (!asks(protocol, id)) {
+    if (!has_question(protocol, id)) {
       throw base::Error("protocol " + protocol.name, "does not ask \"" + std::string(id) + "\"",
                         "power knows the pilot (mean_fps and sd_fps), Task 1 (realism and the four items of "
                         "cybersickness) and Task 2 (pairs)");

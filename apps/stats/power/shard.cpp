@@ -90,7 +90,7 @@ Json written(const StudyOutcomes& outcomes) {
 }
 
 /// Adds a cell's counts; `sum` may be of no study, and has the shape of all.
-void add_counts(std::vector<HypothesisCount>& sum, const Json& outcomes) {
+void add_outcomes(std::vector<HypothesisCount>& sum, const Json& outcomes) {
   expect_size(outcomes, sum.size());
   auto counts = sum;
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -202,7 +202,7 @@ class Join {
     if (auto* pilots = std::get_if<PilotOutcomes>(&outcomes_))
       put_pilots(pilots->at(n), cell.studies, outcomes);
     else
-      add_counts(std::get<TaskCounts>(outcomes_).at(n), outcomes);
+      add_outcomes(std::get<TaskCounts>(outcomes_).at(n), outcomes);
   }
 
   const PowerRequest& request_;

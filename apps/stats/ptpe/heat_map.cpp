@@ -113,7 +113,7 @@ std::string contour_style(double level) {
 }
 
 /// Names the number that a text shows, where the results have it.
-std::string field(const std::string& pointer, const std::string& member) {
+std::string field_attribute(const std::string& pointer, const std::string& member) {
   return pointer.empty() ? "" : svg::attribute("data-field", pointer + member);
 }
 
@@ -152,7 +152,7 @@ std::string cell_values(const HeatMap& map, const Frame& frame) {
                   "text-anchor=\"end\" font-size=\"15\" stroke-width=\"4\" stroke-linejoin=\"round\" "
                   "paint-order=\"stroke\" stroke=\"" +
                       hex(colour) + "\" fill=\"" + (is_dark(colour) ? "#ffffff" : "#000000") + "\"" +
-                      field(map.cells_field, "/" + std::to_string(index++) + "/score"));
+                      field_attribute(map.cells_field, "/" + std::to_string(index++) + "/score"));
     }
   }
   return out;
@@ -202,7 +202,7 @@ std::string colour_bar(const HeatMap& map, const Frame& frame) {
 
 /// A number of the estimate with its place in the results.
 std::string number_of(const HeatMap& map, double value, int decimals, const std::string& member) {
-  return "<tspan" + field(map.estimate_field, member) + ">" + number(value, decimals) + "</tspan>";
+  return "<tspan" + field_attribute(map.estimate_field, member) + ">" + number(value, decimals) + "</tspan>";
 }
 
 /// "a = 23.4 [22.1, 24.6]".

@@ -17,12 +17,12 @@ namespace {
 using stats::PilotEstimate;
 using stats::PilotMean;
 
-std::string counted(int n, const std::string& thing) {
+std::string count_words(int n, const std::string& thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
 void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour) {
-  const auto lines = [&](int n) { return std::to_string(n) + " of " + counted(contour.lines, "line"); };
+  const auto lines = [&](int n) { return std::to_string(n) + " of " + count_words(contour.lines, "line"); };
   if (contour.above_grid > 0) {
     flags.push_back(
         {"leaves_grid_above", "on " + lines(contour.above_grid) +
@@ -62,28 +62,29 @@ void flag_exclusions(std::vector<FitFlag>& flags, const TaskData& data) {
   std::string rules;
   for (const auto& [rule, n] : by_rule)
     if (n > 0) rules += (rules.empty() ? "" : ", ") + rule + " " + std::to_string(n);
-  flags.push_back({"excluded_answers", counted(all, "answer") + " left out by rule or by hand: " + rules});
+  flags.push_back(
+      {"excluded_answers", count_words(all, "answer") + " left out by rule or by hand: " + rules});
 }
 
 void flag_data(std::vector<FitFlag>& flags, const TaskData& data, const stats::PilotTable& table) {
   if (data.test_data) flags.push_back({"test_data", "these are test data, not a study"});
   if (!data.simulated.empty()) {
     flags.push_back(
-        {"simulated", counted(static_cast<int>(data.simulated.size()), "participant") + " simulated"});
+        {"simulated", count_words(static_cast<int>(data.simulated.size()), "participant") + " simulated"});
   }
   for (const auto& protocol : data.set_aside)
     flags.push_back({"protocol_left_out", "protocol " + protocol + " left out: it holds no real answers"});
   if (data.flow.test_left_out > 0) {
     flags.push_back(
-        {"test_data_left_out", counted(data.flow.test_left_out, "session") + " of test data left out"});
+        {"test_data_left_out", count_words(data.flow.test_left_out, "session") + " of test data left out"});
   }
   if (data.flow.simulated_left_out > 0) {
-    flags.push_back({"simulated_left_out",
-                     counted(data.flow.simulated_left_out, "session") + " of simulated observers left out"});
+    flags.push_back({"simulated_left_out", count_words(data.flow.simulated_left_out, "session") +
+                                               " of simulated observers left out"});
   }
   if (table.incomplete_participants() > 0) {
     flags.push_back(
-        {"incomplete_participants", counted(table.incomplete_participants(), "participant") +
+        {"incomplete_participants", count_words(table.incomplete_participants(), "participant") +
                                         " lack settings that others rated; means use what is there"});
   }
   flag_exclusions(flags, data);
@@ -91,7 +92,7 @@ void flag_data(std::vector<FitFlag>& flags, const TaskData& data, const stats::P
     return one.analysed && one.shown.verdict == study::Verdict::Degraded;
   });
   if (degraded > 0) {
-    flags.push_back({"degraded_trials", counted(static_cast<int>(degraded), "trial") +
+    flags.push_back({"degraded_trials", count_words(static_cast<int>(degraded), "trial") +
                                             " with degraded timing enter at what was really shown"});
   }
 }
@@ -100,7 +101,7 @@ void flag_resamples(std::vector<FitFlag>& flags, const PilotEstimate& contour) {
   if (!contour.spread) return;
   if (contour.spread->failed > 0) {
     flags.push_back({"resamples_without_fit",
-                     counted(contour.spread->failed, "resample") + " without a contour left out"});
+                     count_words(contour.spread->failed, "resample") + " without a contour left out"});
   }
   if (contour.spread->extremes) {
     flags.push_back(

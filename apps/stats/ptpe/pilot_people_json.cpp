@@ -12,7 +12,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string p_text(double p) { return fmt::format("p {} {:.3f}", p < 0.001 ? "<" : "=", std::max(p, 0.001)); }
+std::string p_words(double p) {
+  return fmt::format("p {} {:.3f}", p < 0.001 ? "<" : "=", std::max(p, 0.001));
+}
 
 std::string reversed_text(const PilotFit& fit) {
   const auto& slopes = fit.people.slopes;
@@ -27,14 +29,14 @@ std::string drift_text(const stats::SessionDrift& drift) {
   return fmt::format(
       "scores change by {:+.2f} [{:.2f}, {:.2f}] points from the first to the last trial, "
       "t({}) = {:.2f}, {}",
-      drift.change, drift.ci[0], drift.ci[1], drift.df, drift.t, p_text(drift.p));
+      drift.change, drift.ci[0], drift.ci[1], drift.df, drift.t, p_words(drift.p));
 }
 
 std::string lapse_text(const stats::LapseCount& lapses) {
   return fmt::format(
       "{} of {} answers for which it is improbable are at the lowest score, {:.1f} expected, {} "
       "(lapses in {:.1f} %)",
-      lapses.lapsed, lapses.at_risk, lapses.expected, p_text(lapses.p), 100 * lapses.rate);
+      lapses.lapsed, lapses.at_risk, lapses.expected, p_words(lapses.p), 100 * lapses.rate);
 }
 
 }  // namespace
@@ -81,7 +83,7 @@ std::vector<std::string> reverse_coders(const PilotFit& fit) {
     if (one.reversed)
       out.push_back(fmt::format("{} ({:+.2f} points for each doubling, one-sided {})",
                                 fit.data.participants.at(static_cast<std::size_t>(one.participant)),
-                                one.slope, p_text(one.p)));
+                                one.slope, p_words(one.p)));
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// What freezing and comparing a preregistration share.
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "stats/analysis/hypotheses.hpp"
 
 namespace apps::report {
+
+/// Bytes that a file of a bundle may have.
+inline constexpr std::size_t largest_bundle_file = 1 << 24;
 
 /// What preregistration fixes of a hypothesis: no estimate, no p. Takes "hypotheses" of the results just as
 /// well as hypothesis_json(), so that both sides of a comparison pass through here.

@@ -14,7 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t largest_file = 1 << 24;
 /// Lines of a changed protocol that the page quotes.
 constexpr std::size_t most_lines = 12;
 
@@ -87,7 +86,7 @@ void quote(Json& differences, const std::string& what, const std::vector<std::st
     differences.push_back(what + ": " + std::to_string(lines.size() - most_lines) + " further lines");
 }
 
-std::string name_of(const Json& about, const std::string& sha256) {
+std::string name_in_bundle(const Json& about, const std::string& sha256) {
   for (const Json& protocol : about.value("protocols", Json::array()))
     if (protocol.value("sha256", "") == sha256) return protocol.value("name", "");
   return "";
@@ -97,7 +96,7 @@ std::string name_of(const Json& about, const std::string& sha256) {
 bool same_protocol(const Bundle& bundle, const study::ProtocolRow& used, bool pilot, Json& differences) {
   if (bundle.protocols.contains(used.sha256)) return true;
   const auto planned = std::find_if(bundle.protocols.begin(), bundle.protocols.end(), [&](const auto& entry) {
-    return name_of(bundle.about, entry.first) == used.name;
+    return name_in_bundle(bundle.about, entry.first) == used.name;
   });
   if (planned == bundle.protocols.end()) {
     // A pilot beside the tasks is exploratory and need not be in their bundle.
@@ -196,14 +195,14 @@ bool same_level(const Bundle& bundle, const Json& results, Json& differences) {
 
 Bundle read_bundle(const fs::path& folder) {
   if (!fs::is_regular_file(folder / "MANIFEST.sha256")) no_bundle(folder, "holds no MANIFEST.sha256");
-  const std::string manifest = base::read_file(folder / "MANIFEST.sha256", largest_file);
+  const std::string manifest = base::read_file(folder / "MANIFEST.sha256", largest_bundle_file);
   Bundle bundle;
   bundle.sha256 = base::sha256_hex(manifest);
   std::map<std::string, std::string> files;
   for (const auto& [name, hash] : read_manifest(manifest, folder)) {
     std::error_code no_such_name;
     if (fs::is_regular_file(folder / name, no_such_name))
-      files[name] = base::read_file(folder / name, largest_file);
+      files[name] = base::read_file(folder / name, largest_bundle_file);
     if (!files.contains(name) || base::sha256_hex(files[name]) != hash) bundle.altered.push_back(name);
   }
   for (const char* needed : {"about.json", "hypotheses.json", "plan.toml"})

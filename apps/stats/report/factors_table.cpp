@@ -6,7 +6,7 @@ namespace apps::report {
 namespace {
 
 /// "effects: foam over none"; of a difference with a minus sign.
-std::string name_of(const Field& line, const char* between) {
+std::string level_name(const Field& line, const char* between) {
   std::string out = words(line["factor"]) + ": " + words(line["a"]) + between + words(line["b"]);
   if (line["test"].words() == "exact sign test")
     out += " <em>(all participants alike: " + words(line["test"]) + ")</em>";
@@ -31,10 +31,10 @@ std::string preference_factors(const Field& task2) {
        "<i>df</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>"});
   for (const Field& line : task2["factors"].entries()) {
     if (!line["p"].is_number()) {
-      table.refused(name_of(line, " over "), refusal(line));
+      table.refused(level_name(line, " over "), refusal(line));
       continue;
     }
-    table.row({name_of(line, " over "), count(line["participants"]),
+    table.row({level_name(line, " over "), count(line["participants"]),
                count(line["k"]) + " of " + count(line["n"]), percent(line["share"]),
                fixed(line["mean"], 2) + " " + interval(line["ci"], 2), fixed(line["t"], 2),
                fixed(line["df"], 0), p_bare(line["p"]), p_bare(line["p_holm"])});
@@ -50,7 +50,7 @@ std::string score_factors(const Field& task1) {
       {"Factor: pair of levels", "Score", n_star_sign, "Participants", "Difference [CI]", "<i>t</i>",
        "<i>df</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>"});
   for (const Field& line : task1["factors"].entries()) {
-    const std::string name = name_of(line, " \xE2\x88\x92 ");
+    const std::string name = level_name(line, " \xE2\x88\x92 ");
     if (!line["p"].is_number()) {
       table.refused(name, words(line["score"]) + ", " + words(line["n_star"]) + ", " + refusal(line));
       continue;

@@ -5,6 +5,7 @@
 #include "apps/stats/report/bundle_parts.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/hypotheses_json.hpp"
+#include "libstudy/protocol/find_protocol.hpp"
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -20,12 +21,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Files = std::map<std::string, std::string>;  ///< bytes by name
 
-constexpr std::size_t largest_file = 1 << 24;
-
 std::vector<study::Protocol> read_protocols(const std::vector<fs::path>& paths) {
   std::vector<study::Protocol> out;
   for (const auto& path : paths) {
-    out.push_back(study::read_protocol(base::find_input(path)));
+    out.push_back(study::read_protocol(study::find_protocol(path)));
     for (std::size_t i = 0; i + 1 < out.size(); ++i) {
       if (out[i].name == out.back().name)
         throw base::Error(path.string(), "has the name of another protocol, " + out[i].name,
@@ -87,7 +86,7 @@ Files contents(const BundleRequest& request) {
   files["hypotheses.json"] = base::json_text(hypotheses, 2) + "\n";
   files["plan.toml"] = format_plan(plan, hashes);
   if (request.power) {
-    files["power.json"] = base::read_file(*request.power, largest_file);
+    files["power.json"] = base::read_file(*request.power, largest_bundle_file);
     if (!Json::accept(files["power.json"]))
       throw base::Error(request.power->string(), "is no JSON",
                         "give the file that vip-stats power --json wrote");

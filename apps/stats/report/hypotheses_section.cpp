@@ -13,7 +13,7 @@ std::string interval_of(const Field& test) {
          interval(test["ci"], 2);
 }
 
-bool by_sign(const Field& test) { return test["method"].words() == "exact sign test"; }
+bool is_sign_test(const Field& test) { return test["method"].words() == "exact sign test"; }
 
 /// Satterthwaite's degrees of freedom are not whole.
 bool by_model(const Field& test) { return test["method"].words() == "t test of the mixed model"; }
@@ -21,7 +21,8 @@ bool by_model(const Field& test) { return test["method"].words() == "t test of t
 /// "0.46, 90 % CI [0.06, 1.25]" of a difference, or of a share.
 std::string estimate(const Field& test) {
   if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
-  if (by_sign(test)) return fixed(test["estimate"], 2) + ", " + words(test["method"]) + " (all are equal)";
+  if (is_sign_test(test))
+    return fixed(test["estimate"], 2) + ", " + words(test["method"]) + " (all are equal)";
   return fixed(test["estimate"], 2) + ", " + interval_of(test);
 }
 
@@ -58,7 +59,7 @@ std::string apa(const Field& test, bool preference) {
   } else {
     out += "<i>M</i><sub>diff</sub> = " + fixed(test["estimate"], 2);
   }
-  out += ", " + (by_sign(test) ? words(test["method"]) : interval_of(test));
+  out += ", " + (is_sign_test(test) ? words(test["method"]) : interval_of(test));
   if (test["margin"].is_number()) out += ", margin " + fixed(test["margin"], 2);
   if (test["t"].is_number())
     out += ", <i>t</i>(" + fixed(test["df"], by_model(test) ? 1 : 0) + ") = " + fixed(test["t"], 2);

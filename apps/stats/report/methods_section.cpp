@@ -54,7 +54,7 @@ std::string protocols_text(const Field& study) {
   return out;
 }
 
-std::string people(const Field& flow) {
+std::string people_text(const Field& flow) {
   std::string out;
   for (const auto& [key, title] : all_parts) {
     const Field part = flow[key];
@@ -179,8 +179,9 @@ std::string methods_section(const Field& root) {
     end += "The analysis was made with ViP-Lab " + words(root["versions"]["vip_lab"]) +
            " and the GNU Scientific Library " + words(root["versions"]["gsl"]) + ".";
   std::string body;
-  for (const std::string& text : {protocols_text(root["study"]), people(root["flow"]), exclusion_rules(root),
-                                  pilot_text(root["pilot"]), task1_text(root), tests, end})
+  for (const std::string& text :
+       {protocols_text(root["study"]), people_text(root["flow"]), exclusion_rules(root),
+        pilot_text(root["pilot"]), task1_text(root), tests, end})
     if (!text.empty()) body += paragraph(text);
   for (const Field& note : root["study"]["notes"].entries()) body += paragraph("Note: " + words(note));
   return section("methods", "Methods", body);

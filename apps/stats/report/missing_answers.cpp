@@ -5,7 +5,9 @@ namespace apps::report {
 
 namespace {
 
-std::string pair_name(const Field& pair) { return words(pair["a"]) + " \xE2\x88\x92 " + words(pair["b"]); }
+std::string difference_name(const Field& pair) {
+  return words(pair["a"]) + " \xE2\x88\x92 " + words(pair["b"]);
+}
 
 std::string score_label(const Field& task1, const Field& entry) {
   for (const Field& score : task1["scores"].entries()) {
@@ -15,7 +17,7 @@ std::string score_label(const Field& task1, const Field& entry) {
 }
 
 /// Which pairs rest on different people.
-std::string people(const Field& task1) {
+std::string people_notes(const Field& task1) {
   std::vector<std::string> lines;
   for (const Field& one : task1["people"].entries()) {
     if (!one["differ"].yes()) continue;
@@ -50,10 +52,10 @@ std::string comparisons(const Field& task1) {
   by_score(table, task1, all, [&](const Field& c) {
     const Field m = c["mixed"];
     if (!m.there()) {
-      table.refused(pair_name(c), "no test: " + typeset(svg::escaped(m.reason())));
+      table.refused(difference_name(c), "no test: " + typeset(svg::escaped(m.reason())));
       return;
     }
-    table.row({pair_name(c), fixed(m["estimate"], 2) + " " + interval(m["ci"], 2), fixed(m["se"], 2),
+    table.row({difference_name(c), fixed(m["estimate"], 2) + " " + interval(m["ci"], 2), fixed(m["se"], 2),
                fixed(m["t"], 2), fixed(m["df"], 1), p_bare(m["p"]), p_bare(m["p_holm"])});
   });
   return table.empty() ? "" : table.html();
@@ -101,7 +103,7 @@ std::string tipping(const Field& task1) {
                "Second: missing, worse by"});
   by_score(table, task1, anyone_missing, [&](const Field& c) {
     const Field t = c["tipping"];
-    table.row({pair_name(c), count(c["n"]) + " of " + count(t["planned"]), yes_no(t["holds"]),
+    table.row({difference_name(c), count(c["n"]) + " of " + count(t["planned"]), yes_no(t["holds"]),
                worse_by(t, "a"), worse_by(t, "b")});
   });
   return table.empty() ? "" : table.html();
@@ -139,7 +141,7 @@ std::string missing_answers(const Field& root) {
   const std::string fits = models(task1), pairs = comparisons(task1);
   if (fits.empty() && pairs.empty()) return "";
   return subsection("Missing answers: the mixed model and tipping points",
-                    people(task1) +
+                    people_notes(task1) +
                         paragraph("The mixed model takes every answer, with scene, position and period as "
                                   "terms and random effects of the participant and of the participant with "
                                   "each method; degrees of freedom are Satterthwaite's.") +

@@ -78,7 +78,7 @@ Rendered rendered(const Field& results, const std::string& prefix, const std::st
 }
 
 /// "apart 1, Task 1, task1 1.1" or "apart 1, Pilot, ptpe_pilot_lab 1.0, question smoothness".
-std::string name_of(const Field& results) {
+std::string document_name(const Field& results) {
   const Field protocol = results["study"]["protocols"][0];
   std::string out = words(results["section"]) + ", " + words(protocol["title"]) + ", " +
                     words(protocol["name"]) + " " + words(protocol["version"]);
@@ -97,8 +97,9 @@ std::string results_page(const Json& results) {
   std::size_t apart = 0;
   for (const Field& document : documents(root)) {
     const bool first = document.pointer().empty();
-    const auto part = first ? rendered(document, "", "")
-                            : rendered(document, "apart-" + std::to_string(++apart) + "-", name_of(document));
+    const auto part =
+        first ? rendered(document, "", "")
+              : rendered(document, "apart-" + std::to_string(++apart) + "-", document_name(document));
     contents += part.contents;
     body += part.body;
   }

@@ -52,13 +52,13 @@ std::string roster(const Field& roster) {
   Table table("Everybody in the database", {"Protocol", "Version", "SHA-256", "Participants", "Sessions",
                                             "Simulated", "Test data", "Section"});
   for (const Field& one : roster["protocols"].entries()) {
-    std::string sections;
+    std::string parts_named;
     for (const Field& place : one["sections"].entries())
-      sections += (sections.empty() ? "" : ", ") + words(place);
+      parts_named += (parts_named.empty() ? "" : ", ") + words(place);
     table.row({words(one["name"]), words(one["version"]),
                "<span class=\"hash\">" + words(one["sha256"]) + "</span>", count(one["participants"]),
                count(one["sessions"]), count(one["simulated"]), count(one["test_data"]),
-               sections.empty() ? "none: set aside, or not chosen" : sections});
+               parts_named.empty() ? "none: set aside, or not chosen" : parts_named});
   }
   return paragraph("The database holds " + count(roster["sessions"]) + " sessions of " +
                    count(roster["participants"]) + " participants; " + count(roster["withdrawn"]) +

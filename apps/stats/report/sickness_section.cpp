@@ -19,7 +19,7 @@ std::vector<std::string> described(const Field& summary) {
 
 const std::vector<std::string> described_columns{"<i>n</i>", "Median", "Quartiles", "<i>M</i>", "Largest"};
 
-std::vector<std::string> joined(std::vector<std::string> head, const std::vector<std::string>& more) {
+std::vector<std::string> with_columns(std::vector<std::string> head, const std::vector<std::string>& more) {
   head.insert(head.end(), more.begin(), more.end());
   return head;
 }
@@ -41,15 +41,15 @@ const std::vector<std::string> changed_columns{"<i>n</i>",        "<i>M</i> of c
 
 std::string ssq(const Field& ssq) {
   if (!ssq.there()) return "";
-  Table levels("SSQ scores before and after", joined({"Score"}, described_columns));
-  Table changes("Changes of the SSQ scores, after less before", joined({"Score"}, changed_columns));
+  Table levels("SSQ scores before and after", with_columns({"Score"}, described_columns));
+  Table changes("Changes of the SSQ scores, after less before", with_columns({"Score"}, changed_columns));
   for (const auto& [key, name] : {std::pair{"before", "Before"}, {"after", "After"}}) {
     levels.group(name);
     for (const Field& score : ssq["scores"].entries())
-      levels.row(joined({words(score["label"])}, described(score[key])));
+      levels.row(with_columns({words(score["label"])}, described(score[key])));
   }
   for (const Field& score : ssq["scores"].entries())
-    changes.row(joined({words(score["label"])}, changed(score["change"])));
+    changes.row(with_columns({words(score["label"])}, changed(score["change"])));
   std::string note =
       "Simulator Sickness Questionnaire with the weights of Kennedy et al. (1993): before is the last page "
       "ahead of the first trial, after the last page behind it. ";
@@ -62,19 +62,20 @@ std::string ssq(const Field& ssq) {
 
 std::string fms(const Field& fms, const std::string& id) {
   if (!fms.there()) return "";
-  Table courses("FMS: mean and peak of each participant", joined({"Part"}, described_columns));
+  Table courses("FMS: mean and peak of each participant", with_columns({"Part"}, described_columns));
   const auto part = [&](const std::string& title, const Field& course) {
     courses.group(title);
-    courses.row(joined({"Mean"}, described(course["mean"])));
-    courses.row(joined({"Peak"}, described(course["peak"])));
+    courses.row(with_columns({"Mean"}, described(course["mean"])));
+    courses.row(with_columns({"Peak"}, described(course["peak"])));
   };
   part("Whole session", fms);
   for (const Field& block : fms["blocks"].entries()) part("Block " + words(block["block"]), block);
-  Table times("FMS over the session", joined({"Asked", "Minutes (median)"}, described_columns));
+  Table times("FMS over the session", with_columns({"Asked", "Minutes (median)"}, described_columns));
   for (const Field& time : fms["times"].entries())
-    times.row(joined({count(time["asked"]), fixed(time["minutes"], 1)}, described(time)));
-  Table change("Change of the FMS from the first answer to the last", joined({"Score"}, changed_columns));
-  change.row(joined({"FMS"}, changed(fms["change"])));
+    times.row(with_columns({count(time["asked"]), fixed(time["minutes"], 1)}, described(time)));
+  Table change("Change of the FMS from the first answer to the last",
+               with_columns({"Score"}, changed_columns));
+  change.row(with_columns({"FMS"}, changed(fms["change"])));
   return figure(fms_chart(fms, id),
                 "Fast Motion Sickness scale at each asking. Band: quartiles; line: median; X: mean; circle: "
                 "largest. Sessions that ended early are missing from later askings.") +

@@ -10,7 +10,7 @@ namespace {
 
 const std::string to = " \xE2\x88\x92 ";
 
-std::string pair_name(const Field& pair) { return words(pair["a"]) + to + words(pair["b"]); }
+std::string score_pair(const Field& pair) { return words(pair["a"]) + to + words(pair["b"]); }
 
 bool of(const Field& entry, const std::string& score, const std::string& n_star) {
   return entry["score"].words() == score && entry["n_star"].words() == n_star;
@@ -62,10 +62,10 @@ std::string t_tests(const Field& task1, const Field& score) {
   return by_n_star(
       std::move(table), task1, "comparisons", score["code"].words(), [](Table& t, const Field& c) {
         if (!c["p"].is_number()) {
-          t.refused(pair_name(c), "no test: " + typeset(svg::escaped(c["t"].reason())));
+          t.refused(score_pair(c), "no test: " + typeset(svg::escaped(c["t"].reason())));
           return;
         }
-        t.row({pair_name(c) + sign_test(c), count(c["n"]),
+        t.row({score_pair(c) + sign_test(c), count(c["n"]),
                fixed(c["difference"], 2) + " " + interval(c["ci"], 2), fixed(c["t"], 2), fixed(c["df"], 0),
                p_bare(c["p"]), words(c["stars"]), p_bare(c["p_holm"]), words(c["stars_holm"]),
                p_bare(c["p_bh"]), fixed(c["d_z"], 2) + " " + interval(c["d_z_ci"], 2),
@@ -85,7 +85,7 @@ std::string other_tests(const Field& task1, const Field& score) {
                      const auto why = [](const Field& part, const std::string& shown) {
                        return part.there() ? shown : typeset(svg::escaped(part.reason()));
                      };
-                     t.row({pair_name(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
+                     t.row({score_pair(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
                             fixed(w["location"], 2) + " " + interval(w["ci"], 2) +
                                 (w["ci"].there() ? " (" + percent(w["ci_level"], 1) + ")" : ""),
                             why(welch, fixed(welch["t"], 2) + " (" + fixed(welch["df"], 1) + ")"),
@@ -98,14 +98,14 @@ std::string other_tests(const Field& task1, const Field& score) {
 }
 
 /// t tests as sentences, of those below .05 without correction.
-std::string apa_lines(const Field& task1, const std::string& score) {
+std::string score_apa_lines(const Field& task1, const std::string& score) {
   std::vector<std::string> lines;
   bool any_tested = false;
   for (const Field& c : task1["comparisons"].entries()) {
     if (c["score"].words() != score) continue;
     any_tested = any_tested || c["p"].is_number();
     if (c["stars"].words().empty()) continue;
-    const std::string name = words(c["n_star"]) + ", " + pair_name(c) + ": ";
+    const std::string name = words(c["n_star"]) + ", " + score_pair(c) + ": ";
     const std::string p_values = ", <i>p</i> " + p(c["p"]) + ", <i>p</i><sub>Holm</sub> " + p(c["p_holm"]);
     if (by_sign(c)) {
       lines.push_back(name + "all differences = " + fixed(c["difference"], 2) + ", " + words(c["test"]) +
@@ -177,7 +177,7 @@ std::string ordinal(const Field& task1) {
   return table.empty() ? "" : subsection("Ordinal models", table.html());
 }
 
-std::string by_scene(const Field& task1) {
+std::string scores_by_scene(const Field& task1) {
   Table table(
       "Scores by scene (not averaged, not tested)",
       {"Scene", "Method", "<i>n</i>", "<i>M</i>", "<i>SD</i>", "CI (<i>t</i>, of participants' means)"});
@@ -201,7 +201,7 @@ std::string by_scene(const Field& task1) {
   return table.empty() ? "" : subsection("By scene", pictures + table.html());
 }
 
-std::string retest(const Field& task1) {
+std::string score_retest(const Field& task1) {
   Table table("Repeated showings",
               {"Score", "Pairs", "Mean difference", "Mean absolute difference", "Equal", "Correlation"});
   for (const Field& r : task1["retest"].entries())
@@ -228,7 +228,7 @@ std::string one_score(const Field& task1, const Field& score) {
                    words(score["label"]) + " of each participant: thin lines; thick line and X: means.");
   if (primary) body += score_ratings(task1, score);
   body += cells_table(task1, score) + t_tests(task1, score);
-  if (primary) body += apa_lines(task1, score["code"].words());
+  if (primary) body += score_apa_lines(task1, score["code"].words());
   body += other_tests(task1, score);
   return subsection(words(score["label"]) + (primary ? "" : " (secondary score)"), body);
 }
@@ -249,8 +249,8 @@ std::string task1_section(const Field& root) {
   for (const Field& score : task1["scores"].entries()) body += one_score(task1, score);
   return section("task1", "Task 1: realism and cybersickness",
                  body + score_factors(task1) + omnibus(task1) + missing_answers(root) + ordinal(task1) +
-                     by_n_star(task1) + by_scene(task1) + reliability(task1) + detectable_scores(task1) +
-                     response_times(root, "task1") + retest(task1));
+                     by_n_star(task1) + scores_by_scene(task1) + reliability(task1) +
+                     detectable_scores(task1) + response_times(root, "task1") + score_retest(task1));
 }
 
 }  // namespace apps::report

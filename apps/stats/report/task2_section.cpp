@@ -6,7 +6,7 @@ namespace apps::report {
 
 namespace {
 
-std::string pair_name(const Field& pair) { return words(pair["a"]) + " over " + words(pair["b"]); }
+std::string preferred_pair(const Field& pair) { return words(pair["a"]) + " over " + words(pair["b"]); }
 
 std::string pairs_table(const Field& pairs) {
   Table table("How often each of a pair was chosen: exact binomial tests, two-sided",
@@ -16,7 +16,7 @@ std::string pairs_table(const Field& pairs) {
   for (const Field& pair : pairs.entries()) {
     const std::string warning = pair["warning"].words();
     const std::string name =
-        pair_name(pair) + (warning.empty() ? "" : " <em>(" + words(pair["warning"]) + ")</em>");
+        preferred_pair(pair) + (warning.empty() ? "" : " <em>(" + words(pair["warning"]) + ")</em>");
     if (!pair["p"].is_number() && !pair["share"].is_number()) {
       table.refused(name, "no test: " + typeset(svg::escaped(pair["p"].reason())));
       continue;
@@ -29,11 +29,11 @@ std::string pairs_table(const Field& pairs) {
   return table.html();
 }
 
-std::string apa_lines(const Field& pairs) {
+std::string preference_apa_lines(const Field& pairs) {
   std::vector<std::string> lines;
   for (const Field& pair : pairs.entries()) {
     if (!pair["p"].is_number()) continue;
-    lines.push_back(pair_name(pair) + ": " + count(pair["k"]) + " of " + count(pair["n"]) + " (" +
+    lines.push_back(preferred_pair(pair) + ": " + count(pair["k"]) + " of " + count(pair["n"]) + " (" +
                     percent(pair["share"]) + "), CI " + interval(pair["clopper_pearson"], 2) +
                     ", exact binomial <i>p</i> " + p(pair["p"]) + ", <i>p</i><sub>Holm</sub> " +
                     p(pair["p_holm"]));
@@ -116,14 +116,14 @@ std::string triads(const Field& t) {
                               "; as few or fewer by chance: <i>p</i> " + p(t["p"]) + "."));
 }
 
-std::string by_scene(const Field& task2) {
+std::string preferences_by_scene(const Field& task2) {
   Table table("Choices by scene (not tested)", {"Scene", "Pair", "Chosen"});
   for (const Field& c : task2["by_scene"].entries())
-    table.row({words(c["scene"]), pair_name(c), count(c["k"]) + " of " + count(c["n"])});
+    table.row({words(c["scene"]), preferred_pair(c), count(c["k"]) + " of " + count(c["n"])});
   return table.empty() ? "" : subsection("By scene", table.html());
 }
 
-std::string retest(const Field& r) {
+std::string preference_retest(const Field& r) {
   if (!r.there()) return "";
   return subsection("Test and retest", paragraph("Of " + count(r["pairs"]) + " pairs shown again, " +
                                                  percent(r["same"]) + " were answered alike."));
@@ -147,10 +147,10 @@ std::string task2_section(const Field& root) {
           figure(preference_bars(pairs),
                  "Share of answers that chose each of a pair, as the paper's Fig.&nbsp;10; line: Wilson "
                  "interval. Stars: exact binomial test, uncorrected / after Holm over all pairs.") +
-          pairs_table(pairs) + apa_lines(pairs) + preference_factors(task2) +
+          pairs_table(pairs) + preference_apa_lines(pairs) + preference_factors(task2) +
           interval_bias(task2["interval_bias"]) + bradley_terry(task2["bradley_terry"]) +
-          triads(task2["triads"]) + by_scene(task2) + detectable_preference(task2) +
-          response_times(root, "task2") + retest(task2["retest"]));
+          triads(task2["triads"]) + preferences_by_scene(task2) + detectable_preference(task2) +
+          response_times(root, "task2") + preference_retest(task2["retest"]));
 }
 
 }  // namespace apps::report

@@ -16,7 +16,7 @@ namespace apps {
 namespace {
 
 /// A mean of what some sessions have.
-struct Mean {
+struct RunningMean {
   double sum = 0;
   int count = 0;
   void add(double value) {
@@ -30,21 +30,17 @@ struct Mean {
 struct Shown {
   study::StimulusSpec what;
   int sessions = 0, measured = 0;
-  Mean made_ms, made_p95_ms;            ///< as the stations measured it
-  Mean interval_ms;                     ///< of showings without a schedule
+  RunningMean made_ms, made_p95_ms;     ///< as the stations measured it
+  RunningMean interval_ms;              ///< of showings without a schedule
   std::map<std::string, int> settings;  ///< sessions by text of the setting; "" = the usual
   std::set<std::string> stimuli;        ///< what the sessions say that they showed
-  Mean said;                            ///< Task 1: scores; Task 2: 1 = chosen
+  RunningMean said;                     ///< Task 1: scores; Task 2: 1 = chosen
 };
 using Stimuli = std::map<std::array<int, 3>, Shown>;  // scene, n_*, method
 
-int place(const std::vector<std::string>& list, const std::string& item) {
-  return static_cast<int>(std::find(list.begin(), list.end(), item) - list.begin());
-}
-
 std::array<int, 3> key_of(const study::TaskProtocol& protocol, const study::StimulusSpec& what) {
-  return {place(protocol.scenes, what.scene), place(protocol.n_stars, what.n_star),
-          place(protocol.methods, treatment_name(what))};
+  return {place_in(protocol.scenes, what.scene), place_in(protocol.n_stars, what.n_star),
+          place_in(protocol.methods, treatment_name(what))};
 }
 
 /// The text of the session's setting for this method and n_*; empty: the usual.
@@ -71,7 +67,7 @@ void add_session(const study::TaskProtocol& protocol, const study::TaskSession& 
     shown.what = showing.what;
     ++shown.settings[setting_text(session, showing.what)];
     shown.stimuli.insert(session.stimulus);
-    Mean mean, p95;
+    RunningMean mean, p95;
     for (const auto& cost : session.frame_costs) {
       if (cost.what != showing.what) continue;
       mean.add(cost.mean_ms);

@@ -150,10 +150,6 @@ Json timed_json(const TimedCell& cell) {
           {"tau_fps", cell.tau_fps.json()}};
 }
 
-int place(const std::vector<std::string>& list, const std::string& item) {
-  return static_cast<int>(std::find(list.begin(), list.end(), item) - list.begin());
-}
-
 }  // namespace
 
 Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks) {
@@ -261,8 +257,8 @@ Json timing_json(const TaskData& data) {
   const auto& protocol = data.protocol;
   for (const TimedShowing& one : data.showings) {
     const auto& what = one.shown.what;
-    cells[{place(protocol.scenes, what.scene), place(protocol.n_stars, what.n_star),
-           place(protocol.methods, treatment_name(what)), one.shown.nominal.mean, one.shown.nominal.sd}]
+    cells[{place_in(protocol.scenes, what.scene), place_in(protocol.n_stars, what.n_star),
+           place_in(protocol.methods, treatment_name(what)), one.shown.nominal.mean, one.shown.nominal.sd}]
         .add(one.shown);
   }
   Json list = Json::array();

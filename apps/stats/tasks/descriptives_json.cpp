@@ -15,16 +15,16 @@ namespace {
 constexpr int most_listed_scores = 21;  ///< of a scale, whose scores are all listed, given or not
 
 /// One stimulus of a trial, as places in the protocol's lists and its frame rate.
-struct Shown {
+struct ShownSetting {
   std::size_t method = 0;
   double mean = 0, sd = 0;
-  auto operator<=>(const Shown&) const = default;
+  auto operator<=>(const ShownSetting&) const = default;
 };
 
 /// What a line of the table is about; of a pair both stimuli, the earlier in the protocol first.
 struct Cell {
   std::size_t scene = 0, n_star = 0;
-  std::vector<Shown> shown;
+  std::vector<ShownSetting> shown;
   auto operator<=>(const Cell&) const = default;
 };
 
@@ -56,8 +56,8 @@ class Describer {
     return static_cast<std::size_t>(std::find(list.begin(), list.end(), item) - list.begin());
   }
 
-  Shown shown(const study::StimulusSpec& what, const study::FpsSetting& nominal) const {
-    Shown out{place(data_.protocol.methods, treatment_name(what)), 0, 0};
+  ShownSetting shown(const study::StimulusSpec& what, const study::FpsSetting& nominal) const {
+    ShownSetting out{place(data_.protocol.methods, treatment_name(what)), 0, 0};
     if (!several_settings_) return out;
     out.mean = nominal.mean;
     out.sd = nominal.sd;
@@ -84,7 +84,7 @@ class Describer {
     given.participants.insert(trial.participant);
   }
 
-  std::string name(const Shown& one) const {
+  std::string name(const ShownSetting& one) const {
     const std::string& method = data_.protocol.methods.at(one.method);
     return several_settings_ ? fmt::format("{}, {:g} frames/s, SD {:g}", method, one.mean, one.sd) : method;
   }

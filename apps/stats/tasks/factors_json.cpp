@@ -15,10 +15,6 @@ struct Factor {
   std::vector<stats::FactorPlace> places;
 };
 
-int place(const std::vector<std::string>& list, const std::string& item) {
-  return static_cast<int>(std::find(list.begin(), list.end(), item) - list.begin());
-}
-
 void add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
@@ -32,7 +28,7 @@ std::vector<Factor> factors_of(const study::TaskProtocol& protocol) {
     add_once(methods.levels, what.method);
   }
   for (const auto& what : protocol.treatments) {
-    const int level = place(effects.levels, what.effects), method = place(methods.levels, what.method);
+    const int level = place_in(effects.levels, what.effects), method = place_in(methods.levels, what.method);
     effects.places.push_back({level, method});
     methods.places.push_back({method, level});
   }
@@ -46,9 +42,9 @@ const std::string& level(const Factor& factor, int index) {
 }
 
 /// The test of one number of each participant.
-Json test_json(const stats::Result<stats::OneSampleTTest>& test,
-               const std::optional<stats::Unanimous>& all_alike, const std::optional<double>& p,
-               const std::optional<double>& p_holm) {
+Json t_test_json(const stats::Result<stats::OneSampleTTest>& test,
+                 const std::optional<stats::Unanimous>& all_alike, const std::optional<double>& p,
+                 const std::optional<double>& p_holm) {
   Json json{{"test", Json()}, {"mean", Json()}, {"ci", Json()}, {"t", Json()}, {"df", Json()}};
   if (test) {
     json = {{"test", "t test"},
@@ -80,7 +76,7 @@ Json preference_factors_json(const TaskData& data, const stats::AnalysisPlan& pl
                 {"n", one.n},
                 {"k", one.k},
                 {"share", one.n > 0 ? Json(1.0 * one.k / one.n) : Json()}};
-      json.update(test_json(one.shares, one.all_alike, one.p(), one.p_holm));
+      json.update(t_test_json(one.shares, one.all_alike, one.p(), one.p_holm));
       list.push_back(std::move(json));
     }
   }
@@ -98,7 +94,7 @@ Json score_factors_json(const TaskData& data, const std::vector<stats::ScoreTabl
             {"score", table.scale().code}, {"n_star", table.n_stars()[static_cast<std::size_t>(one.n_star)]},
             {"factor", factor.name},       {"a", level(factor, one.a)},
             {"b", level(factor, one.b)},   {"participants", one.participants}};
-        json.update(test_json(one.difference, one.all_alike, one.p(), one.p_holm));
+        json.update(t_test_json(one.difference, one.all_alike, one.p(), one.p_holm));
         list.push_back(std::move(json));
       }
     }

@@ -220,7 +220,7 @@ Json participants_json(const People& people) {
   return list;
 }
 
-Json protocol_json(const Sessions& sessions, const stats::AnalysisPlan& plan) {
+Json sickness_protocol_json(const Sessions& sessions, const stats::AnalysisPlan& plan) {
   const bool persons =
       std::any_of(sessions.begin(), sessions.end(), [](const auto* one) { return !is_simulated(*one); });
   People people;
@@ -247,7 +247,7 @@ Json sickness_json(std::vector<study::SicknessSession> sessions, const stats::An
     for (const std::string sha256 = first->protocol_sha256;
          first != sessions.end() && first->protocol_sha256 == sha256; ++first)
       of_protocol.push_back(&*first);
-    list.push_back(protocol_json(of_protocol, plan));
+    list.push_back(sickness_protocol_json(of_protocol, plan));
   }
   return list;
 }

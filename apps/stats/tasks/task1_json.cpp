@@ -13,7 +13,7 @@ namespace {
 
 using stats::ScoreTable;
 
-Json rules_json() {
+Json score_rules_json() {
   return {
       {"averaging",
        "The reports of one participant at one n_* on one method are averaged over scenes before any paired "
@@ -186,7 +186,7 @@ Json participant_means_json(const TaskData& data, const std::vector<ScoreTable>&
   return list;
 }
 
-Json effects_json(const stats::OrdinalEffects& effects, const std::vector<std::string>& methods) {
+Json ordinal_effects_json(const stats::OrdinalEffects& effects, const std::vector<std::string>& methods) {
   Json list = Json::array();
   for (const auto& effect : effects.effects) {
     list.push_back({{"method", methods[static_cast<std::size_t>(effect.method)]},
@@ -202,7 +202,7 @@ Json effects_json(const stats::OrdinalEffects& effects, const std::vector<std::s
   return list;
 }
 
-Json ordinal_json(const TaskData& data, const OrdinalModel& model) {
+Json ordinal_model_json(const TaskData& data, const OrdinalModel& model) {
   Json json{{"question", model.question},
             {"n_star", data.protocol.n_stars[static_cast<std::size_t>(model.n_star)]}};
   if (!model.effects) {
@@ -217,7 +217,7 @@ Json ordinal_json(const TaskData& data, const OrdinalModel& model) {
   json["participant_sd"] = effects.fit.sd_participant;
   json["log_likelihood"] = effects.fit.log_likelihood;
   json["thresholds"] = effects.fit.thresholds;
-  json["effects"] = effects_json(effects, data.protocol.methods);
+  json["effects"] = ordinal_effects_json(effects, data.protocol.methods);
   json["overall"] = json_result(effects.overall, [](const stats::LikelihoodRatio& ratio) {
     return Json{{"chi2", ratio.chi2}, {"df", ratio.df}, {"p", ratio.p}};
   });
@@ -248,7 +248,7 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
             {"methods", data.protocol.methods},
             {"n_stars", data.protocol.n_stars},
             {"scenes", data.scenes},
-            {"rules", rules_json()}};
+            {"rules", score_rules_json()}};
   for (const char* list :
        {"scores", "cells", "by_scene", "people", "comparisons", "mixed", "omnibus", "ordinal"})
     json[list] = Json::array();
@@ -265,7 +265,7 @@ Json task1_json(const TaskData& data, const Task1Results& results, const stats::
     json["mixed"].push_back(mixed_json(data, table, analysis.mixed, plan.confidence));
     for (const auto& one : analysis.people) json["people"].push_back(people_json(table, one));
   }
-  for (const auto& model : results.ordinal) json["ordinal"].push_back(ordinal_json(data, model));
+  for (const auto& model : results.ordinal) json["ordinal"].push_back(ordinal_model_json(data, model));
   json["participant_means"] = participant_means_json(data, results.tables);
   json["by_n_star"] = n_star_differences_json(results.tables, plan);
   json["distributions"] = distributions_json(data);

@@ -77,8 +77,8 @@ const stats::ScoreTable* find_table(const std::vector<stats::ScoreTable>& tables
   return nullptr;
 }
 
-stats::Result<stats::ShownClaims> verdicts(const std::vector<stats::ScoreTable>& tables, const TaskData& data,
-                                           const stats::AnalysisPlan& plan) {
+stats::Result<stats::ShownClaims> shown_claims(const std::vector<stats::ScoreTable>& tables,
+                                               const TaskData& data, const stats::AnalysisPlan& plan) {
   const auto* realism = find_table(tables, "realism");
   const auto* sickness = find_table(tables, "sickness");
   if (!realism || !sickness) {
@@ -116,7 +116,7 @@ std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::A
 
 stats::Result<std::vector<stats::Hypothesis>> task1_verdicts(const TaskData& data,
                                                              const stats::AnalysisPlan& plan) {
-  const auto claims = verdicts(score_tables(data, plan), data, plan);
+  const auto claims = shown_claims(score_tables(data, plan), data, plan);
   if (!claims) return stats::Refusal{claims.reason()};
   return claims->claims;
 }
@@ -126,7 +126,7 @@ stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::Ana
   out.tables = score_tables(data, plan);
   // The paper's claims are about methods alone.
   if (data.protocol.effects.empty()) {
-    const auto hypotheses = verdicts(out.tables, data, plan);
+    const auto hypotheses = shown_claims(out.tables, data, plan);
     if (!hypotheses) return stats::Refusal{hypotheses.reason()};
     out.hypotheses = hypotheses->claims;
     out.left_out = hypotheses->left_out;

@@ -34,7 +34,7 @@ const char* repeated_rule(stats::RepeatedPairs rule) {
          "half, by an exact test over people.";
 }
 
-Json rules_json(const stats::AnalysisPlan& plan) {
+Json preference_rules_json(const stats::AnalysisPlan& plan) {
   return {
       {"tests",
        "Exact binomial test for each pair against one half, two-sided; Clopper-Pearson and Wilson intervals; "
@@ -258,7 +258,7 @@ Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
             {"methods", methods},
             {"n_stars", data.protocol.n_stars},
             {"scenes", data.scenes},
-            {"rules", rules_json(plan)},
+            {"rules", preference_rules_json(plan)},
             {"pairs", pairs},
             {"interval_bias", interval_json(analysis.interval)},
             {"bradley_terry", bradley_terry_json(analysis, methods)},

@@ -143,7 +143,7 @@ bool varies_picture(const base::TomlTable& design) {
   return std::any_of(sets.begin(), sets.end(), names_picture);
 }
 
-std::string words_of(const CellEffects& effects) {
+std::string effect_words(const CellEffects& effects) {
   std::string words = sim::effects_in_words(*effects.water);
   const std::string picture =
       effects.picture ? sim::picture_effects_in_words(*effects.picture) : std::string();
@@ -249,7 +249,8 @@ std::string temperatures_in_words(const study::Protocol& protocol, const sim::Sc
 std::string levels_in_words(const study::Protocol& protocol, const sim::Scene& scene) {
   std::string out;
   for (const study::EffectSet& level : protocol.design.effects) {
-    out += (out.empty() ? "" : ", ") + level.name + ": " + words_of(effects_of(protocol, level.name, scene));
+    out +=
+        (out.empty() ? "" : ", ") + level.name + ": " + effect_words(effects_of(protocol, level.name, scene));
   }
   return out;
 }

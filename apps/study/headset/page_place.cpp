@@ -17,7 +17,7 @@ const double height_m = width_m * page_height_px / page_width_px;
 
 using Vector = std::array<float, 3>;
 float dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 }  // namespace
 
@@ -44,7 +44,7 @@ HeadsetPage place_page(const HeadsetPose& head) {
 }
 
 bool is_left_behind(const HeadsetPage& page, const HeadsetPose& head) {
-  const Vector way = minus(page.pose.place_m, head.place_m);
+  const Vector way = difference(page.pose.place_m, head.place_m);
   const float distance = std::sqrt(dot(way, way));
   if (std::abs(distance - static_cast<float>(page_distance_m)) > static_cast<float>(farthest_m)) return true;
   return dot(way, direction_of(head)) < distance * static_cast<float>(std::cos(farthest_deg * degree));
@@ -57,7 +57,7 @@ std::optional<std::pair<float, float>> meet_page(const HeadsetPage& page, const 
   const Vector along = direction_of(ray);
   const float towards = -dot(along, front);
   if (towards <= 1e-6F) return {};
-  const Vector from = minus(ray.place_m, page.pose.place_m);
+  const Vector from = difference(ray.place_m, page.pose.place_m);
   const float length = dot(from, front) / towards;
   if (length <= 0) return {};
   const Vector at{from[0] + length * along[0], from[1] + length * along[1], from[2] + length * along[2]};

@@ -1,0 +1,5 @@
+# What cpack reads before it begins.
+if(CPACK_VIP_NATIVE)
+  message(FATAL_ERROR "This build has instructions of this machine's processor (VIP_NATIVE), so that its programs may not run "
+                      "on another. Pack build/package, which `cmake --workflow --preset package` makes.")
+endif()
