@@ -221,16 +221,16 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  /// Says where the eyes are and what they saw last, for the next frame and until it is said again. Methods
-  /// that follow no gaze ignore it; those that do look from the scene's own view along its axis until it is
-  /// called. False, and nothing is taken, when a picture lies in GL buffers that this back end cannot reach
-  /// (EyeLook::shared; the CPU, or a context on another device): read it back and look again. Buffers of GL's
-  /// that were shared, here or by copy_to_gl, are the simulation's from here to copy_to_gl: GL neither reads
-  /// nor draws them meanwhile. Where the coming frame chooses no levels, gazes alone are taken, and the
-  /// answer is true. base::Error: no eye or more than two, a camera that is not finite, a G-buffer that is
-  /// not whole.
+  /// Sets the eyes and the pictures that they saw last. They hold from the next frame on, until the next
+  /// call. Methods without gaze ignore them. Before the first call, the other methods use the scene's camera
+  /// and look along its axis. Returns false, and changes nothing, if a picture lies in GL buffers that this
+  /// back end cannot read (EyeLook::shared, on a CPU or with a context of another device): read it back and
+  /// call again. The simulation owns the shared buffers, of this call and of copy_to_gl, until copy_to_gl: GL
+  /// must not read or draw them meanwhile. If the next frame chooses no levels, only the gaze is used, and
+  /// the call returns true. base::Error: no eye or more than two, a camera that is not finite, an incomplete
+  /// G-buffer.
   virtual bool look(const Looks& looks) = 0;
-  /// Whether the method looks at the picture of the last frame; other pictures need not be read back.
+  /// Whether the method uses the picture of the last frame; otherwise it need not be read back.
   virtual bool follows_picture() const = 0;
   /// Frames since the gate opened.
   virtual int frame() const = 0;
@@ -238,38 +238,38 @@ class Simulation {
   virtual double time_s() const { return 0; }
   /// Advances by one frame.
   virtual void step_frame() = 0;
-  /// Changes the forced targets from the next frame on; base::Error when the run was made without any.
+  /// Changes the forced targets from the next frame on; base::Error if the run was made without any.
   virtual void force_targets(const TargetRegion&) {}
   virtual LiveNumbers live_numbers() const { return {}; }
-  /// Changes them from the next frame on, alpha from the next turn of the levels; base::Error when one is out
-  /// of range.
+  /// Changes these numbers from the next frame on, alpha when levels are next chosen; base::Error if one is
+  /// out of range.
   virtual void change(const LiveNumbers&) {}
-  /// The scene lists these effects from the next frame on: the schedule is compiled anew, and the water goes
-  /// on from where it is, with the same particles, velocities, levels and guards. What an effect alone keeps
-  /// comes and goes with it: temperatures begin as in a start, by the scene's boxes, and foam with nobody
-  /// there; other effects keep theirs. Substeps follow the new effects' steps. Without the effects that went,
-  /// the run is bit for bit one that never had them from this state on, and their columns are freed.
-  /// base::Error, and nothing has changed: what check_effects refuses, and more substeps than the options or
-  /// the program allow. base::Error, and the simulation is of no more use: a device without room.
+  /// Replaces the list of effects from the next frame on. The schedule is compiled anew. Particles,
+  /// velocities, levels and guards stay. A new effect starts as in a new run: temperatures from the scene's
+  /// boxes, foam without particles. Effects that stay keep their state. The number of substeps follows the
+  /// new effects. From here on the run is bit for bit one that never had the removed effects, and their
+  /// columns are freed. base::Error, with nothing changed: whatever check_effects refuses, or more substeps
+  /// than the options or the program allow. base::Error, after which the simulation cannot be used: the
+  /// device has no memory left.
   virtual void set_effects(const std::vector<Effect>&) {}
-  /// Takes the time of the last whole frame, ms, for tau; methods without temporal acceleration ignore it.
+  /// Sets the time of the last whole frame, ms, for tau. Methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
-  /// Of the frame that step_frame computed last; before the first, who is there.
+  /// Account of the last frame; before the first frame, the particles of the start.
   virtual const FrameAccount& account() const = 0;
-  /// What changed the water's momentum in the frame that step_frame computed last, and what walls and gauges
-  /// felt. All zero unless SimulationOptions::wall_impulse or gauges.
+  /// Changes of the water's momentum in the last frame, and the impulses on walls and gauges. All zero
+  /// without SimulationOptions::wall_impulse or gauges.
   virtual MomentumAccount momentum() const { return {}; }
-  /// Of the frame that step_frame computed last.
+  /// Substeps of the last frame.
   virtual SubstepCount substeps() const { return {}; }
-  /// The first trouble since the simulation was made; none in a sound run. Costs a frame nothing to speak of.
+  /// The first sign of divergence since the simulation was made; none in a sound run. Costs almost no time.
   virtual std::optional<Divergence> divergence() const { return {}; }
-  /// Gives particles that are there new places and velocities, by id: a test's way to break the water. Levels
-  /// stay. base::Error for an id that nobody has.
+  /// Sets position and velocity of existing particles, by id, so that tests can break the water. Levels
+  /// stay. base::Error for an unknown id.
   virtual void put(const std::vector<ParticleState>&) {}
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;
-  /// The most particles there can ever be; buffers of this size never grow.
+  /// Largest possible number of particles; buffers of this size never grow.
   virtual std::int64_t particle_capacity() const { return particle_count(); }
   /// Rest spacing d = 2 r of the finest particles that the method can hold, m.
   virtual double spacing_m() const = 0;
@@ -277,9 +277,9 @@ class Simulation {
   virtual std::vector<float> radii_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
-  /// Saliency behind the levels that were chosen last, in the order of read_particles; what a particle became
-  /// of has its value. Only s and target unless SimulationOptions::saliency_parts. Empty where there is none:
-  /// another method, or no frame yet.
+  /// Saliency by which levels were chosen last, in the order of read_particles. Children and merged particles
+  /// inherit their parents' value. Only s and target without SimulationOptions::saliency_parts. Empty for
+  /// methods without saliency, and before the first frame.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
   /// Saliency (Eq. 1-9) of the present state for the given eyes, whatever the method, as if this were the
   /// first frame: for masks and figures, not part of step_frame. Sorts the particles; `out` is in the order
@@ -291,23 +291,23 @@ class Simulation {
   virtual std::vector<int> read_ids() const = 0;
   /// One value a particle in the order of read_particles.
   virtual void read_field(ParticleField field, std::vector<float>& out) const = 0;
-  /// Everything about every particle, ordered by id.
+  /// The state of every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
-  /// Writes the whole state between two frames, for SimulationOptions::resume_from: a file of a name of its
-  /// own that is renamed. The last look() and the frames' times that tau follows from are part of it; times
-  /// of parts and momentum() are not. base::Error when the file cannot be written.
+  /// Writes the whole state between two frames, for SimulationOptions::resume_from, to a temporary file that
+  /// is then renamed. The state includes the last look() and the frame times behind tau. It excludes
+  /// part_times() and momentum(). base::Error if the file cannot be written.
   virtual void save_state(const std::filesystem::path& path) = 0;
-  /// Copies positions and radii into a GL buffer of this thread's context without a way through the host.
-  /// False when this back end cannot (the CPU, or a context on another device) or the buffer is too small:
-  /// read_particles and upload instead.
+  /// Copies positions and radii into a GL buffer of this thread's context, on the device.
+  /// Returns false if this back end cannot (a CPU, or a context of another device) or the buffer is too
+  /// small: use read_particles and upload instead.
   virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
   /// The scene's obstacles between two frames, in its order, copied to the host.
   virtual std::vector<BodyMotion> read_obstacles() const { return {}; }
-  /// The most diffuse particles of the effect foam that there can be; 0 where the scene lists none.
+  /// Largest possible number of foam particles; 0 without the effect foam.
   virtual std::int64_t foam_capacity() const { return 0; }
-  /// Places and radii of those that are there, copied to the host.
+  /// Positions and radii of the foam particles, copied to the host.
   virtual void read_foam(std::vector<RenderParticle>& out) const { out.clear(); }
-  /// As copy_to_gl: foam_capacity() entries, of which those without radius are nobody. False also without
+  /// As copy_to_gl, with foam_capacity() entries; radius 0 marks an unused one. Returns false also without
   /// foam.
   virtual bool copy_foam_to_gl(const GlBufferRef&) { return false; }
   /// All zero unless SimulationOptions::time_parts.

@@ -103,7 +103,7 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
   std::fflush(stdout);
 }
 
-/// Everything that hears of a run's progress and steers it.
+/// Routes events of a run to the console, and requests of the console to the session.
 class Steering {
  public:
   Steering(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,

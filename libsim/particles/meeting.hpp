@@ -19,9 +19,9 @@ struct ListedContact {
   Partners between;
 };
 
-/// Takes free bodies to the substep's end. Contacts are inelastic, with Coulomb's friction. They are looked
-/// for where bodies are when the substep begins, and let surfaces come as near as they are to each other: who
-/// is deeper is parted by places, without speed. Walls have the last word.
+/// Moves free bodies to the end of the substep. Contacts are inelastic, with Coulomb friction. They are found
+/// where the bodies are at its beginning, and stop surfaces at each other. A deeper penetration is corrected
+/// in position only. Contacts with walls are solved last.
 struct Meeting {
   Body* bodies;  ///< of those that are not free: at the substep's end
   FreeBody* free;
@@ -267,7 +267,7 @@ struct Meeting {
         out.ease += arm(out.second, it.contact.at, way, normal, out.other_lever, out.other_turn);
       return out;
     }
-    /// A push towards the middle of a ball turns it by no rounding either.
+    /// A push towards the centre gives a sphere exactly zero torque.
     SIM_FN float arm(int b, Vec3 at, Vec3 way, bool normal, Vec3& lever, Vec3& turn) const {
       lever = turn = {0, 0, 0};
       if (normal && is_ball(b)) return room.rates[b].ease;

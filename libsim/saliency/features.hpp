@@ -44,8 +44,8 @@ SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec
 void combine_features(const FeatureNumbers& numbers, const Eyes& eyes, const Vec4* position,
                       const float* temporal, float* combined, SaliencyParts* parts, int n);
 
-/// s and the target level from F. What is not finite has s = 0 and is counted; the others keep both when the
-/// range is not usable.
+/// s and the target level from F. Particles whose F is not finite have s = 0 and are counted. If the range is
+/// invalid, the finite particles keep s and target.
 void saliency_to_levels(const float* combined, const SaliencyRange* range, int levels, float* saliency,
                         std::uint8_t* target, Guards* guards, int n);
 

@@ -243,8 +243,8 @@ class Store {
   /// A copy of a database that is locked by another program: what is written to it goes into the journal
   /// alone, from which the next opening takes it over.
   explicit Store(Store& locked);
-  /// Makes a change that nobody can make again, an answer or a note: where the file is locked, in such a
-  /// copy, and then throws LockedOut.
+  /// Makes a change that cannot be repeated: an answer or a note. If the file is locked, makes it in such a
+  /// copy and then throws LockedOut.
   void make(const std::function<void(Store&)>& change);
   void write_answers(std::int64_t session, const OpenUnit& unit, int attempt,
                      std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns,

@@ -17,15 +17,15 @@ struct CellEffects {
       {};  ///< none: no level names one; the scene's stay
 };
 
-/// Of a level in this scene; the water's are there. base::Error at file:line:column of the protocol: a kind
-/// that there is not, that the scene does not list (keep), that needs another one, a key that the kind lacks,
-/// a number out of range.
+/// Effects of a level in this scene; those of the water are always given. base::Error at file:line:column of
+/// the protocol: an unknown kind, one that the scene does not list (keep), one that needs another, an unknown
+/// key, a number out of range.
 CellEffects effects_of(const study::Protocol& protocol, const std::string& level, const sim::Scene& scene);
 
 /// The scene with these instead.
 sim::Scene scene_with(sim::Scene scene, const CellEffects& effects);
 
-/// Of a cell. Reads its scene.
+/// Effects of one cell; reads its scene file.
 CellEffects cell_effects(const study::Protocol& protocol, const study::StimulusSpec& what);
 
 /// The errors of every level in every scene, and two levels that look the same in one. Where temperature

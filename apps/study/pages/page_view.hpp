@@ -53,7 +53,7 @@ class PageView {
   void draw_footer(PageState& state, std::int64_t now_ns);
   void draw_scroll_buttons(float room);
   void look_at_mouse(bool counts);
-  /// Whether the last thing drawn lies under a pointer that was put there.
+  /// Whether the last widget lies under a real pointer.
   bool hovered() const;
   Pad* pad_of(const PageState& state);
   void follow_focus(const PageState& state, std::size_t i, float top);

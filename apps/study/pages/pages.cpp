@@ -10,7 +10,7 @@ namespace {
 // The session's check is due every 50 ms.
 constexpr double poll_s = 0.03;
 
-/// Thrown out of the question whether to stop when the session ends for another reason.
+/// Aborts the stop dialog when the session ends for another reason.
 struct Overruled {
   study::Wish wish;
 };

@@ -144,13 +144,13 @@ struct FluidState {
     if (level + 1 >= static_cast<std::size_t>(most_levels)) return std::numeric_limits<float>::max();
     return 0.5f * (supports.h[level] + supports.h[level + 1]);
   }
-  /// Is what walls and obstacles do to places told to anybody?
+  /// True if position corrections by walls and obstacles are recorded.
   bool listens() const { return !impulse.deaf() && (impulse.on() || obstacles.told()); }
   BodyListener body_listener(float times) {
     return {listens() && obstacles.told() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
             finest_support, times};
   }
-  /// For effects: their pushes are no part of the constraint's. Without sums nobody listens.
+  /// For effects, whose pushes are summed apart from the constraint's; records nothing without those sums.
   BodyListener effects_listener() {
     return {obstacles.told() ? obstacles.sums.data() + obstacles.count() : nullptr, obstacles.bodies.data(),
             finest_support, 1};

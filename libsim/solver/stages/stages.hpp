@@ -102,20 +102,20 @@ void press(FluidState& state, CoarsePressureView particles);
 /// What moves free obstacles in the present substep.
 BodyDrive body_drive(FluidState& state);
 
-// For the account of what the walls give. While it listens, kernels leave the clamp at the walls to a pass of
-// its own, which tells the account.
+// For the momentum account of the walls. While it records, kernels leave the clamp at the walls to a pass of
+// its own, which records what it does.
 
-/// Nearest distance to a wall that kernels keep, as a share of d; none while the account listens.
+/// Smallest distance to a wall that kernels keep, as a share of d; none while the account records.
 float gap_of_kernels(const FluidState& state);
 using ClampView = ColumnView<ColumnSet{}, columns(Column::Predicted, Column::PredictedNext)>;
-/// The clamp that kernels left out; nothing while nobody listens. `from`: where the particles come from.
+/// The clamp that kernels left out; does nothing while no account records. `from`: positions before the step.
 /// `times`: as in WallListener. `in_both`: PredictedNext holds the same places afterwards.
 void clamp_and_listen(FluidState& state, ClampView particles, const Vec4* from, float times, bool in_both);
 /// Ends the coarse pressure's push from Predicted to PredictedNext: it gives the water what the walls gave,
 /// and stops at the walls. Both hold the places then.
 void balance_push(FluidState& state, ClampView particles);
-/// How often a push of this projection counts in all: the projections after it take a share of each step
-/// again.
+/// Weight of a push of this projection, including the shares of it that later projections repeat as
+/// momentum steps.
 float times_taken(const SolverParameters& parameters, int iteration);
 
 /// The two halves of one projection of a few. The others need lambda = 0 and the same

@@ -5,12 +5,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// What is done to pairs besides the viscosity: nothing, or what brings water at rest to rest again after
-/// splits and merges. Neighbours overlap then; the projections part them, and how fast they part is no motion
-/// of the fluid. Round fresh particles kicks are evened out among neighbours, so that the momentum stays and
-/// what all of them feel, gravity and pressure, passes. What is left uneven sinks back over a second or two
-/// and stirs; a stronger viscosity takes that. Water that moved before the kick has less of the filter and no
-/// such viscosity: it would lose energy.
+/// A filter of velocities besides the viscosity: none, or one that calms resting water after splits and
+/// merges. New particles overlap their neighbours, the projections separate them, and the velocity of that
+/// separation is no motion of the fluid. Velocity changes near new particles are averaged over neighbours.
+/// The average keeps momentum and common changes, such as gravity and pressure. What remains uneven sinks for
+/// a second or two and stirs the water; a stronger viscosity damps it. Water that moved before is filtered
+/// less and has no such viscosity, as it would lose energy.
 struct NoFilter {
   static constexpr bool filters = false;
 };
