@@ -1,7 +1,9 @@
 #include "libsim/ptpe/ptpe_file.hpp"
 
 #include <fmt/core.h>
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -40,24 +42,64 @@ std::array<double, 2> interval(const base::TomlTable& table, const char* key, co
   return {ends[0], ends[1]};
 }
 
+/// The lists of one format 2 file; each has an entry for each delta.
+std::vector<PtpeBandPoint> band_of(const base::TomlTable& table, const stats::PtpeModel& model) {
+  constexpr base::Range rate{1e-6, 1e9};
+  const auto deltas = table.numbers("band_delta_fps", 0, {0, 1e4});
+  if (deltas.empty()) table.fail("band_delta_fps", "is empty", "fit again: a band has at least one entry");
+  const auto lows = table.numbers("band_low95_fps", deltas.size(), rate);
+  const auto highs = table.numbers("band_high95_fps", deltas.size(), rate);
+  const auto away = table.numbers("band_out_of_reach_fps");
+  std::vector<PtpeBandPoint> out;
+  for (std::size_t i = 0; i < deltas.size(); ++i) {
+    if (i > 0 && deltas[i] <= deltas[i - 1])
+      table.fail_at("band_delta_fps", i, "is not above the one before it", "write them ascending");
+    const double mu = model.a * std::exp(model.b * deltas[i]);
+    if (!(lows[i] <= mu && mu <= highs[i]))
+      table.fail_at("band_low95_fps", i, "and band_high95_fps there do not hold a exp(b delta)",
+                    "fit again: one of them was changed");
+    const bool in_reach = std::find(away.begin(), away.end(), deltas[i]) == away.end();
+    out.push_back({deltas[i], {lows[i], highs[i]}, in_reach});
+  }
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    if (std::find(deltas.begin(), deltas.end(), away[i]) == deltas.end() || (i > 0 && away[i] <= away[i - 1]))
+      table.fail_at("band_out_of_reach_fps", i, "is none of band_delta_fps or not above the one before it",
+                    "list deltas of the band, ascending");
+  }
+  return out;
+}
+
+/// The largest half width of the band, as a share of a exp(b delta).
+double widest(const PtpeFile& file) {
+  double out = 0;
+  for (const auto& point : file.band)
+    out = std::max(out,
+                   (point.mu[1] - point.mu[0]) / 2 / (file.model.a * std::exp(file.model.b * point.delta)));
+  return out;
+}
+
 const char* mean_name(stats::FpsMean mean) {
   return mean == stats::FpsMean::Harmonic ? "harmonic" : "arithmetic";
 }
 }  // namespace
 
 std::string describe(const PtpeFile& file) {
-  std::string out =
-      fmt::format("a = {:.4f} frames/s, b = {:.5f} s/frame (level {:.3g}, {} mean, {} participants",
-                  file.model.a, file.model.b, file.level, mean_name(file.model.mean), file.n_participants);
+  std::string out = fmt::format("a = {:.4f} frames/s, b = {:.5f} s/frame (level {:.3g}, {} mean, ",
+                                file.model.a, file.model.b, file.level, mean_name(file.model.mean));
+  if (!file.band.empty())
+    out += fmt::format("mu open by up to +-{:.0f} % at delta {:g} to {:g}, ", 100 * widest(file),
+                       file.band.front().delta, file.band.back().delta);
+  out += fmt::format("{} participants", file.n_participants);
   if (file.n_simulated > 0) out += fmt::format(", {} of them SIMULATED", file.n_simulated);
   return out + (file.test_data ? ", TEST DATA)" : ")");
 }
 
 PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
   const auto root = base::parse_toml(text, name);
-  if (root.integer("format") != PtpeFile::format_version) {
+  const auto format = root.integer("format");
+  if (format < 1 || format > PtpeFile::format_version) {
     root.fail("format",
-              "is not the format this program reads (" + std::to_string(PtpeFile::format_version) + ")",
+              "is not a format this program reads (1 to " + std::to_string(PtpeFile::format_version) + ")",
               "use the program that wrote the file, or fit again with this one");
   }
   const auto table = root.table("ptpe");
@@ -67,6 +109,7 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
   file.level = table.number("level", {1, 7});
   file.a_ci = interval(table, "a_ci95_fps", "a_fps", file.model.a);
   file.b_ci = interval(table, "b_ci95_s", "b_s", file.model.b);
+  if (format > 1) file.band = band_of(table, file.model);
   file.n_participants = static_cast<int>(table.integer("n_participants", {1, 1e6}));
   file.n_simulated = static_cast<int>(table.integer_or("n_simulated", 0, {0, 1e6}));
   if (file.n_simulated > file.n_participants) {
@@ -95,13 +138,28 @@ std::string format_ptpe_file(const PtpeFile& file) {
   const auto pair = [](const std::array<double, 2>& ends) {
     return "[" + exact(ends[0]) + ", " + exact(ends[1]) + "]";
   };
+  const auto list = [&](auto value) {
+    std::string text;
+    for (const auto& point : file.band)
+      if (const std::optional<double> one = value(point)) text += (text.empty() ? "" : ", ") + exact(*one);
+    return "[" + text + "]";
+  };
+  using Point = const PtpeBandPoint&;
+  using Listed = std::optional<double>;
   std::ostringstream out;
   out << "# tau = mu - a exp(b delta), all in frames per second (ViP-Fluid, Eq. 11)\n"
-      << "format = " << PtpeFile::format_version << "\n\n[ptpe]\n"
+      << "format = " << (file.band.empty() ? 1 : PtpeFile::format_version) << "\n\n[ptpe]\n"
       << "a_fps = " << exact(file.model.a) << "\nb_s = " << exact(file.model.b)
       << "\nlevel = " << exact(file.level) << "\na_ci95_fps = " << pair(file.a_ci)
-      << "\nb_ci95_s = " << pair(file.b_ci) << "\nn_participants = " << file.n_participants
-      << "\nn_simulated = " << file.n_simulated << "\ntest_data = " << (file.test_data ? "true" : "false")
+      << "\nb_ci95_s = " << pair(file.b_ci);
+  if (!file.band.empty())
+    out << "\nband_delta_fps = " << list([](Point p) -> Listed { return p.delta; })
+        << "\nband_low95_fps = " << list([](Point p) -> Listed { return p.mu[0]; })
+        << "\nband_high95_fps = " << list([](Point p) -> Listed { return p.mu[1]; })
+        << "\nband_out_of_reach_fps = "
+        << list([](Point p) { return p.in_reach ? Listed() : Listed(p.delta); });
+  out << "\nn_participants = " << file.n_participants << "\nn_simulated = " << file.n_simulated
+      << "\ntest_data = " << (file.test_data ? "true" : "false")
       << "\nfps_mean = " << base::toml_quoted(mean_name(file.model.mean))
       << "\nprotocol_sha256 = " << base::toml_quoted(file.protocol_sha256)
       << "\ndate_utc = " << base::toml_quoted(file.date_utc) << "\n";

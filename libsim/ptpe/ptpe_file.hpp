@@ -4,19 +4,28 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "stats/ptpe/ptpe.hpp"
 
 namespace sim {
 
+/// Where the true threshold lies at one standard deviation.
+struct PtpeBandPoint {
+  double delta = 0;            ///< frames/s
+  std::array<double, 2> mu{};  ///< 95 % interval of mu(delta) over participants, frames/s
+  bool in_reach = true;        ///< false: no frame rates near the curve were shown there; extrapolated
+};
+
 /// What `vip-stats fit-ptpe` writes and every solver program loads.
 struct PtpeFile {
-  static constexpr int format_version = 1;
+  static constexpr int format_version = 2;  ///< 1, which has no band, is read too
 
   stats::PtpeModel model;            ///< a in frames/s, b in s/frame, and which mean was the predictor
   double level = 4;                  ///< satisfaction score of the contour, in [1, 7]
   std::array<double, 2> a_ci{0, 0};  ///< 95 % interval over participants
   std::array<double, 2> b_ci{0, 0};
+  std::vector<PtpeBandPoint> band;  ///< deltas ascending, a exp(b delta) within; empty in format 1
   int n_participants = 0;
   int n_simulated = 0;          ///< of them simulated observers; the key may be missing
   bool test_data = false;       ///< fitted to test data; the key may be missing
@@ -24,15 +33,16 @@ struct PtpeFile {
   std::string date_utc;         ///< ISO 8601 with seconds, "2026-01-31T12:00:00Z"
 };
 
-/// One line: the model, its level and whom it was fitted to; simulated participants and test data are named.
+/// One line: the model, its level, how far its band leaves mu open, and whom it was fitted to; simulated
+/// participants and test data are named.
 std::string describe(const PtpeFile& file);
 
 /// Errors (base::Error at file:line:column): unknown key, wrong type or range, a or b outside its own
-/// interval, newer format.
+/// interval, a exp(b delta) outside its band, newer format.
 PtpeFile parse_ptpe_file(std::string_view text, const std::string& name);
 PtpeFile read_ptpe_file(const std::filesystem::path& path);
-/// The text of a file that parse_ptpe_file reads back to the same values. std::invalid_argument for a number
-/// that is not finite.
+/// The text of a file that parse_ptpe_file reads back to the same values: format 1 without a band.
+/// std::invalid_argument for a number that is not finite.
 std::string format_ptpe_file(const PtpeFile& file);
 
 }  // namespace sim

@@ -169,6 +169,21 @@ std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct) {
   return PilotDoubt{form_rejected, "form of the curve: " + form_text(*direct.form)};
 }
 
+std::optional<PilotDoubt> band_doubt(const Curve& curve, const Result<CurveSpread>& band,
+                                     std::span<const double> deltas) {
+  if (!band) return PilotDoubt{"no_band", "the curve has no band: " + band.reason()};
+  for (const double delta : deltas) {
+    const auto [low, high] = band->band(delta).pointwise;
+    const double mu = curve.mu(delta);
+    if (low <= mu && mu <= high) continue;
+    return PilotDoubt{"curve_outside_band",
+                      fmt::format("at a standard deviation of {:g} the direct curve, {:.2f} frames/s, leaves "
+                                  "the band [{:.2f}, {:.2f}]",
+                                  delta, mu, low, high)};
+  }
+  return std::nullopt;
+}
+
 std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstimate& direct,
                                      const PilotEstimate& contour, const OrdinalPilotEstimate& ordinal) {
   std::vector<PilotDoubt> doubts;

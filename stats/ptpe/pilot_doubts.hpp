@@ -2,6 +2,7 @@
 /// Why the fit of a pilot must not steer a solver, although numbers came out of it.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstima
 /// others, since a lab may accept another form as an approximation.
 inline constexpr const char* form_rejected = "form_rejected";
 std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct);
+
+/// "no_band" where there is no band of the curve; "curve_outside_band" where the curve that the solver gets
+/// leaves its band at one of `deltas`. A file cannot say then where it holds.
+std::optional<PilotDoubt> band_doubt(const Curve& curve, const Result<CurveSpread>& band,
+                                     std::span<const double> deltas);
 
 /// One sentence on the form test: c with its interval, how the curve differs, and the smallest |c|
 /// detectable.

@@ -12,11 +12,6 @@ std::array<double, 2> over(const std::array<double, 2>& x, const std::array<doub
 
 }  // namespace
 
-std::array<double, 2> solver_band(const CurveSpread& direct, const Result<FormTest>& form, double delta) {
-  const auto alone = direct.band(delta).pointwise;
-  return form ? over(alone, form->curve.band(delta).pointwise) : alone;
-}
-
 SolverInterval solver_interval(const CurveSpread& direct, const Result<PilotSpread>& contour) {
   if (!contour) return {direct.a_ci, direct.b_ci, false};
   return {over(direct.a_ci, contour->a_ci), over(direct.b_ci, contour->b_ci), true};

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "stats/ptpe/curve.hpp"
-#include "stats/ptpe/form_test.hpp"
 #include "stats/ptpe/pilot.hpp"
 
 namespace stats {
@@ -14,11 +13,6 @@ struct SolverInterval {
   std::array<double, 2> a_ci{}, b_ci{};
   bool spans_contour = false;  ///< false: the contour has none, and these are the direct estimate's
 };
-
-/// The range that the pointwise bands of the exponential and of the free curve span at a standard deviation;
-/// the exponential's alone without a free curve. The exponential's alone held mu(delta) in as few as 89 % of
-/// pilots.
-std::array<double, 2> solver_band(const CurveSpread& direct, const Result<FormTest>& form, double delta);
 
 /// The direct estimate has the smaller error, but an interval that knows of chance alone: where the scores
 /// are no quadratic it held b in as few as 84 %. The contour assumes no shape of the scores and has the

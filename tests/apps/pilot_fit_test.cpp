@@ -72,6 +72,11 @@ TEST(PilotFit, WritesEveryPromisedField) {
   EXPECT_EQ(file.model.a, fit.main().fit->a);
   EXPECT_EQ(file.b_ci, fit.main().spread->b_ci);
   EXPECT_EQ(file.n_simulated, 16);
+  ASSERT_EQ(file.band.size(), 5u);
+  const auto& last = json.at("bands").at(20);  // of level 4
+  EXPECT_EQ(last.at("delta"), 20);
+  EXPECT_EQ(last.at("solver_ci"), ordered_json(file.band[4].mu));
+  EXPECT_LT(last.at("solver_ci")[0], last.at("solver_mu"));
 }
 
 // At a = 18, b = 0.01 the curve lies below the frame rates shown at large deviations.
@@ -87,6 +92,22 @@ TEST(PilotFit, WidthIsJudgedWhereTheCurveIsInReach) {
     widest = std::max(widest, (point.pointwise[1] - point.pointwise[0]) / 2 / point.mu);
   }
   EXPECT_EQ(fit.relative_half_width(), widest);
+}
+
+TEST(PilotFit, TheFileSaysWhereTheCurveIsExtrapolated) {
+  const auto fit = fit_of(simulated_pilot("ptpe:a=18,b=0.01", 16, 3));
+  const auto& away = fit.chosen().direct.out_of_reach;
+  ASSERT_FALSE(away.empty());
+  for (const auto& point : apps::ptpe_file(fit).band)
+    EXPECT_EQ(point.in_reach, std::count(away.begin(), away.end(), point.delta) == 0) << point.delta;
+}
+
+TEST(PilotFit, ACurveWithoutABandIsNotForASolver) {
+  auto fit = fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
+  EXPECT_EQ(apps::ptpe_file(fit).band.size(), 5u);
+  fit.harmonic.at(4).band = stats::Refusal{"the participants agree"};
+  EXPECT_TRUE(apps::ptpe_file(fit).band.empty());
+  EXPECT_TRUE(apps::fit_json(fit).at("bands").at(0).at("solver_ci").is_null());
 }
 
 TEST(PilotFit, AContourWithoutAnIntervalIsFlagged) {

@@ -90,7 +90,7 @@ TEST(VipStatsE2e, ReportsAllThreeEstimators) {
   EXPECT_EQ(json.at("bands")[0].at("ci"), at_level.at("direct").at("a_ci"));
   EXPECT_TRUE(json.at("lack_of_fit").at("p").is_number());
   for (const char* words : {"direct", "contour (the paper's)", "ordinal mixed", "for the solver",
-                            "shape of the scores", "mu(20)"})
+                            "shape of the scores", "mu(20)", "the band of the curve"})
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << outcome.out;
 }
 

@@ -18,6 +18,7 @@ sim::PtpeFile example() {
   file.level = 4;
   file.a_ci = {1.0 / 3, 25};
   file.b_ci = {-1e-17, 0.03};
+  file.band = {{0, {1.0 / 3, 25}, true}, {10, {20, 40.5}, true}, {20, {25, 50}, false}};
   file.n_participants = 16;
   file.n_simulated = 3;
   file.test_data = true;
@@ -50,6 +51,12 @@ TEST(PtpeFile, ReadsBackEveryBitOfWhatItWrites) {
   EXPECT_EQ(back.level, file.level);
   EXPECT_EQ(back.a_ci, file.a_ci);
   EXPECT_EQ(back.b_ci, file.b_ci);
+  ASSERT_EQ(back.band.size(), file.band.size());
+  for (std::size_t i = 0; i < file.band.size(); ++i) {
+    EXPECT_EQ(back.band[i].delta, file.band[i].delta);
+    EXPECT_EQ(back.band[i].mu, file.band[i].mu);
+    EXPECT_EQ(back.band[i].in_reach, file.band[i].in_reach);
+  }
   EXPECT_EQ(back.n_participants, file.n_participants);
   EXPECT_EQ(back.n_simulated, file.n_simulated);
   EXPECT_EQ(back.test_data, file.test_data);
@@ -73,13 +80,22 @@ TEST(PtpeFile, RefusesEachMalformedFileAtItsPlace) {
       {"level = 4.0", "level = 4.0\nsize = 1"},
       {"b_s", "b_ms"},
       {"b_ci95_s = [-1e-17", "b_ci95_s = [1.0"},
+      {"band_delta_fps = [0.0, 10.0, 20.0]", "band_delta_fps = [0.0, 20.0, 10.0]"},
+      {"band_delta_fps = [0.0, 10.0, 20.0]", "band_delta_fps = [0.0, 10.0]"},
+      {"band_delta_fps = [0.0, 10.0, 20.0]", "band_delta_fps = []"},
+      {"band_low95_fps = [0.3333333333333333, 20.0", "band_low95_fps = [0.3333333333333333, 40.0"},
+      {"band_low95_fps = [0.3333333333333333", "band_low95_fps = [-1.0"},
+      {"band_high95_fps = [25.0", "band_high95_fps = [20.0"},
+      {"band_high95_fps", "band_high"},
+      {"band_out_of_reach_fps = [20.0]", "band_out_of_reach_fps = [15.0]"},
+      {"band_out_of_reach_fps = [20.0]", "band_out_of_reach_fps = [20.0, 20.0]"},
       {"n_participants = 16", "n_participants = 0"},
       {"n_participants = 16", "n_participants = 16.5"},
       {"arithmetic", "geometric"},
       {"aaaa", "AAAA"},
       {"2026-01-31T12:00:00Z", "yesterday"},
       {"[ptpe]", "[ptpe"},
-      {"25.0]", "25.0, 26.0]"}};
+      {"a_ci95_fps = [0.3333333333333333, 25.0]", "a_ci95_fps = [0.3333333333333333, 25.0, 26.0]"}};
   for (const auto& [from, to] : changes) {
     const auto words = error_of(with(from, to));
     EXPECT_TRUE(words.starts_with("fitted.toml:")) << from << " -> " << to << ": " << words;
@@ -88,12 +104,29 @@ TEST(PtpeFile, RefusesEachMalformedFileAtItsPlace) {
   EXPECT_NE(error_of(""), "");
 }
 
+TEST(PtpeFile, SaysHowFarItLeavesMuOpen) {
+  const auto words = sim::describe(example());
+  EXPECT_NE(words.find("mu open by up to +-52 % at delta 0 to 20"), std::string::npos) << words;
+}
+
+TEST(PtpeFile, WithoutABandIsOfTheFirstFormat) {
+  auto file = example();
+  file.band.clear();
+  const auto text = sim::format_ptpe_file(file);
+  EXPECT_NE(text.find("format = 1\n"), std::string::npos) << text;
+  const auto back = sim::parse_ptpe_file(text, "x");
+  EXPECT_TRUE(back.band.empty());
+  EXPECT_EQ(sim::describe(back).find("open"), std::string::npos);
+  EXPECT_NE(error_of(with("format = 2", "format = 1")), "");
+}
+
 TEST(PtpeFile, OfSimulatedPeopleOrTestDataSaysSo) {
   auto file = example();
   EXPECT_NE(sim::describe(file).find("16 participants, 3 of them SIMULATED, TEST DATA"), std::string::npos)
       << sim::describe(file);
   file.n_simulated = 0;
   file.test_data = false;
+  file.band.clear();
   EXPECT_NE(sim::describe(file).find("arithmetic mean, 16 participants)"), std::string::npos);
 }
 
@@ -103,7 +136,7 @@ TEST(PtpeFile, NamesTheLineOfTheFault) {
 }
 
 TEST(PtpeFile, RefusesANewerFormat) {
-  const auto words = error_of(with("format = 1", "format = 2"));
+  const auto words = error_of(with("format = 2", "format = 3"));
   EXPECT_NE(words.find("format"), std::string::npos) << words;
 }
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "stats/ptpe/solver_interval.hpp"
-
 namespace apps {
 
 namespace {
@@ -147,7 +145,8 @@ Json bands_json(const PilotFit& fit) {
                       {"mu", point.mu},
                       {"ci", point.pointwise},
                       {"simultaneous_ci", point.simultaneous},
-                      {"spanned_ci", stats::solver_band(*at.direct.jackknife, at.direct.form, delta)}});
+                      {"solver_mu", at.band ? Json(at.band->curve.mu(delta)) : Json()},
+                      {"solver_ci", at.band ? Json(at.band->band(delta).pointwise) : Json()}});
     }
   }
   return list;

@@ -54,6 +54,10 @@ void print_curve(const PilotFit& fit) {
   if (!direct.jackknife) return;
   std::printf("  the direct curve at level %.3g:", fit.level);
   print_points(fit.deltas, *direct.jackknife);
+  if (const auto& band = fit.chosen().band) {
+    std::printf("  the band of the curve at level %.3g:", fit.level);
+    print_points(fit.deltas, *band);
+  }
   if (direct.form) {
     std::printf("  form of the curve: %s\n", stats::form_text(*direct.form).c_str());
     if (direct.form->rejected()) {

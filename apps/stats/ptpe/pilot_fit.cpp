@@ -163,6 +163,7 @@ std::string unusable(const PilotFit& fit, const TaskData& data, const stats::Pil
 struct Categories {
   std::vector<stats::PilotRating> ratings;
   double lapse_rate = 0, lowest = 1;
+  stats::ScaleEnds ends;
 
   /// The level that a mean score with lapses has where it would be `level` without.
   double with_lapses(double level) const { return (1 - lapse_rate) * level + lapse_rate * lowest; }
@@ -174,6 +175,7 @@ Categories categories_of(const TaskData& data, const stats::PilotPeople& people,
   auto kept = rules;
   kept.model_drift = kept.model_lapses = false;
   out.ratings = stats::apply_rules(data.ratings, people, kept);
+  out.ends = {static_cast<double>(data.question.scale_min), static_cast<double>(data.question.scale_max)};
   if (rules.model_lapses && people.lapses) {
     out.lapse_rate = people.lapses->rate;
     out.lowest = people.lapses->lowest;
@@ -186,9 +188,10 @@ LevelFit fit_level(const Categories& categories, const stats::PilotTable& table,
   LevelFit fit;
   fit.direct = stats::estimate_direct(table.observations(mean), level, options);
   fit.contour = stats::estimate_pilot(table, mean, level, options);
-  if (mean == PilotMean::Harmonic)
-    fit.ordinal = stats::estimate_ordinal_pilot(categories.ratings, mean, categories.with_lapses(level),
-                                                options.confidence);
+  if (mean == PilotMean::Arithmetic) return fit;
+  fit.ordinal = stats::estimate_ordinal_pilot(categories.ratings, mean, categories.with_lapses(level),
+                                              options.confidence);
+  fit.band = stats::scale_end_curve(table.observations(mean), fit.direct, level, categories.ends);
   return fit;
 }
 
@@ -243,6 +246,8 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
     const LevelFit& chosen = fit.chosen();
     fit.doubts = stats::pilot_doubts(table, chosen.direct, chosen.contour, chosen.ordinal);
     if (auto form = stats::form_doubt(chosen.direct)) fit.doubts.push_back(std::move(*form));
+    if (auto band = stats::band_doubt(chosen.direct.fit->curve, chosen.band, fit.deltas))
+      fit.doubts.push_back(std::move(*band));
   }
   for (const auto& doubt : fit.doubts) fit.flags.push_back({doubt.code, "not for a solver: " + doubt.text});
   flag_data(fit.flags, data, table);
@@ -269,6 +274,13 @@ sim::PtpeFile ptpe_file(const PilotFit& fit) {
   file.test_data = fit.data.test_data;
   file.protocol_sha256 = fit.data.protocol.sha256;
   file.date_utc = base::utc_now();
+  const LevelFit& chosen = fit.chosen();
+  if (stats::band_doubt(chosen.direct.fit->curve, chosen.band, fit.deltas)) return file;
+  for (const double delta : fit.deltas) {
+    const auto& away = chosen.direct.out_of_reach;
+    file.band.push_back({delta, chosen.band->band(delta).pointwise,
+                         std::find(away.begin(), away.end(), delta) == away.end()});
+  }
   return file;
 }
 

@@ -15,6 +15,7 @@
 #include "stats/ptpe/pilot.hpp"
 #include "stats/ptpe/pilot_doubts.hpp"
 #include "stats/ptpe/pilot_people.hpp"
+#include "stats/ptpe/scale_end_fit.hpp"
 
 namespace apps {
 
@@ -29,6 +30,8 @@ struct LevelFit {
   stats::DirectEstimate direct;  ///< the main one
   stats::PilotEstimate contour;  ///< the paper's
   stats::OrdinalPilotEstimate ordinal;
+  /// The bands of mu(delta) for the solver's file (scale_end_fit.hpp); with the harmonic mean only.
+  stats::Result<stats::CurveSpread> band = stats::Refusal{"not computed"};
 };
 
 struct MainFit {

@@ -86,14 +86,14 @@ std::string estimates(const Field& pilot) {
 std::string bands(const Field& pilot) {
   const std::string mu = typeset("mu"), delta = typeset("delta");
   Table table("The curve " + typeset("mu(delta)") + " with its bands, frames/s",
-              {delta, mu, "CI at this " + delta, "Band over all " + delta});
+              {delta, mu, "CI at this " + delta, "Band over all " + delta, "Band in the solver's file"});
   std::string level;
   for (const Field& point : pilot["bands"].entries()) {
     const std::string here = svg::number(point["level"].number(), 4);
     if (here != level) table.group("Level " + fixed(point["level"], 1));
     level = here;
     table.row({fixed(point["delta"], 0), fixed(point["mu"], 2), interval(point["ci"], 2),
-               interval(point["simultaneous_ci"], 2)});
+               interval(point["simultaneous_ci"], 2), interval(point["solver_ci"], 2)});
   }
   return table.empty() ? "" : table.html();
 }

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <array>
 
 namespace {
 
@@ -29,22 +29,6 @@ TEST(SolverInterval, IsTheDirectOneWhereTheContourHasNone) {
   EXPECT_EQ(open.a_ci, direct.a_ci);
   EXPECT_EQ(open.b_ci, direct.b_ci);
   EXPECT_FALSE(open.spans_contour);
-}
-
-TEST(SolverBand, ReachesOverTheExponentialAndTheFreeCurve) {
-  stats::CurveSpread direct;
-  direct.curve = {std::log(24), 0.02};
-  direct.var_log_a = 0.0025;
-  direct.participants = 16;
-  const auto alone = direct.band(10).pointwise;
-  EXPECT_EQ(stats::solver_band(direct, stats::Refusal{"none"}, 10), alone);
-  stats::FormTest form;
-  form.curve.at = {std::log(40), 0, 0};
-  form.curve.covariance[0] = 0.0025;
-  form.curve.participants = 16;
-  const auto both = stats::solver_band(direct, form, 10);
-  EXPECT_EQ(both[0], alone[0]);
-  EXPECT_EQ(both[1], form.curve.band(10).pointwise[1]);
 }
 
 }  // namespace
