@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -104,7 +105,10 @@ Result<BoxPlot> box_plot(std::span<const double> values) {
   out.q25 = d->q25;
   out.q75 = d->q75;
   out.n = d->n;
-  const double reach = 1.5 * (d->q75 - d->q25);
+  // A value on the fence is within: means of whole answers fall on it, but for their rounding.
+  const double rounding =
+      16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(d->q25), std::abs(d->q75));
+  const double reach = 1.5 * (d->q75 - d->q25) + rounding;
   out.low_whisker = d->q25;
   out.high_whisker = d->q75;
   for (const double v : values) {

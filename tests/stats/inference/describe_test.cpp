@@ -98,6 +98,14 @@ TEST(Describe, FollowsShiftScaleAndOrder) {
   }
 }
 
+// The fence is 2/3 + 1.5 * 2/3 = 5/3. Computed in doubles it comes out just below.
+TEST(BoxPlot, AValueOnTheFenceIsWithin) {
+  const auto box = stats::box_plot(Values{0, 0, 1.0 / 3, 2.0 / 3, 5.0 / 3});
+  ASSERT_TRUE(box);
+  EXPECT_EQ(box->n_outliers, 0u);
+  EXPECT_EQ(box->high_whisker, 5.0 / 3);
+}
+
 TEST(BoxPlot, WhiskersEndAtValues) {
   const auto box = stats::box_plot(Values{1, 2, 3, 4, 5, 6, 7, 8, 20, unknown});
   ASSERT_TRUE(box);

@@ -7,7 +7,8 @@ set.seed(20)
 source("task_studies_lib.R")
 
 # Reports of Task 1: one scene at each n_*, the methods in any order. Who drops out leaves the rest unanswered.
-task1_answers <- function(people, visits, dropout, equal) {
+# `shift` moves realism towards the end of the scale, `coarse` leaves three scores, `gaps` are reports left out anywhere.
+task1_answers <- function(people, visits, dropout, equal, shift = 0, coarse = FALSE, gaps = 0) {
   rows <- NULL
   quality <- c(-1.4, -0.5, 0.4, 0.7, 0.5)
   for (person in seq_len(people)) {
@@ -18,10 +19,12 @@ task1_answers <- function(people, visits, dropout, equal) {
       shown <- sample(3, 2)
       for (i in seq_len(10)) {
         cell <- cells[i, ]
-        realism <- min(7, max(1, round(4 + quality[cell$method] + level + rnorm(1))))
+        realism <- min(7, max(1, round(4 + shift + quality[cell$method] + level + rnorm(1))))
+        if (coarse) realism <- c(1, 1, 1, 4, 7, 7, 7)[realism]
         sickness <- pmin(3, pmax(0, round(0.9 - 0.4 * quality[cell$method] + sick + rnorm(4, sd = 0.7))))
         if (equal) { realism <- 4; sickness <- rep(1, 4) }
-        answers <- if (i < stop_at) c(realism, sickness) else rep(NA, 5)
+        left_out <- gaps > 0 && runif(1) < gaps
+        answers <- if (i < stop_at && !left_out) c(realism, sickness) else rep(NA, 5)
         rows <- rbind(rows, c(person, visit, i - 1, shown[cell$n_star], cell$n_star, cell$method, answers))
       }
     }
@@ -151,7 +154,8 @@ task1_claims <- function(kept, decision, directional) {
 }
 
 # Task 2: all pairs once; who comes again judges a few pairs a second time.
-task2_answers <- function(people, dropout, again, equal) {
+# `winner` is a method that always wins: the strengths are separated.
+task2_answers <- function(people, dropout, again, equal, winner = 0) {
   rows <- NULL
   strength <- c(-0.9, -0.4, 0.3, 0.5, 0.4)
   for (person in seq_len(people)) {
@@ -165,6 +169,7 @@ task2_answers <- function(people, dropout, again, equal) {
         pair <- if (runif(1) < 0.5) pairs[i, ] else rev(pairs[i, ])
         first <- runif(1) < plogis(own[pair[1]] - own[pair[2]] + 0.2)
         if (equal) first <- pair[1] > pair[2]
+        if (winner %in% pair) first <- pair[1] == winner
         rows <- rbind(rows, c(person, visit, i - 1, scene, pair, if (i < stop_at) 2 - first else NA))
       }
     }
@@ -180,11 +185,36 @@ pair_counts <- function(rows, a, b) {
        max_per_participant = if (nrow(own)) max(table(own$person)) else 0)
 }
 
+# Of each person who was shown the pair: how often they chose a, of how many answers.
+person_choices <- function(rows, a, b) {
+  own <- rows[(rows$first == a & rows$second == b) | (rows$first == b & rows$second == a), ]
+  chose_a <- (own$chosen == 1) == (own$first == a)
+  list(k = as.vector(tapply(chose_a, own$person, sum)), n = as.vector(tapply(chose_a, own$person, length)))
+}
+
+# The test that turns each person's share less one half round: the distribution of the sum by convolution.
+share_test <- function(people, side) {
+  steps <- (2 * people$k - people$n) * (lcm(people$n) / people$n)
+  mass <- 1
+  for (step in abs(steps)) mass <- (c(mass, rep(0, 2 * step)) + c(rep(0, 2 * step), mass)) / 2
+  sums <- seq_along(mass) - 1 - sum(abs(steps))
+  shares <- people$k / people$n
+  ci <- if (!constant(shares)) as.vector(t.test(shares, mu = 0.5, alternative = side)$conf.int)
+        else if (shares[1] %in% 0:1) as.vector(binom.test(shares[1] * length(shares), length(shares), alternative = side)$conf.int)
+        else c(0, 1)
+  list(participants = length(shares), share = mean(shares), ci = pmin(1, pmax(0, ci)),
+       p = min(1, sum(mass[if (side == "greater") sums >= sum(steps) else abs(sums) >= abs(sum(steps))])))
+}
+
 one_pair <- function(rows, a, b) {
   count <- pair_counts(rows, a, b)
   out <- c(list(a = methods[a], b = methods[b]), count, list(share = if (count$n) count$k / count$n else NA))
-  if (count$n == 0 || count$max_per_participant > 1)
-    return(c(out, list(p = NA, p_mid = NA, clopper_pearson = NA, wilson = NA, cohen_g = NA)))
+  if (count$n == 0 || count$max_per_participant > 1) {
+    none <- list(p_mid = NA, clopper_pearson = NA, wilson = NA, cohen_g = NA)
+    if (count$n == 0) return(c(out, none, list(p = NA)))
+    shares <- share_test(person_choices(rows, a, b), "two.sided")
+    return(c(out, none, list(p = shares$p, by_person = shares)))
+  }
   test <- binom.test(count$k, count$n)
   tail <- function(k) pbinom(k, count$n, 0.5) - dbinom(k, count$n, 0.5) / 2
   c(out, list(p = test$p.value, p_mid = min(1, 2 * min(tail(count$k), tail(count$n - count$k))),
@@ -285,8 +315,15 @@ task2_claims <- function(rows, pairs, decision, directional) {
     out <- list(label = paste(a, "preferred to", b), method = "exact binomial test", a = a, b = b, n = count$n, margin = NA)
     two <- pairs[[index]]$p
     if (is.na(two)) return(c(out, list(estimate = NA, ci = NA, p = NA, right = TRUE, paper_p = NA)))
-    test <- binom.test(count$k, count$n, alternative = if (sided(id, directional)) "greater" else "two.sided")
+    side <- if (sided(id, directional)) "greater" else "two.sided"
+    test <- binom.test(count$k, count$n, alternative = side)
     if (id != "H6") out <- c(out, list(p_holm_of_five = of_five[index], p_holm_of_ten = corrected(p, "holm")[index]))
+    if (count$max_per_participant > 1) {
+      shares <- share_test(person_choices(rows, match(a, methods), match(b, methods)), side)
+      out$method <- "exact test of each person's share"
+      return(c(out, list(k = count$k, estimate = shares$share, ci = shares$ci, p = shares$p, right = shares$share > 0.5,
+                         paper_p = two)))
+    }
     c(out, list(k = count$k, estimate = count$k / count$n, ci = as.vector(test$conf.int), p = test$p.value,
                 right = count$k > count$n / 2, paper_p = two))
   }
@@ -294,6 +331,12 @@ task2_claims <- function(rows, pairs, decision, directional) {
        decided("H5", list(one("H5", "Ours", "FovFluid"), one("H5", "Ours-TSp", "FovFluid")), decision, FALSE),
        decided("H6", list(one("H6", "HiRes", "Ours"), one("H6", "HiRes", "Ours-TSp")), decision))
 }
+
+# Whether a method wins or loses all of its pairs: the program's strengths are then penalised, which R's glm has not.
+separated <- function(rows) any(vapply(1:5, function(method) {
+  won <- ifelse(rows$chosen == 1, rows$first, rows$second)[rows$first == method | rows$second == method] == method
+  length(won) == 0 || all(won) || !any(won)
+}, NA))
 
 task2_results <- function(rows, decision, directional) {
   rows <- rows[!is.na(rows$chosen), ]
@@ -334,7 +377,7 @@ task2_results <- function(rows, decision, directional) {
                                                            n = count$n, k = count$k)))
   }
   out <- list(participants = length(analysed), answers = nrow(rows), pairs = pairs, interval_bias = bias, triads = group, by_scene = scene_list)
-  if (length(analysed) > 6 && !constant(rows$chosen == 1 + (rows$first < rows$second))) out$bradley_terry <- strengths(rows)
+  if (length(analysed) > 6 && !separated(rows)) out$bradley_terry <- strengths(rows)
   list(task2 = out, hypotheses = over_six(task2_claims(rows, pairs, decision, directional)))
 }
 
@@ -357,4 +400,19 @@ studies <- c(study("task 1", 1, mess1), study("task 1, one-sided", 1, mess1, dir
              study("task 2, as bundles were once frozen", 2, mess2, "holm", "H2, H3 and H6", of = "task 2"),
              study("task 2, one person", 2, task2_answers(1, 0, 0, FALSE)),
              study("task 2, everybody chooses alike", 2, task2_answers(9, 0.2, 0, TRUE)))
+six1 <- task1_answers(6, 1:2, 0, FALSE, coarse = TRUE)
+skew1 <- task1_answers(24, 1:2, 0.3, FALSE, shift = 2.2, gaps = 0.1)
+forty1 <- task1_answers(40, 1:2, 0.5, FALSE, coarse = TRUE, gaps = 0.15)
+again2 <- task2_answers(24, 0.2, 0.5, FALSE)
+sixty2 <- task2_answers(60, 0.3, 0.3, FALSE)
+studies <- c(studies, study("task 1, six people, ties", 1, six1),
+             study("task 1, answers at the end of the scale, reports left out", 1, skew1),
+             study("task 1, the same after Holm, one-sided", 1, skew1, "holm", TRUE,
+                   of = "task 1, answers at the end of the scale, reports left out"),
+             study("task 1, forty people, half leave early", 1, forty1),
+             study("task 2, six people", 2, task2_answers(6, 0, 0, FALSE)), study("task 2, second visits", 2, again2),
+             study("task 2, second visits, one-sided", 2, again2, directional = TRUE, of = "task 2, second visits"),
+             study("task 2, sixty people", 2, sixty2),
+             study("task 2, sixty people after Holm", 2, sixty2, "holm", of = "task 2, sixty people"),
+             study("task 2, one method always wins", 2, task2_answers(16, 0.2, 0, FALSE, winner = 3)))
 cat(sprintf('{"r": "%s", "script": "task_studies.R", "studies": [\n%s]}\n', R.version.string, paste(studies, collapse = ",\n")))

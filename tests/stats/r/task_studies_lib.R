@@ -76,8 +76,8 @@ one_cell <- function(values) {
   n <- length(values)
   if (n == 0) return(list(n = 0, mean = NA, sd = NA, ci = NA, values = list()))
   quartiles <- unname(quantile(values, c(0.5, 0.25, 0.75)))
-  inside <- values[values >= quartiles[2] - 1.5 * (quartiles[3] - quartiles[2]) &
-                   values <= quartiles[3] + 1.5 * (quartiles[3] - quartiles[2])]
+  reach <- 1.5 * (quartiles[3] - quartiles[2]) + 1e-12  # a value on the fence is within, but for rounding
+  inside <- values[values >= quartiles[2] - reach & values <= quartiles[3] + reach]
   test <- attempt(t.test(values))
   out <- list(n = n, mean = mean(values), sd = if (n > 1) sd(values) else NA,
               ci = if (is.null(test) || constant(values)) NA else as.vector(test$conf.int),
