@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
 #include <vector>
 
 #include "stats/inference/wilcoxon.hpp"
@@ -37,47 +36,87 @@ std::vector<int> twice_midranks(const Values& ascending) {
   return out;
 }
 
-/// How many of the 2^n signs give each twice the sum of positive ranks.
-std::vector<int> counts_of_sums(const std::vector<int>& twice) {
-  std::vector<int> sums{0};
-  for (const int rank : twice) {
-    const auto half = sums.size();
-    for (std::size_t i = 0; i < half; ++i) sums.push_back(sums[i] + rank);
+/// All 2^n signs of these ranks, one after the other.
+struct AllSigns {
+  explicit AllSigns(const std::vector<int>& twice_ranks) : sums{0} {
+    for (const int rank : twice_ranks) {
+      const auto half = sums.size();
+      for (std::size_t i = 0; i < half; ++i) sums.push_back(sums[i] + rank);
+    }
+    at_most.assign(static_cast<std::size_t>(sums.back()) + 1, 0);
+    for (const int sum : sums) ++at_most[static_cast<std::size_t>(sum)];
+    for (std::size_t i = 1; i < at_most.size(); ++i) at_most[i] += at_most[i - 1];
   }
-  std::vector<int> counts(static_cast<std::size_t>(sums.back()) + 1, 0);
-  for (const int sum : sums) ++counts[static_cast<std::size_t>(sum)];
-  return counts;
+  /// Shares of the signs whose sum is no larger, and no smaller, than that of one of them.
+  double lower(std::size_t signs) const { return share(at_most[place(signs)]); }
+  double upper(std::size_t signs) const {
+    const auto at = place(signs);
+    return share(at_most.back() - (at > 0 ? at_most[at - 1] : 0));
+  }
+  double two_sided(std::size_t signs) const {
+    return std::min(1.0, 2 * std::min(lower(signs), upper(signs)));
+  }
+
+  std::vector<int> sums;  ///< twice the sum of positive ranks; bit i of the index: value i is positive
+
+ private:
+  std::size_t place(std::size_t signs) const { return static_cast<std::size_t>(sums[signs]); }
+  double share(int count) const { return static_cast<double>(count) / static_cast<double>(sums.size()); }
+  std::vector<int> at_most;
+};
+
+/// One set of signs for each sum that they can have.
+std::vector<std::size_t> one_of_each_sum(const AllSigns& all) {
+  std::vector<std::size_t> out;
+  std::vector<bool> seen(static_cast<std::size_t>(all.sums.back()) + 1);
+  for (std::size_t signs = 0; signs < all.sums.size(); ++signs) {
+    const auto sum = static_cast<std::size_t>(all.sums[signs]);
+    if (!seen[sum]) out.push_back(signs);
+    seen[sum] = true;
+  }
+  return out;
+}
+
+/// Every sum of positive ranks that n differences with these ties can have, with 0 to 3 zeros in turn.
+void expect_exact(int n, std::size_t pattern) {
+  constexpr std::size_t most_zeros = 3;
+  const auto magnitudes = tied_magnitudes(n, pattern);
+  const auto twice = twice_midranks(magnitudes);
+  const AllSigns all(twice);
+  std::vector<AllSigns> with_zeros;  // Pratt: the zeros take the lowest ranks
+  for (std::size_t zeros = 0; zeros <= most_zeros; ++zeros) {
+    auto higher = twice;
+    for (int& rank : higher) rank += 2 * static_cast<int>(zeros);
+    with_zeros.emplace_back(higher);
+  }
+  std::size_t zeros = pattern % (most_zeros + 1);
+  for (const std::size_t signs : one_of_each_sum(all)) {
+    Values d(zeros, 0.0);
+    for (std::size_t i = 0; i < magnitudes.size(); ++i)
+      d.push_back(signs >> i & 1 ? magnitudes[i] : -magnitudes[i]);
+    const auto got = signed_rank(d);
+    ASSERT_TRUE(got);
+    const auto where = ::testing::Message() << n << " differences, ties " << pattern << ", signs " << signs;
+    ASSERT_NEAR(got->p(), all.two_sided(signs), 1e-14) << where;
+    ASSERT_NEAR(*got->p_exact_less, all.lower(signs), 1e-14) << where;
+    ASSERT_NEAR(*got->p_exact_greater, all.upper(signs), 1e-14) << where;
+    ASSERT_NEAR(*got->pratt_p_exact, with_zeros[zeros].two_sided(signs), 1e-14) << where << ", " << zeros;
+    zeros = (zeros + 1) % (most_zeros + 1);
+  }
+}
+
+/// All 2^(n - 1) ways in which n magnitudes tie.
+void expect_exact_whatever_the_ties(int n) {
+  for (std::size_t pattern = 0; pattern < (std::size_t{1} << (n - 1)); ++pattern) expect_exact(n, pattern);
 }
 
 TEST(SignedRankTies, ThePReportedIsThatOfAllSignsWhateverTheTies) {
-  std::mt19937_64 random(5);
-  for (int n = 1; n <= 12; ++n) {
-    for (std::size_t pattern = 0; pattern < (std::size_t{1} << (n - 1)); ++pattern) {
-      const auto magnitudes = tied_magnitudes(n, pattern);
-      const auto twice = twice_midranks(magnitudes);
-      const auto counts = counts_of_sums(twice);
-      for (int signs = 0; signs < 3; ++signs) {
-        // All of one sign, then any; some zeros, which are dropped.
-        Values d(static_cast<std::size_t>(signs), 0.0);
-        std::size_t sum = 0;
-        for (std::size_t i = 0; i < magnitudes.size(); ++i) {
-          const bool positive = signs == 0 || random() % 2 == 0;
-          d.push_back(positive ? magnitudes[i] : -magnitudes[i]);
-          if (positive) sum += static_cast<std::size_t>(twice[i]);
-        }
-        int lower = 0, upper = 0;
-        for (std::size_t i = 0; i < counts.size(); ++i) {
-          lower += i <= sum ? counts[i] : 0;
-          upper += i >= sum ? counts[i] : 0;
-        }
-        const auto got = signed_rank(d);
-        ASSERT_TRUE(got);
-        ASSERT_NEAR(got->p(), std::min(1.0, std::ldexp(2.0 * std::min(lower, upper), -n)), 1e-14)
-            << n << " differences, ties " << pattern;
-      }
-    }
-  }
+  for (int n = 1; n <= 9; ++n) expect_exact_whatever_the_ties(n);
   EXPECT_EQ(signed_rank(Values{1, 1, 2, 2, 3})->p(), 0.0625) << "no smaller one exists for five differences";
+}
+
+TEST(SignedRankTiesSlow, ThePReportedIsThatOfAllSignsUpTo12Differences) {
+  for (int n = 10; n <= 12; ++n) expect_exact_whatever_the_ties(n);
 }
 
 /// Number of orders of a sample with these counts.
