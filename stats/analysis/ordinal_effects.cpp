@@ -62,7 +62,8 @@ Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int 
   if (!present.contains(reference)) return Refusal{"no answer about the reference method"};
   if (present.size() < 2) return Refusal{"answers about one method only"};
   const auto predictors = indicators("method", columns.methods, reference);
-  const auto fit = fit_cumulative_link_mixed(columns.ratings, predictors, columns.participants);
+  const auto fit = fit_cumulative_link_mixed(columns.ratings, predictors, columns.participants, Link::Logit,
+                                             15, Separation::Penalise);
   if (!fit) return Refusal{fit.reason()};
   OrdinalEffects out{*fit, reference, {}};
   std::size_t column = 0;
@@ -74,7 +75,7 @@ Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int 
   const auto reduced = fit_cumulative_link_mixed(columns.ratings, {}, columns.participants);
   if (reduced) {
     out.overall =
-        likelihood_ratio(fit->log_likelihood, reduced->log_likelihood, static_cast<int>(predictors.size()));
+        likelihood_ratio(fit->objective(), reduced->log_likelihood, static_cast<int>(predictors.size()));
   } else {
     out.overall = Refusal{reduced.reason()};
   }

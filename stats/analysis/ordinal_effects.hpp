@@ -28,14 +28,15 @@ struct OrdinalEffects {
   MixedOrdinalFit fit;
   int reference = 0;
   std::vector<MethodEffect> effects;  ///< of the methods that occur, without the reference
-  /// Against the same model without methods. Refused when that model cannot be fitted.
+  /// Against the same model without methods, by the likelihoods that were maximised (of a penalised fit as
+  /// Heinze and Schemper 2002, Stat. Med. 21, 2409-2419). Refused when that model cannot be fitted.
   Result<LikelihoodRatio> overall = Refusal{"not computed"};
 };
 
-/// Logit link, adaptive quadrature. `scores`: single answers, all of one n_*.
-/// Refused: no answer about the reference or about another method, separation (the reason names the columns
-/// as "method" + index), and what fit_cumulative_link_mixed refuses. `methods`: how many the study shows, one
-/// or more than those that occur. confidence in (0, 1).
+/// Logit link, adaptive quadrature. `scores`: single answers, all of one n_*. Separated answers are fitted
+/// with a penalty: fit.why_penalised names the columns as "method" + index.
+/// Refused: no answer about the reference or about another method, and what fit_cumulative_link_mixed
+/// refuses. `methods`: how many the study shows, one or more than those that occur. confidence in (0, 1).
 Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference, int methods,
                                        double confidence);
 

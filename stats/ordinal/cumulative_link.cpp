@@ -69,7 +69,7 @@ std::string separation(std::span<const Predictor> predictors, std::span<const do
     if (std::abs(step[k]) > 0.1 * largest) names += (names.empty() ? "" : ", ") + predictors[k - q].name;
   }
   return "separation: the ratings are split without overlap by " + names +
-         ", so that its effect has no finite estimate";
+         ", so that the likelihood has no maximum";
 }
 
 /// Newton's method with halved steps. At a maximum the steps vanish; without one (separation) they keep their

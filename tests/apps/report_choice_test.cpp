@@ -229,9 +229,13 @@ TEST(ReportChoice, PairsOverScenesAreDescribedBySceneAndTheTestSaysWhyItIsNone) 
 
 TEST(ReportChoice, ReasonsCallMethodsByTheirNames) {
   const Json few = results_of({{made_study::task1(3)}, 2});
-  std::string refused;
-  for (const auto& model : few.at("task1").at("ordinal")) refused += model.value("refused", "") + "; ";
-  EXPECT_THAT(refused, AllOf(HasSubstr("overlap by LoRes, FovFluid"), Not(HasSubstr("method0"))));
+  std::string reasons;
+  for (const auto& model : few.at("task1").at("ordinal")) {
+    reasons += model.value("why_penalised", "") + "; ";
+    EXPECT_EQ(model.value("penalty", ""), model.value("why_penalised", "").empty() ? "" : "log-F(1, 1)");
+  }
+  expect_true_page(few);
+  EXPECT_THAT(reasons, AllOf(HasSubstr("overlap by LoRes, FovFluid"), Not(HasSubstr("method0"))));
   auto pairs = made_study::task2(4);
   for (auto& session : pairs.sessions) {
     for (auto& trial : session.trials) {

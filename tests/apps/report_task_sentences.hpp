@@ -148,6 +148,11 @@ inline std::vector<Case> task1() {
       {"# Tipping points of the tests of H1 to H3", set("/hypotheses", Json::array())},
       {"# Cumulative-link mixed models of single answers: effects of the method, log odds",
        set("/task1/ordinal", Json::array())},
+      {"A penalised model has a weak prior on each effect, because maximum likelihood has no finite "
+       "estimate.",
+       in_each("/task1/ordinal", "penalty", ""), in_each("/task1/ordinal", "penalty", "log-F(1, 1)")},
+      {"Its errors, intervals and p are those of the penalised likelihood.",
+       in_each("/task1/ordinal", "penalty", ""), in_each("/task1/ordinal", "penalty", "log-F(1, 1)")},
       {"# What each level is worth over another, all else alike: participants' differences against nought; "
        "Holm over the pairs of levels of one factor, score and n[*], not over the table",
        set("/task1/factors", Json::array()), set("/task1/factors", {score_factor()})},

@@ -153,6 +153,7 @@ std::string ordinal(const Field& task1) {
   Table table("Cumulative-link mixed models of single answers: effects of the method, log odds",
               {"Method", "Estimate", "<i>SE</i>", "CI", "<i>z</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>",
                "<i>p</i><sub>BH</sub>", "Odds ratio"});
+  bool penalised = false;
   for (const Field& model : task1["ordinal"].entries()) {
     const std::string name = words(model["question"]) + ", " + words(model["n_star"]);
     if (!model["effects"].there()) {
@@ -168,13 +169,22 @@ std::string ordinal(const Field& task1) {
     if (overall.there())
       title += "; any effect: \xCF\x87\xC2\xB2(" + count(overall["df"]) + ") = " + fixed(overall["chi2"], 2) +
                ", <i>p</i> " + p(overall["p"]);
+    if (!model["penalty"].words().empty()) {
+      penalised = true;
+      title += "; penalised by " + words(model["penalty"]) + ": " + words(model["why_penalised"]);
+    }
     table.group(title);
     for (const Field& e : model["effects"].entries())
       table.row({words(e["method"]), fixed(e["estimate"], 2), fixed(e["se"], 2), interval(e["ci"], 2),
                  fixed(e["z"], 2), p_bare(e["p"]), p_bare(e["p_holm"]), p_bare(e["p_bh"]),
                  fixed(e["odds_ratio"], 2)});
   }
-  return table.empty() ? "" : subsection("Ordinal models", table.html());
+  const std::string note =
+      penalised ? paragraph(
+                      "A penalised model has a weak prior on each effect, because maximum likelihood has no "
+                      "finite estimate. Its errors, intervals and p are those of the penalised likelihood.")
+                : "";
+  return table.empty() ? "" : subsection("Ordinal models", table.html() + note);
 }
 
 std::string scores_by_scene(const Field& task1) {

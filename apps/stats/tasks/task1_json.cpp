@@ -216,6 +216,8 @@ Json ordinal_model_json(const TaskData& data, const OrdinalModel& model) {
   json["participants"] = effects.fit.participants;
   json["participant_sd"] = effects.fit.sd_participant;
   json["log_likelihood"] = effects.fit.log_likelihood;
+  json["penalty"] = effects.fit.why_penalised.empty() ? "" : "log-F(1, 1)";
+  json["why_penalised"] = with_names(effects.fit.why_penalised, data.protocol.methods);
   json["thresholds"] = effects.fit.thresholds;
   json["effects"] = ordinal_effects_json(effects, data.protocol.methods);
   json["overall"] = json_result(effects.overall, [](const stats::LikelihoodRatio& ratio) {
