@@ -25,7 +25,8 @@ namespace apps {
 namespace {
 
 struct PowerCommand {
-  std::string protocol, n, plan, observer, answers = "likert";
+  std::string protocol, n, plan, observer, answers = "likert", earlier;
+  std::optional<double> person_by_method;
   std::string json, csv, svg, cell, out;
   ChoiceOptions choice;
   std::vector<std::filesystem::path> shards;
@@ -47,7 +48,8 @@ void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& opt
   };
   const bool task1 = kind == PowerKind::Task1, task2 = kind == PowerKind::Task2,
              pilot = kind == PowerKind::Pilot;
-  for (const char* option : {"--difference", "--sd", "--sd-sickness", "--answers"})
+  for (const char* option :
+       {"--difference", "--sd", "--sd-sickness", "--person-by-method", "--earlier", "--answers"})
     only(option, task1, "Task 1");
   only("--interval-bias", task2, "Task 2");
   for (const char* option : {"--effect", "--world"}) only(option, !pilot, "Task 1 and Task 2");
@@ -86,6 +88,9 @@ void complete(PowerCommand& command, const CLI::App& options) {
                                                : usual_studies;
   request.answers = command.answers == "likert" ? AnswerScale::Likert : AnswerScale::Continuous;
   if (!command.observer.empty()) request.observer = study::parse_ptpe_observer(command.observer);
+  if (command.person_by_method)
+    request.person_by_method = {*command.person_by_method, *command.person_by_method};
+  if (!command.earlier.empty()) request.person_by_method = person_by_method_of(command.earlier);
   if (kind == PowerKind::Pilot) return;
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
@@ -133,15 +138,17 @@ void run_one(const PowerCommand& command) {
 
 void check_outputs(const PowerCommand& command) {
   const std::map<std::string, std::string> outputs{
-      {"--json", command.json}, {"--csv", command.csv}, {"--svg", command.svg}};
+      {"--json", command.json}, {"--csv", command.csv}, {"--svg", command.svg}, {"--out", command.out}};
   check_apart("", outputs);
-  for (const auto& shard : command.shards) {
+  const auto check_input = [&](const std::filesystem::path& input, const char* problem) {
     for (const auto& [option, path] : outputs) {
-      if (!path.empty() &&
-          std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(shard))
-        refuse(option + " " + path, "is a shard that is to be joined", "give the output a place of its own");
+      if (!path.empty() && !input.empty() &&
+          std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(input))
+        refuse(option + " " + path, problem, "give the output a place of its own");
     }
-  }
+  };
+  for (const auto& shard : command.shards) check_input(shard, "is a shard that is to be joined");
+  check_input(command.earlier, "holds the results that --earlier reads");
 }
 
 void run_power(PowerCommand& command, const CLI::App& options) {
@@ -187,6 +194,15 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
                  "Task 1: SD of a person's difference in cybersickness, points")
       ->capture_default_str()
       ->check(number_in(0.01, 10));
+  auto* share = sub.add_option("--person-by-method", command.person_by_method,
+                               "Task 1: share of an answer's variance, apart from the person's level, that "
+                               "belongs to person and method and is the same at every n_*; without: 0")
+                    ->check(number_in(0, 1));
+  sub.add_option(
+         "--earlier", command.earlier,
+         "Task 1: take --person-by-method from the results of an earlier study, the JSON of vip-stats "
+         "report")
+      ->excludes(share);
   sub.add_option("--answers", command.answers, "Task 1: likert (whole scores) or continuous")
       ->capture_default_str()
       ->check(CLI::IsMember({"likert", "continuous"}));

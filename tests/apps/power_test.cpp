@@ -383,6 +383,9 @@ TEST_F(PowerCommand, RefusesWithAMendAndWritesNothing) {
                                                     {"protocols/task2.toml", "--sd", "1"},
                                                     {"protocols/task1.toml", "--world", "effect"},
                                                     {"protocols/task1.toml", "--sd", "0.3"},
+                                                    {"protocols/task1.toml", "--person-by-method", "0.95"},
+                                                    {"protocols/task2.toml", "--person-by-method", "0.5"},
+                                                    {"protocols/task1.toml", "--earlier", "none.json"},
                                                     {"protocols/task1.toml", "--precision-a", "1"},
                                                     {"protocols/ptpe_pilot.toml", "--effect", "0.7"},
                                                     {"protocols/ptpe_pilot.toml", "--observer", "frames"}};

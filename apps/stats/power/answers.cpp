@@ -17,6 +17,8 @@ namespace {
 
 constexpr int sickness_item_count = 4;
 constexpr double rounding_variance = 1.0 / 12;
+/// Numbers of a person's methods are apart from those of the trials.
+constexpr std::uint64_t by_method_key = 0x6d6574686f64;
 
 /// The numbers of one participant: 0 to 9 are the person's own, then ten for each trial.
 class Draws {
@@ -48,9 +50,10 @@ const study::Question& question(const study::Protocol& protocol, const char* id)
 }
 
 double latent_variance(const char* option, double wanted, double rounding) {
-  if (wanted > rounding) return wanted - rounding;
-  throw base::Error(option, "is less than what rounding to whole scores makes by itself",
-                    "give a larger one, or --answers continuous");
+  if (wanted >= rounding) return wanted - rounding;
+  throw base::Error(option,
+                    "leaves less scatter within a person than rounding to whole scores makes by itself",
+                    "give a larger one, a smaller --person-by-method, or --answers continuous");
 }
 
 double answer(const Task1Scatter& scatter, double latent, double low, double high) {
@@ -72,11 +75,17 @@ Task1Scatter task1_scatter(const PowerRequest& request) {
   const double sickness = request.sd_sickness * request.sd_sickness / 2;
   out.participant_realism = Task1Scatter::participant_share * request.sd_realism;
   out.participant_sickness = Task1Scatter::participant_share * request.sd_sickness;
-  out.noise_realism = std::sqrt(latent_variance("--sd", realism, rounding));
-  // Half of the variance is the report's, half the items'.
-  out.noise_sickness = std::sqrt(sickness / 2);
-  out.noise_item = std::sqrt(latent_variance("--sd-sickness", sickness / 2, rounding / sickness_item_count) *
-                             sickness_item_count);
+  const double method_realism = request.person_by_method.realism * realism;
+  const double method_sickness = request.person_by_method.sickness * sickness;
+  out.method_realism = std::sqrt(method_realism);
+  out.method_sickness = std::sqrt(method_sickness);
+  out.noise_realism = std::sqrt(latent_variance("--sd", realism - method_realism, rounding));
+  // Half of the variance is the items', unless person and method take more than the other half.
+  const double report = std::max(sickness / 2 - method_sickness, 0.0);
+  out.noise_sickness = std::sqrt(report);
+  out.noise_item = std::sqrt(
+      latent_variance("--sd-sickness", sickness - method_sickness - report, rounding / sickness_item_count) *
+      sickness_item_count);
   const auto& scale = question(request.protocol, "realism");
   const auto& item = question(request.protocol, "dizziness");
   out.realism_min = scale.scale_min;
@@ -95,10 +104,12 @@ Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors
     const auto& place = factors.cells[static_cast<std::size_t>(trial.first)];
     const auto cell = static_cast<std::size_t>(place.n_star) * factors.methods.size() +
                       static_cast<std::size_t>(place.method);
-    const Draws draws(key, trial.participant);
+    const Draws draws(key, trial.participant), by_method(key ^ by_method_key, trial.participant);
     const double realism = truth.realism[cell] + scatter.participant_realism * draws.person(0) +
+                           scatter.method_realism * by_method.person(2 * place.method) +
                            scatter.noise_realism * draws.normal(trial, 0);
     const double report = truth.sickness[cell] + scatter.participant_sickness * draws.person(1) +
+                          scatter.method_sickness * by_method.person(2 * place.method + 1) +
                           scatter.noise_sickness * draws.normal(trial, 1);
     double sickness = 0;
     for (int item = 0; item < sickness_item_count; ++item) {

@@ -16,8 +16,9 @@ namespace apps {
 struct Task1Scatter {
   static constexpr double participant_share = 0.6;  ///< SD of participants' levels / SD of the differences
   AnswerScale answers = AnswerScale::Likert;
-  double participant_realism = 0, noise_realism = 0;
-  double participant_sickness = 0;
+  double participant_realism = 0, participant_sickness = 0;
+  double method_realism = 0, method_sickness = 0;  ///< of person by method, the same at every n_*
+  double noise_realism = 0;
   double noise_sickness = 0;  ///< common to the four items of a report
   double noise_item = 0;
   double realism_min = 1, realism_max = 7, item_min = 0, item_max = 3;

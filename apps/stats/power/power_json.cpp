@@ -38,6 +38,8 @@ Json settings_json(const PowerRequest& request, PowerKind kind) {
     out["answers"] = request.answers == AnswerScale::Likert ? "likert" : "continuous";
     out["sd_realism"] = request.sd_realism;
     out["sd_sickness"] = request.sd_sickness;
+    out["person_by_method_realism"] = request.person_by_method.realism;
+    out["person_by_method_sickness"] = request.person_by_method.sickness;
   }
   if (kind == PowerKind::Task2) {
     out["effect"] = json_number(request.effect);

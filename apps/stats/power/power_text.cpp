@@ -130,6 +130,10 @@ void print_power(const PowerRequest& request, const Json& json) {
       request.protocol.name.c_str(), request.protocol.version.c_str(),
       request.protocol.sha256.substr(0, 12).c_str(), request.studies,
       static_cast<unsigned long long>(request.seed));
+  const auto& shared = request.person_by_method;
+  if (shared.realism != 0 || shared.sickness != 0)
+    std::printf("share of person by method in the variance of answers: realism %.2f, cybersickness %.2f\n",
+                shared.realism, shared.sickness);
   json.contains("precision") ? print_precision(json) : print_worlds(json);
 }
 

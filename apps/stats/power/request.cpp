@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "apps/common/claims.hpp"
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/data/task_choice.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "stats/base/json_depth.hpp"
 #include "stats/base/nearest.hpp"
 #include "stats/base/text.hpp"
 
@@ -14,6 +18,7 @@ namespace apps {
 namespace {
 
 constexpr int least_n = 2, most_n = 2000;
+constexpr std::size_t most_result_bytes = std::size_t{1} << 28;
 
 [[noreturn]] void fail_participants(const std::string& text, const std::string& problem) {
   throw base::Error("--n " + text, problem, "write LOW:HIGH, LOW:HIGH:STEP or one number, such as --n 10:60");
@@ -46,7 +51,37 @@ void check_claims(const study::Protocol& protocol) {
                     "vip-stats report, which describes the answers of any protocol");
 }
 
+/// sd_method^2 / (sd_method^2 + sd_residual^2) of one score's model.
+double share_of_method(const std::filesystem::path& file, const Json& results, const std::string& score) {
+  const auto refuse = [&](const std::string& problem) {
+    throw base::Error(file.string(), problem, "give the share itself with --person-by-method, such as 0.3");
+  };
+  const Json models = results.value(Json::json_pointer("/task1/mixed"), Json::array());
+  for (const auto& model : models) {
+    if (!model.is_object() || model.value("score", Json()) != score) continue;
+    if (model.contains("refused"))
+      refuse("has no mixed model of " + score + ": " + model.at("refused").dump());
+    const Json method = model.value("sd_method", Json()), residual = model.value("sd_residual", Json());
+    if (!method.is_number() || !residual.is_number())
+      refuse("has no variance of person by method of " + score + ": nobody judged one method twice");
+    const double of_method = std::pow(method.get<double>(), 2), rest = std::pow(residual.get<double>(), 2);
+    if (!(of_method + rest > 0)) refuse("has answers of " + score + " without any scatter");
+    return of_method / (of_method + rest);
+  }
+  refuse("has no mixed model of " + score + " under task1.mixed");
+  return 0;
+}
+
 }  // namespace
+
+PersonByMethod person_by_method_of(const std::filesystem::path& file) {
+  const Json results = base::parse_json<Json>(base::read_file(file, most_result_bytes));
+  if (results.is_discarded() || !results.is_object() || results.value("schema", Json()) != "vip-results/1") {
+    throw base::Error(file.string(), "is not the JSON of a study's results",
+                      "write it with vip-stats report STUDY.db --json " + file.filename().string());
+  }
+  return {share_of_method(file, results, "realism"), share_of_method(file, results, "sickness")};
+}
 
 const char* power_kind_name(PowerKind kind) {
   switch (kind) {

@@ -2,6 +2,7 @@
 /// What a power calculation is asked.
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,12 @@ enum class AnswerScale {
   Continuous  ///< unrounded and unbounded, for which the closed forms hold exactly
 };
 
+/// Task 1: the share of an answer's variance, apart from the person's own level, that belongs to person and
+/// method and so is the same at every n_*; 0 to 1.
+struct PersonByMethod {
+  double realism = 0, sickness = 0;
+};
+
 struct PowerRequest {
   study::Protocol protocol;
   std::string file;    ///< of the protocol, as given
@@ -42,6 +49,7 @@ struct PowerRequest {
   AnswerScale answers = AnswerScale::Likert;
   double sd_realism = 1.3;  ///< of the difference between two methods' answers of one person, points
   double sd_sickness = 0.65;
+  PersonByMethod person_by_method;
   double interval_bias = 0;  ///< Task 2: log odds in favour of the second interval
 
   study::PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: the paper's PTPE@4.0
@@ -54,6 +62,10 @@ struct PowerRequest {
 /// the trials ask none, or not the one wished, or the level lies outside.
 study::Question rated_question(const PowerRequest& request);
 double rated_level(const PowerRequest& request);
+
+/// The shares that the mixed models of Task 1 found in an earlier study: `results` is the JSON of vip-stats
+/// report or task1. base::Error where it holds no such model, or nobody judged one method at two n_*.
+PersonByMethod person_by_method_of(const std::filesystem::path& results);
 
 /// "10:60", "10:60:5" or "26" as numbers of participants, from 2 to 2,000. base::Error otherwise.
 std::vector<int> parse_participants(const std::string& text);
