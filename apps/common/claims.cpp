@@ -48,18 +48,30 @@ std::string why_none(const study::Protocol& protocol) {
     });
     return chosen ? "" : "no choice between the two of a pair is asked";
   }
-  for (const char* id : {"realism", "disorientation", "unrealism", "dizziness", "confusion"})
-    if (!asks_scale(asked, id)) return "the trials ask no question '" + std::string(id) + "' on a scale";
-  return "";
+  return missing_items(asked);
 }
 
 }  // namespace
+
+std::string missing_items(const std::vector<study::Question>& asked) {
+  std::vector<std::string> missing;
+  for (const std::string id : {"realism", "disorientation", "unrealism", "dizziness", "confusion"})
+    if (!asks_scale(asked, id)) missing.push_back("'" + id + "'");
+  std::string out;
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == missing.size() ? " or " : ", ") + missing[i];
+  return out.empty() ? "" : "the trials ask no question " + out + " on a scale";
+}
+
+bool is_sickness(const study::Question& question) {
+  return question.id == "fms" || question.id.starts_with("ssq_");
+}
 
 std::vector<study::Question> curve_questions(const study::Protocol& protocol) {
   std::vector<study::Question> out;
   if (protocol.design.timing != study::TimingSource::Settings || protocol.design.pairs) return out;
   for (const auto& question : asked_questions(protocol))
-    if (question.kind == study::AnswerKind::Scale) out.push_back(question);
+    if (question.kind == study::AnswerKind::Scale && !is_sickness(question)) out.push_back(question);
   return out;
 }
 

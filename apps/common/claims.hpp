@@ -1,6 +1,7 @@
 #pragma once
 /// What the shipped analyses can tell of a protocol, before there are data.
 
+#include <string>
 #include <vector>
 
 #include "libstudy/protocol/protocol.hpp"
@@ -12,7 +13,13 @@ namespace apps {
 /// one that lets people choose of pairs, as far as it shows their methods; and why others are not tested.
 stats::ShownClaims hypotheses_of(const study::Protocol& protocol, const stats::AnalysisPlan& plan);
 
-/// Questions that the trials ask on a scale under several frame rates: each has a curve.
+/// Why H1 to H3 are not tested where trials ask these questions: which are missing; empty: none is.
+std::string missing_items(const std::vector<study::Question>& asked);
+
+/// Sickness that trials ask for again and again is analysed by itself.
+bool is_sickness(const study::Question& question);
+
+/// Questions that the trials ask on a scale under several frame rates, sickness aside: each has a curve.
 std::vector<study::Question> curve_questions(const study::Protocol& protocol);
 
 }  // namespace apps

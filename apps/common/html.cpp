@@ -16,7 +16,7 @@ a:focus, [tabindex]:focus { outline: 3px solid #d55e00; outline-offset: 2px; }
 .skip { position: absolute; left: -99rem; }
 .skip:focus { position: static; }
 nav ul { columns: 2; padding-left: 1.2rem; }
-.wide { overflow-x: auto; margin: .8rem 0 1.2rem; }
+.wide { overflow-x: auto; overflow-y: hidden; padding-bottom: .3rem; margin: .8rem 0 1.2rem; }
 table { border-collapse: collapse; overflow-wrap: normal; font-size: .82rem; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-weight: bold; padding: .3rem 0; caption-side: top; }
 th, td { padding: .22rem .6rem .22rem 0; text-align: left; vertical-align: top; }
@@ -24,7 +24,8 @@ thead th { border-top: 2px solid #111; border-bottom: 1px solid #111; vertical-a
 tbody tr:last-child > * { border-bottom: 2px solid #111; }
 tbody th { font-weight: normal; }
 tbody th.group { font-weight: bold; padding-top: .5rem; border-top: 1px solid #888; }
-figure { margin: 1rem 0 1.6rem; overflow-x: auto; }
+/* Room for a subscript in the last line, which would else bring a scroll bar. */
+figure { margin: 1rem 0 1.6rem; overflow-x: auto; overflow-y: hidden; padding-bottom: .3rem; }
 figure svg { max-width: 100%; height: auto; }
 figcaption, .note { font-size: .88rem; }
 .badge { font-size: .72rem; font-weight: bold; letter-spacing: .03em; border: 2px solid #111; border-radius: .3rem; padding: .05rem .4rem; white-space: nowrap; vertical-align: middle; }

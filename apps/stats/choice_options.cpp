@@ -9,9 +9,8 @@ CLI::Option* add_protocol_choice(CLI::App& command, ChoiceOptions& options) {
                             "First digits of a protocol's SHA-256; without: every protocol by itself");
 }
 
-void add_question_choice(CLI::App& command, ChoiceOptions& options) {
-  command.add_option("--question", options.question, "Id of a question; without: every question by itself");
-  command
+CLI::Option* add_level_choice(CLI::App& command, ChoiceOptions& options) {
+  return command
       .add_option("--level", options.level,
                   "Pilot: score at which the curve is fitted; without: that of the plan, else of the "
                   "protocol, else the scale's middle")
@@ -20,7 +19,8 @@ void add_question_choice(CLI::App& command, ChoiceOptions& options) {
 
 void add_choice(CLI::App& command, ChoiceOptions& options) {
   add_protocol_choice(command, options);
-  add_question_choice(command, options);
+  command.add_option("--question", options.question, "Id of a question; without: every question by itself");
+  add_level_choice(command, options);
 }
 
 }  // namespace apps

@@ -22,8 +22,8 @@ struct ChoiceOptions {
 
 /// --protocol DIGITS.
 CLI::Option* add_protocol_choice(CLI::App& command, ChoiceOptions& options);
-/// --question ID and --level SCORE.
-void add_question_choice(CLI::App& command, ChoiceOptions& options);
+/// --level SCORE.
+CLI::Option* add_level_choice(CLI::App& command, ChoiceOptions& options);
 /// All three.
 void add_choice(CLI::App& command, ChoiceOptions& options);
 

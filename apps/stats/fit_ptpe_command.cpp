@@ -60,14 +60,26 @@ struct FitCommand {
   }
 };
 
+bool writes_files(const FitCommand& command) {
+  return !command.out.empty() || !command.json.empty() || !command.svg.empty();
+}
+
 void write_json(const FitCommand& command, nlohmann::ordered_json json) {
   if (!command.lacking.empty()) json["incomplete"] = command.lacking;
   if (!command.json.empty()) base::write_file_atomically(command.json, base::json_text(json, 2) + "\n");
 }
 
-[[noreturn]] void no_fit(const FitCommand& command, const std::string& reason, const std::string& mend) {
-  throw base::Error(command.database, "no fit: " + reason,
-                    mend + "; no configuration and no figure were written");
+/// `what`: "own pilot 1.0, question "smooth""; empty: none was chosen.
+[[noreturn]] void no_fit(const FitCommand& command, const std::string& what, const std::string& reason,
+                         const std::string& mend) {
+  throw base::Error(command.database,
+                    "no fit" + (what.empty() ? "" : " of " + what) + ": " + reason +
+                        (writes_files(command) ? "; no configuration and no figure were written" : ""),
+                    mend);
+}
+
+std::string fitted_name(const ChosenTask& chosen) {
+  return chosen.protocol.name + " " + chosen.protocol.version + ", question \"" + chosen.question.id + "\"";
 }
 
 /// fit.json, and the same for people; with a truth also whether it was recovered.
@@ -144,10 +156,7 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
 
 /// Of what people should do about a fit that is none.
 std::string mend_of(const PilotFit& fit) {
-  const auto& scale = fit.data.question;
-  if (!fit.level_within_scale())
-    return fmt::format("choose a --level above {} and below {}, or leave it out", scale.scale_min,
-                       scale.scale_max);
+  if (!fit.level_within_scale()) return mend_of_level(fit.data.question);
   return "collect more answers, or choose another --level";
 }
 
@@ -157,19 +166,17 @@ void fit_one(const FitCommand& command, const study::TaskStudy& study, const Cho
   const double level = level_of(command.choice.selection(TaskKind::Pilot, command.rules), chosen.question);
   if (const auto nothing = nothing_counts(data); !nothing.empty()) {
     write_json(command, failed_fit_json(level, nothing));
-    no_fit(command, nothing, "collect answers, or choose another --protocol or --exclude");
+    no_fit(command, fitted_name(chosen), nothing,
+           data.flow.trials_excluded > 0 ? "collect answers, or choose another --exclude or --plan"
+                                         : "collect answers");
   }
   const auto fit = fit_pilot(data, level, command.bootstrap, command.rules.pilot);
   if (truth) check_comparable(fit, command.truth);
   report(command, fit, truth);
-  if (!fit.ok()) no_fit(command, fit.reason, mend_of(fit));
+  if (!fit.ok()) no_fit(command, fitted_name(chosen), fit.reason, mend_of(fit));
   if (!command.out.empty()) refuse_for_solver(command, fit);
   if (!command.svg.empty()) base::write_file_atomically(command.svg, heat_map_svg(fit));
   if (!command.out.empty()) hand_to_solver(command, fit);
-}
-
-bool writes_files(const FitCommand& command) {
-  return !command.out.empty() || !command.json.empty() || !command.svg.empty();
 }
 
 /// Files are of one fit. Without them every protocol and question is fitted by itself.
@@ -200,14 +207,12 @@ void fit_ptpe(FitCommand& command) {
   const auto chosen = chosen_pilots(command, study);
   if (!chosen) {
     write_json(command, failed_fit_json(command.choice.level, chosen.reason()));
-    no_fit(command, chosen.reason(),
-           "give a database of a pilot, or choose another --protocol or --question");
+    no_fit(command, "", chosen.reason(),
+           mend_of_choice(study, command.choice.selection(TaskKind::Pilot, command.rules)));
   }
   std::optional<base::Error> failure;  // of one, after which the others are fitted all the same
   for (const ChosenTask& one : *chosen) {
-    if (chosen->size() > 1)
-      std::printf("%s %s, question \"%s\":\n", one.protocol.name.c_str(), one.protocol.version.c_str(),
-                  one.question.id.c_str());
+    if (chosen->size() > 1) std::printf("%s:\n", fitted_name(one).c_str());
     try {
       fit_one(command, study, one, truth);
     } catch (const base::Error& error) {

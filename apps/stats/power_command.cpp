@@ -212,7 +212,9 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
                  "effect, null, margin or paper; may be repeated. Without: all that apply")
       ->check(CLI::IsMember({"effect", "null", "margin", "paper"}));
   sub.add_option("--observer", command.observer, "Pilot: who rates, such as ptpe:a=24,b=0.02,noise=1");
-  add_question_choice(sub, command.choice);
+  sub.add_option("--question", command.choice.question,
+                 "Pilot: id of a question; without: the first that the trials ask on a scale");
+  add_level_choice(sub, command.choice);
   sub.add_option("--precision-a", request.precision_a,
                  "Pilot: half width that a's interval is to reach, frames/s")
       ->check(number_in(1e-6, 1000));

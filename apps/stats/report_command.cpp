@@ -44,6 +44,21 @@ void add_preregistration(Json& json, const report::Bundle& bundle,
     one["preregistration"] = report::compare_with_bundle(bundle, protocols, one);
 }
 
+/// A level that no curve can be fitted at is refused, as by fit-ptpe.
+void check_level(const ReportCommand& command, const study::TaskStudy& study,
+                 const stats::AnalysisPlan& plan) {
+  const auto pilots = choose_tasks(study, command.choice.selection(TaskKind::Pilot, plan));
+  if (!pilots)
+    throw base::Error("--level", "means nothing here, for " + pilots.reason(),
+                      "leave it out: it is for the curve of a pilot");
+  for (const ChosenTask& one : *pilots) {
+    if (within_scale(*command.choice.level, one.question)) continue;
+    throw base::Error(command.database,
+                      outside_scale(*command.choice.level, one.question) + "; nothing was written",
+                      mend_of_level(one.question));
+  }
+}
+
 Json document(const ReportCommand& command) {
   ResultsRequest request;
   request.database = command.database;
@@ -64,16 +79,12 @@ Json document(const ReportCommand& command) {
   }
   auto study = study::read_tasks(command.file());
   study::read_about_people(command.file(), study);
+  if (command.choice.level) check_level(command, study, request.plan.plan);
   Results results = make_results(study, request);
   if (results.json.at("flow").empty()) {
-    std::string ids;
-    for (const auto& one : study.protocols)
-      ids +=
-          (ids.empty() ? "" : "; ") + one.name + " " + one.version + ", SHA-256 " + one.sha256.substr(0, 12);
-    throw base::Error(command.database,
-                      ids.empty() ? "holds no protocol" : "holds nothing of what was chosen, but " + ids,
-                      ids.empty() ? "run a session first; nothing was written"
-                                  : "choose another --protocol or --question; nothing was written");
+    std::string mend;
+    const std::string reason = nothing_chosen(study, command.choice.protocol, mend).reason;
+    throw base::Error(command.database, reason + "; nothing was written", mend);
   }
   Json sickness = sickness_json(study::read_sickness(command.file()), request.plan.plan);
   if (!sickness.empty()) results.json["sickness"] = std::move(sickness);

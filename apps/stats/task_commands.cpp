@@ -39,30 +39,51 @@ std::string p_text(const Json& p) {
   return number_text(p, 4);
 }
 
-void print_cells(const Json& task) {
-  std::printf("\n%-28s %-5s %-9s %4s %7s %6s  95 %% interval\n", "score", "n_*", "method", "n", "mean", "sd");
-  for (const auto& cell : task.at("cells")) {
-    const Json& ci = cell.at("ci");
-    std::printf("%-28s %-5s %-9s %4d %7s %6s  [%s, %s]\n", word(cell.at("score")).c_str(),
-                word(cell.at("n_star")).c_str(), word(cell.at("method")).c_str(), cell.at("n").get<int>(),
-                number_text(cell.at("mean"), 2).c_str(), number_text(cell.at("sd"), 2).c_str(),
-                number_text(ci.is_array() ? ci[0] : Json(), 2).c_str(),
-                number_text(ci.is_array() ? ci[1] : Json(), 2).c_str());
-  }
+std::string interval_text(const Json& ci) {
+  if (!ci.is_array()) return "-";
+  return "[" + number_text(ci[0], 2) + ", " + number_text(ci[1], 2) + "]";
 }
 
-void print_pairs(const Json& task) {
-  std::printf("\n%-22s %4s %4s %6s %9s %9s  95 %% interval\n", "chosen", "k", "n", "share", "p", "Holm");
+/// "95 % interval".
+std::string interval_head(const Json& json) {
+  return fmt::format("{:g} % interval", 100 * json.at("plan").at("confidence").get<double>());
+}
+
+void print_cells(const Json& task, const std::string& interval) {
+  std::printf("\n%-28s %-5s %-9s %4s %7s %6s  %s\n", "score", "n_*", "method", "n", "mean", "sd",
+              interval.c_str());
+  for (const auto& cell : task.at("cells"))
+    std::printf("%-28s %-5s %-9s %4d %7s %6s  %s\n", word(cell.at("score")).c_str(),
+                word(cell.at("n_star")).c_str(), word(cell.at("method")).c_str(), cell.at("n").get<int>(),
+                number_text(cell.at("mean"), 2).c_str(), number_text(cell.at("sd"), 2).c_str(),
+                interval_text(cell.at("ci")).c_str());
+}
+
+std::string pair_name(const Json& pair) { return word(pair.at("a")) + " over " + word(pair.at("b")); }
+
+void print_pairs(const Json& task, const std::string& interval) {
+  std::printf("\n%-22s %4s %4s %6s %9s %9s  %s\n", "chosen", "k", "n", "share", "p", "Holm",
+              interval.c_str());
+  std::string notes;
   for (const auto& pair : task.at("pairs")) {
-    const Json& ci = pair.at("clopper_pearson");
-    std::printf("%-22s %4d %4d %6s %9s %9s  [%s, %s]%s\n",
-                (word(pair.at("a")) + " over " + word(pair.at("b"))).c_str(), pair.at("k").get<int>(),
-                pair.at("n").get<int>(), number_text(pair.at("share"), 2).c_str(),
-                p_text(pair.at("p")).c_str(), p_text(pair.at("p_holm")).c_str(),
-                number_text(ci.is_array() ? ci[0] : Json(), 2).c_str(),
-                number_text(ci.is_array() ? ci[1] : Json(), 2).c_str(),
-                word(pair.at("warning")).empty() ? "" : " (see warning)");
+    const bool people = pair.contains("by_person");
+    const Json& share = people ? pair.at("by_person").at("share") : pair.at("share");
+    const Json& ci = people ? pair.at("by_person").at("ci") : pair.at("clopper_pearson");
+    std::printf("%-22s %4d %4d %6s %9s %9s  %s\n", pair_name(pair).c_str(), pair.at("k").get<int>(),
+                pair.at("n").get<int>(), number_text(share, 2).c_str(), p_text(pair.at("p")).c_str(),
+                p_text(pair.at("p_holm")).c_str(), interval_text(ci).c_str());
+    const std::string note =
+        word(pair.at("warning")).empty() ? word(pair.at("reason")) : word(pair.at("warning"));
+    if (!note.empty()) notes += pair_name(pair) + ": " + note + "\n";
   }
+  const Json& several = task.at("several_answers");
+  if (several.at("participants") > 0)
+    std::printf("%d of %d participants answered a pair more than once, at most %d times.\n",
+                several.at("participants").get<int>(), several.at("of").get<int>(),
+                several.at("most").get<int>());
+  for (const char* rule : {"tests", "more_than_one_trial"})
+    if (task.at("rules").contains(rule)) std::printf("%s\n", word(task.at("rules").at(rule)).c_str());
+  std::printf("%s", notes.c_str());
 }
 
 void print_test(const Json& test) {
@@ -104,7 +125,7 @@ void print_results(const Json& json, TaskKind task) {
   for (const auto& one : json.at("not_analysed"))
     std::printf("not analysed: %s: %s\n", word(one.at("what")).c_str(), word(one.at("reason")).c_str());
   const Json& part = json.at(task_name(task));
-  task == TaskKind::Task1 ? print_cells(part) : print_pairs(part);
+  task == TaskKind::Task1 ? print_cells(part, interval_head(json)) : print_pairs(part, interval_head(json));
   print_hypotheses(json);
   for (const auto& variant : json.at("sensitivity")) {
     std::string changes;
@@ -124,6 +145,9 @@ void run(const TaskCommand& command) {
   if (!command.json.empty() &&
       std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
     throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
+  if (command.choice.level)
+    throw base::Error("--level", std::string("means nothing for ") + task_name(command.task),
+                      "leave it out: it is for the curve of a pilot");
   ResultsRequest request;
   request.database = command.database;
   request.tasks = {command.task};
@@ -141,10 +165,8 @@ void run(const TaskCommand& command) {
   };
   const Results results = study_results(request);
   if (!results.missing.empty()) {
-    throw base::Error(
-        command.database, results.missing.front().reason,
-        "collect answers, or choose another --protocol, --question or --plan; vip-stats report describes any "
-        "protocol; nothing was written");
+    throw base::Error(command.database, results.missing.front().reason + "; nothing was written",
+                      results.missing.front().mend);
   }
   if (!command.json.empty()) write(command.json, base::json_text(results.json, 2) + "\n");
   if (!command.csv.empty()) {

@@ -1,5 +1,7 @@
 #include "apps/study/check_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -43,6 +45,22 @@ void print_analyses(const study::Protocol& protocol) {
     std::printf("not tested: %s, as %s\n", id.c_str(), reason.c_str());
 }
 
+/// What else the longer of the two durations allows for.
+std::string slower_words(const study::Protocol& protocol) {
+  const auto any = [&](auto holds) {
+    return std::any_of(protocol.blocks.begin(), protocol.blocks.end(), holds);
+  };
+  std::string out;
+  if (any([](const study::Block& block) { return !block.text.empty(); }))
+    out += fmt::format("texts read at {:g} words/s", slow_pace.words_per_s);
+  if (any([](const study::Block& block) {
+        return block.kind == study::BlockKind::Break || block.between_groups_s > 0;
+      }))
+    out += fmt::format("{}each break {:g} s longer than it must be", out.empty() ? "" : " and ",
+                       slow_pace.break_s);
+  return out.empty() ? "" : " (the longer with " + out + ")";
+}
+
 void print_session(const CheckReport& report) {
   const auto& protocol = report.protocol;
   std::printf("%s %s, language %s, sha256 %.12s\n\n%-14s %-13s %13s  %s\n", protocol.name.c_str(),
@@ -55,10 +73,10 @@ void print_session(const CheckReport& report) {
   }
   const auto& all = report.outline;
   std::printf(
-      "\nplan: %d units, %d trials; %.1f to %.1f min with %g to %g s an answer, %.1f to %.1f min of them "
+      "\nplan: %d units, %d trials; %.1f to %.1f min with %g to %g s an answer%s, %.1f to %.1f min of them "
       "the %d trials of the design\n",
       all.units, all.trials, all.session_s.least / 60, all.session_s.most / 60, quick_pace.answer_s,
-      slow_pace.answer_s, all.trials_s.least / 60, all.trials_s.most / 60,
+      slow_pace.answer_s, slower_words(protocol).c_str(), all.trials_s.least / 60, all.trials_s.most / 60,
       protocol.design.groups * study::trials_of_group(protocol.design));
   std::printf("a showing is cut, and fails, when it goes on for %g s past its %g s\n", overrun_s(protocol),
               protocol.design.cells.front().setting.duration_s);

@@ -70,7 +70,9 @@ void read_scores(const base::TomlTable& table, Question& question) {
   if (question.kind == AnswerKind::Scale && table.has("level")) {
     question.level = table.number("level");
     if (!(*question.level > question.scale_min && *question.level < question.scale_max)) {
-      table.fail("level", "= " + shown(*question.level) + " does not lie within the scale",
+      table.fail("level",
+                 "= " + shown(*question.level) + " does not lie between the ends of the scale, " +
+                     std::to_string(question.scale_min) + " and " + std::to_string(question.scale_max),
                  "use a score above " + std::to_string(question.scale_min) + " and below " +
                      std::to_string(question.scale_max) + ", or remove it for the middle");
     }

@@ -46,7 +46,10 @@ Json event_columns() {
       {"onset", described("start of the stimulus, from the first of the session; after the program began "
                           "anew, as if it had gone on without a pause",
                           "s")},
-      {"duration", described("from its first frame to the end of its last; n/a: cut short", "s")},
+      {"duration",
+       described("from the onset to the end of its last frame; the frames fill frames / mean_fps of "
+                 "it, after the program's preparation of the first; n/a: cut short",
+                 "s")},
       {"trial_type", described("practice, stimulus or repeat")},
       {"trial", described("order among the session's trials, from 0")},
       {"attempt", described("showing of the trial, from 1")},
@@ -152,14 +155,28 @@ Json session_columns() {
           {"setting_sha256", described(setting_sha256_meaning)}};
 }
 
+/// Codes of those for whom an observer model answered.
+std::set<std::string> simulated_people(Connection& database, std::span<const LabelledSession> sessions) {
+  std::set<std::string> out;
+  Statement row(database, "SELECT observer IS NOT NULL FROM session WHERE session_id = ?");
+  for (const LabelledSession& session : sessions) {
+    row.reset();
+    row.bind_all(session.id).step();
+    if (row.integer(0) != 0) out.insert(session.participant);
+  }
+  return out;
+}
+
 void write_people(Connection& database, const std::vector<LabelledSession>& sessions, Writer& writer) {
-  Table people{{"participant_id", "code"}};
+  Table people{{"participant_id", "code", "simulated"}};
+  const auto simulated = simulated_people(database, sessions);
   std::map<std::string, Table> visits;
   for (const LabelledSession& session : sessions) {
     const std::string sub = "sub-" + session.subject;
     auto [rows, fresh] = visits.try_emplace(sub);
     if (fresh) {
-      people.push_back({sub, field(session.participant)});
+      people.push_back(
+          {sub, field(session.participant), simulated.contains(session.participant) ? "1" : "0"});
       rows->second = {{"session_id", "acq_time", "protocol", "protocol_version", "protocol_sha256", "visit",
                        "test_data", "observer", "station", "gaze_source", "state", "setting_sha256"}};
     }
@@ -175,7 +192,11 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
     rows->second.push_back(std::move(line));
   }
   writer.table("participants.tsv", people);
-  writer.json("participants.json", {{"code", described("participant code in the study's database")}});
+  writer.json(
+      "participants.json",
+      {{"code", described("participant code in the study's database")},
+       {"simulated", described("1: a simulated observer answered, so that nothing here is of a person; "
+                               "0: a person answered")}});
   for (const auto& [sub, rows] : visits) {
     writer.table(sub + "/" + sub + "_sessions.tsv", rows);
     writer.json(sub + "/" + sub + "_sessions.json", session_columns());
@@ -203,6 +224,26 @@ constexpr ExportKind bids_kind{"bids", is_export, is_our_name};
 
 }  // namespace
 
+AboutDataSet about_data_set(Connection& database, std::span<const LabelledSession> sessions) {
+  AboutDataSet out;
+  Statement row(database,
+                "SELECT p.name || ' ' || p.version FROM session JOIN protocol p USING (protocol_id) WHERE "
+                "session_id = ?");
+  std::set<std::string> names, people;
+  for (const LabelledSession& session : sessions) {
+    people.insert(session.participant);
+    row.reset();
+    row.bind_all(session.id).step();
+    if (names.insert(row.text(0)).second) out.name += (out.name.empty() ? "" : ", ") + row.text(0);
+  }
+  if (out.name.empty()) out.name = "a study without sessions";
+  const auto simulated = simulated_people(database, sessions);
+  if (!simulated.empty())
+    out.simulated = "For " + std::to_string(simulated.size()) + " of " + std::to_string(people.size()) +
+                    " participants a simulated observer answered: these data are not of people.";
+  return out;
+}
+
 PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool gaze) {
   open_study(study);  // refuses a file that is not sound before anything is written to it
   label_everybody(study.path);
@@ -212,15 +253,19 @@ PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool ga
   const SharingCount people = count_sharing(*database);
   ExportDraft draft({study.path, bids_kind, people_of(sessions), Readers::AsUmask}, folder);
   Writer writer(draft);
-  writer.json(description_file,
-              {{"Name", draft.target().filename().string()},
-               {"BIDSVersion", "1.11.0"},
-               {"DatasetType", "raw"},
-               {"GeneratedBy", Json::array({{{"Name", "vip-study"}, {"Version", base::version()}}})}});
+  const AboutDataSet about = about_data_set(*database, sessions);
+  Json generator{{"Name", "vip-study"}, {"Version", base::version()}};
+  if (!about.simulated.empty()) generator["Description"] = about.simulated;
+  writer.json(description_file, {{"Name", about.name},
+                                 {"BIDSVersion", "1.11.0"},
+                                 {"DatasetType", "raw"},
+                                 {"GeneratedBy", Json::array({generator})}});
   writer.text(
       "README.md",
       std::string("# Ratings of real-time fluid\n\nBehaviour: what was shown when, how it was rated") +
-          (gaze ? ", where people looked.\n" : ".\n") + "\nIn every table, " + formula_guard_meaning + ".\n");
+          (gaze ? ", where people looked.\n" : ".\n") +
+          (about.simulated.empty() ? "" : "\n" + about.simulated + "\n") + "\nIn every table, " +
+          formula_guard_meaning + ".\n");
   write_people(*database, sessions, writer);
   std::set<std::string> named;
   for (const LabelledSession& session : sessions) {

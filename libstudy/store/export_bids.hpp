@@ -2,8 +2,11 @@
 /// The database as a BIDS data set of behaviour.
 
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "libstudy/store/export_folder.hpp"
+#include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/study_file.hpp"
 
 namespace study {
@@ -18,5 +21,12 @@ namespace study {
 /// ..._acq-mouse_beh.tsv of the mouse. A public export: only shared_sessions() are in it. Errors and folder
 /// as export_csv().
 PublicExport export_bids(const StudyFile& study, const std::filesystem::path& folder, bool gaze = false);
+
+/// What a public data set says of itself.
+struct AboutDataSet {
+  std::string name;       ///< of the study's protocols: "comfort 1.0, task1 1.1"
+  std::string simulated;  ///< a sentence: how many participants an observer model answered for; empty: none
+};
+AboutDataSet about_data_set(sqlite::Connection& database, std::span<const LabelledSession> sessions);
 
 }  // namespace study

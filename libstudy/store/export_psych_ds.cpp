@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 
+#include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/open_study.hpp"
@@ -95,11 +96,12 @@ void write_scores(const SicknessSession& session, const std::string& stem, const
 }
 
 void write_description(Connection& database, std::span<const SicknessSession> scored,
-                       const ExportDraft& draft) {
+                       const AboutDataSet& about, const ExportDraft& draft) {
+  const std::string simulated = about.simulated.empty() ? "" : ". " + about.simulated;
   const Json json{{"@context", "https://schema.org/"},
                   {"@type", "Dataset"},
-                  {"name", draft.target().filename().string()},
-                  {"description", "Ratings of real-time fluid at controlled frame rates"},
+                  {"name", about.name},
+                  {"description", "Ratings of real-time fluid at controlled frame rates" + simulated},
                   {"creator", "vip-study"},
                   {"version", base::version()},
                   {"variableMeasured", variables(database, scored)}};
@@ -107,8 +109,9 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
   write_file(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
-      "what each column means. Empty: not known.\n\nIn every column, " +
-          std::string(formula_guard_meaning) + ".\n");
+      "what each column means. Empty: not known.\n\n" +
+          (about.simulated.empty() ? "" : about.simulated + "\n\n") + "In every column, " +
+          formula_guard_meaning + ".\n");
 }
 
 }  // namespace
@@ -144,7 +147,7 @@ PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
       scored.push_back(one);
     }
   }
-  write_description(*database, scored, draft);
+  write_description(*database, scored, about_data_set(*database, sessions), draft);
   database->execute("COMMIT");
   draft.put_in_place();
   return {std::move(files), people};

@@ -217,12 +217,17 @@ std::vector<Question> trial_questions(const Protocol& protocol) {
   return out;
 }
 
+/// Asked once on a page, not of a trial.
 std::vector<Question> questions_about_people(const Protocol& protocol) {
+  std::set<std::string> asked;
+  for (const Block& block : protocol.blocks)
+    for (const TrialStep& step : block.steps) asked.insert(step.asks.begin(), step.asks.end());
   std::vector<Question> out;
   for (const auto& [block, question] : all_questions(protocol)) {
-    const bool summed = question->kind == AnswerKind::Number || question->kind == AnswerKind::Choice;
-    if (summed && protocol.blocks.at(static_cast<std::size_t>(block)).kind == BlockKind::Demographics)
-      out.push_back(*question);
+    const BlockKind kind = protocol.blocks.at(static_cast<std::size_t>(block)).kind;
+    const bool page =
+        kind == BlockKind::Demographics || kind == BlockKind::Screening || kind == BlockKind::Question;
+    if (page && question->kind != AnswerKind::Text && !asked.contains(question->id)) out.push_back(*question);
   }
   return out;
 }

@@ -107,7 +107,7 @@ struct TaskProtocol {
   std::vector<StimulusSpec> treatments =
       {};  ///< of `methods`, method and effects alone; empty without levels
 
-  /// Of pages of kind demographics, answered by a number or a choice.
+  /// Of pages of kind demographics, screening and question outside the trials, but those for words.
   std::vector<Question> about_people = {};
 
   /// One method (with one level of effects) under several frame rates, shown one by one.
@@ -116,7 +116,7 @@ struct TaskProtocol {
 
 struct TaskStudy {
   std::vector<TaskProtocol> protocols;
-  int withdrawn = 0;  ///< participants who withdrew, from whatever protocol
+  int withdrawn = 0;         ///< participants who withdrew, from whatever protocol
   std::string lacking = {};  ///< what the database lacks of its journal (open_study.hpp); empty: nothing
   /// Answers to TaskProtocol::about_people, after read_about_people().
   std::vector<PersonalEntry> about_people = {};

@@ -14,7 +14,7 @@ FamilyTest shares_of(HypothesisTest test, const PairPreference& pair, bool forwa
   for (auto& one : people)
     if (!forwards) one.k = one.n - one.k;
   const auto own = share_test(people, side, test.ci_confidence);
-  test.method = "exact test of each person's share";
+  test.method = share_test_name;
   test.estimate = own->share;
   test.ci = own->ci;
   test.p = own->p;

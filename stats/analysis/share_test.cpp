@@ -34,15 +34,23 @@ std::vector<double> distribution_of(const std::vector<std::int64_t>& values, std
   return mass;
 }
 
-std::array<double, 2> interval_of(const std::vector<double>& shares, Alternative alternative,
-                                  double confidence) {
+void add_interval(ShareTest& out, const std::vector<double>& shares, Alternative alternative,
+                  double confidence) {
+  out.ci = {0, 1};
+  out.ci_name = "0 to 1, as all shares are equal";
   const auto test = t_test_one(shares, {alternative, confidence, 0.5, false});
-  if (test) return {std::max(0.0, test->ci[0]), std::min(1.0, test->ci[1])};
+  if (test) {
+    out.ci = {std::max(0.0, test->ci[0]), std::min(1.0, test->ci[1])};
+    out.ci_name = "Student's t of people's shares, within 0 to 1";
+    return;
+  }
   const auto n = static_cast<int>(shares.size());
-  const bool one_sided = shares[0] == 0 || shares[0] == 1;  // all chose alike, and always
-  if (!one_sided) return {0, 1};
+  const bool always_alike = shares[0] == 0 || shares[0] == 1;
+  if (!always_alike) return;
   const auto counted = binomial_test(shares[0] == 1 ? n : 0, n, 0.5, alternative, confidence);
-  return counted ? counted->clopper_pearson : std::array<double, 2>{0, 1};
+  if (!counted) return;
+  out.ci = counted->clopper_pearson;
+  out.ci_name = "Clopper-Pearson over people, as all always chose alike";
 }
 
 }  // namespace
@@ -77,7 +85,7 @@ Result<ShareTest> share_test(std::span<const PersonChoices> people, Alternative 
   ShareTest out;
   out.participants = static_cast<int>(people.size());
   out.share = std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
-  out.ci = interval_of(shares, alternative, confidence);
+  add_interval(out, shares, alternative, confidence);
   out.p = std::min(1.0, p);
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 
 #include "stats/inference/alternative.hpp"
 #include "stats/result.hpp"
@@ -15,12 +16,16 @@ struct PersonChoices {
   int k = 0, n = 0;
 };
 
+/// For print, as "exact binomial test".
+inline constexpr const char* share_test_name = "exact permutation test of people's shares";
+
 struct ShareTest {
   int participants = 0;
   double share = 0.5;  ///< mean of the shares
   std::array<double, 2>
-      ci{};      ///< Student's t of the shares, within 0 to 1; Clopper-Pearson where all chose alike
-  double p = 1;  ///< exact
+      ci{};             ///< Student's t of the shares, within 0 to 1; Clopper-Pearson where all chose alike
+  std::string ci_name;  ///< which of them, for print
+  double p = 1;         ///< exact
 };
 
 /// The permutation test that turns each person's share less one half round: exact, and the exact binomial

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "stats/inference/adjust.hpp"
 
@@ -29,7 +32,10 @@ PairPreference count_pair(std::span<const PairChoice> choices, int a, int b, con
     out.k += choice.first_chosen == forwards ? 1 : 0;
     out.max_per_participant = std::max(out.max_per_participant, person.n);
   }
-  for (const auto& [participant, person] : people) out.people.push_back(person);
+  for (const auto& [participant, person] : people) {
+    out.people.push_back(person);
+    out.several += person.n > 1 ? 1 : 0;
+  }
   out.participants = static_cast<int>(people.size());
   return out;
 }
@@ -41,17 +47,14 @@ void test_pair(PairPreference& pair, const AnalysisPlan& plan) {
     const auto shares = share_test(pair.people, Alternative::TwoSided, plan.confidence);
     pair.test =
         Refusal{shares ? "each person's share is tested in place of single answers" : shares.reason()};
-    if (!shares) return;
-    pair.shares = *shares;
-    pair.warning = "one participant answered this pair " + std::to_string(pair.max_per_participant) +
-                   " times: each person's share is tested over " + std::to_string(shares->participants) +
-                   " people, by an exact test";
+    if (shares) pair.shares = *shares;
     return;
   }
-  pair.warning =
-      "one participant answered this pair " + std::to_string(pair.max_per_participant) +
-      " times, as in several scenes: answers of one person are not independent, and the binomial test then "
-      "rejects too often";
+  pair.warning = std::to_string(pair.several) + " of " + std::to_string(pair.participants) +
+                 " participants answered this pair more than once, at most " +
+                 std::to_string(pair.max_per_participant) +
+                 " times, as in several scenes: answers of one person are not independent, and the binomial "
+                 "test then rejects too often";
   if (plan.repeated_pairs == RepeatedPairs::Refuse) pair.test = Refusal{pair.warning};
 }
 
@@ -93,15 +96,37 @@ IntervalBias test_intervals(std::span<const PairChoice> choices, int methods, co
   return out;
 }
 
+using ChoicesByPerson = std::map<int, std::vector<PairChoice>>;
+
+bool answered_twice(const std::vector<PairChoice>& own) {
+  std::set<std::pair<int, int>> pairs;
+  return std::any_of(own.begin(), own.end(), [&](const PairChoice& one) {
+    return !pairs.emplace(std::min(one.first, one.second), std::max(one.first, one.second)).second;
+  });
+}
+
+/// Of people none of whom answered every pair once.
+std::string why_no_triads(const ChoicesByPerson& people, int methods) {
+  if (people.empty()) return "no answers";
+  if (methods < 3) return "fewer than three methods have no triad";
+  const auto several = std::count_if(people.begin(), people.end(),
+                                     [](const auto& person) { return answered_twice(person.second); });
+  const std::string all = std::to_string(people.size());
+  if (several == 0) return "none of " + all + " participants answered every pair";
+  return std::to_string(several) + " of " + all +
+         " participants answered a pair more than once, and triads are counted where each pair was answered "
+         "once";
+}
+
 void count_triads(PreferenceAnalysis& out, std::span<const PairChoice> choices, int methods) {
-  std::map<int, std::vector<PairChoice>> people;
+  ChoicesByPerson people;
   for (const PairChoice& choice : choices) people[choice.participant].push_back(choice);
   std::vector<CircularTriads> complete;
   for (const auto& [participant, own] : people) {
     out.triads.push_back({participant, circular_triads(win_table(comparisons(own), methods), methods)});
     if (out.triads.back().triads) complete.push_back(*out.triads.back().triads);
   }
-  out.group_triads = group_triads(complete);
+  out.group_triads = complete.empty() ? Refusal{why_no_triads(people, methods)} : group_triads(complete);
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct PairPreference {
   int a_first = 0;       ///< a shown first
   int first_chosen = 0;  ///< the first interval chosen, whichever method it held
   int max_per_participant = 0;
+  int several = 0;                    ///< participants who answered it more than once
   std::string warning;                ///< empty, or why the test does not hold as it stands
   std::vector<PersonChoices> people;  ///< of each participant: a chosen, answers
   /// Exact, two-sided. Refused without answers, and with several of one participant under

@@ -256,6 +256,9 @@ TEST(AdviceE2e, ChoosingAsAdvisedIsTaken) {
     ASSERT_EQ(ran.exit_code, 0) << ran.out;
   }
   const std::string fit = VIP_BIN_DIR "/vip-stats fit-ptpe " + at("s.db") + " --json " + at("fit.json");
+  const std::string report = VIP_BIN_DIR "/vip-stats report " + at("s.db") + " --json " + at("report.json");
+  const auto no_question = run_shell(fit + " --question nosuch").out;
+  EXPECT_EQ(no_question.find("'nosuch'"), no_question.rfind("'nosuch'")) << "one reason: " << no_question;
   const auto protocols = listed(run_shell(fit).out, "choose one with --protocol: ");
   ASSERT_EQ(protocols.size(), 2u);
   for (const auto& protocol : protocols) {
@@ -269,8 +272,18 @@ TEST(AdviceE2e, ChoosingAsAdvisedIsTaken) {
       const auto outside = run_shell(chosen + " --question " + last_word(question) + " --level 9");
       EXPECT_EQ(outside.exit_code, 1);
       EXPECT_NE(outside.out.find("choose a --level above "), std::string::npos) << outside.out;
+      EXPECT_NE(outside.out.find("no fit of " + protocol.substr(protocol.find_first_not_of(' '), 4)),
+                std::string::npos)
+          << "which protocol is said: " << outside.out;
+      const auto page = run_shell(report + " --protocol " + last_word(protocol) + " --level 9");
+      EXPECT_EQ(page.exit_code, 1) << "as fit-ptpe";
+      EXPECT_NE(page.out.find("choose a --level above "), std::string::npos) << page.out;
     }
   }
+  // Power takes one of the questions, and names the other.
+  const auto power = run_shell(VIP_BIN_DIR "/vip-stats power " + at("p.toml") + " --n 6 --studies 2");
+  EXPECT_EQ(power.exit_code, 0) << power.out;
+  EXPECT_NE(power.out.find("choose it with --question "), std::string::npos) << power.out;
   // Without files of one fit each protocol and question is fitted by itself.
   const auto all = run_shell(VIP_BIN_DIR "/vip-stats fit-ptpe " + at("s.db"));
   for (const char* words : {"3.0, question \"satisfaction\":", "3.1, question \"smoothness\":"})

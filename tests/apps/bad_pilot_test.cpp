@@ -46,7 +46,7 @@ struct Bad {
 std::vector<Bad> bad_pilots() {
   return {
       {"flat", scored([](double, double) { return 4.0; }, 0), sixteen, "all ratings are equal", false},
-      {"random", scored([](double, double) { return 4.0; }, 2), sixteen, "no fit: ", false},
+      {"random", scored([](double, double) { return 4.0; }, 2), sixteen, "no fit of ", false},
       {"reversed", scored([](double mu, double delta) { return 8 - good(mu, delta); }, 1), sixteen, "rise",
        false},
       {"U-shaped", scored([](double mu, double) { return 2 + std::abs(mu - 30) / 5; }, 1), sixteen,

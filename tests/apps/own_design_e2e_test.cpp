@@ -32,6 +32,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
 
   const auto checked = typed("vip-study check " + protocol);
   EXPECT_EQ(checked.exit_code, 0) << checked.out;
+  EXPECT_THAT(checked.out, HasSubstr("each break 60 s longer than it must be"));
 
   // Nothing about methods and questions that the protocol does not have is frozen.
   const auto frozen = typed("vip-stats preregister " + protocol + " --out " + at("bundle"));
@@ -42,6 +43,11 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
   EXPECT_THAT(words,
               HasSubstr("None.\n- Not tested: H1 to H6 of comfort: the trials ask no question 'realism'"));
   EXPECT_THAT(words, Not(HasSubstr("FovFluid")));
+  // Rules that cannot act stand there as comments.
+  for (const char* rule :
+       {"\nrealism = ", "\nsickness = ", "\nmin_catch_correct = ", "\nmax_repeat_difference = "})
+    EXPECT_THAT(file(folder / "bundle" / "plan.toml"), Not(HasSubstr(rule)));
+  EXPECT_THAT(words, HasSubstr("# cannot act, as there are no catch pages: min_catch_correct = 0.5\n"));
 
   const auto power = typed("vip-stats power " + protocol + " --n 24");
   EXPECT_EQ(power.exit_code, 1) << power.out;
@@ -70,8 +76,17 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
     ASSERT_EQ(question.at("cells").size(), 6u);
     for (const auto& cell : question.at("cells")) EXPECT_EQ(cell.at("n"), 24);
   }
+  // A question outside of the trials is described too.
+  const Json& tired = json.at("people").at(0).at("questions").at(0);
+  EXPECT_EQ(tired.at("question"), "tired");
+  EXPECT_EQ(tired.at("n"), 24);
+  EXPECT_TRUE(tired.at("mean").is_number());
+  EXPECT_THAT(file(folder / "tables" / "people.csv"), HasSubstr("tired"));
   const std::string html = file(folder / "r.html");
   EXPECT_NE(html.find("Simulated participants"), std::string::npos);
+  EXPECT_NE(html.find("How tired are you?"), std::string::npos);
+  EXPECT_NE(html.find("Rules of exclusion for Own design: trials whose timing"), std::string::npos);
+  EXPECT_EQ(html.find("catch pages right"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder / "tables" / "descriptives.csv"));
 
   // The commands of the paper's tasks say that it is none of theirs, and what to do.
@@ -79,7 +94,11 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
     const auto refused = typed(std::string("vip-stats ") + command + " " + at("s.db"));
     EXPECT_EQ(refused.exit_code, 1) << refused.out;
     EXPECT_THAT(refused.out, HasSubstr("the database holds no protocol that shows"));
+    EXPECT_THAT(refused.out, HasSubstr("this one holds comfort 1.0, which vip-stats report describes"));
   }
+  const auto level = typed("vip-stats task1 " + at("s.db") + " --level 3");
+  EXPECT_EQ(level.exit_code, 1);
+  EXPECT_THAT(level.out, HasSubstr("--level: means nothing for task1"));
 }
 
 TEST(OwnDesignE2e, AMendedVersionStandsBesideTheFirst) {
@@ -115,8 +134,14 @@ TEST(OwnDesignE2e, AMendedVersionStandsBesideTheFirst) {
   EXPECT_EQ(json.at("descriptives").size(), 1u);
   const auto none = report(" --protocol 00000000");
   EXPECT_EQ(none.exit_code, 1);
-  EXPECT_THAT(none.out, HasSubstr("comfort 1.1, SHA-256"));
-  EXPECT_THAT(none.out, HasSubstr("choose another --protocol or --question"));
+  EXPECT_THAT(none.out, HasSubstr("choose one with --protocol: comfort 1.0 "));
+  const auto no_question = report(" --question nosuch");
+  EXPECT_EQ(no_question.exit_code, 1);
+  EXPECT_THAT(no_question.out, HasSubstr("choose one with --question: comfort, strain"));
+  // A level is for the curve of a pilot alone.
+  const auto level = report(" --level 2");
+  EXPECT_EQ(level.exit_code, 1);
+  EXPECT_THAT(level.out, HasSubstr("--level: means nothing here"));
 }
 
 // The shipped protocol asks for sickness in its trials too.

@@ -12,6 +12,7 @@
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
 #include "tests/apps/made_task_study.hpp"
+#include "tests/apps/report_blocks.hpp"
 #include "tests/apps/report_walk.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
@@ -176,7 +177,103 @@ TEST(ReportChoice, ProtocolsSetAsideAreInTheRoster) {
   EXPECT_EQ(json.at("roster").at("sessions"), 11);
   EXPECT_EQ(json.at("roster").at("protocols").at(1).at("sections"), Json::array());
   EXPECT_EQ(json.at("roster").at("protocols").at(1).at("test_data"), 2);
+  EXPECT_EQ(json.at("flow").at("task2").at("set_aside").at("protocols"), 2);
+  EXPECT_EQ(report_walk::sessions_in_flows(json), 11) << "each session stands in a flow";
   EXPECT_NE(report::results_page(json).find("set aside"), std::string::npos);
+}
+
+// Two files of one name and version differ in their hashes alone.
+TEST(ReportChoice, AProtocolSetAsideIsNotTakenForTheOneAnalysed) {
+  auto test = comfort(1);
+  test.sha256 = std::string(64, '6');
+  for (auto& session : test.sessions) session.test_data = true;
+  const Json json = results_of({{test, comfort(4)}, 0});
+  expect_true_page(json);
+  const std::string notes = json.at("study").at("notes").dump();
+  EXPECT_THAT(notes, HasSubstr("protocol comfort 1.0, SHA-256 666666666666, 1 session, left out"));
+}
+
+TEST(ReportChoice, OneBannerNamesEachVersionAndCountsPeopleOnce) {
+  const Json json = results_of({{comfort(12), mended(comfort(3), '5')}, 0});
+  expect_true_page(json);
+  EXPECT_EQ(json.at("study").at("simulated_people"), 12) << "the three of version 1.1 are among the twelve";
+  std::string banner;
+  int banners = 0;
+  for (const auto& block : report_blocks::blocks_of(json)) {
+    if (block.words.find("come from a model") == std::string::npos) continue;
+    ++banners;
+    banner = block.words;
+  }
+  EXPECT_EQ(banners, 1);
+  EXPECT_THAT(
+      banner,
+      HasSubstr(
+          "All answers of Own design (comfort, version 1.0) and Own design (comfort, version 1.1) come"));
+}
+
+TEST(ReportChoice, RealismAloneIsAnalysed) {
+  auto task = made_study::task1(12);
+  std::erase_if(task.questions, [](const auto& one) { return one.id != "realism"; });
+  for (auto& session : task.sessions)
+    for (auto& trial : session.trials)
+      std::erase_if(trial.answers, [](const auto& one) { return one.question != "realism"; });
+  const Json json = results_of({{task}, 0});
+  expect_true_page(json);
+  EXPECT_EQ(json.at("task1").at("scores").size(), 1u);
+  EXPECT_EQ(json.at("task1").at("comparisons").size(), 20u);
+  EXPECT_TRUE(json.at("hypotheses").empty());
+  EXPECT_EQ(json.at("not_analysed"),
+            (Json{{{"task", "task1"},
+                   {"what", "H1 to H3"},
+                   {"reason",
+                    "the trials ask no question 'disorientation', 'unrealism', 'dizziness' or 'confusion' on "
+                    "a scale"}}}));
+  EXPECT_THAT(report::results_page(json), Not(HasSubstr("on cybersickness.")));
+}
+
+// "drawn and listed": each value, not how many there are.
+TEST(ReportChoice, ValuesBeyondTheWhiskersAreListed) {
+  auto task = made_study::task1(12);
+  for (auto& trial : task.sessions[0].trials)
+    if (trial.first.what.method == "LoRes") trial.answers[0].score = 7;
+  const Json json = results_of({{task}, 0});
+  expect_true_page(json);
+  std::size_t outliers = 0, printed = 0;
+  for (const auto& cell : json.at("task1").at("cells")) outliers += cell.at("outliers").size();
+  for (const auto& text : html_reader::read(report::results_page(json)).texts)
+    printed += text.attribute("data-field").find("/outliers/") != std::string::npos && !text.within("svg");
+  EXPECT_GT(outliers, 0u);
+  EXPECT_EQ(printed, outliers);
+}
+
+TEST(ReportChoice, RulesThatCannotActAreNotStated) {
+  const std::string html = report::results_page(results_of({{comfort(4)}, 0}));
+  EXPECT_THAT(html, HasSubstr("Rules of exclusion for Own design: trials whose timing verdict"));
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("catch pages right")), Not(HasSubstr("repeated ratings differed"))));
+  auto caught = comfort(4);
+  for (auto& session : caught.sessions) session.catches = {{"attention", 2, 2}};
+  EXPECT_THAT(report::results_page(results_of({{caught}, 0})), HasSubstr("catch pages right"));
+}
+
+TEST(ReportChoice, TrackedGazeIsSaidOfMethodsThatFollowIt) {
+  EXPECT_EQ(results_of({{comfort(4)}, 0}).at("study").at("tracked_gaze"), Json());
+  auto foveated = comfort(4);
+  foveated.methods = {"LoRes", "FovFluid"};
+  for (auto& session : foveated.sessions)
+    for (auto& trial : session.trials)
+      if (trial.first.what.method == "HiRes") trial.first.what.method = "FovFluid";
+  EXPECT_EQ(results_of({{foveated}, 0}).at("study").at("tracked_gaze"), false);
+}
+
+TEST(ReportChoice, AnOwnDesignSaysWhatIsNotTestedAndWhyThereAreNoTimes) {
+  auto own = comfort(4);
+  for (auto& session : own.sessions)
+    for (auto& trial : session.trials)
+      for (auto& answer : trial.answers) answer.response_time_s = 0;
+  const Json json = results_of({{own}, 0});
+  expect_true_page(json);
+  EXPECT_EQ(json.at("not_analysed").at(1).at("what"), "H1 to H6");
+  EXPECT_THAT(report::results_page(json), HasSubstr("simulated participants take no time to answer"));
 }
 
 TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
@@ -192,7 +289,8 @@ TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
             (Json{{{"task", "task1"}, {"what", "H1"}, {"reason", "the study does not show FovFluid"}}}));
 }
 
-TEST(ReportChoice, PairsOverScenesAreDescribedBySceneAndTheTestSaysWhyItIsNone) {
+/// Each of six people judges one pair in three scenes. `alike`: all choose HiRes, always.
+study::TaskProtocol pairs_over_scenes(bool alike) {
   study::TaskProtocol pairs{
       "pairs", "1.0", std::string(64, '7'), true, 6, made_study::scenes, {"LoRes", "HiRes"}, {"1k"}, {}, {}};
   study::Question choice;
@@ -210,12 +308,17 @@ TEST(ReportChoice, PairsOverScenesAreDescribedBySceneAndTheTestSaysWhyItIsNone) 
       const bool swapped = person % 2 != 0;
       trial.first = made_study::showing(scene, swapped ? "HiRes" : "LoRes", "1k");
       trial.second = made_study::showing(scene, swapped ? "LoRes" : "HiRes", "1k");
-      trial.answers = {{"smoother", swapped ? 1 : 2}};  // HiRes, always
+      const bool chosen = alike || position > person % 3;  // HiRes
+      trial.answers = {{"smoother", swapped == chosen ? 1 : 2}};
       visit.trials.push_back(trial);
     }
     pairs.sessions.push_back(visit);
   }
-  const Json json = results_of({{pairs}, 0});
+  return pairs;
+}
+
+TEST(ReportChoice, PairsOverScenesAreDescribedByScene) {
+  const Json json = results_of({{pairs_over_scenes(true)}, 0});
   expect_true_page(json);
   const Json& cells = json.at("descriptives").at(0).at("cells");
   ASSERT_EQ(cells.size(), 3u);
@@ -223,8 +326,37 @@ TEST(ReportChoice, PairsOverScenesAreDescribedBySceneAndTheTestSaysWhyItIsNone) 
   EXPECT_EQ(cells[0].at("distribution"),
             (Json{{{"answer", "LoRes"}, {"count", 0}}, {{"answer", "HiRes"}, {"count", 6}}}));
   EXPECT_TRUE(json.at("hypotheses").empty());
-  EXPECT_THAT(json.at("task2").at("pairs").at(0).at("warning").get<std::string>(),
-              HasSubstr("3 times: each person's share"));
+  EXPECT_THAT(json.at("task2").at("pairs").at(0).at("by_person").at("ci_name").get<std::string>(),
+              HasSubstr("Clopper-Pearson over people"));
+}
+
+// The test over people is the one that was made: it is named, its interval is printed and drawn, and the
+// binomial test stands nowhere.
+TEST(ReportChoice, PairsAnsweredSeveralTimesNameTheTestThatWasMade) {
+  const Json json = results_of({{pairs_over_scenes(false)}, 0});
+  expect_true_page(json);
+  const Json& task = json.at("task2");
+  EXPECT_EQ(task.at("several_answers"), (Json{{"participants", 6}, {"of", 6}, {"most", 3}}));
+  EXPECT_EQ(task.at("pairs").at(0).at("test"), "exact permutation test of people's shares");
+  EXPECT_EQ(task.at("pairs").at(0).at("warning"), "");
+  EXPECT_THAT(task.at("rules").at("tests").get<std::string>(), Not(HasSubstr("inomial")));
+  EXPECT_THAT(task.at("triads").at("refused").get<std::string>(), HasSubstr("fewer than three methods"));
+  EXPECT_THAT(task.at("detectable").at("reason").get<std::string>(), HasSubstr("how alike one person's"));
+  const std::string html = report::results_page(json);
+  const std::string section = html.substr(html.find("id=\"task2\""), html.find("id=\"descriptives\""));
+  const std::string pairs = section.substr(0, section.find("Bias towards the first interval"));
+  EXPECT_THAT(pairs, AllOf(Not(HasSubstr("inomial")), Not(HasSubstr("Wilson)"))));
+  EXPECT_EQ(pairs.find("answered a pair more than once"), pairs.rfind("answered a pair more than once"));
+  EXPECT_THAT(html, HasSubstr("tested by an exact two-sided permutation test of people's shares"));
+  std::size_t printed = 0;
+  for (const auto& text : html_reader::read(html).texts)
+    printed += text.attribute("data-field") == "/task2/pairs/0/by_person/ci/0";
+  EXPECT_EQ(printed, 2u) << "in the table and in APA style";
+  EXPECT_NE(pairs.find("stroke-width=\"4.5\""), std::string::npos) << "the interval's line";
+  // Where each pair was answered once, all of it is about the binomial test.
+  const Json once = results_of({{made_study::task2(9)}, 0});
+  EXPECT_EQ(once.at("task2").at("pairs").at(0).at("test"), "exact binomial test");
+  EXPECT_FALSE(once.at("task2").at("rules").contains("more_than_one_trial"));
 }
 
 TEST(ReportChoice, ReasonsCallMethodsByTheirNames) {

@@ -94,7 +94,8 @@ TEST(ReportPilot, TheRulesOfTheTasksAreAppliedAndNamed) {
   EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
   EXPECT_EQ(json.at("exclusions").at(0).at("rule"), "straight_lining");
   EXPECT_EQ(json.at("exclusions").at(1).at("rule"), "catch");
-  EXPECT_THAT(words_of(json), AllOf(HasSubstr("The same rules of exclusion held for Pilot and Task 2:"),
+  EXPECT_THAT(words_of(json), AllOf(HasSubstr("Rules of exclusion for Pilot: trials"),
+                                    HasSubstr("Rules of exclusion for Task 2: trials"),
                                     HasSubstr("2 participants who had answered were left out")));
 }
 
@@ -127,10 +128,12 @@ TEST(ReportPilot, TheBannerNamesEveryObserverAndCountsEachPersonOnce) {
   EXPECT_THAT(
       words_of(json),
       HasSubstr("Simulated participants: 10 (frames:grain=4, ptpe:a=24,b=0.02, random). All answers of "
-                "Pilot and Task 1 come from a model: they say nothing about people."));
+                "Pilot (pilot, version 1.0) and Task 1 (task1, version 1.0) come from a model: they say "
+                "nothing about people."));
   for (auto& session : task.sessions) session.observer.clear();
   EXPECT_THAT(words_of(results_of({pilot, task})),
-              HasSubstr("Simulated participants: 8 (ptpe:a=24,b=0.02, random). All answers of Pilot come"));
+              HasSubstr("Simulated participants: 8 (ptpe:a=24,b=0.02, random). All answers of Pilot (pilot, "
+                        "version 1.0) come"));
 }
 
 TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
@@ -140,7 +143,10 @@ TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
   for (auto& session : test.sessions) session.test_data = true;
   const Json json = results_of({test, pilot_of_people()});
   EXPECT_EQ(json.at("pilot").at("n_participants"), 8);
-  EXPECT_THAT(words_of(json), HasSubstr("Pilot: protocol rehearsal 1.0 left out: it holds no real answers."));
+  EXPECT_THAT(
+      words_of(json),
+      HasSubstr("Pilot: protocol rehearsal 1.0, SHA-256 ffffffffffff, 8 sessions, left out: it holds no real "
+                "answers."));
 }
 
 }  // namespace

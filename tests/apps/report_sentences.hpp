@@ -10,15 +10,19 @@ namespace report_sentences {
 inline std::vector<Case> head_and_methods() {
   const Change no_protocols = set("/study/protocols", Json::array()), no_flow = set("/flow", Json::object());
   const std::string rules = "/plan/exclusions/";
+  const Change all_act = in_each("/study/protocols", "rules",
+                                 {"timing", "min_catch_correct", "max_repeat_difference",
+                                  "min_repeat_agreement", "straight_lining_answers", "min_answered"});
+  const Change none_acts = in_each("/study/protocols", "rules", Json::array());
   return {
-      {"Protocols: #, #, #.", no_protocols},
+      {"Parts: # (#, version #), # (#, version #), # (#, version #).", no_protocols},
       {"Computed #.", set("/date_utc", nullptr)},
       {"Test data.", in_each("/study/protocols", "test_data", false),
        set("/study/protocols/0/test_data", true)},
-      {"There are no other data of #: these results say nothing about people.",
+      {"There are no other data of # (#, version #): these results say nothing about people.",
        in_each("/study/protocols", "test_data", false), set("/study/protocols/0/test_data", true)},
       {"Simulated participants: # (#).", in_each("/study/protocols", "simulated", 0)},
-      {"All answers of # come from a model: they say nothing about people.",
+      {"All answers of # (#, version #) come from a model: they say nothing about people.",
        in_each("/study/protocols", "simulated", 0)},
       {"The protocol of # was # version # (SHA-256 #), planned for # participants.",
        in_each("/study/protocols", "participants_planned", nullptr)},
@@ -50,23 +54,27 @@ inline std::vector<Case> head_and_methods() {
        "out and # analysed, with # of # planned trials (# answered ones left out).",
        no_flow},
       {"The same rules of exclusion held for Pilot, Task 1 and Task 2: trials whose timing verdict was fail "
-       "were "
-       "left out;*",
+       "were left out*",
        set(rules + "timing", "none")},
-      {"*: trials whose timing verdict was degraded or fail were left out;*", set(rules + "timing", "fail"),
+      {"*: trials whose timing verdict was degraded or fail were left out*", set(rules + "timing", "fail"),
        set(rules + "timing", "degraded")},
-      {"*: no trial was left out for its timing verdict;*", set(rules + "timing", "fail"),
+      {"*: no trial was left out for its timing verdict*", set(rules + "timing", "fail"),
        set(rules + "timing", "none")},
       {"*; visits with fewer than # of the catch pages right were left out*",
-       set(rules + "min_catch_correct", nullptr)},
+       set(rules + "min_catch_correct", nullptr), all_act},
       {"*; visits whose repeated ratings differed by more than # points on average were left out*",
-       set(rules + "max_repeat_difference", nullptr)},
-      {"*; visits with less than # of repeated pairs answered alike were left out*",
-       set(rules + "min_repeat_agreement", nullptr), set(rules + "min_repeat_agreement", 0.5)},
+       set(rules + "max_repeat_difference", nullptr), all_act},
+      {"*; visits with less than # of repeated pairs answered alike were left out*", none_acts,
+       all({all_act, set(rules + "min_repeat_agreement", 0.5)})},
       {"*; visits with one and the same answer throughout (# answers or more) were left out*",
        set(rules + "straight_lining_answers", 0), set(rules + "straight_lining_answers", 8)},
       {"*; visits with less than # of the trials answered were left out*", set(rules + "min_answered", 0),
        set(rules + "min_answered", 0.5)},
+      {"No rule of exclusion could act on Pilot, Task 1 and Task 2.", all_act, none_acts},
+      {"Rules of exclusion for Pilot: trials whose timing verdict was fail were left out.", no_flow,
+       all({none_acts, set("/study/protocols/0/rules", {"timing"})})},
+      {"No rule of exclusion could act on Task 1 and Task 2.", all_act,
+       all({none_acts, set("/study/protocols/0/rules", {"timing"})})},
       {"The rules see neither method, scene nor frame rate.", no_flow},
       {"The pilot's curve * was estimated by least squares of all ratings (the model stands under Pilot); "
        "its "
@@ -79,7 +87,9 @@ inline std::vector<Case> head_and_methods() {
        refused("/task1")},
       {"Equivalence was tested by two one-sided tests with margins of # points on realism and # on "
        "cybersickness.",
-       refused("/task1")},
+       in_each("/task1/scores", "code", "realism")},
+      {"Equivalence was tested by two one-sided tests with a margin of # points on realism.",
+       refused("/task1"), in_each("/task1/scores", "code", "realism")},
       {"Bootstrap intervals of Task 1 use # resamples with seed #.", refused("/task1")},
       {"H1 to H3 were tested by paired t tests.", set("/plan/tests", "mixed")},
       {"H1 to H3 were tested by paired t tests.", set("/hypotheses", Json::array())},
@@ -87,7 +97,14 @@ inline std::vector<Case> head_and_methods() {
        "paired "
        "t tests stand beside.",
        set("/plan/tests", "paired"), set("/plan/tests", "mixed")},
-      {"Each pair of Task 2 was tested by an exact two-sided binomial test.", refused("/task2")},
+      {"Each pair of Task 2 was tested by an exact two-sided binomial test.",
+       in_each("/task2/pairs", "by_person", by_person())},
+      {"Each pair of Task 2 was tested by an exact two-sided permutation test of people's shares against one "
+       "half, since people answered it several times.",
+       refused("/task2"), in_each("/task2/pairs", "by_person", by_person())},
+      {"Each pair of Task 2 was tested by an exact two-sided binomial test, or by an exact two-sided "
+       "permutation test of people's shares against one half, since people answered it several times.",
+       refused("/task2"), set("/task2/pairs/0/by_person", by_person())},
       {"What each level of a factor is worth over another was tested within participants by one-sample t "
        "tests, and by exact sign tests where all participants are alike.",
        set("/task1/factors", Json::array()), set("/task1/factors", {score_factor()})},
@@ -156,6 +173,8 @@ inline std::vector<Case> participants_and_timing() {
       {"# Timing certificate, *", no_timing},
       {"Of # showings # passed, # were degraded, # failed and # could not be judged.", no_timing},
       {"In # of # cells a showing was degraded or failed.", no_timing},
+      {"No showing measured the share of particles that was solved.",
+       in_each("/timing", "active_fraction", 0.5)},
       {"# Pilot: verdicts by setting, where a showing was degraded or failed.", none_flawed, one_flawed},
       {"# Pilot: cells in which a showing was degraded or failed", none_flawed, one_flawed},
       {"# Task [12]: verdicts by method and n[*], where a showing was degraded or failed.", none_flawed,

@@ -13,6 +13,10 @@ inline Json preference_factor() {
           {"ci", {0.2, 0.4}},    {"t", -2.5},        {"df", 15},
           {"p", 0.024},          {"p_holm", 0.024},  {"reason", ""}};
 }
+/// The test of a pair over people, some of whom answered it more than once.
+inline Json by_person() {
+  return {{"participants", 9}, {"share", 0.6}, {"ci", {0.4, 0.8}}, {"ci_name", "of people"}, {"p", 0.03}};
+}
 inline Json score_factor() {
   return {{"score", "realism"},
           {"n_star", "16k"},
@@ -121,6 +125,8 @@ inline std::vector<Case> task1() {
       {"# Participant means by method, #", set("/task1/cells", Json::array())},
       {"# Paired t tests between methods, #", no_pairs},
       {"# The same pairs by other tests, #", no_pairs},
+      {"The level of a Hodges-Lehmann interval is exact where no two differences are tied, else about right.",
+       no_pairs},
       {"Pairs below .05 without correction, in APA style:", stars("")},
       {"#, # \u2212 #: t(#) = #, p *, pHolm *, dz = #, CI [[]#, #]", stars("")},
       {"#, # \u2212 #: all differences = #, #, p *, pHolm *",
@@ -162,6 +168,8 @@ inline std::vector<Case> task1() {
        "there, "
        "with their intervals.",
        secondary},
+      {"An interval that goes beyond the scale is cut at the scale's end.",
+       in_each("/task1/by_scene", "ci", nullptr), set("/task1/by_scene/0/ci", {-3, 12})},
       {"The table of scores by scene holds the numbers.", secondary},
       {"# # of each participant: thin lines; thick line and X: means.", secondary},
       {"A thin line for each participant over the methods within each n[*], so that it is seen who differs "
@@ -186,6 +194,10 @@ inline std::vector<Case> task1() {
        set("/task1/detectable", Json::array())},
       {"# Time from the page's showing to the last change of the answer, s",
        set("/response_times", Json::array())},
+      {"Not given: simulated participants take no time to answer.", in_each("/response_times", "max", 2.5),
+       in_each("/response_times", "max", 0)},
+      {"Not given for the other questions: simulated participants take no time to answer.",
+       in_each("/response_times", "max", 2.5), set("/response_times/0/max", 0)},
       {"# Repeated showings", set("/task1/retest", Json::array()),
        set("/task1/retest", {{{"score", "realism"}, {"pairs", 4}}})},
   };
@@ -199,18 +211,27 @@ inline std::vector<Case> task2() {
       {"The tests of all pairs describe the data; the decisions stand under Hypotheses.",
        set("/hypotheses", Json::array())},
       {"The tests of all pairs describe the data.", no_task, set("/hypotheses", Json::array())},
-      {"# Share of answers that chose each of a pair, as the paper's Fig._10; line: Wilson interval.",
-       no_task},
-      {"Stars: exact binomial test, uncorrected / after Holm over all pairs.", no_task},
+      {"# Share of answers that chose each of a pair, as the paper's Fig._10; line: interval of the share "
+       "(Wilson).",
+       in_each("/task2/pairs", "by_person", by_person())},
+      {"# Share of answers that chose each of a pair, as the paper's Fig._10; line: interval of the share "
+       "(#).",
+       no_task, in_each("/task2/pairs", "by_person", by_person())},
+      {"# Share of answers that chose each of a pair, as the paper's Fig._10.", no_task,
+       in_each("/task2/pairs", "wilson", nullptr)},
+      {"Stars: #, uncorrected / after Holm over all pairs.", in_each("/task2/pairs", "test", nullptr)},
+      {"# of # participants answered a pair more than once, at most # times.",
+       set("/task2/several_answers/participants", 0), set("/task2/several_answers/participants", 3)},
       {"A bar for each pair of methods: the plain part on the left is the share of answers that chose the "
        "method "
        "named on the left, the hatched part the other's.",
        no_task},
-      {"The line across the bar is the share's Wilson interval, the dotted line no preference.", no_task},
+      {"The line across the bar is the share's interval, the dotted line no preference.", no_task},
       {"The table below holds the same numbers.", no_task},
-      {"# How often each of a pair was chosen: exact binomial tests, two-sided", no_task},
-      {"# over #: # of # (#), CI [[]#, #], exact binomial p *, pHolm *",
-       in_each("/task2/pairs", "p", nullptr)},
+      {"# How often each of a pair was chosen, with a two-sided test of each pair", no_task},
+      {"# over #: # of # (#), CI [[]#, #], #, p *, pHolm *", in_each("/task2/pairs", "p", nullptr)},
+      {"# over #: # of # answers of # people, mean share #, CI [[]#, #], #, p *, pHolm *",
+       in_each("/task2/pairs", "by_person", nullptr), in_each("/task2/pairs", "by_person", by_person())},
       {"The first of a pair was chosen in # of # answers (#, CI [[]#, #], exact binomial p *).",
        refused(bias)},
       {"Note: #.", set(bias + "/warning", ""), set(bias + "/warning", "one answered all pairs alike")},
@@ -236,7 +257,7 @@ inline std::vector<Case> task2() {
        set(model + "/fit", nullptr)},
       {"Effect of the order (log odds of the first interval): # [[]#, #], SE = #, p *",
        set(model + "/order", nullptr)},
-      {"Participants who judged all pairs: # (without: #).", refused("/task2/triads")},
+      {"Participants who judged every pair once: # (others: #).", refused("/task2/triads")},
       {"Mean number of circular triads # (random answers: #), mean consistency (Kendall's \u03b6) #; as few "
        "or "
        "fewer by chance: p *.",
@@ -247,7 +268,7 @@ inline std::vector<Case> task2() {
        "over the pairs of levels of one factor, not over the table",
        set("/task2/factors", Json::array()), set("/task2/factors", {preference_factor()})},
       {"# Choices by scene (not tested)", set("/task2/by_scene", Json::array())},
-      {"The exact test of # answers at \u03b1 = # finds a true preference of # with a power of #.",
+      {"The exact binomial test of # answers at \u03b1 = # finds a true preference of # with a power of #.",
        set("/task2/detectable", nullptr)},
       {"Not given: too few answers: not even a choice by all is significant at this level.",
        set("/task2/detectable", nullptr),

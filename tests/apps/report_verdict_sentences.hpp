@@ -70,7 +70,10 @@ inline std::vector<Case> hypotheses() {
       {"# #: paired tests beside", by_pairs, by_model},
       {"# The same p in larger families", none},
       {"#: Mdiff = #, # CI [[]#, #]*, p *, pHolm *", none},
-      {"#: *share = #, # CI [[]#, #], p *, pHolm *", none},
+      {"#: *share = #, #, # CI [[]#, #], p *, pHolm *", none},
+      {"Where a person answered a pair more than once, the test is the #, in place of the binomial test.",
+       in_each("/hypotheses/3/tests", "method", "exact binomial test"),
+       set("/hypotheses/3/tests/0/method", "exact permutation test of people's shares")},
       {"#: Mdiff = #, #, *p *, pHolm *", set("/hypotheses/0/tests/0/method", "paired t test"),
        set("/hypotheses/0/tests/0/method", "exact sign test")},
       {"#: no test, #", in_each("/hypotheses/0/tests", "p", 0.5),
@@ -107,12 +110,16 @@ inline std::vector<Case> bundle_and_provenance() {
       {"Exploratory Hypotheses of Task [12]: *", set("/hypotheses", Json::array())},
       {"Preregistered Hypotheses of Task 2: *", set("/preregistration/tasks/task2", false),
        all({with, set("/preregistration/tasks/task2", true)})},
-      {"Exploratory Everything else: tables and tests of Pilot, tables and tests of Task 1, tables and tests "
+      {"Exploratory All but the hypotheses: tables and tests of Pilot, tables and tests of Task 1, tables "
+       "and tests "
        "of "
        "Task 2, answers by cell, "
        "ordinal models, the Bradley-Terry model and sensitivity.",
        set("/task1/ordinal", Json::array())},
-      {"Exploratory Everything else: *",
+      {"Exploratory All of it: tables and*",
+       all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/descriptives", Json::array())}),
+       set("/hypotheses", Json::array())},
+      {"Exploratory All but the hypotheses: *",
        all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/sensitivity", Json::array()),
             set("/descriptives", Json::array())})},
       {"# Where the numbers come from",

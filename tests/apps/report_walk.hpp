@@ -159,7 +159,8 @@ inline int sessions_in_flows(const Json& json) {
       counted.push_back(sha256);
       const Json& flow = document->at("flow").at(protocol.at("task").get<std::string>());
       out += flow.at("started").get<int>() + flow.at("set_aside").at("test_data").get<int>() +
-             flow.at("set_aside").at("simulated").get<int>();
+             flow.at("set_aside").at("simulated").get<int>() +
+             flow.at("set_aside").at("protocols").get<int>();
     }
   }
   return out;

@@ -245,7 +245,7 @@ TEST(Sensitivity, TellsWhichVerdictsAnExclusionMakes) {
   TaskSelection selection{TaskKind::Task1, "", {}};
   selection.plan.exclusions.straight_lining_answers = 8;
   const auto data = select_task(study, selection).value();
-  const auto list = sensitivity_json(study, selection, data, *task1_verdicts(data, {}));
+  const auto list = sensitivity_json(study, selection, data, task1_verdicts(data, {}));
   EXPECT_EQ(variant(list, "planned").at("participants"), 25);
   EXPECT_THAT(variant(list, "planned").at("changed"), IsEmpty());
   EXPECT_EQ(variant(list, "no_exclusions").at("participants"), 26);
@@ -261,7 +261,7 @@ TEST(Sensitivity, PoolsBlocksWhereAveragingMatters) {
   const auto study = of(protocol);
   const TaskSelection selection{TaskKind::Task1, "", {}};
   const auto data = select_task(study, selection).value();
-  const auto list = sensitivity_json(study, selection, data, *task1_verdicts(data, {}));
+  const auto list = sensitivity_json(study, selection, data, task1_verdicts(data, {}));
   const auto pooled = variant(list, "blocks_pooled");
   EXPECT_EQ(pooled.at("participants"), 24);
   EXPECT_EQ(pooled.at("hypotheses")[0].at("tests")[0].at("n"), 13);

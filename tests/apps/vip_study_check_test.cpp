@@ -172,6 +172,9 @@ TEST(SessionOutline, BalanceNamesTheNextEvenNumbers) {
   EXPECT_EQ(apps::check_balance(pairs).interval_difference, 1);
   pairs.participants = 30;
   EXPECT_EQ(apps::check_balance(pairs).interval_difference, 0);
+  EXPECT_THAT(apps::describe_balance(pairs, apps::check_balance(pairs)),
+              ::testing::AllOf(::testing::HasSubstr("is met by 10 of them"),
+                               ::testing::HasSubstr("the two orders of a pair come equally often")));
   EXPECT_EQ(apps::check_balance(shipped("ptpe_pilot")).even, 1);
 }
 

@@ -95,9 +95,28 @@ TEST(ExportBids, FilesAndTheirNamesAreThoseOfTheStandard) {
                           "sub-P01x2/ses-pairsv1/beh/sub-P01x2_ses-pairsv1_task-pairs_events.tsv",
                           "sub-P01x2/sub-P01x2_sessions.json", "sub-P01x2/sub-P01x2_sessions.tsv"));
   const auto description = read_json(folder / "bids" / "dataset_description.json");
-  EXPECT_EQ(description["Name"], "bids");
+  EXPECT_EQ(description["Name"], "pairs 1.0") << "of the study, not of the folder";
   EXPECT_EQ(description["BIDSVersion"], "1.11.0");
   EXPECT_EQ(description["GeneratedBy"][0]["Name"], "vip-study");
+}
+
+// Data of no person must not pass for data of people.
+TEST(ExportBids, SimulatedParticipantsAreNamedSuch) {
+  const test::TemporaryFolder folder;
+  const fs::path study = make_study(folder);
+  const std::string all = "For 2 of 2 participants a simulated observer answered";
+  export_bids(study, folder / "bids");
+  EXPECT_THAT(test::bytes_of(folder / "bids/README.md"), HasSubstr(all));
+  EXPECT_THAT(read_json(folder / "bids/dataset_description.json").dump(), HasSubstr(all));
+  EXPECT_EQ(read_table(folder / "bids/participants.tsv", '\t').at(1).at(2), "1");
+  export_psych_ds(study, folder / "psych");
+  EXPECT_THAT(test::bytes_of(folder / "psych/README.md"), HasSubstr(all));
+  EXPECT_THAT(read_json(folder / "psych/dataset_description.json")["description"].dump(), HasSubstr(all));
+  EXPECT_EQ(read_json(folder / "psych/dataset_description.json")["name"], "pairs 1.0");
+  sqlite::Connection(study, sqlite::Open::Write).execute("UPDATE session SET observer = NULL");
+  export_bids(study, folder / "people");
+  EXPECT_EQ(test::bytes_of(folder / "people/README.md").find("simulated"), std::string::npos);
+  EXPECT_EQ(read_table(folder / "people/participants.tsv", '\t').at(1).at(2), "0");
 }
 
 TEST(ExportBids, EveryTableIsFullAndEveryColumnIsDescribed) {

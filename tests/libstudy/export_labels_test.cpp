@@ -55,9 +55,9 @@ class GivenLabels : public ::testing::Test {
 
 TEST_F(GivenLabels, OfWhoWasThereFirstStaysWhenALikeCodeComes) {
   add(path, {"P01"});
-  EXPECT_EQ(published(path), "participant_id\tcode\nsub-P01\tP01\n");
+  EXPECT_EQ(published(path), "participant_id\tcode\tsimulated\nsub-P01\tP01\t1\n");
   add_old(path, "P-01");
-  EXPECT_EQ(published(path), "participant_id\tcode\nsub-P01x2\tP-01\nsub-P01\tP01\n");
+  EXPECT_EQ(published(path), "participant_id\tcode\tsimulated\nsub-P01x2\tP-01\t1\nsub-P01\tP01\t1\n");
   add(path, {"A01"});
   EXPECT_THAT(people(path), ElementsAre("A01 A01", "P-01 P01x2", "P01 P01"));
 }
@@ -68,14 +68,15 @@ TEST_F(GivenLabels, OfOlderDatabasesAreThoseThatWerePublishedLast) {
   add_old(path, "p01");
   Connection(path, Open::Write).execute("DELETE FROM label");
   // Names of files on other computers do not differ in case.
-  EXPECT_EQ(published(path), "participant_id\tcode\nsub-P01\tP-01\nsub-P01x2\tP01\nsub-p01x3\tp01\n");
+  EXPECT_EQ(published(path),
+            "participant_id\tcode\tsimulated\nsub-P01\tP-01\t1\nsub-P01x2\tP01\t1\nsub-p01x3\tp01\t1\n");
 }
 
 TEST_F(GivenLabels, AreNotGivenAgainAfterAWithdrawal) {
   add(path, {"P01"});
   withdraw(path, "P01");
   add_old(path, "P-01");
-  EXPECT_EQ(published(path), "participant_id\tcode\nsub-P01x2\tP-01\n");
+  EXPECT_EQ(published(path), "participant_id\tcode\tsimulated\nsub-P01x2\tP-01\t1\n");
 }
 
 // The other P01 was planned first, and keeps the plain label in a database of its own.

@@ -399,7 +399,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Malformed{task1, "ask realism", "ask realsm", "|\"ask realsm", "which is no question",
                               "ask \"realism\" if it is meant"},
                     Malformed{pilot, "scale = [1, 7]", "scale = [1, 7]\nlevel = 7", "level = |7",
-                              "does not lie within the scale", "above 1 and below 7"}));
+                              "does not lie between the ends of the scale, 1 and 7", "above 1 and below 7"}));
 
 // An analysis that looks for a question would not find it.
 TEST(ProtocolNames, AnIdThatIsNearlyOneThatAnalysesLookForIsRefused) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "apps/common/claims.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -21,9 +22,6 @@ const char* what_it_shows(TaskKind task) {
   return task == TaskKind::Task2 ? "that shows pairs of methods, one of which is chosen"
                                  : "that shows methods one by one, rated for 'realism' on a scale";
 }
-
-/// Sickness that trials ask for again and again is analysed by itself (sickness_json.hpp).
-bool is_sickness(const Question& question) { return question.id == "fms" || question.id.starts_with("ssq_"); }
 
 bool is_scale(const Question& question) {
   return question.kind == study::AnswerKind::Scale && !is_sickness(question);
@@ -61,10 +59,28 @@ std::vector<Question> main_questions(const TaskProtocol& protocol, const TaskSel
   return out;
 }
 
-std::string ids_of(const std::vector<Question>& questions) {
-  std::vector<std::string> ids;
-  for (const auto& one : questions) ids.push_back(one.id);
-  return base::joined(ids);
+constexpr const char* choose_protocol = "choose one with --protocol: ";
+constexpr const char* choose_question = "choose one with --question: ";
+
+void list_once(std::vector<std::string>& list, const std::string& item) {
+  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+}
+
+/// "name 1.0 0123456789ab".
+std::string hashed_name(const TaskProtocol& protocol) {
+  return name_of(protocol) + " " + protocol.sha256.substr(0, 12);
+}
+
+std::vector<std::string> protocols_of(const std::vector<ChosenTask>& all) {
+  std::vector<std::string> out;
+  for (const ChosenTask& one : all) list_once(out, hashed_name(one.protocol));
+  return out;
+}
+
+std::vector<std::string> questions_of(const std::vector<ChosenTask>& all) {
+  std::vector<std::string> out;
+  for (const ChosenTask& one : all) list_once(out, one.question.id);
+  return out;
 }
 
 /// Protocols that are asked for; first those with real answers, whose number is `real`.
@@ -166,24 +182,24 @@ stats::Result<std::vector<ChosenTask>> choose_tasks(const study::TaskStudy& stud
         std::string("the database holds no protocol ") + what_it_shows(selection.task) +
         (selection.protocol.empty() ? "" : " and whose SHA-256 begins with " + selection.protocol)};
   }
-  std::vector<std::string> set_aside;
+  std::vector<SetAside> set_aside;
   if (real > 0) {
-    for (std::size_t i = real; i < protocols.size(); ++i) set_aside.push_back(name_of(*protocols[i]));
+    for (std::size_t i = real; i < protocols.size(); ++i)
+      set_aside.push_back({name_of(*protocols[i]) + ", SHA-256 " + protocols[i]->sha256.substr(0, 12),
+                           static_cast<int>(protocols[i]->sessions.size())});
     protocols.resize(real);
   }
   std::vector<ChosenTask> out;
-  std::vector<std::string> asked;
   for (const TaskProtocol* protocol : protocols) {
     bool first = true;
     for (const Question& question : main_questions(*protocol, selection)) {
-      out.push_back({*protocol, out.empty() ? set_aside : std::vector<std::string>(), question, first});
+      out.push_back({*protocol, out.empty() ? set_aside : std::vector<SetAside>(), question, first});
       first = false;
     }
-    asked.push_back("protocol " + protocol->name + " asks no question '" + selection.question +
-                    "' that can be analysed by itself, but " +
-                    ids_of(main_questions(*protocol, {selection.task, {}, {}})));
   }
-  if (out.empty()) return stats::Refusal{base::joined(asked)};
+  if (out.empty())
+    return stats::Refusal{"the trials ask no question '" + selection.question +
+                          "' that is analysed by itself"};
   return out;
 }
 
@@ -191,18 +207,60 @@ stats::Result<ChosenTask> choose_task(const study::TaskStudy& study, const TaskS
   const auto all = choose_tasks(study, selection);
   if (!all) return stats::Refusal{all.reason()};
   if (all->size() == 1) return all->front();
-  std::vector<std::string> protocols;
-  std::vector<Question> questions;
-  for (const ChosenTask& one : *all) {
-    if (one.first_of_protocol)
-      protocols.push_back(name_of(one.protocol) + " " + one.protocol.sha256.substr(0, 12));
-    questions.push_back(one.question);
+  return stats::Refusal{protocols_of(*all).size() > 1 ? "several protocols are never pooled"
+                                                      : "several questions are never pooled"};
+}
+
+std::string mend_of_choice(const study::TaskStudy& study, const TaskSelection& selection) {
+  if (study.protocols.empty()) return "run a session first";
+  const auto all = choose_tasks(study, selection);
+  if (all && all->size() == 1) return "";
+  if (all && protocols_of(*all).size() > 1) return choose_protocol + base::joined(protocols_of(*all));
+  TaskSelection any = selection;
+  any.question.clear();
+  const auto asked = all ? all : choose_tasks(study, any);
+  if (asked) return choose_question + base::joined(questions_of(*asked));
+  any.protocol.clear();
+  const auto others = choose_tasks(study, any);
+  if (others) return choose_protocol + base::joined(protocols_of(*others));
+  std::vector<std::string> held;
+  for (const TaskProtocol& protocol : study.protocols) held.push_back(name_of(protocol));
+  return "give another database: this one holds " + base::joined(held) + ", which vip-stats report describes";
+}
+
+stats::Refusal nothing_chosen(const study::TaskStudy& study, const std::string& protocol, std::string& mend) {
+  std::vector<std::string> names, questions;
+  for (const TaskProtocol& one : study.protocols) {
+    names.push_back(hashed_name(one));
+    if (!one.sha256.starts_with(protocol)) continue;
+    for (const Question& question : one.questions)
+      if (is_main_question(one, question) || kind_of(one) == TaskKind::Own) list_once(questions, question.id);
   }
-  if (protocols.size() > 1)
-    return stats::Refusal{"several protocols are never pooled; choose one with --protocol: " +
-                          base::joined(protocols)};
-  return stats::Refusal{"several questions are never pooled; choose one with --question: " +
-                        ids_of(questions)};
+  if (names.empty()) {
+    mend = "run a session first";
+    return {"holds no protocol"};
+  }
+  if (questions.empty()) {
+    mend = choose_protocol + base::joined(names);
+    return {"holds no protocol whose SHA-256 begins with " + protocol};
+  }
+  mend = choose_question + base::joined(questions);
+  return {"asks no such question that is analysed by itself"};
+}
+
+bool within_scale(double level, const Question& question) {
+  return level > question.scale_min && level < question.scale_max;
+}
+
+std::string outside_scale(double level, const Question& question) {
+  return "the level " + base::shortest(level) + " does not lie between the ends of the scale of '" +
+         question.id + "', " + std::to_string(question.scale_min) + " and " +
+         std::to_string(question.scale_max);
+}
+
+std::string mend_of_level(const Question& question) {
+  return "choose a --level above " + std::to_string(question.scale_min) + " and below " +
+         std::to_string(question.scale_max) + ", or leave it out";
 }
 
 }  // namespace apps

@@ -40,10 +40,16 @@ double level_of(const TaskSelection& selection, const study::Question& question)
 bool has_answers(const study::TaskSession& session);
 bool has_real_answers(const study::TaskProtocol& protocol);
 
+/// A protocol of a task that is not analysed, as it holds nothing but test data and others hold real data.
+struct SetAside {
+  std::string name;  ///< "name 1.0, SHA-256 0123456789ab": two may have one name and version
+  int sessions = 0;
+};
+
 /// One protocol and the question whose answers are analysed.
 struct ChosenTask {
   study::TaskProtocol protocol;
-  std::vector<std::string> set_aside;  ///< "name 1.0": protocols of this task with nothing but test data
+  std::vector<SetAside> set_aside;
   /// Realism of Task 1, the choice of Task 2, a scale of the pilot, the first question of another design.
   study::Question question;
   bool first_of_protocol = true;  ///< no question of this protocol was chosen before
@@ -59,5 +65,16 @@ stats::Result<std::vector<ChosenTask>> choose_tasks(const study::TaskStudy& stud
 
 /// The only one. Refused with the reason where there are several, as they are never pooled.
 stats::Result<ChosenTask> choose_task(const study::TaskStudy& study, const TaskSelection& selection);
+
+/// What to do where choose_task() is refused: only what there is to choose from; empty: it is not.
+std::string mend_of_choice(const study::TaskStudy& study, const TaskSelection& selection);
+
+/// Why no analysis at all, of whatever task, was chosen, and what to do. `protocol`: digits as given.
+stats::Refusal nothing_chosen(const study::TaskStudy& study, const std::string& protocol, std::string& mend);
+
+/// A curve is fitted between the ends of its scale. The reason and the mend are the same for every command.
+bool within_scale(double level, const study::Question& question);
+std::string outside_scale(double level, const study::Question& question);
+std::string mend_of_level(const study::Question& question);
 
 }  // namespace apps

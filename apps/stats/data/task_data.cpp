@@ -239,6 +239,7 @@ TaskData collect_task(const study::TaskStudy& study, const ChosenTask& chosen,
   data.task = kind_of(chosen.protocol);
   data.protocol = chosen.protocol;
   data.set_aside = chosen.set_aside;
+  for (const SetAside& one : chosen.set_aside) data.flow.protocols_left_out += one.sessions;
   data.question = chosen.question;
   for (const std::string& scene : data.protocol.scenes) data.scenes.push_back(scene_name(scene));
   data.flow.withdrawn = study.withdrawn;

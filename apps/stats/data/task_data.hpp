@@ -22,6 +22,7 @@ struct TaskFlow {
   int withdrawn = 0;           ///< participants, from whatever protocol of the database
   int test_left_out = 0;       ///< sessions of test data beside real ones
   int simulated_left_out = 0;  ///< sessions of observer models beside those of people
+  int protocols_left_out = 0;  ///< sessions of protocols with nothing but test data beside real ones
   int excluded_visits = 0;
   int excluded_participants = 0;  ///< who answered, and of whom nothing is left
   int analysed = 0;               ///< participants with an answer that counts
@@ -63,8 +64,8 @@ struct Report {
 /// The answers of one task, or of the pilot, that count. Indices are of the lists here.
 struct TaskData {
   TaskKind task = TaskKind::Task1;
-  study::TaskProtocol protocol;           ///< its sessions are those analysed
-  std::vector<std::string> set_aside;     ///< protocols with nothing but test data
+  study::TaskProtocol protocol;  ///< its sessions are those analysed
+  std::vector<SetAside> set_aside;
   bool test_data = false;                 ///< there are no real data: test data are analysed
   std::vector<std::string> participants;  ///< codes
   std::vector<std::string> scenes;        ///< short: "single_dam"

@@ -1,4 +1,5 @@
 #include "apps/stats/power/power_json.hpp"
+#include "apps/common/claims.hpp"
 
 #include <filesystem>
 
@@ -53,6 +54,9 @@ Json settings_json(const PowerRequest& request, PowerKind kind) {
                        {"noise", truth.noise},
                        {"participant_sd", truth.participant_sd}};
     out["question"] = rated_question(request).id;
+    out["other_questions"] = Json::array();
+    for (const auto& one : curve_questions(request.protocol))
+      if (one.id != out["question"]) out["other_questions"].push_back(one.id);
     out["level"] = rated_level(request);
     out["precision_a"] = json_number(request.precision_a);
     out["precision_b"] = json_number(request.precision_b);

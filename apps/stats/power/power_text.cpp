@@ -104,9 +104,13 @@ void print_coefficient(const Json& json, const std::string& name, const char* un
 
 void print_precision(const Json& json) {
   const auto columns = columns_to_print(json);
-  std::printf("question \"%s\", the curve at level %g of its scale\n\n",
+  std::printf("question \"%s\", the curve at level %g of its scale\n",
               json.at("settings").at("question").get<std::string>().c_str(),
               json.at("settings").at("level").get<double>());
+  for (const auto& other : json.at("settings").at("other_questions"))
+    std::printf("not in this calculation: question \"%s\"; choose it with --question %s\n",
+                other.get<std::string>().c_str(), other.get<std::string>().c_str());
+  std::printf("\n");
   print_head(json, columns);
   print_row("pilots with an interval", json.at("precision").at("curve"), "interval", columns);
   print_coefficient(json, "a", "frames/s", columns);

@@ -138,11 +138,9 @@ study::Question rated_question(const PowerRequest& request) {
 double rated_level(const PowerRequest& request) {
   const auto question = rated_question(request);
   const double level = level_of({TaskKind::Pilot, {}, request.plan.plan, {}, request.level}, question);
-  if (level > question.scale_min && level < question.scale_max) return level;
-  throw base::Error("level " + base::shortest(level),
-                    "does not lie within the scale of \"" + question.id + "\"",
-                    "choose a --level above " + std::to_string(question.scale_min) + " and below " +
-                        std::to_string(question.scale_max) + ", or leave it out");
+  if (within_scale(level, question)) return level;
+  throw base::Error("protocol " + request.protocol.name, outside_scale(level, question),
+                    mend_of_level(question));
 }
 
 std::vector<int> parse_participants(const std::string& text) {

@@ -1,5 +1,7 @@
 #include "apps/stats/ptpe/fit_text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -14,6 +16,13 @@ namespace apps {
 
 namespace {
 
+/// An interval of frame rates. An end beyond every rate that a protocol may have is no bound.
+std::string rates(const std::array<double, 2>& ci, int decimals) {
+  constexpr double highest_rate = 1000;  // of design.mean_fps, frames/s
+  if (ci[1] > highest_rate) return fmt::format("[{:.{}f}, no upper bound]", ci[0], decimals);
+  return fmt::format("[{:.{}f}, {:.{}f}]", ci[0], decimals, ci[1], decimals);
+}
+
 /// One line: a, b and their intervals, or the reason why there are none.
 void print_estimate(double level, const char* name, const std::string& reason, double a, double b,
                     const std::array<double, 2>* a_ci, const std::array<double, 2>* b_ci) {
@@ -22,7 +31,7 @@ void print_estimate(double level, const char* name, const std::string& reason, d
     std::printf("%s\n", reason.c_str());
     return;
   }
-  std::printf("a = %.2f [%.2f, %.2f] frames/s, b = %.4f [%.4f, %.4f] s/frame\n", a, (*a_ci)[0], (*a_ci)[1], b,
+  std::printf("a = %.2f %s frames/s, b = %.4f [%.4f, %.4f] s/frame\n", a, rates(*a_ci, 2).c_str(), b,
               (*b_ci)[0], (*b_ci)[1]);
 }
 
@@ -42,8 +51,8 @@ template <class Curve>
 void print_points(const std::vector<double>& deltas, const Curve& curve) {
   for (const double delta : deltas) {
     const auto point = curve.band(delta);
-    std::printf("%s mu(%g) = %.1f [%.1f, %.1f]", delta == deltas.front() ? "" : ",", delta, point.mu,
-                point.pointwise[0], point.pointwise[1]);
+    std::printf("%s mu(%g) = %.1f %s", delta == deltas.front() ? "" : ",", delta, point.mu,
+                rates(point.pointwise, 1).c_str());
   }
   std::printf("\n");
 }

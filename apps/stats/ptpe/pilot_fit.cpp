@@ -73,7 +73,8 @@ void flag_data(std::vector<FitFlag>& flags, const TaskData& data, const stats::P
         {"simulated", count_words(static_cast<int>(data.simulated.size()), "participant") + " simulated"});
   }
   for (const auto& protocol : data.set_aside)
-    flags.push_back({"protocol_left_out", "protocol " + protocol + " left out: it holds no real answers"});
+    flags.push_back(
+        {"protocol_left_out", "protocol " + protocol.name + ", left out: it holds no real answers"});
   if (data.flow.test_left_out > 0) {
     flags.push_back(
         {"test_data_left_out", count_words(data.flow.test_left_out, "session") + " of test data left out"});
@@ -137,17 +138,10 @@ void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main, const Pilo
   }
 }
 
-bool within_scale(double level, const study::Question& question) {
-  return level > question.scale_min && level < question.scale_max;
-}
-
 /// What the solver's file cannot take is no usable fit.
 std::string unusable(const PilotFit& fit, const TaskData& data, const stats::PilotTable& table) {
   if (table.ratings() == 0) return "no answered trial is left to analyse";
-  if (!within_scale(fit.level, data.question)) {
-    return "the level does not lie within the rating scale, " + std::to_string(data.question.scale_min) +
-           " to " + std::to_string(data.question.scale_max);
-  }
+  if (!within_scale(fit.level, data.question)) return outside_scale(fit.level, data.question);
   if (table.all_equal()) return "all ratings are equal: there is no contour";
   const auto main = fit.main();
   if (!main.fit) return main.fit.reason();

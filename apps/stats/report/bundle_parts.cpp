@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+#include <sstream>
+
 #include "apps/common/claims.hpp"
 #include "apps/common/svg.hpp"
 #include "apps/stats/data/plan_file.hpp"
@@ -37,7 +41,63 @@ std::string curves_text(const study::Protocol& protocol, const stats::AnalysisPl
   return out;
 }
 
+/// Whether a protocol's session has a block of this kind.
+bool has_block(const study::Protocol& protocol, study::BlockKind kind) {
+  return std::any_of(protocol.blocks.begin(), protocol.blocks.end(),
+                     [&](const study::Block& block) { return block.kind == kind; });
+}
+
+/// The largest difference of two ratings that a trial may get.
+int widest_scale(const study::Protocol& protocol) {
+  int out = 0;
+  for (const auto& [block, question] : study::all_questions(protocol))
+    if (question->kind == study::AnswerKind::Scale && !is_sickness(*question))
+      out = std::max(out, question->scale_max - question->scale_min);
+  return out;
+}
+
+/// Keys of the plan that cannot act, and why.
+std::map<std::string, std::string> idle_rules(const std::vector<study::Protocol>& protocols,
+                                              const stats::AnalysisPlan& plan, bool hypotheses) {
+  const auto none = [&](auto holds) { return std::none_of(protocols.begin(), protocols.end(), holds); };
+  std::map<std::string, std::string> out;
+  if (!hypotheses) out["realism"] = out["sickness"] = "no hypothesis is tested";
+  if (none([](const auto& one) { return one.design.timing != study::TimingSource::Native; }))
+    out["timing"] = "without a schedule there is no verdict";
+  if (none([](const auto& one) { return has_block(one, study::BlockKind::Catch); }))
+    out["min_catch_correct"] = "there are no catch pages";
+  const auto again = [](const auto& one) { return has_block(one, study::BlockKind::Repeat); };
+  if (none([&](const auto& one) { return again(one) && one.design.pairs; }))
+    out["min_repeat_agreement"] = "no pair is shown again";
+  if (none([&](const auto& one) { return again(one) && !one.design.pairs; }))
+    out["max_repeat_difference"] = "no rated stimulus is shown again";
+  else if (none([&](const auto& one) {
+             return again(one) && !one.design.pairs &&
+                    plan.exclusions.max_repeat_difference.value_or(0) < widest_scale(one);
+           }))
+    out["max_repeat_difference"] = "no two ratings can differ by more";
+  return out;
+}
+
 }  // namespace
+
+std::string frozen_plan(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
+                        bool hypotheses) {
+  std::vector<std::string> hashes;
+  for (const auto& protocol : protocols) hashes.push_back(protocol.sha256);
+  const auto idle = idle_rules(protocols, plan, hypotheses);
+  std::istringstream lines(format_plan(plan, hashes));
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    const auto found = idle.find(line.substr(0, line.find(" = ")));
+    if (found != idle.end()) {
+      const std::string rule = line.substr(0, line.find("  "));
+      line = "# cannot act, as " + found->second + ": " + rule;
+    }
+    out += line + "\n";
+  }
+  return out;
+}
 
 Json fixed_part(const Json& hypothesis) {
   Json out, tests = Json::array();
@@ -68,9 +128,8 @@ std::string bundle_text(const std::vector<study::Protocol>& protocols, const sta
   std::string curves;
   for (const auto& protocol : protocols) curves += curves_text(protocol, plan);
   if (!curves.empty()) out += "\nCurves\n" + curves;
-  std::vector<std::string> hashes;
-  for (const auto& protocol : protocols) hashes.push_back(protocol.sha256);
-  out += "\nMargins, level, exclusion rules and seed (plan.toml)\n" + format_plan(plan, hashes);
+  out += "\nMargins, level, exclusion rules and seed (plan.toml)\n" +
+         frozen_plan(protocols, plan, !hypotheses.empty());
   if (with_power) out += "\nPower: power.json\n";
   return out +
          "\nTo check this folder: sha256sum -c MANIFEST.sha256\nThe bundle's hash is the SHA-256 of "

@@ -29,7 +29,7 @@ std::string choices_of(const Field& question) {
 std::string numbers_of(const Field& question) {
   if (!question["mean"].is_number()) return typeset(svg::escaped(question.reason()));
   return "<i>M</i> = " + fixed(question["mean"], 1) + ", <i>SD</i> = " + fixed(question["sd"], 1) +
-         ", range within " + interval(question["range"], 0);
+         (question["range"].there() ? ", range within " + interval(question["range"], 0) : "");
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ std::string people_tables(const Field& root) {
       if (part["task"].words() == key) table.group(title);
     for (const Field& question : part["questions"].entries())
       table.row({words(question["text"]), count(question["n"]), count(question["missing"]),
-                 question["kind"].words() == "number" ? numbers_of(question) : choices_of(question)});
+                 question["kind"].words() == "choice" ? choices_of(question) : numbers_of(question)});
   }
   if (table.empty()) return "";
   const Field first = parts.front();
@@ -91,17 +91,25 @@ std::string score_ratings(const Field& task1, const Field& score) {
 }
 
 std::string response_times(const Field& root, const std::string& task) {
+  bool none = false;
   Table table(
       "Time from the page's showing to the last change of the answer, s",
       {"Question", "<i>n</i>", "Median", "Quartiles", "<i>M</i>", "<i>SD</i>", "Shortest", "Longest"});
   for (const Field& one : root["response_times"].entries()) {
-    // A simulated participant takes no time.
-    if (one["task"].words() != task || one["max"].number() == 0) continue;
+    if (one["task"].words() != task) continue;
+    if (one["max"].number() == 0) {  // a simulated participant takes no time
+      none = true;
+      continue;
+    }
     table.row({words(one["question"]), count(one["n"]), fixed(one["median"], 2),
                fixed(one["q1"], 2) + ", " + fixed(one["q3"], 2), fixed(one["mean"], 2), fixed(one["sd"], 2),
                fixed(one["min"], 2), fixed(one["max"], 2)});
   }
-  return table.empty() ? "" : subsection("Response times", table.html());
+  std::string body = table.empty() ? "" : table.html();
+  if (none)
+    body += "<p class=\"note\">Not given" + std::string(table.empty() ? "" : " for the other questions") +
+            ": simulated participants take no time to answer.</p>\n";
+  return body.empty() ? "" : subsection("Response times", body);
 }
 
 std::string reliability(const Field& task1) {
@@ -171,7 +179,7 @@ std::string detectable_preference(const Field& task2) {
     return subsection("Smallest detectable preference",
                       paragraph("Not given: " + typeset(svg::escaped(one["share"].reason())) + "."));
   return subsection("Smallest detectable preference",
-                    paragraph("The exact test of " + count(one["n"]) + " answers at \xCE\xB1 = " +
+                    paragraph("The exact binomial test of " + count(one["n"]) + " answers at \xCE\xB1 = " +
                               fixed(one["alpha"], 3) + " finds a true preference of " +
                               percent(one["share"], 1) + " with a power of " + percent(one["power"]) + "."));
 }

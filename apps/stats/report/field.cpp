@@ -149,6 +149,12 @@ std::string interval(const Field& field, int decimals) {
          "]</span>";
 }
 
+std::string rate_interval(const Field& field) {
+  constexpr double highest_rate = 1000;  // of design.mean_fps, frames/s
+  if (field.entries().size() != 2 || !(field[1].number() > highest_rate)) return interval(field, 2);
+  return "<span class=\"number\">[" + end_of(field[0], 2) + ", no upper bound]</span>";
+}
+
 std::string words(const Field& field) {
   if (field.words().empty()) return "";
   return "<span" + data_field(field) + ">" + typeset(svg::escaped(field.words())) + "</span>";

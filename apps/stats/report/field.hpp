@@ -71,6 +71,8 @@ std::string p(const Field& field);
 std::string p_bare(const Field& field);
 /// "[0.12, 0.34]"; open ends as infinity.
 std::string interval(const Field& field, int decimals);
+/// The same of frame rates: an end beyond every rate that a protocol may have is no bound, and says so.
+std::string rate_interval(const Field& field);
 /// A text, its formulas typeset.
 std::string words(const Field& field);
 /// "yes" or "no".

@@ -22,6 +22,11 @@ svg::Picture scene_lines(const Field& task1, const Field& score);
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title);
 
+/// The share that a pair's test is about: of answers, or over people where they answered several times.
+inline Field tested_share(const Field& pair) {
+  return pair["by_person"].there() ? pair["by_person"]["share"] : pair["share"];
+}
+
 /// Task 2 as in the paper's Fig. 10: how often each of a pair was chosen, with the interval of the share.
 svg::Picture preference_bars(const Field& pairs);
 

@@ -80,6 +80,7 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
        those_with_some({{"people withdrew from the study", flow["withdrawn"]},
                         {"sessions of test data, set aside", flow["set_aside"]["test_data"]},
                         {"simulated sessions, set aside", flow["set_aside"]["simulated"]},
+                        {"sessions of protocols set aside", flow["set_aside"]["protocols"]},
                         {"practice trials, not analysed", flow["practice"]},
                         {"repeated trials, for retest", flow["repeat"]}})}};
   double y = 40;

@@ -69,12 +69,10 @@ Files contents(const BundleRequest& request) {
   const auto protocols = read_protocols(request.protocols);
   const std::string now = base::utc_now();
   Files files;
-  std::vector<std::string> hashes;
   Json hypotheses = Json::array(), listed = Json::array();
   for (const auto& protocol : protocols) {
     const std::string name = "protocol_" + protocol.sha256.substr(0, 12) + ".toml";
     files[name] = protocol.text;
-    hashes.push_back(protocol.sha256);
     listed.push_back({{"name", protocol.name},
                       {"version", protocol.version},
                       {"sha256", protocol.sha256},
@@ -84,7 +82,7 @@ Files contents(const BundleRequest& request) {
   }
   const auto plan = with_levels(request.plan, protocols);
   files["hypotheses.json"] = base::json_text(hypotheses, 2) + "\n";
-  files["plan.toml"] = format_plan(plan, hashes);
+  files["plan.toml"] = frozen_plan(protocols, plan, !hypotheses.empty());
   if (request.power) {
     files["power.json"] = base::read_file(*request.power, largest_bundle_file);
     if (!Json::accept(files["power.json"]))

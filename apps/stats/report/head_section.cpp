@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"
 
@@ -5,18 +7,33 @@ namespace apps::report {
 
 namespace {
 
-std::string joined(const Field& list) {
-  std::string out;
-  for (const Field& item : list.entries()) out += (out.empty() ? "" : ", ") + words(item);
+/// Protocols of all parts of which `holds` is true, each once: "Pilot (ptpe_pilot, version 1.0)".
+template <class Holds>
+std::vector<std::string> parts_where(const Field& root, Holds holds) {
+  std::vector<std::string> out, seen;
+  for (const Field& document : documents(root)) {
+    for (const Field& protocol : document["study"]["protocols"].entries()) {
+      const std::string& sha256 = protocol["sha256"].words();
+      if (!holds(protocol) || std::find(seen.begin(), seen.end(), sha256) != seen.end()) continue;
+      seen.push_back(sha256);
+      out.push_back(words(protocol["title"]) + " (" + words(protocol["name"]) + ", version " +
+                    words(protocol["version"]) + ")");
+    }
+  }
   return out;
 }
 
-/// Titles of the protocols of which `holds` is true.
-template <class Holds>
-std::vector<std::string> titles(const Field& study, Holds holds) {
-  std::vector<std::string> out;
-  for (const Field& protocol : study["protocols"].entries())
-    if (holds(protocol)) out.push_back(words(protocol["title"]));
+/// Observer models of all parts, each once.
+std::string observers(const Field& root) {
+  std::string out;
+  std::vector<std::string> seen;
+  for (const Field& document : documents(root)) {
+    for (const Field& observer : document["study"]["observers"].entries()) {
+      if (std::find(seen.begin(), seen.end(), observer.words()) != seen.end()) continue;
+      seen.push_back(observer.words());
+      out += (out.empty() ? "" : ", ") + words(observer);
+    }
+  }
   return out;
 }
 
@@ -38,20 +55,21 @@ std::vector<Field> documents(const Field& root) {
 namespace {
 
 /// What a reader must know before any number: that it is of no people.
-std::string banners(const Field& study) {
+std::string banners(const Field& root) {
+  const Field study = root["study"];
   std::string out;
   if (study["incomplete"].there())
     out += "<p class=\"warning\"><strong>Incomplete.</strong> " + words(study["incomplete"]) +
            ": the database lacks them, and so do these results.</p>\n";
-  const auto test = titles(study, [](const Field& protocol) { return protocol["test_data"].yes(); });
+  const auto test = parts_where(root, [](const Field& protocol) { return protocol["test_data"].yes(); });
   if (!test.empty())
     out += "<p class=\"warning\"><strong>Test data.</strong> There are no other data of " + enumerated(test) +
            ": these results say nothing about people.</p>\n";
   const auto simulated =
-      titles(study, [](const Field& protocol) { return protocol["simulated"].number() > 0; });
+      parts_where(root, [](const Field& protocol) { return protocol["simulated"].number() > 0; });
   if (!simulated.empty())
-    out += "<p class=\"warning\"><strong>Simulated participants: " + count(study["simulated"]) +
-           "</strong> (" + joined(study["observers"]) + "). All answers of " + enumerated(simulated) +
+    out += "<p class=\"warning\"><strong>Simulated participants: " + count(study["simulated_people"]) +
+           "</strong> (" + observers(root) + "). All answers of " + enumerated(simulated) +
            " come from a model: they say nothing about people.</p>\n";
   return out;
 }
@@ -60,18 +78,14 @@ std::string banners(const Field& study) {
 
 std::string head_section(const Field& root) {
   const Field study = root["study"];
-  std::string names, warnings;
-  for (const Field& document : documents(root)) {
-    for (const Field& protocol : document["study"]["protocols"].entries())
-      names += (names.empty() ? "" : ", ") + words(protocol["name"]) +
-               (document.pointer().empty() ? "" : " " + words(protocol["version"]));
-    warnings += banners(document["study"]);
-  }
+  std::string names;
+  for (const std::string& one : parts_where(root, [](const Field&) { return true; }))
+    names += (names.empty() ? "" : ", ") + one;
   return "<h1>Results of " + (study["database"].words().empty() ? "a study" : words(study["database"])) +
          "</h1>\n" +
-         paragraph((names.empty() ? "" : "Protocols: " + names + ". ") +
+         paragraph((names.empty() ? "" : "Parts: " + names + ". ") +
                    (root["date_utc"].there() ? "Computed " + words(root["date_utc"]) + "." : "")) +
-         warnings;
+         banners(root);
 }
 
 }  // namespace apps::report

@@ -55,7 +55,7 @@ std::string apa(const Field& test, bool preference) {
   }
   if (preference) {
     if (test["k"].is_number()) out += count(test["k"]) + " of " + count(test["n"]) + ", ";
-    out += "share = " + fixed(test["estimate"], 2);
+    out += "share = " + fixed(test["estimate"], 2) + ", " + words(test["method"]);
   } else {
     out += "<i>M</i><sub>diff</sub> = " + fixed(test["estimate"], 2);
   }
@@ -89,6 +89,16 @@ std::string paired(const Field& hypothesis) {
          tests_table(hypothesis, beside["tests"], "paired tests beside").html();
 }
 
+/// The rule was fixed before it was known how often people would answer a pair.
+std::string other_test(const Field& hypothesis) {
+  for (const Field& test : hypothesis["tests"].entries())
+    if (hypothesis["kind"].words() == "preference" && test["p"].is_number() &&
+        test["method"].words() != "exact binomial test")
+      return paragraph("Where a person answered a pair more than once, the test is the " +
+                       words(test["method"]) + ", in place of the binomial test.");
+  return "";
+}
+
 std::string one(const Field& hypothesis, bool registered) {
   const Field paper = hypothesis["paper"];
   const bool preference = hypothesis["kind"].words() == "preference";
@@ -100,6 +110,7 @@ std::string one(const Field& hypothesis, bool registered) {
         "Were it testable, the tests below would read: " + words(hypothesis["status_if_testable"]) + ".");
   body += paragraph("Rule: " + words(hypothesis["rule"]) + " (tests in the family: " +
                     count(hypothesis["family"]) + ", \xCE\xB1 = " + fixed(hypothesis["alpha"], 3) + ").");
+  body += other_test(hypothesis);
   if (hypothesis["p_claim"].is_number())
     body += paragraph(
         "The claim as a whole: <i>p</i> " + p(hypothesis["p_claim"]) +

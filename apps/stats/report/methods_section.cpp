@@ -68,35 +68,62 @@ std::string people_text(const Field& flow) {
   return out;
 }
 
-/// The rules of exclusion in force, in words.
-std::string exclusion_rules(const Field& root) {
-  std::vector<std::string> parts;
-  for (const auto& [key, title] : all_parts)
-    if (root["flow"][key].there()) parts.emplace_back(title);
-  const Field rules = root["plan"]["exclusions"];
-  if (parts.empty() || !rules.there()) return "";
+/// The rules of the plan that can act, in words; "" of none.
+std::string rules_text(const Field& rules, const std::vector<std::string>& acting) {
+  const auto acts = [&](const char* rule) {
+    return std::find(acting.begin(), acting.end(), rule) != acting.end();
+  };
+  std::string out;
+  const auto add = [&](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
   const std::string timing = rules["timing"].words();
-  std::string out = "The same rules of exclusion held for " + enumerated(parts) + ": " +
-                    (timing == "none" ? std::string("no trial was left out for its timing verdict")
-                                      : "trials whose timing verdict was " +
-                                            std::string(timing == "degraded" ? "degraded or fail" : "fail") +
-                                            " were left out");
-  if (rules["min_catch_correct"].is_number())
-    out += "; visits with fewer than " + percent(rules["min_catch_correct"]) +
-           " of the catch pages right were left out";
-  if (rules["max_repeat_difference"].is_number())
-    out += "; visits whose repeated ratings differed by more than " +
-           fixed(rules["max_repeat_difference"], 1) + " points on average were left out";
-  if (rules["min_repeat_agreement"].is_number())
-    out += "; visits with less than " + percent(rules["min_repeat_agreement"]) +
-           " of repeated pairs answered alike were left out";
-  if (rules["straight_lining_answers"].number() > 0)
-    out += "; visits with one and the same answer throughout (" + count(rules["straight_lining_answers"]) +
-           " answers or more) were left out";
-  if (rules["min_answered"].number() > 0)
-    out +=
-        "; visits with less than " + percent(rules["min_answered"]) + " of the trials answered were left out";
-  return out + ". The rules see neither method, scene nor frame rate. ";
+  if (timing == "none")
+    add("no trial was left out for its timing verdict");
+  else if (acts("timing"))
+    add("trials whose timing verdict was " + std::string(timing == "degraded" ? "degraded or fail" : "fail") +
+        " were left out");
+  if (rules["min_catch_correct"].is_number() && acts("min_catch_correct"))
+    add("visits with fewer than " + percent(rules["min_catch_correct"]) +
+        " of the catch pages right were left out");
+  if (rules["max_repeat_difference"].is_number() && acts("max_repeat_difference"))
+    add("visits whose repeated ratings differed by more than " + fixed(rules["max_repeat_difference"], 1) +
+        " points on average were left out");
+  if (rules["min_repeat_agreement"].is_number() && acts("min_repeat_agreement"))
+    add("visits with less than " + percent(rules["min_repeat_agreement"]) +
+        " of repeated pairs answered alike were left out");
+  if (rules["straight_lining_answers"].number() > 0 && acts("straight_lining_answers"))
+    add("visits with one and the same answer throughout (" + count(rules["straight_lining_answers"]) +
+        " answers or more) were left out");
+  if (rules["min_answered"].number() > 0 && acts("min_answered"))
+    add("visits with less than " + percent(rules["min_answered"]) + " of the trials answered were left out");
+  return out;
+}
+
+/// The rules of exclusion that could act, in words, parts with the same ones together.
+std::string exclusion_rules(const Field& root) {
+  const Field rules = root["plan"]["exclusions"];
+  if (!rules.there()) return "";
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;  // rules, parts
+  for (const auto& [key, title] : all_parts) {
+    if (!root["flow"][key].there()) continue;
+    std::vector<std::string> acting;
+    for (const Field& protocol : root["study"]["protocols"].entries())
+      if (protocol["task"].words() == key)
+        for (const Field& rule : protocol["rules"].entries()) acting.push_back(rule.words());
+    const std::string text = rules_text(rules, acting);
+    const auto same =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& one) { return one.first == text; });
+    if (same == groups.end())
+      groups.push_back({text, {title}});
+    else
+      same->second.emplace_back(title);
+  }
+  std::string out;
+  for (const auto& [text, parts] : groups)
+    out += text.empty() ? "No rule of exclusion could act on " + enumerated(parts) + ". "
+           : parts.size() > 1
+               ? "The same rules of exclusion held for " + enumerated(parts) + ": " + text + ". "
+               : "Rules of exclusion for " + parts.front() + ": " + text + ". ";
+  return out.empty() ? "" : out + "The rules see neither method, scene nor frame rate. ";
 }
 
 std::string pilot_text(const Field& pilot) {
@@ -117,10 +144,37 @@ std::string tests_of_task1(const Field& root) {
              : "H1 to H3 were tested by paired <i>t</i> tests. ";
 }
 
+/// By the tests that were made.
+std::string tests_of_task2(const Field& pairs) {
+  bool binomial = false, shares = false;
+  for (const Field& pair : pairs.entries()) {
+    shares = shares || pair["by_person"].there();
+    binomial = binomial || (!pair["by_person"].there() && pair["test"].there());
+  }
+  if (!shares && !binomial) return "";
+  if (!shares) return "Each pair of Task 2 was tested by an exact two-sided binomial test. ";
+  const std::string of_people =
+      "by an exact two-sided permutation test of people's shares against one half, since people answered it "
+      "several times. ";
+  if (!binomial) return "Each pair of Task 2 was tested " + of_people;
+  return "Each pair of Task 2 was tested by an exact two-sided binomial test, or " + of_people;
+}
+
 std::string factors_text(const Field& root) {
   if (root["task1"]["factors"].entries().empty() && root["task2"]["factors"].entries().empty()) return "";
   return "What each level of a factor is worth over another was tested within participants by one-sample "
          "<i>t</i> tests, and by exact sign tests where all participants are alike. ";
+}
+
+/// Of the scores that were asked for.
+std::string margins_text(const Field& root) {
+  const Field margins = root["plan"]["margins"];
+  const auto scores = root["task1"]["scores"].entries();
+  const bool sickness = std::any_of(scores.begin(), scores.end(),
+                                    [](const Field& one) { return one["code"].words() == "sickness"; });
+  const std::string realism = fixed(margins["realism"], 2) + " points on realism";
+  if (!sickness) return "a margin of " + realism;
+  return "margins of " + realism + " and " + fixed(margins["sickness"], 2) + " on cybersickness";
 }
 
 std::string task1_text(const Field& root) {
@@ -129,11 +183,9 @@ std::string task1_text(const Field& root) {
   return "Answers of Task 1 were averaged over scenes within each participant, " + n_star_sign +
          " and method before any "
          "paired test; methods were compared by paired <i>t</i> tests, with Wilcoxon's signed-rank and "
-         "Welch's tests beside them. Equivalence was tested by two one-sided tests with margins of " +
-         fixed(plan["margins"]["realism"], 2) + " points on realism and " +
-         fixed(plan["margins"]["sickness"], 2) + " on cybersickness. Bootstrap intervals of Task 1 use " +
-         count(plan["resamples"]) + " resamples with seed " + count(plan["seed"]) + ". " +
-         tests_of_task1(root);
+         "Welch's tests beside them. Equivalence was tested by two one-sided tests with " +
+         margins_text(root) + ". Bootstrap intervals of Task 1 use " + count(plan["resamples"]) +
+         " resamples with seed " + count(plan["seed"]) + ". " + tests_of_task1(root);
 }
 
 /// "two-sided", or which of H1 to H6 are not.
@@ -170,8 +222,7 @@ bool has_intervals(const Field& root) {
 
 std::string methods_section(const Field& root) {
   std::string tests = factors_text(root) + hypotheses_text(root), end;
-  if (root["task2"].there())
-    tests = "Each pair of Task 2 was tested by an exact two-sided binomial test. " + tests;
+  if (root["task2"].there()) tests = tests_of_task2(root["task2"]["pairs"]) + tests;
   if (root["plan"]["confidence"].is_number() && has_intervals(root))
     end = "Intervals hold " + percent(root["plan"]["confidence"]) +
           " unless another share stands beside them. ";

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "apps/stats/report/figures.hpp"
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"
@@ -78,20 +80,59 @@ std::string distribution(const Field& cell) {
 
 bool flawed(const Field& cell) { return cell["degraded"].number() + cell["fail"].number() > 0; }
 
+/// Whether a cell of the part has a value there.
+bool measured(const Field& timing, const Field& total, const char* key) {
+  const auto cells = timing.entries();
+  return std::any_of(cells.begin(), cells.end(), [&](const Field& one) {
+    return one["task"].words() == total["task"].words() && one[key].is_number();
+  });
+}
+
 /// Cells of a part, or only those in which a showing was degraded or failed.
 std::string certificate(const Field& root, const Field& total, const std::string& caption, bool only_flawed) {
-  Table table(caption, {"Scene", n_star_sign, "Method", "Nominal mean", "SD (frames/s)", "Showings", "Pass",
-                        "Degraded", "Fail", "Not judged", "Grades", "Realised mean", "SD (frames/s)",
-                        "Longest (ms)", "Late frames", "Solved", "Tau (frames/s)"});
+  const bool solved = measured(root["timing"], total, "active_fraction"),
+             tau = measured(root["timing"], total, "tau_fps");
+  std::vector<std::string> columns{"Scene",
+                                   n_star_sign,
+                                   "Method",
+                                   "Planned rate: mean, SD (frames/s)",
+                                   "Showings",
+                                   "Pass",
+                                   "Degraded",
+                                   "Fail",
+                                   "Not judged",
+                                   "Grades",
+                                   "Realised rate: mean, SD (frames/s)",
+                                   "Longest (ms)",
+                                   "Late frames"};
+  if (solved) columns.push_back("Solved");
+  if (tau) columns.push_back("Tau (frames/s)");
+  Table table(caption, columns);
   for (const Field& c : root["timing"].entries()) {
     if (c["task"].words() != total["task"].words() || (only_flawed && !flawed(c))) continue;
-    table.row({words(c["scene"]), words(c["n_star"]), words(c["method"]), fixed(c["nominal_mean_fps"], 2),
-               fixed(c["nominal_sd_fps"], 2), count(c["showings"]), count(c["pass"]), count(c["degraded"]),
-               count(c["fail"]), count(c["unjudged"]), counts(c["grades"]), fixed(c["realised_mean_fps"], 2),
-               fixed(c["realised_sd_fps"], 2), fixed(c["longest_ms"], 1), count(c["late_frames"]),
-               percent(c["active_fraction"]), fixed(c["tau_fps"], 2)});
+    std::vector<std::string> cells{
+        words(c["scene"]),
+        words(c["n_star"]),
+        words(c["method"]),
+        c["nominal_mean_fps"].is_number()
+            ? fixed(c["nominal_mean_fps"], 2) + ", " + fixed(c["nominal_sd_fps"], 2)
+            : "none: as it ran",
+        count(c["showings"]),
+        count(c["pass"]),
+        count(c["degraded"]),
+        count(c["fail"]),
+        count(c["unjudged"]),
+        counts(c["grades"]),
+        fixed(c["realised_mean_fps"], 2) + ", " + fixed(c["realised_sd_fps"], 2),
+        fixed(c["longest_ms"], 1),
+        count(c["late_frames"])};
+    if (solved) cells.push_back(percent(c["active_fraction"]));
+    if (tau) cells.push_back(fixed(c["tau_fps"], 2));
+    table.row(cells);
   }
-  return table.html();
+  return table.html() +
+         (solved ? ""
+                 : "<p class=\"note\">No showing measured the share of particles that was solved.</p>\n");
 }
 
 /// What failed in full, the rest in a table to be opened.

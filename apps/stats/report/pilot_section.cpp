@@ -30,7 +30,7 @@ stats::ScoreGrid grid_of(const Field& cells) {
   return grid;
 }
 
-std::string a_with_interval(const Field& e) { return fixed(e["a"], 2) + " " + interval(e["a_ci"], 2); }
+std::string a_with_interval(const Field& e) { return fixed(e["a"], 2) + " " + rate_interval(e["a_ci"]); }
 std::string b_with_interval(const Field& e) { return fixed(e["b"], 4) + " " + interval(e["b_ci"], 4); }
 
 std::string for_solver(const Field& pilot) {
@@ -92,8 +92,8 @@ std::string bands(const Field& pilot) {
     const std::string here = svg::number(point["level"].number(), 4);
     if (here != level) table.group("Level " + fixed(point["level"], 1));
     level = here;
-    table.row({fixed(point["delta"], 0), fixed(point["mu"], 2), interval(point["ci"], 2),
-               interval(point["simultaneous_ci"], 2), interval(point["solver_ci"], 2)});
+    table.row({fixed(point["delta"], 0), fixed(point["mu"], 2), rate_interval(point["ci"]),
+               rate_interval(point["simultaneous_ci"]), rate_interval(point["solver_ci"])});
   }
   return table.empty() ? "" : table.html();
 }
@@ -108,8 +108,8 @@ std::string form(const Field& pilot) {
   Table table("The free curve, which has one parameter more, with its bands, frames/s",
               {delta, mu, "CI at this " + delta, "Band over all " + delta});
   for (const Field& point : test["free_curve"].entries())
-    table.row({fixed(point["delta"], 0), fixed(point["mu"], 2), interval(point["ci"], 2),
-               interval(point["simultaneous_ci"], 2)});
+    table.row({fixed(point["delta"], 0), fixed(point["mu"], 2), rate_interval(point["ci"]),
+               rate_interval(point["simultaneous_ci"])});
   return out + table.html();
 }
 

@@ -28,17 +28,18 @@ std::string stars_of(const Field& pair) {
 }
 
 std::string bars(const Field& pair, double y) {
-  const double share = pair["share"].number(), middle = y + bar / 2, base = y + bar / 2 + 5;
+  const Field shown = tested_share(pair);
+  const double share = shown.number(), middle = y + bar / 2, base = y + bar / 2 + 5;
   const std::string frame = " stroke=\"#000000\" stroke-width=\"1\"";
   std::string out =
       svg::rectangle({x_of(0), y}, {x_of(share), y + bar}, svg::attribute("fill", svg::colour::sky) + frame) +
       svg::rectangle({x_of(share), y}, {x_of(1), y + bar}, "fill=\"url(#preference-hatch)\"" + frame);
-  const Field ci = pair["wilson"];
+  const Field ci = pair["by_person"].there() ? pair["by_person"]["ci"] : pair["wilson"];
   if (ci[0].is_number() && ci[1].is_number()) out += interval_line(ci[0].number(), ci[1].number(), middle);
   const std::string halo =
       "font-size=\"13\" stroke-width=\"4\" stroke-linejoin=\"round\" paint-order=\"stroke\" "
       "stroke=\"#ffffff\" fill=\"#000000\" data-unit=\"%\"";
-  out += text({x_of(0) + 6, base}, decimal(100 * share, 0) + " %", halo + data_field(pair["share"]));
+  out += text({x_of(0) + 6, base}, decimal(100 * share, 0) + " %", halo + data_field(shown));
   const double right = left + width;
   return out + text({right + right_label + 56, base}, stars_of(pair),
                     "text-anchor=\"end\" font-size=\"13\" class=\"stars\"");
@@ -51,7 +52,7 @@ svg::Picture preference_bars(const Field& pairs) {
   picture.title = "Which of two methods was preferred";
   picture.description =
       "A bar for each pair of methods: the plain part on the left is the share of answers that chose the "
-      "method named on the left, the hatched part the other's. The line across the bar is the share's Wilson "
+      "method named on the left, the hatched part the other's. The line across the bar is the share's "
       "interval, the dotted line no preference. The table below holds the same numbers.";
   picture.definitions =
       "<pattern id=\"preference-hatch\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\"><rect "

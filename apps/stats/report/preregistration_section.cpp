@@ -62,7 +62,9 @@ std::string preregistration_section(const Field& root) {
                       ": the tests of each family with their margins, corrections and exclusions.");
   }
   const std::string rest = everything_else(root);
-  if (!rest.empty()) parts.push_back(badge(false) + " Everything else: " + rest + ".");
+  if (!rest.empty())
+    parts.push_back(badge(false) + (parts.empty() ? " All of it: " : " All but the hypotheses: ") + rest +
+                    ".");
   return section("preregistration", "Preregistered and exploratory parts", body + list(parts));
 }
 

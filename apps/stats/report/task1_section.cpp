@@ -32,6 +32,13 @@ std::string by_n_star(Table table, const Field& task1, const std::string& list, 
   return any ? table.html() : "";
 }
 
+/// "none", or each value.
+std::string listed(const Field& values) {
+  std::string out;
+  for (const Field& value : values.entries()) out += (out.empty() ? "" : "; ") + fixed(value, 2);
+  return out.empty() ? "none" : out;
+}
+
 std::string cells_table(const Field& task1, const Field& score) {
   Table table("Participant means by method, " + words(score["label"]),
               {"Method", "<i>n</i>", "<i>M</i>", "<i>SD</i>", "CI (<i>t</i>)", "CI (BCa)", "Median",
@@ -39,10 +46,7 @@ std::string cells_table(const Field& task1, const Field& score) {
   return by_n_star(std::move(table), task1, "cells", score["code"].words(), [](Table& t, const Field& c) {
     t.row({words(c["method"]), count(c["n"]), fixed(c["mean"], 2), fixed(c["sd"], 2), interval(c["ci"], 2),
            interval(c["bca"], 2), fixed(c["median"], 2), fixed(c["q1"], 2) + ", " + fixed(c["q3"], 2),
-           fixed(c["whisker_low"], 2) + ", " + fixed(c["whisker_high"], 2),
-           std::to_string(c["outliers"].entries().size())
-                   .insert(0, "<span data-count=\"" + c["outliers"].pointer() + "\">") +
-               "</span>",
+           fixed(c["whisker_low"], 2) + ", " + fixed(c["whisker_high"], 2), listed(c["outliers"]),
            fixed(c["normality"]["w"], 3), p_bare(c["normality"]["p"])});
   });
 }
@@ -74,27 +78,31 @@ std::string t_tests(const Field& task1, const Field& score) {
 }
 
 std::string other_tests(const Field& task1, const Field& score) {
-  Table table("The same pairs by other tests, " + words(score["label"]),
-              {"Pair", "Wilcoxon <i>V</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>",
-               "Hodges-Lehmann [CI] (its exact level)", "Welch <i>t</i> (<i>df</i>)", "<i>p</i>",
-               "Equivalence within", "CI of equivalence", "<i>p</i>", "Equivalent",
-               "BCa interval of the difference", "Shapiro-Wilk <i>p</i>"});
-  return by_n_star(std::move(table), task1, "comparisons", score["code"].words(),
-                   [](Table& t, const Field& c) {
-                     const Field w = c["wilcoxon"], welch = c["welch"], tost = c["tost"];
-                     const auto why = [](const Field& part, const std::string& shown) {
-                       return part.there() ? shown : typeset(svg::escaped(part.reason()));
-                     };
-                     t.row({score_pair(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
-                            fixed(w["location"], 2) + " " + interval(w["ci"], 2) +
-                                (w["ci"].there() ? " (" + percent(w["ci_level"], 1) + ")" : ""),
-                            why(welch, fixed(welch["t"], 2) + " (" + fixed(welch["df"], 1) + ")"),
-                            p_bare(welch["p"]), why(tost, "\xC2\xB1" + fixed(tost["margin"], 2)),
-                            tost.there() ? percent(tost["ci_confidence"]) + " " + interval(tost["ci"], 2)
-                                         : interval(tost["ci"], 2),
-                            p_bare(tost["p"]), yes_no(tost["equivalent"]), interval(c["bca"], 2),
-                            p_bare(c["normality"]["p"])});
-                   });
+  const std::string note =
+      "<p class=\"note\">The level of a Hodges-Lehmann interval is exact where no two differences are tied, "
+      "else about right.</p>\n";
+  Table table(
+      "The same pairs by other tests, " + words(score["label"]),
+      {"Pair", "Wilcoxon <i>V</i>", "<i>p</i>", "<i>p</i><sub>Holm</sub>", "Hodges-Lehmann [CI] (its level)",
+       "Welch <i>t</i> (<i>df</i>)", "<i>p</i>", "Equivalence within", "CI of equivalence", "<i>p</i>",
+       "Equivalent", "BCa interval of the difference", "Shapiro-Wilk <i>p</i>"});
+  const std::string table_html =
+      by_n_star(std::move(table), task1, "comparisons", score["code"].words(), [](Table& t, const Field& c) {
+        const Field w = c["wilcoxon"], welch = c["welch"], tost = c["tost"];
+        const auto why = [](const Field& part, const std::string& shown) {
+          return part.there() ? shown : typeset(svg::escaped(part.reason()));
+        };
+        t.row({score_pair(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
+               fixed(w["location"], 2) + " " + interval(w["ci"], 2) +
+                   (w["ci"].there() ? " (" + percent(w["ci_level"], 1) + ")" : ""),
+               why(welch, fixed(welch["t"], 2) + " (" + fixed(welch["df"], 1) + ")"), p_bare(welch["p"]),
+               why(tost, "\xC2\xB1" + fixed(tost["margin"], 2)),
+               tost.there() ? percent(tost["ci_confidence"]) + " " + interval(tost["ci"], 2)
+                            : interval(tost["ci"], 2),
+               p_bare(tost["p"]), yes_no(tost["equivalent"]), interval(c["bca"], 2),
+               p_bare(c["normality"]["p"])});
+      });
+  return table_html.empty() ? "" : table_html + note;
 }
 
 /// t tests as sentences, of those below .05 without correction.
@@ -187,6 +195,15 @@ std::string ordinal(const Field& task1) {
   return table.empty() ? "" : subsection("Ordinal models", table.html() + note);
 }
 
+/// Whether the figure by scene cuts an interval: the scale ends before it.
+bool cut_intervals(const Field& task1, const Field& score) {
+  for (const Field& cell : task1["by_scene"].entries())
+    if (cell["score"].words() == score["code"].words() && cell["ci"].entries().size() == 2 &&
+        (cell["ci"][0].number() < score["min"].number() || cell["ci"][1].number() > score["max"].number()))
+      return true;
+  return false;
+}
+
 std::string scores_by_scene(const Field& task1) {
   Table table(
       "Scores by scene (not averaged, not tested)",
@@ -204,9 +221,13 @@ std::string scores_by_scene(const Field& task1) {
   for (const Field& score : task1["scores"].entries()) {
     if (score["primary"].yes())
       pictures +=
-          figure(scene_lines(task1, score), words(score["label"]) +
-                                                " by scene: means of participants with their intervals, "
-                                                "not tested.");
+          figure(scene_lines(task1, score),
+                 words(score["label"]) +
+                     " by scene: means of participants with their intervals, "
+                     "not tested." +
+                     (cut_intervals(task1, score) ? " An interval that goes beyond the scale is cut at the "
+                                                    "scale's end."
+                                                  : ""));
   }
   return table.empty() ? "" : subsection("By scene", pictures + table.html());
 }

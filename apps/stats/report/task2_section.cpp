@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "apps/stats/report/figures.hpp"
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"
@@ -8,23 +10,102 @@ namespace {
 
 std::string preferred_pair(const Field& pair) { return words(pair["a"]) + " over " + words(pair["b"]); }
 
+/// Whether a pair has the binomial test's interval of Wilson.
+bool has_wilson(const Field& pairs) {
+  const auto all = pairs.entries();
+  return std::any_of(all.begin(), all.end(),
+                     [](const Field& pair) { return !pair["by_person"].there() && pair["wilson"].there(); });
+}
+
+/// The names of the intervals that the bars carry.
+std::string interval_names(const Field& pairs) {
+  std::vector<std::string> names, seen;
+  for (const Field& pair : pairs.entries()) {
+    const Field people = pair["by_person"];
+    const std::string name = people["ci_name"].words();
+    if (name.empty() || std::find(seen.begin(), seen.end(), name) != seen.end()) continue;
+    seen.push_back(name);
+    names.push_back(words(people["ci_name"]));
+  }
+  if (has_wilson(pairs)) names.insert(names.begin(), "Wilson");
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : "; ") + name;
+  return out;
+}
+
+/// The tests behind the stars, each once.
+std::string test_names(const Field& pairs) {
+  std::string out, binomial, shares;
+  for (const Field& pair : pairs.entries()) {
+    if (!pair["test"].there()) continue;
+    (pair["by_person"].there() ? shares : binomial) = words(pair["test"]);
+  }
+  return binomial + (binomial.empty() || shares.empty() ? "" : " or ") + shares;
+}
+
+std::string bars_caption(const Field& pairs) {
+  const std::string intervals = interval_names(pairs);
+  const std::string out = "Share of answers that chose each of a pair, as the paper's Fig.&nbsp;10" +
+                          (intervals.empty() ? "." : "; line: interval of the share (" + intervals + ").");
+  const std::string tests = test_names(pairs);
+  return tests.empty() ? out : out + " Stars: " + tests + ", uncorrected / after Holm over all pairs.";
+}
+
+/// Once, not at each pair.
+std::string several_answers(const Field& several) {
+  if (!(several["participants"].number() > 0)) return "";
+  return paragraph(count(several["participants"]) + " of " + count(several["of"]) +
+                   " participants answered a pair more than once, at most " + count(several["most"]) +
+                   " times.");
+}
+
 std::string pairs_table(const Field& pairs) {
-  Table table("How often each of a pair was chosen: exact binomial tests, two-sided",
-              {"Pair", "Chosen", "Share", "CI (Clopper-Pearson)", "CI (Wilson)", "<i>p</i>", "",
-               "<i>p</i><sub>Holm</sub>", "", "<i>p</i><sub>BH</sub>", "Left one shown first",
-               "First one chosen", "In the paper's Fig.&nbsp;10"});
+  const bool wilson = has_wilson(pairs);
+  std::vector<std::string> columns{"Pair",
+                                   "Chosen",
+                                   "Share",
+                                   "CI",
+                                   "CI (Wilson)",
+                                   "Test",
+                                   "<i>p</i>",
+                                   "",
+                                   "<i>p</i><sub>Holm</sub>",
+                                   "",
+                                   "<i>p</i><sub>BH</sub>",
+                                   "Left one shown first",
+                                   "First one chosen",
+                                   "In the paper's Fig.&nbsp;10"};
+  constexpr std::ptrdiff_t at_wilson = 4;
+  if (!wilson) columns.erase(columns.begin() + at_wilson);
+  Table table("How often each of a pair was chosen, with a two-sided test of each pair", columns);
   for (const Field& pair : pairs.entries()) {
     const std::string warning = pair["warning"].words();
     const std::string name =
-        preferred_pair(pair) + (warning.empty() ? "" : " <em>(" + words(pair["warning"]) + ")</em>");
+        preferred_pair(pair) +
+        (warning.empty() || !pair["p"].is_number() ? "" : " <em>(" + words(pair["warning"]) + ")</em>");
     if (!pair["p"].is_number() && !pair["share"].is_number()) {
       table.refused(name, "no test: " + typeset(svg::escaped(pair["p"].reason())));
       continue;
     }
-    table.row({name, count(pair["k"]) + " of " + count(pair["n"]), percent(pair["share"]),
-               interval(pair["clopper_pearson"], 2), interval(pair["wilson"], 2), p_bare(pair["p"]),
-               words(pair["stars"]), p_bare(pair["p_holm"]), words(pair["stars_holm"]), p_bare(pair["p_bh"]),
-               count(pair["a_first"]), count(pair["first_chosen"]), yes_no(pair["paper"])});
+    const Field people = pair["by_person"];
+    std::vector<std::string> cells{name,
+                                   count(pair["k"]) + " of " + count(pair["n"]),
+                                   percent(tested_share(pair)),
+                                   people.there()
+                                       ? interval(people["ci"], 2) + " (" + words(people["ci_name"]) + ")"
+                                       : interval(pair["clopper_pearson"], 2) + " (Clopper-Pearson)",
+                                   people.there() ? "" : interval(pair["wilson"], 2),
+                                   words(pair["test"]),
+                                   p_bare(pair["p"]),
+                                   words(pair["stars"]),
+                                   p_bare(pair["p_holm"]),
+                                   words(pair["stars_holm"]),
+                                   p_bare(pair["p_bh"]),
+                                   count(pair["a_first"]),
+                                   count(pair["first_chosen"]),
+                                   yes_no(pair["paper"])};
+    if (!wilson) cells.erase(cells.begin() + at_wilson);
+    table.row(cells);
   }
   return table.html();
 }
@@ -33,10 +114,14 @@ std::string preference_apa_lines(const Field& pairs) {
   std::vector<std::string> lines;
   for (const Field& pair : pairs.entries()) {
     if (!pair["p"].is_number()) continue;
-    lines.push_back(preferred_pair(pair) + ": " + count(pair["k"]) + " of " + count(pair["n"]) + " (" +
-                    percent(pair["share"]) + "), CI " + interval(pair["clopper_pearson"], 2) +
-                    ", exact binomial <i>p</i> " + p(pair["p"]) + ", <i>p</i><sub>Holm</sub> " +
-                    p(pair["p_holm"]));
+    const Field people = pair["by_person"];
+    const Field ci = people.there() ? people["ci"] : pair["clopper_pearson"];
+    lines.push_back(preferred_pair(pair) + ": " + count(pair["k"]) + " of " + count(pair["n"]) +
+                    (people.there() ? " answers of " + count(people["participants"]) +
+                                          " people, mean share " + percent(people["share"]) + ", CI "
+                                    : " (" + percent(pair["share"]) + "), CI ") +
+                    interval(ci, 2) + ", " + words(pair["test"]) + ", <i>p</i> " + p(pair["p"]) +
+                    ", <i>p</i><sub>Holm</sub> " + p(pair["p_holm"]));
   }
   return list(lines);
 }
@@ -109,8 +194,8 @@ std::string triads(const Field& t) {
   if (t.json().is_null()) return "";
   if (!t.there()) return subsection("Circular triads", why_not(t));
   return subsection("Circular triads",
-                    paragraph("Participants who judged all pairs: " + count(t["n"]) +
-                              " (without: " + count(t["incomplete"]) + "). Mean number of circular triads " +
+                    paragraph("Participants who judged every pair once: " + count(t["n"]) +
+                              " (others: " + count(t["incomplete"]) + "). Mean number of circular triads " +
                               fixed(t["mean"], 2) + " (random answers: " + fixed(t["expected"], 2) +
                               "), mean consistency (Kendall's \xCE\xB6) " + fixed(t["mean_consistency"], 2) +
                               "; as few or fewer by chance: <i>p</i> " + p(t["p"]) + "."));
@@ -143,14 +228,11 @@ std::string task2_section(const Field& root) {
       paragraph(badge(false) + " " + count(task2["participants"]) + " participants, " +
                 count(task2["answers"]) + " answers. The tests of all pairs describe the data" +
                 (root["hypotheses"].entries().empty() ? "." : "; the decisions stand under Hypotheses.")) +
-          treatment_note(task2) + list(rules) +
-          figure(preference_bars(pairs),
-                 "Share of answers that chose each of a pair, as the paper's Fig.&nbsp;10; line: Wilson "
-                 "interval. Stars: exact binomial test, uncorrected / after Holm over all pairs.") +
-          pairs_table(pairs) + preference_apa_lines(pairs) + preference_factors(task2) +
-          interval_bias(task2["interval_bias"]) + bradley_terry(task2["bradley_terry"]) +
-          triads(task2["triads"]) + preferences_by_scene(task2) + detectable_preference(task2) +
-          response_times(root, "task2") + preference_retest(task2["retest"]));
+          treatment_note(task2) + several_answers(task2["several_answers"]) + list(rules) +
+          figure(preference_bars(pairs), bars_caption(pairs)) + pairs_table(pairs) +
+          preference_apa_lines(pairs) + preference_factors(task2) + interval_bias(task2["interval_bias"]) +
+          bradley_terry(task2["bradley_terry"]) + triads(task2["triads"]) + preferences_by_scene(task2) +
+          detectable_preference(task2) + response_times(root, "task2") + preference_retest(task2["retest"]));
 }
 
 }  // namespace apps::report

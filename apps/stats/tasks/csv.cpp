@@ -31,8 +31,8 @@ bool all_texts(const Json& list) {
 
 /// An interval may have open ends, which are texts.
 bool is_interval(const std::string& name, const Json& list) {
-  return list.size() == 2 &&
-         (name.ends_with("ci") || name.ends_with("bca") || name == "clopper_pearson" || name == "wilson");
+  return list.size() == 2 && (name.ends_with("ci") || name.ends_with("bca") || name == "clopper_pearson" ||
+                              name == "wilson" || name == "range");
 }
 
 void flatten(const std::string& name, const Json& value, Fields& fields) {
@@ -190,6 +190,9 @@ void write_document(const Json& results, const std::filesystem::path& folder, co
   lists.emplace_back("descriptives", descriptives);
   lists.emplace_back("descriptives_answers", entries_of(descriptives, "distribution"));
   if (results.contains("roster")) lists.emplace_back("roster", results.at("roster").at("protocols"));
+  const Json questions = entries_of(results.value("people", Json::array()), "questions");
+  lists.emplace_back("people", questions);
+  lists.emplace_back("people_groups", entries_of(questions, "groups"));
   lists.emplace_back("not_analysed", results.value("not_analysed", Json::array()));
   Json costs = results.value("costs", Json::array());
   lists.emplace_back("costs_sweep", sweep_lines(costs));

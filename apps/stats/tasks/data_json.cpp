@@ -75,8 +75,10 @@ std::vector<std::string> notes_of(const TaskData& data) {
   for (const DoubtfulTime& one : data.doubtful_times)
     notes.push_back(task + "the clock showed " + one.told_utc + " at the first answer of " + one.participant +
                     ", after rows of the database of " + one.not_before_utc + ".");
-  for (const std::string& protocol : data.set_aside)
-    notes.push_back(task + "protocol " + protocol + " left out: it holds no real answers.");
+  for (const SetAside& protocol : data.set_aside)
+    notes.push_back(task + "protocol " + protocol.name + ", " +
+                    counted(static_cast<std::size_t>(protocol.sessions), "session") +
+                    ", left out: it holds no real answers.");
   if (data.flow.test_left_out > 0)
     notes.push_back(task + counted(static_cast<std::size_t>(data.flow.test_left_out), "session") +
                     " of test data left out.");
@@ -155,7 +157,7 @@ Json timed_json(const TimedCell& cell) {
 Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks) {
   std::set<std::string> observers, simulated;
   std::map<std::string, int> gaze, stations, displays;
-  bool test_data = true, tracked = true;
+  bool test_data = true, follow_gaze = false, tracked = true;
   Json protocols = Json::array(), notes = Json::array();
   for (const TaskData* data : tasks) {
     observers.insert(data->observers.begin(), data->observers.end());
@@ -164,7 +166,10 @@ Json study_json(const std::string& database, const std::vector<const TaskData*>&
     for (const auto& [station, n] : data->stations) stations[station] += n;
     for (const auto& [display, n] : data->displays) displays[display] += n;
     test_data = test_data && data->test_data;
-    tracked = tracked && (!refines(*data) || data->gaze_problem().empty());
+    if (refines(*data)) {
+      follow_gaze = true;
+      tracked = tracked && !data->gaze.empty() && data->gaze_problem().empty();
+    }
     protocols.push_back(protocol_json(*data));
     for (const std::string& note : notes_of(*data)) notes.push_back(note);
   }
@@ -173,11 +178,40 @@ Json study_json(const std::string& database, const std::vector<const TaskData*>&
           {"simulated", simulated.size()},
           {"observers", observers},
           {"gaze", gaze},
-          {"tracked_gaze", tracked && !tasks.empty()},
+          {"tracked_gaze", follow_gaze ? Json(tracked) : Json()},
           {"stations", stations},
           {"displays", displays},
           {"protocols", protocols},
           {"notes", notes}};
+}
+
+Json acting_rules_json(const TaskData& data, const stats::ExclusionRules& rules) {
+  bool catches = false, repeats = false;
+  int most_trials = 0;
+  for (const study::TaskSession& session : data.protocol.sessions) {
+    catches = catches || !session.catches.empty();
+    int trials = 0;
+    for (const study::TaskTrial& trial : session.trials) {
+      repeats = repeats || trial.kind == "repeat";
+      trials += trial.kind == "stimulus" ? 1 : 0;
+    }
+    most_trials = std::max(most_trials, trials);
+  }
+  const bool judged = std::any_of(data.showings.begin(), data.showings.end(),
+                                  [](const TimedShowing& one) { return one.shown.verdict.has_value(); });
+  const bool pairs = data.protocol.pairs;
+  const int range = data.question.scale_max - data.question.scale_min;
+  Json out = Json::array();
+  const auto add = [&](const char* rule, bool can_act) {
+    if (can_act) out.push_back(rule);
+  };
+  add("timing", judged);
+  add("min_catch_correct", catches);
+  add("max_repeat_difference", repeats && !pairs && rules.max_repeat_difference.value_or(0) < range);
+  add("min_repeat_agreement", repeats && pairs);
+  add("straight_lining_answers", most_trials > 0 && most_trials >= rules.straight_lining_answers);
+  add("min_answered", most_trials > 0);
+  return out;
 }
 
 Json flow_json(const TaskFlow& flow) {
@@ -193,7 +227,10 @@ Json flow_json(const TaskFlow& flow) {
           {"open", in_state("open")},
           {"done", in_state("done")},
           {"withdrawn", flow.withdrawn},
-          {"set_aside", {{"test_data", flow.test_left_out}, {"simulated", flow.simulated_left_out}}},
+          {"set_aside",
+           {{"test_data", flow.test_left_out},
+            {"simulated", flow.simulated_left_out},
+            {"protocols", flow.protocols_left_out}}},
           {"excluded_visits", flow.excluded_visits},
           {"excluded_participants", flow.excluded_participants},
           {"analysed", flow.analysed},

@@ -12,6 +12,9 @@ namespace apps {
 
 /// "study" of one or two tasks; `database`: name to show.
 Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks);
+/// Names of the rules of exclusion that could leave out something of these data, whatever they say; those
+/// that compare with what was not shown or asked are none.
+Json acting_rules_json(const TaskData& data, const stats::ExclusionRules& rules);
 Json flow_json(const TaskFlow& flow);
 /// "roster": every session of the database, by protocol. `sections`: where a protocol is analysed, by
 /// SHA-256.

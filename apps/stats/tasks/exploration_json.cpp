@@ -249,8 +249,16 @@ Json detectable_scores_json(const std::vector<stats::ScoreTable>& tables,
 
 Json detectable_preference_json(const stats::PreferenceAnalysis& analysis, const stats::AnalysisPlan& plan) {
   int n = 0;
-  for (const auto& pair : analysis.pairs) n = std::max(n, static_cast<int>(pair.n));
-  const auto share = stats::binomial_detectable(n, detectable_power, plan.alpha);
+  bool of_people = false;
+  for (const auto& pair : analysis.pairs) {
+    if (pair.test) n = std::max(n, static_cast<int>(pair.n));
+    of_people = of_people || pair.shares;
+  }
+  auto share = stats::binomial_detectable(n, detectable_power, plan.alpha);
+  if (n == 0 && of_people)
+    share = stats::Refusal{
+        "people answered a pair several times, and the power of the test of their shares depends on how "
+        "alike one person's answers are"};
   return {{"n", n},
           {"power", detectable_power},
           {"alpha", plan.alpha},

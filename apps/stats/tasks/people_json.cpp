@@ -31,7 +31,16 @@ std::vector<std::string> answers_to(const study::Question& question, const TaskD
   return out;
 }
 
-void add_numbers(Json& json, const std::vector<std::string>& answers) {
+/// Of a scale the scores, as far as the file of personal data does not have its words.
+std::string score_of(const study::Question& question, const std::string& answer) {
+  for (const auto& [score, words] : question.anchors)
+    if (words == answer) return std::to_string(score);
+  return answer;
+}
+
+/// A scale's range is that of its scores, so that only a typed number's is shown.
+void add_numbers(Json& json, const study::Question& question, std::vector<std::string> answers) {
+  for (std::string& answer : answers) answer = score_of(question, answer);
   std::vector<double> values;
   for (const std::string& answer : answers) {
     int value = 0;
@@ -46,6 +55,7 @@ void add_numbers(Json& json, const std::vector<std::string>& answers) {
   const auto all = stats::describe(values);
   json["mean"] = all->mean;
   json["sd"] = json_number(all->sd);
+  if (question.kind != study::AnswerKind::Number) return;
   json["range"] = {range_step * std::floor(all->min / range_step),
                    range_step * std::ceil(all->max / range_step)};
 }
@@ -66,16 +76,18 @@ void add_groups(Json& json, const study::Question& question, const std::vector<s
 Json question_json(const study::Question& question, const TaskData& data,
                    const std::vector<study::PersonalEntry>& entries) {
   const auto answers = answers_to(question, data, entries);
-  const bool number = question.kind == study::AnswerKind::Number;
+  const bool choice = question.kind == study::AnswerKind::Choice;
   Json json{{"question", question.id},
             {"text", question.text},
-            {"kind", number ? "number" : "choice"},
+            {"kind", choice                                      ? "choice"
+                     : question.kind == study::AnswerKind::Scale ? "scale"
+                                                                 : "number"},
             {"n", answers.size()},
             {"missing", data.participants.size() - answers.size()}};
-  if (number) {
-    add_numbers(json, answers);
-  } else {
+  if (choice) {
     add_groups(json, question, answers);
+  } else {
+    add_numbers(json, question, answers);
   }
   return json;
 }

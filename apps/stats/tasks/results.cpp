@@ -1,5 +1,7 @@
 #include "apps/stats/tasks/results.hpp"
 
+#include <set>
+
 #include "apps/stats/ptpe/pilot_fit.hpp"
 #include "apps/stats/tasks/costs_json.hpp"
 #include "apps/stats/tasks/data_json.hpp"
@@ -27,23 +29,27 @@ struct TaskPart {
   Json sensitivity = Json::array();
 };
 
-/// Of a design that no shipped analysis is about.
-std::string why_not_analysed(const TaskData& data) {
+/// Why a design is one that no shipped analysis is about.
+std::string what_it_lacks(const TaskData& data) {
   const auto& protocol = data.protocol;
   const std::string lacks = protocol.pairs && protocol.methods.size() > 1
                                 ? "asks no choice between the two of a pair"
                             : protocol.pairs   ? "shows pairs of one method"
                             : protocol.pilot() ? "asks no question on a scale"
                                                : "asks no question 'realism' on a scale";
-  return "protocol " + protocol.name + " " + lacks +
-         ", so no shipped analysis covers it; its answers are described by cell";
+  return "protocol " + protocol.name + " " + lacks;
+}
+
+std::string why_not_analysed(const TaskData& data) {
+  return what_it_lacks(data) + ", so no shipped analysis covers it; its answers are described by cell";
 }
 
 /// What stands under the task's own name, and its hypotheses. Refused with the reason.
 stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   const TaskData& data = part.data;
   const stats::AnalysisPlan& plan = request.plan.plan;
-  if (data.task == TaskKind::Own) part.not_analysed.push_back({"own design", why_not_analysed(data)});
+  if (data.task == TaskKind::Own)
+    part.not_analysed = {{"own design", why_not_analysed(data)}, {"H1 to H6", what_it_lacks(data)}};
   if (const std::string nothing = nothing_counts(data); !nothing.empty()) return stats::Refusal{nothing};
   if (data.task == TaskKind::Own) return stats::Refusal{why_not_analysed(data)};
   if (data.task == TaskKind::Pilot) {
@@ -57,13 +63,9 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   }
   if (data.task == TaskKind::Task1) {
     const auto results = analyse_task1(data, plan);
-    if (!results) {
-      part.not_analysed.push_back({"H1 to H3", results.reason()});
-      return stats::Refusal{results.reason()};
-    }
-    part.hypotheses = results->hypotheses;
-    part.not_analysed = results->left_out;
-    return task1_json(data, *results, plan);
+    part.hypotheses = results.hypotheses;
+    part.not_analysed = results.left_out;
+    return task1_json(data, results, plan);
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());
   const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
@@ -99,7 +101,11 @@ TaskPart analyse(const study::TaskStudy& study, const ChosenTask& chosen, const 
                 .described = described_questions(chosen, request.question)};
   const auto results = results_of(part, request);
   part.results = results ? *results : json_refused(results.reason());
-  if (!results) missing.push_back({selection.task, results.reason()});
+  if (!results)
+    missing.push_back({selection.task, results.reason(),
+                       part.data.flow.trials_excluded > 0
+                           ? "collect answers, or give other rules of exclusion with --plan"
+                           : "collect answers"});
   if (results && !part.hypotheses.empty())
     part.sensitivity = sensitivity_json(study, selection, part.data, part.hypotheses);
   return part;
@@ -136,6 +142,8 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
             {"response_times", Json::array()},
             {"costs", Json::array()}};
   if (request.sweep) json["sweep"] = sweep_json(request.sweep_file, *request.sweep);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    json["study"]["protocols"][i]["rules"] = acting_rules_json(parts[i].data, request.plan.plan.exclusions);
   json["descriptives"] = Json::array();
   json["not_analysed"] = Json::array();
   for (const TaskPart& part : parts) {
@@ -164,6 +172,14 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
 /// Of the document at this place in "apart".
 std::string apart_name(std::size_t index) { return "apart " + std::to_string(index + 1); }
 
+/// How many simulated participants there are in all parts: one person may be in several.
+std::size_t simulated_people(const std::vector<TaskPart>& first, const std::vector<TaskPart>& others) {
+  std::set<std::string> people;
+  for (const auto* list : {&first, &others})
+    for (const TaskPart& part : *list) people.insert(part.data.simulated.begin(), part.data.simulated.end());
+  return people.size();
+}
+
 /// Where each protocol is analysed, by SHA-256.
 std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>& first,
                                                     const std::vector<TaskPart>& others) {
@@ -188,13 +204,16 @@ Results make_results(const study::TaskStudy& study, const ResultsRequest& reques
   for (const TaskKind task : request.tasks) {
     const auto chosen = choose_tasks(study, {task, request.protocol, request.plan.plan, request.question});
     if (!chosen) {
-      out.missing.push_back({task, chosen.reason()});
+      out.missing.push_back(
+          {task, chosen.reason(),
+           mend_of_choice(study, {task, request.protocol, request.plan.plan, request.question})});
       continue;
     }
     for (const ChosenTask& one : *chosen)
       (&one == &chosen->front() ? first : others).push_back(analyse(study, one, request, out.missing));
   }
   out.json = assemble(request, first, study.about_people);
+  out.json["study"]["simulated_people"] = simulated_people(first, others);
   out.json["roster"] = roster_json(study, sections_of(first, others));
   if (!others.empty()) out.json["apart"] = Json::array();
   for (TaskPart& part : others) {

@@ -30,6 +30,7 @@ struct ResultsRequest {
 struct MissingTask {
   TaskKind task = TaskKind::Task1;
   std::string reason;
+  std::string mend;  ///< for the person at the command line
 };
 
 struct Results {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "apps/common/claims.hpp"
 
 namespace apps {
 
@@ -22,7 +25,7 @@ std::vector<ScoreScale> score_scales(const stats::AnalysisPlan& plan) {
 
 const study::Question* find_question(const TaskData& data, const std::string& id) {
   for (const auto& question : data.protocol.questions) {
-    if (question.id == id) return &question;
+    if (question.id == id && question.kind == study::AnswerKind::Scale) return &question;
   }
   return nullptr;
 }
@@ -77,15 +80,12 @@ const stats::ScoreTable* find_table(const std::vector<stats::ScoreTable>& tables
   return nullptr;
 }
 
-stats::Result<stats::ShownClaims> shown_claims(const std::vector<stats::ScoreTable>& tables,
-                                               const TaskData& data, const stats::AnalysisPlan& plan) {
+/// H1 to H3 need both scores. Each score is analysed whether or not the other is there.
+stats::ShownClaims shown_claims(const std::vector<stats::ScoreTable>& tables, const TaskData& data,
+                                const stats::AnalysisPlan& plan) {
   const auto* realism = find_table(tables, "realism");
   const auto* sickness = find_table(tables, "sickness");
-  if (!realism || !sickness) {
-    return stats::Refusal{"protocol " + data.protocol.name +
-                          " does not ask for realism and the four items of cybersickness (disorientation, "
-                          "unrealism, dizziness, confusion)"};
-  }
+  if (!realism || !sickness) return {{}, {{"H1 to H3", missing_items(data.protocol.questions)}}};
   return stats::claims_about(stats::task1_hypotheses(*realism, *sickness, plan, data.gaze_problem()),
                              data.protocol.methods);
 }
@@ -114,22 +114,18 @@ std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::A
   return out;
 }
 
-stats::Result<std::vector<stats::Hypothesis>> task1_verdicts(const TaskData& data,
-                                                             const stats::AnalysisPlan& plan) {
-  const auto claims = shown_claims(score_tables(data, plan), data, plan);
-  if (!claims) return stats::Refusal{claims.reason()};
-  return claims->claims;
+std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats::AnalysisPlan& plan) {
+  return shown_claims(score_tables(data, plan), data, plan).claims;
 }
 
-stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
+Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
   Task1Results out;
   out.tables = score_tables(data, plan);
   // The paper's claims are about methods alone.
   if (data.protocol.effects.empty()) {
-    const auto hypotheses = shown_claims(out.tables, data, plan);
-    if (!hypotheses) return stats::Refusal{hypotheses.reason()};
-    out.hypotheses = hypotheses->claims;
-    out.left_out = hypotheses->left_out;
+    auto hypotheses = shown_claims(out.tables, data, plan);
+    out.hypotheses = std::move(hypotheses.claims);
+    out.left_out = std::move(hypotheses.left_out);
     stats::add_tipping_points(out.hypotheses, out.tables);
   }
   for (const auto& table : out.tables) out.analyses.push_back(stats::analyse_scores(table, plan));

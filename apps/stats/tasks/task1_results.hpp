@@ -23,7 +23,7 @@ struct Task1Results {
   std::vector<stats::ScoreAnalysis> analyses;
   std::vector<OrdinalModel> ordinal;
   std::vector<stats::Hypothesis> hypotheses;
-  std::vector<stats::ShownClaims::LeftOut> left_out;  ///< hypotheses about methods that are not shown
+  std::vector<stats::ShownClaims::LeftOut> left_out;  ///< hypotheses that are not tested
 };
 
 /// Realism and the cybersickness scores. A score is the mean of its items; a report that lacks one has none.
@@ -33,12 +33,11 @@ std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::A
 /// A table's scores before scenes are averaged: one for each report, NaN for those planned and not given.
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
 
-/// Of H1 to H3 those whose methods the protocol shows; none where effects are a factor. Else refused: no
-/// cybersickness items, so that the hypotheses have no second score.
-stats::Result<Task1Results> analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
+/// Each score that is asked for. Of H1 to H3 those whose methods the protocol shows; none where effects are a
+/// factor or an item of a score is not asked.
+Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
 
 /// H1 to H3 alone, as far as the protocol shows their methods: for sensitivity.
-stats::Result<std::vector<stats::Hypothesis>> task1_verdicts(const TaskData& data,
-                                                             const stats::AnalysisPlan& plan);
+std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats::AnalysisPlan& plan);
 
 }  // namespace apps

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "apps/stats/tasks/exploration_json.hpp"
@@ -34,16 +35,40 @@ const char* repeated_rule(stats::RepeatedPairs rule) {
          "half, by an exact test over people.";
 }
 
-Json preference_rules_json(const stats::AnalysisPlan& plan) {
-  return {
-      {"tests",
-       "Exact binomial test for each pair against one half, two-sided; Clopper-Pearson and Wilson intervals; "
-       "Holm "
-       "and Benjamini-Hochberg over all pairs. Stars mark uncorrected p as in the paper."},
-      {"more_than_one_trial", repeated_rule(plan.repeated_pairs)},
-      {"missing",
-       "A pair counts those who answered it, also in sessions that ended early; circular triads those who "
-       "answered every pair once."}};
+/// Of people who answered a pair more than once.
+Json several_answers_json(const TaskData& data) {
+  std::map<std::tuple<int, int, int>, int> answers;
+  for (const auto& one : data.choices)
+    ++answers[{one.participant, std::min(one.first, one.second), std::max(one.first, one.second)}];
+  std::set<int> people;
+  int most = 0;
+  for (const auto& [key, n] : answers) {
+    most = std::max(most, n);
+    if (n > 1) people.insert(std::get<0>(key));
+  }
+  return {{"participants", people.size()}, {"of", data.participants.size()}, {"most", most}};
+}
+
+/// The tests that were made. A rule for what did not occur is not given.
+Json preference_rules_json(const stats::PreferenceAnalysis& analysis, const stats::AnalysisPlan& plan,
+                           bool several) {
+  const auto& pairs = analysis.pairs;
+  const bool shares = std::any_of(pairs.begin(), pairs.end(), [](const auto& one) { return !!one.shares; });
+  const bool binomial = std::any_of(pairs.begin(), pairs.end(), [](const auto& one) { return !!one.test; });
+  std::string tests;
+  if (binomial)
+    tests = "Exact binomial test against one half, two-sided; Clopper-Pearson and Wilson intervals. ";
+  if (shares)
+    tests += "Exact permutation test of people's shares against one half, two-sided" +
+             std::string(binomial ? ", of pairs that a person answered more than once. " : ". ");
+  Json rules{{"tests", tests +
+                           "Holm and Benjamini-Hochberg over all pairs. Stars mark uncorrected p as in the "
+                           "paper."}};
+  if (several) rules["more_than_one_trial"] = repeated_rule(plan.repeated_pairs);
+  rules["missing"] =
+      "A pair counts those who answered it, also in sessions that ended early; circular triads those who "
+      "answered every pair once.";
+  return rules;
 }
 
 Json pair_json(const stats::PairPreference& pair, const Names& methods) {
@@ -54,6 +79,9 @@ Json pair_json(const stats::PairPreference& pair, const Names& methods) {
             {"n", pair.n},
             {"participants", pair.participants},
             {"k", pair.k},
+            {"test", pair.shares ? Json(stats::share_test_name)
+                     : ok        ? Json("exact binomial test")
+                                 : Json()},
             {"share", pair.n > 0 ? Json(1.0 * pair.k / pair.n) : Json()},
             {"p", json_number(p)},
             {"stars", json_stars(p)},
@@ -67,6 +95,7 @@ Json pair_json(const stats::PairPreference& pair, const Names& methods) {
             {"a_first", pair.a_first},
             {"first_chosen", pair.first_chosen},
             {"max_per_participant", pair.max_per_participant},
+            {"several", pair.several},
             {"reason", pair.shares ? "" : pair.test.reason()},
             {"warning", pair.warning},
             {"paper", stats::in_paper_figure_10(name(methods, pair.a), name(methods, pair.b))}};
@@ -74,6 +103,7 @@ Json pair_json(const stats::PairPreference& pair, const Names& methods) {
     json["by_person"] = {{"participants", pair.shares->participants},
                          {"share", pair.shares->share},
                          {"ci", json_interval(pair.shares->ci)},
+                         {"ci_name", pair.shares->ci_name},
                          {"p", pair.shares->p}};
   return json;
 }
@@ -252,13 +282,16 @@ Json task2_json(const TaskData& data, const stats::PreferenceAnalysis& analysis,
   const Names& methods = data.protocol.methods;
   Json pairs = Json::array();
   for (const auto& pair : analysis.pairs) pairs.push_back(pair_json(pair, methods));
+  const Json several = several_answers_json(data);
+  const bool any_several = several.at("participants") > 0;
   Json json{{"participants", data.participants.size()},
             {"answers", data.choices.size()},
             {"question", data.question.id},
             {"methods", methods},
             {"n_stars", data.protocol.n_stars},
             {"scenes", data.scenes},
-            {"rules", preference_rules_json(plan)},
+            {"rules", preference_rules_json(analysis, plan, any_several)},
+            {"several_answers", several},
             {"pairs", pairs},
             {"interval_bias", interval_json(analysis.interval)},
             {"bradley_terry", bradley_terry_json(analysis, methods)},

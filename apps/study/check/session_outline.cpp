@@ -169,11 +169,15 @@ std::string describe_balance(const study::Protocol& protocol, const Balance& bal
   else if (balance.sequences == 1)
     out += "all meet the same cells";
   else
-    out += fmt::format("each of {} sequences of scene and n_* is met by {} to {}", balance.sequences,
-                       balance.least, balance.most);
+    out += fmt::format("each of {} sequences of scene and n_* is met by {} of them", balance.sequences,
+                       balance.least == balance.most ? fmt::format("{}", balance.least)
+                                                     : fmt::format("{} to {}", balance.least, balance.most));
   if (design.pairs && design.assignment == study::Assignment::Balanced)
-    out += fmt::format("; the two orders of a pair differ by at most {} within each",
-                       balance.interval_difference);
+    out += balance.interval_difference == 0
+               ? std::string("; within each, the two orders of a pair come equally often")
+               : fmt::format(
+                     "; within each, one order of a pair comes at most {} times more often than the other",
+                     balance.interval_difference);
   if (balance.even == 1) return out + "; any number divides evenly";
   if (balance.even_below == balance.planned) return out + "; divides evenly";
   out += fmt::format("; does not divide by {}: ", balance.even);
