@@ -53,7 +53,7 @@ inline std::vector<Case> head_and_methods() {
        "left "
        "out and # analysed, with # of # planned trials (# answered ones left out).",
        no_flow},
-      {"The same rules of exclusion held for Pilot, Task 1 and Task 2: trials whose timing verdict was fail "
+      {"The same rules of exclusion held for *Task 1 and Task 2: trials whose timing verdict was fail "
        "were left out*",
        set(rules + "timing", "none")},
       {"*: trials whose timing verdict was degraded or fail were left out*", set(rules + "timing", "fail"),

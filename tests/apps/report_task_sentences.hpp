@@ -212,14 +212,14 @@ inline std::vector<Case> task2() {
        set("/hypotheses", Json::array())},
       {"The tests of all pairs describe the data.", no_task, set("/hypotheses", Json::array())},
       {"# Share of answers that chose each of a pair, as the paper's Fig._10; line: interval of the share "
-       "(Wilson).",
+       "(Wilson*).",
        in_each("/task2/pairs", "by_person", by_person())},
       {"# Share of answers that chose each of a pair, as the paper's Fig._10; line: interval of the share "
        "(#).",
        no_task, in_each("/task2/pairs", "by_person", by_person())},
       {"# Share of answers that chose each of a pair, as the paper's Fig._10.", no_task,
        in_each("/task2/pairs", "wilson", nullptr)},
-      {"Stars: #, uncorrected / after Holm over all pairs.", in_each("/task2/pairs", "test", nullptr)},
+      {"Stars: #*, uncorrected / after Holm over all pairs.", in_each("/task2/pairs", "test", nullptr)},
       {"# of # participants answered a pair more than once, at most # times.",
        set("/task2/several_answers/participants", 0), set("/task2/several_answers/participants", 3)},
       {"A bar for each pair of methods: the plain part on the left is the share of answers that chose the "
@@ -229,7 +229,7 @@ inline std::vector<Case> task2() {
       {"The line across the bar is the share's interval, the dotted line no preference.", no_task},
       {"The table below holds the same numbers.", no_task},
       {"# How often each of a pair was chosen, with a two-sided test of each pair", no_task},
-      {"# over #: # of # (#), CI [[]#, #], #, p *, pHolm *", in_each("/task2/pairs", "p", nullptr)},
+      {"# over #: # of # (#), CI [[]#, #]*, p *, pHolm *", in_each("/task2/pairs", "p", nullptr)},
       {"# over #: # of # answers of # people, mean share #, CI [[]#, #], #, p *, pHolm *",
        in_each("/task2/pairs", "by_person", nullptr), in_each("/task2/pairs", "by_person", by_person())},
       {"The first of a pair was chosen in # of # answers (#, CI [[]#, #], exact binomial p *).",

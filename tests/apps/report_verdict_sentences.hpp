@@ -116,8 +116,9 @@ inline std::vector<Case> bundle_and_provenance() {
        "Task 2, answers by cell, "
        "ordinal models, the Bradley-Terry model and sensitivity.",
        set("/task1/ordinal", Json::array())},
-      {"Exploratory All of it: tables and*",
-       all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/descriptives", Json::array())}),
+      {"Exploratory All of it: *",
+       all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/descriptives", Json::array()),
+            set("/sensitivity", Json::array())}),
        set("/hypotheses", Json::array())},
       {"Exploratory All but the hypotheses: *",
        all({refused("/task1"), refused("/task2"), refused("/pilot"), set("/sensitivity", Json::array()),

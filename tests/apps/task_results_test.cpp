@@ -240,7 +240,7 @@ TEST(TaskCsv, EveryNumberIsTheJsons) {
   std::istringstream text(base::read_file(folder / "task2_pairs.csv", 1 << 20));
   std::string header, line;
   std::getline(text, header);
-  EXPECT_THAT(header, HasSubstr("a,b,n,participants,k,share,p,stars"));
+  EXPECT_THAT(header, HasSubstr("a,b,n,participants,k,test,share,p,stars"));
   for (const auto& pair : whole_study().at("task2").at("pairs")) {
     std::getline(text, line);
     EXPECT_THAT(line, HasSubstr("," + pair.at("p").dump() + ","));

@@ -144,9 +144,11 @@ void expect_as_r(bool large, int least) {
   std::set<std::string> only_here;
   for (const auto& name : printed)
     if (!all.names.contains(name) && !is_left_to_others(name)) only_here.insert(name);
-  // What was given.
+  // What was given, and counts of answers to a pair, which choose its test (suites Task2 and ShareTest).
   EXPECT_THAT(only_here, ElementsAre(".hypotheses.alpha", ".task1.scores.margin", ".task1.scores.max",
-                                     ".task1.scores.min", ".task2.choices.position"));
+                                     ".task1.scores.min", ".task2.choices.position", ".task2.pairs.several",
+                                     ".task2.several_answers.most", ".task2.several_answers.of",
+                                     ".task2.several_answers.participants"));
 }
 
 TEST(TaskStudiesE2e, EveryNumberThatRMakesIsTheSame) { expect_as_r(false, 6000); }

@@ -120,8 +120,8 @@ std::string preference_apa_lines(const Field& pairs) {
                     (people.there() ? " answers of " + count(people["participants"]) +
                                           " people, mean share " + percent(people["share"]) + ", CI "
                                     : " (" + percent(pair["share"]) + "), CI ") +
-                    interval(ci, 2) + ", " + words(pair["test"]) + ", <i>p</i> " + p(pair["p"]) +
-                    ", <i>p</i><sub>Holm</sub> " + p(pair["p_holm"]));
+                    interval(ci, 2) + (pair["test"].there() ? ", " + words(pair["test"]) : "") +
+                    ", <i>p</i> " + p(pair["p"]) + ", <i>p</i><sub>Holm</sub> " + p(pair["p_holm"]));
   }
   return list(lines);
 }
