@@ -24,7 +24,7 @@ endforeach()
 install(CODE "execute_process(COMMAND ${PROJECT_SOURCE_DIR}/cmake/package/man_pages.sh ${CMAKE_BINARY_DIR}/bin
                               \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/man/man1 COMMAND_ERROR_IS_FATAL ANY)")
 
-# cpack -G DEB: vip-lab_VERSION_ARCHITECTURE.deb. It packs what is built, and does not build.
+# cpack -G DEB makes vip-lab_VERSION_ARCHITECTURE.deb of programs that are already built.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME vip-lab)

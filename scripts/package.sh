@@ -33,7 +33,9 @@ debootstrap --variant=minbase "$suite" "$root" ${mirror:+"$mirror"} >"$work/debo
 for place in proc dev; do
   mount --rbind --make-rslave "/$place" "$root/$place" && mounted+=("$root/$place")
 done
-inside() { chroot "$root" env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root DEBIAN_FRONTEND=noninteractive "$@"; }
+study=/home/study
+mkdir -p "$root$study"
+inside() { chroot "$root" env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME="$study" DEBIAN_FRONTEND=noninteractive "$@"; }
 
 # What the package needs, then a look at the files, then the package alone.
 cp "$package" "$root/tmp/vip-lab.deb"
@@ -47,10 +49,8 @@ files >"$work/before"
 inside dpkg --install /tmp/vip-lab.deb
 ! inside sh -c 'command -v cc || command -v c++ || command -v cmake' || { echo "package: the root has a compiler" >&2; exit 1; }
 
-# Once round the loop, from a folder of a user's own.
-study=/root/study
+# Once round the loop, from a user's home.
 run() { printf '\n$ %s\n' "$*"; inside sh -c "cd $study && exec \"\$@\"" sh "$@"; }
-mkdir -p "$root$study"
 run vip-study --version
 run vip-study check ptpe_pilot --refresh 90
 run vip-study run ptpe_pilot --db study.db --participants 16 --observer ptpe:a=24,b=0.02 --seed 7
@@ -66,7 +66,7 @@ for page in vip-study vip-study-run vip-stats-fit-ptpe vip-bench-frame vip-view;
 done
 
 inside dpkg --remove vip-lab
-files | grep -v -e "^$study" -e '^/root/\.[a-z]*' >"$work/after" || true
+files | grep -v "^$study" >"$work/after" || true
 left=$(comm -13 "$work/before" "$work/after")
 [ -z "$left" ] || { printf 'package: dpkg --remove left:\n%s\n' "$left" >&2; exit 1; }
 [ -s "$root$study/study.db" ] || { echo "package: dpkg --remove took the data" >&2; exit 1; }

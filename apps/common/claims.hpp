@@ -13,10 +13,10 @@ namespace apps {
 /// one that lets people choose of pairs, as far as it shows their methods; and why others are not tested.
 stats::ShownClaims hypotheses_of(const study::Protocol& protocol, const stats::AnalysisPlan& plan);
 
-/// Why H1 to H3 are not tested where trials ask these questions: which are missing; empty: none is.
+/// Names the questions that H1 to H3 need and the trials do not ask; empty if they ask all of them.
 std::string missing_items(const std::vector<study::Question>& asked);
 
-/// Sickness that trials ask for again and again is analysed by itself.
+/// Whether a question rates sickness; these have an analysis of their own.
 bool is_sickness(const study::Question& question);
 
 /// Questions that the trials ask on a scale under several frame rates, sickness aside: each has a curve.

@@ -33,8 +33,8 @@ struct PtpeFile {
   std::string date_utc;         ///< ISO 8601 with seconds, "2026-01-31T12:00:00Z"
 };
 
-/// One line: the model, its level, how far its band leaves mu open, and whom it was fitted to; simulated
-/// participants and test data are named.
+/// One line: the model, its level, the widest part of its band, and the number of participants. It says if
+/// participants were simulated and if the answers are test data.
 std::string describe(const PtpeFile& file);
 
 /// Errors (base::Error at file:line:column): unknown key, wrong type or range, a or b outside its own

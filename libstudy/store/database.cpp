@@ -55,7 +55,8 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
 
 /// A power cut in the very first transaction leaves any bytes, and a journal that makes them none again.
 bool was_empty_before(const fs::path& journal) {
-  // The journal's head (sqlite.org/fileformat.html, section 3): magic, 8 bytes on the pages of the file.
+  // The head of a rollback journal (sqlite.org/fileformat.html, section 3): 8 bytes of magic; at byte 16, how
+  // many pages the file had.
   std::ifstream file(journal, std::ios::binary);
   std::string head(20, '\0');
   constexpr std::string_view magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";

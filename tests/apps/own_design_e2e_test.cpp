@@ -43,7 +43,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
   EXPECT_THAT(words,
               HasSubstr("None.\n- Not tested: H1 to H6 of comfort: the trials ask no question 'realism'"));
   EXPECT_THAT(words, Not(HasSubstr("FovFluid")));
-  // Rules that cannot act stand there as comments.
+  // plan.toml lists rules that cannot act as comments.
   for (const char* rule :
        {"\nrealism = ", "\nsickness = ", "\nmin_catch_correct = ", "\nmax_repeat_difference = "})
     EXPECT_THAT(file(folder / "bundle" / "plan.toml"), Not(HasSubstr(rule)));

@@ -29,7 +29,8 @@ apps::PowerRequest request_for(const std::string& world, int studies) {
   return request;
 }
 
-/// Correlation over people of the difference between two methods at one n_* with that at the other.
+/// The difference between two methods at one n_*, correlated over people with the same difference at the
+/// other.
 double correlation_between_n_stars(double person_by_method) {
   auto request = request_for("null", 1);
   request.answers = apps::AnswerScale::Continuous;

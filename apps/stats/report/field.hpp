@@ -71,7 +71,7 @@ std::string p(const Field& field);
 std::string p_bare(const Field& field);
 /// "[0.12, 0.34]"; open ends as infinity.
 std::string interval(const Field& field, int decimals);
-/// The same of frame rates: an end beyond every rate that a protocol may have is no bound, and says so.
+/// As interval(), for frame rates: prints "no upper bound" if the upper end is above 1000 frames/s.
 std::string rate_interval(const Field& field);
 /// A text, its formulas typeset.
 std::string words(const Field& field);

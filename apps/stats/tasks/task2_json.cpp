@@ -49,7 +49,7 @@ Json several_answers_json(const TaskData& data) {
   return {{"participants", people.size()}, {"of", data.participants.size()}, {"most", most}};
 }
 
-/// The tests that were made. A rule for what did not occur is not given.
+/// Names the tests that were used, and the rules that applied to these answers.
 Json preference_rules_json(const stats::PreferenceAnalysis& analysis, const stats::AnalysisPlan& plan,
                            bool several) {
   const auto& pairs = analysis.pairs;

@@ -36,7 +36,7 @@ std::vector<int> twice_midranks(const Values& ascending) {
   return out;
 }
 
-/// All 2^n signs of these ranks, one after the other.
+/// The rank sums of all 2^n choices of signs, listed one by one.
 struct AllSigns {
   explicit AllSigns(const std::vector<int>& twice_ranks) : sums{0} {
     for (const int rank : twice_ranks) {
