@@ -320,7 +320,7 @@ task2_claims <- function(rows, pairs, decision, directional) {
     if (id != "H6") out <- c(out, list(p_holm_of_five = of_five[index], p_holm_of_ten = corrected(p, "holm")[index]))
     if (count$max_per_participant > 1) {
       shares <- share_test(person_choices(rows, match(a, methods), match(b, methods)), side)
-      out$method <- "exact test of each person's share"
+      out$method <- "exact permutation test of people's shares"
       return(c(out, list(k = count$k, estimate = shares$share, ci = shares$ci, p = shares$p, right = shares$share > 0.5,
                          paper_p = two)))
     }
