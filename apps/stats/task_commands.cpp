@@ -61,17 +61,22 @@ void print_cells(const Json& task, const std::string& interval) {
 
 std::string pair_name(const Json& pair) { return word(pair.at("a")) + " over " + word(pair.at("b")); }
 
+/// The test that a pair got, in a word: the rules below name it in full.
+const char* test_word(const Json& pair) {
+  return pair.contains("by_person") ? "shares" : pair.at("test").is_null() ? "-" : "binomial";
+}
+
 void print_pairs(const Json& task, const std::string& interval) {
-  std::printf("\n%-22s %4s %4s %6s %9s %9s  %s\n", "chosen", "k", "n", "share", "p", "Holm",
-              interval.c_str());
+  std::printf("\n%-22s %4s %4s %6s %8s %8s  %-14s %s\n", "chosen", "k", "n", "share", "p", "Holm",
+              interval.c_str(), "test");
   std::string notes;
   for (const auto& pair : task.at("pairs")) {
     const bool people = pair.contains("by_person");
     const Json& share = people ? pair.at("by_person").at("share") : pair.at("share");
     const Json& ci = people ? pair.at("by_person").at("ci") : pair.at("clopper_pearson");
-    std::printf("%-22s %4d %4d %6s %9s %9s  %s\n", pair_name(pair).c_str(), pair.at("k").get<int>(),
+    std::printf("%-22s %4d %4d %6s %8s %8s  %-14s %s\n", pair_name(pair).c_str(), pair.at("k").get<int>(),
                 pair.at("n").get<int>(), number_text(share, 2).c_str(), p_text(pair.at("p")).c_str(),
-                p_text(pair.at("p_holm")).c_str(), interval_text(ci).c_str());
+                p_text(pair.at("p_holm")).c_str(), interval_text(ci).c_str(), test_word(pair));
     const std::string note =
         word(pair.at("warning")).empty() ? word(pair.at("reason")) : word(pair.at("warning"));
     if (!note.empty()) notes += pair_name(pair) + ": " + note + "\n";
@@ -84,6 +89,8 @@ void print_pairs(const Json& task, const std::string& interval) {
   for (const char* rule : {"tests", "more_than_one_trial"})
     if (task.at("rules").contains(rule)) std::printf("%s\n", word(task.at("rules").at(rule)).c_str());
   std::printf("%s", notes.c_str());
+  if (task.at("triads").contains("refused"))
+    std::printf("Circular triads are not given: %s.\n", word(task.at("triads").at("refused")).c_str());
 }
 
 void print_test(const Json& test) {

@@ -186,10 +186,11 @@ TEST(ReportPage, ShowsWhyWhatIsNotGivenIsNotGiven) {
   test["p"] = test["p_holm"] = nullptr;
   test["reason"] = "fewer than two participants";
   json["pilot"] = {{"status", "failed"}, {"reason", "no contour at this level"}};
+  json["task2"]["triads"] = {{"refused", "everybody answered one pair twice"}};
   const std::string html = report::results_page(json);
   for (const char* reason :
        {"never compared", "one answer only", "all ranks tie", "all differences are equal",
-        "fewer than two participants", "no contour at this level"})
+        "fewer than two participants", "no contour at this level", "everybody answered one pair twice"})
     EXPECT_TRUE(holds(html, reason));
   EXPECT_THAT(report_walk::wrong_fields(html_reader::read(html), json), ::testing::IsEmpty());
 }

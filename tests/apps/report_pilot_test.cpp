@@ -3,12 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "apps/stats/ptpe/estimates_json.hpp"
+#include "apps/stats/ptpe/fit_text.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/tasks/results.hpp"
 #include "tests/apps/html_reader.hpp"
 #include "tests/apps/made_task_study.hpp"
+#include "tests/apps/report_walk.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
 namespace apps {
@@ -16,6 +21,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 using testing_pilot::simulated_pilot;
 
@@ -147,6 +153,62 @@ TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
       words_of(json),
       HasSubstr("Pilot: protocol rehearsal 1.0, SHA-256 ffffffffffff, 8 sessions, left out: it holds no real "
                 "answers."));
+}
+
+/// What vip-stats fit-ptpe prints of the pilot that the results are of.
+std::string terminal_of(const study::TaskProtocol& pilot) {
+  const auto data = collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}});
+  ::testing::internal::CaptureStdout();
+  print_fit(fit_pilot(*data, 4, {200, 1, 0.95}));
+  return ::testing::internal::GetCapturedStdout();
+}
+
+int count_of(const std::string& text, const std::string& words) {
+  int n = 0;
+  for (auto at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++n;
+  return n;
+}
+
+// No protocol shows more than 1000 frames/s: an interval that reaches beyond has no upper bound.
+TEST(ReportPilot, AnIntervalWithoutUpperBoundSaysSoOnPageAndTerminal) {
+  const auto pilot = simulated_pilot("ptpe:a=30,b=0.03,slope=0.04,noise=2", 6, 2);
+  Json json = results_of({pilot});
+  const auto page = html_reader::read(report::results_page(json));
+  std::set<std::string> printed;
+  for (const auto& text : page.texts) printed.insert(text.attribute("data-field"));
+  int unbounded = 0, bounded = 0, on_terminal = 0;
+  const Json& bands = json.at("pilot").at("bands");
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    for (const char* key : {"ci", "simultaneous_ci", "solver_ci"}) {
+      if (!bands[i].at(key).is_array()) continue;
+      const auto place = "/pilot/bands/" + std::to_string(i) + "/" + key + "/";
+      const bool open = bands[i].at(key).at(1) > 1000;
+      EXPECT_TRUE(printed.contains(place + "0"));
+      EXPECT_EQ(printed.contains(place + "1"), !open) << place;
+      ++(open ? unbounded : bounded);
+      const bool shown = bands[i].at("level") == 4 && bands[i].at("delta").get<int>() % 5 == 0;
+      on_terminal += open && shown && key == std::string("ci");
+    }
+  }
+  EXPECT_GT(bounded, 5);
+  EXPECT_GT(on_terminal, 2);
+  EXPECT_EQ(count_of(words_of(json), ", no upper bound]"), unbounded);
+  EXPECT_EQ(count_of(terminal_of(pilot), ", no upper bound]"), on_terminal);
+}
+
+// Beyond all numbers, too; JSON has no sign for infinity.
+TEST(ReportPilot, AnInfiniteEndIsAWordInTheResultsAndSaidOnThePage) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Json estimate;
+  add_estimate(estimate, {MainFit{24, 0.02}, MainSpread{{20, infinite}, {-infinite, 0.5}, 1, 1, false}});
+  EXPECT_EQ(estimate.at("a_ci"), Json({20, "Inf"}));
+  EXPECT_EQ(estimate.at("b_ci"), Json({"-Inf", 0.5}));
+  Json json = results_of({pilot_of_people()});
+  json.at("pilot").update(estimate);
+  const auto page = words_of(json);
+  EXPECT_EQ(count_of(page, "[20.00, no upper bound]"), 3) << "sentence, table and figure";
+  EXPECT_EQ(count_of(page, "[\u2212\u221e, 0.5000]"), 3);
+  EXPECT_THAT(report_walk::wrong_fields(html_reader::read(report::results_page(json)), json), IsEmpty());
 }
 
 }  // namespace

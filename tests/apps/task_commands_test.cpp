@@ -1,14 +1,17 @@
 /// vip-stats task1 and task2 on databases that vip-study wrote.
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/apps/task_database.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace {
@@ -16,6 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::test::TemporaryFolder;
 using ::testing::HasSubstr;
+using ::testing::Not;
+using Words = std::vector<std::string>;
 
 apps::test::Ended program(const std::string& line) { return apps::test::run_shell(VIP_BIN_DIR "/" + line); }
 
@@ -109,6 +114,96 @@ TEST_F(TaskCommandsE2e, BadInputIsNamedAndNothingIsWritten) {
   refuse("task1 " + database + " --plan " + database + " --json " + json, "study.db");
   EXPECT_FALSE(fs::exists(json));
   EXPECT_EQ(program("vip-stats task1 " + database).exit_code, 0) << "the database is whole";
+}
+
+/// The words of the line that begins so; none where there is no such line.
+Words line_of(const std::string& out, const std::string& beginning) {
+  std::istringstream lines(out);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(beginning + " ")) continue;
+    std::istringstream words(line.substr(beginning.size()));
+    return {std::istream_iterator<std::string>(words), {}};
+  }
+  return {};
+}
+
+/// What the line of a pair says by the results: chosen, answers, share, p, p after Holm, interval, test.
+Words line_of(const nlohmann::json& pair) {
+  const bool people = pair.contains("by_person");
+  const auto& tested = people ? pair.at("by_person") : pair;
+  const auto& ci = tested.at(people ? "ci" : "clopper_pearson");
+  const auto text = [](const nlohmann::json& value, int decimals) {
+    return fmt::format("{:.{}f}", value.get<double>(), decimals);
+  };
+  return {text(pair.at("k"), 0),   text(pair.at("n"), 0),         text(tested.at("share"), 2),
+          text(pair.at("p"), 4),   text(pair.at("p_holm"), 4),    "[" + text(ci.at(0), 2) + ",",
+          text(ci.at(1), 2) + "]", people ? "shares" : "binomial"};
+}
+
+/// Six people's answers to all ten pairs. `again`: to the first pair also on a second visit.
+std::vector<task_database::Trial> answers_of_six(bool again) {
+  const Words methods{"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"};
+  std::vector<task_database::Trial> out;
+  for (int person = 0; person < 6; ++person) {
+    const auto add = [&](int visit, int position, const std::string& a, const std::string& b, int chosen) {
+      out.push_back({"P0" + std::to_string(person + 1),
+                     visit,
+                     position,
+                     "data/scenes/single_dam.toml",
+                     "32k",
+                     a,
+                     b,
+                     {{"preference", chosen}}});
+    };
+    int position = 0;
+    for (std::size_t a = 0; a < methods.size(); ++a)
+      for (std::size_t b = a + 1; b < methods.size(); ++b, ++position)
+        add(1, position, methods[a], methods[b], (person + position) % 3 == 0 ? 1 : 2);
+    if (again) add(2, 0, methods[0], methods[1], person % 2 == 0 ? 1 : 2);
+  }
+  return out;
+}
+
+struct Task2Output {
+  std::string lines;
+  nlohmann::json results;
+};
+
+/// What vip-stats task2 prints and writes of them. Each line of a pair is held against the results.
+Task2Output task2_of_six(bool again) {
+  const TemporaryFolder folder;
+  task_database::write(folder / "study.db", study::read_protocol(base::resource("protocols/task2.toml")),
+                       answers_of_six(again));
+  const auto ended = program("vip-stats task2 " + (folder / "study.db").string() + " --json " +
+                             (folder / "out.json").string());
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  const auto results = json_of(folder / "out.json").at("task2");
+  for (const auto& pair : results.at("pairs")) {
+    const auto name = pair.at("a").get<std::string>() + " over " + pair.at("b").get<std::string>();
+    EXPECT_EQ(line_of(ended.out, name), line_of(pair)) << name;
+  }
+  return {ended.out, results};
+}
+
+TEST(Task2LinesE2e, SayWhichTestEachPairGotAndWhyThereAreNoTriads) {
+  const auto [lines, results] = task2_of_six(true);
+  for (std::size_t i = 0; i < 10; ++i)
+    EXPECT_EQ(line_of(results.at("pairs").at(i)).back(), i == 0 ? "shares" : "binomial");
+  const std::string several = "6 of 6 participants answered a pair more than once, at most 2 times.\n";
+  const auto at = lines.find(several);
+  ASSERT_NE(at, std::string::npos) << lines;
+  EXPECT_EQ(lines.find(several, at + 1), std::string::npos) << "said once, not at each pair";
+  for (const char* rule : {"tests", "more_than_one_trial"})
+    EXPECT_THAT(lines, HasSubstr(results.at("rules").at(rule).get<std::string>() + "\n"));
+  EXPECT_THAT(lines, HasSubstr("Circular triads are not given: " +
+                               results.at("triads").at("refused").get<std::string>() + ".\n"));
+}
+
+TEST(Task2LinesE2e, OneAnswerOfEachPersonIsTestedAsSuch) {
+  const auto [lines, results] = task2_of_six(false);
+  for (const auto& pair : results.at("pairs")) EXPECT_EQ(line_of(pair).back(), "binomial");
+  for (const char* words : {"shares", "more than once", "Circular triads"})
+    EXPECT_THAT(lines, Not(HasSubstr(words)));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <regex>
 
 #include "stats/inference/adjust.hpp"
@@ -31,6 +32,12 @@ Json json_number(double value) {
 }
 
 Json json_number(const std::optional<double>& value) { return value ? json_number(*value) : Json(); }
+
+double number_of(const Json& json) {
+  if (json == "Inf" || json == "-Inf")
+    return (json == "Inf" ? 1 : -1) * std::numeric_limits<double>::infinity();
+  return json.is_number() ? json.get<double>() : 0;
+}
 
 Json json_interval(const std::array<double, 2>& interval) {
   return Json::array({json_number(interval[0]), json_number(interval[1])});

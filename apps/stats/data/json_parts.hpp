@@ -18,6 +18,11 @@ Json json_number(double value);
 Json json_number(const std::optional<double>& value);
 Json json_interval(const std::array<double, 2>& interval);
 Json json_interval(const std::optional<std::array<double, 2>>& interval);
+/// What json_number() wrote; nought for null.
+double number_of(const Json& json);
+/// Frames/s: no protocol has a higher rate (design.mean_fps), so an interval that ends beyond has no upper
+/// bound.
+inline constexpr double highest_rate = 1000;
 /// {"refused": reason}.
 Json json_refused(const std::string& reason);
 /// A reason in which methods go by their place, as stats has them ("method0, method2", "item 1", "items 1,

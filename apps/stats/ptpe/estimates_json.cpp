@@ -4,11 +4,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/stats/data/json_parts.hpp"
+
 namespace apps {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using stats::CurveSpread;
 using stats::Result;
 
@@ -29,8 +30,8 @@ template <class Spread>
 void add_spread(Json& json, const Result<Spread>& spread) {
   json["a_se"] = spread ? Json(spread->a_se) : Json();
   json["b_se"] = spread ? Json(spread->b_se) : Json();
-  json["a_ci"] = spread ? Json(spread->a_ci) : Json();
-  json["b_ci"] = spread ? Json(spread->b_ci) : Json();
+  json["a_ci"] = spread ? json_interval(spread->a_ci) : Json();
+  json["b_ci"] = spread ? json_interval(spread->b_ci) : Json();
 }
 
 void add_spread(Json& json, const Result<CurveSpread>& spread) {
@@ -143,10 +144,10 @@ Json bands_json(const PilotFit& fit) {
       list.push_back({{"level", level},
                       {"delta", delta},
                       {"mu", point.mu},
-                      {"ci", point.pointwise},
-                      {"simultaneous_ci", point.simultaneous},
+                      {"ci", json_interval(point.pointwise)},
+                      {"simultaneous_ci", json_interval(point.simultaneous)},
                       {"solver_mu", at.band ? Json(at.band->curve.mu(delta)) : Json()},
-                      {"solver_ci", at.band ? Json(at.band->band(delta).pointwise) : Json()}});
+                      {"solver_ci", at.band ? json_interval(at.band->band(delta).pointwise) : Json()}});
     }
   }
   return list;
@@ -160,8 +161,8 @@ Json form_json(const PilotFit& fit) {
     const auto point = form->curve.band(delta);
     curve.push_back({{"delta", delta},
                      {"mu", point.mu},
-                     {"ci", point.pointwise},
-                     {"simultaneous_ci", point.simultaneous}});
+                     {"ci", json_interval(point.pointwise)},
+                     {"simultaneous_ci", json_interval(point.simultaneous)}});
   }
   return {{"c", form->c},
           {"ci", form->ci},

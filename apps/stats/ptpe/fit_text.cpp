@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/ptpe/estimates_json.hpp"
 #include "apps/stats/ptpe/pilot_people_json.hpp"
 
@@ -16,9 +17,8 @@ namespace apps {
 
 namespace {
 
-/// An interval of frame rates. An end beyond every rate that a protocol may have is no bound.
+/// An interval of frame rates.
 std::string rates(const std::array<double, 2>& ci, int decimals) {
-  constexpr double highest_rate = 1000;  // of design.mean_fps, frames/s
   if (ci[1] > highest_rate) return fmt::format("[{:.{}f}, no upper bound]", ci[0], decimals);
   return fmt::format("[{:.{}f}, {:.{}f}]", ci[0], decimals, ci[1], decimals);
 }

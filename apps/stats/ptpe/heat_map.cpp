@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/ptpe/contour_lines.hpp"
 #include "apps/stats/ptpe/pilot_fit.hpp"
 
@@ -202,7 +203,9 @@ std::string colour_bar(const HeatMap& map, const Frame& frame) {
 
 /// A number of the estimate with its place in the results.
 std::string number_of(const HeatMap& map, double value, int decimals, const std::string& member) {
-  return "<tspan" + field_attribute(map.estimate_field, member) + ">" + number(value, decimals) + "</tspan>";
+  const std::string text =
+      std::isinf(value) ? value > 0 ? "\xE2\x88\x9E" : "\xE2\x88\x92\xE2\x88\x9E" : number(value, decimals);
+  return "<tspan" + field_attribute(map.estimate_field, member) + ">" + text + "</tspan>";
 }
 
 /// "a = 23.4 [22.1, 24.6]".
@@ -211,7 +214,9 @@ std::string interval(const HeatMap& map, const std::string& name, double value,
   const std::string member = "/" + name;
   return name + " = " + number_of(map, value, decimals, member) + " [" +
          number_of(map, ci[0], decimals, member + "_ci/0") + ", " +
-         number_of(map, ci[1], decimals, member + "_ci/1") + "]";
+         (name == "a" && ci[1] > highest_rate ? "no upper bound"
+                                              : number_of(map, ci[1], decimals, member + "_ci/1")) +
+         "]";
 }
 
 std::string legend(const HeatMap& map, const Frame& frame) {

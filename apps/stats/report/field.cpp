@@ -3,6 +3,7 @@
 #include <regex>
 
 #include "apps/common/svg.hpp"
+#include "apps/stats/data/json_parts.hpp"
 
 namespace apps::report {
 
@@ -150,8 +151,7 @@ std::string interval(const Field& field, int decimals) {
 }
 
 std::string rate_interval(const Field& field) {
-  constexpr double highest_rate = 1000;  // of design.mean_fps, frames/s
-  if (field.entries().size() != 2 || !(field[1].number() > highest_rate)) return interval(field, 2);
+  if (field.entries().size() != 2 || !(number_of(field[1].json()) > highest_rate)) return interval(field, 2);
   return "<span class=\"number\">[" + end_of(field[0], 2) + ", no upper bound]</span>";
 }
 

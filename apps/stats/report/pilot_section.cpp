@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/ptpe/heat_map.hpp"
 #include "apps/stats/report/figures.hpp"
 #include "apps/stats/report/html.hpp"
@@ -155,8 +156,8 @@ svg::Picture pilot_map(const Field& pilot) {
   }
   map.a = pilot["a"].number();
   map.b = pilot["b"].number();
-  map.a_ci = {pilot["a_ci"][0].number(), pilot["a_ci"][1].number()};
-  map.b_ci = {pilot["b_ci"][0].number(), pilot["b_ci"][1].number()};
+  map.a_ci = {number_of(pilot["a_ci"][0].json()), number_of(pilot["a_ci"][1].json())};
+  map.b_ci = {number_of(pilot["b_ci"][0].json()), number_of(pilot["b_ci"][1].json())};
   map.confidence = pilot["interval"]["confidence"].number();
   if (pilot["form"]["rejected"].yes())
     for (const Field& point : pilot["form"]["free_curve"].entries())

@@ -1,0 +1,119 @@
+/// The report's boxes and tables on wide and narrow screens and on paper.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/stats/report/page.hpp"
+#include "stats/base/file.hpp"
+#include "tests/apps/html_reader.hpp"
+
+namespace apps {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+
+const OrderedJson& example() {
+  static const auto json =
+      OrderedJson::parse(base::read_file(std::string(VIP_TEST_DIR) + "/apps/results_example.json", 1 << 24));
+  return json;
+}
+
+html_reader::Page page_of(const OrderedJson& json) { return html_reader::read(report::results_page(json)); }
+
+/// What the style sheet declares for a selector: within the @media block that begins so, or outside of all.
+std::string style_of(const std::string& html, const std::string& media, const std::string& selector) {
+  const auto from = html.find("<style>") + 7;
+  const std::string css = html.substr(from, html.find("</style>") - from);
+  std::string out, block;
+  for (std::size_t at = 0; at < css.size();) {
+    const auto brace = css.find_first_of("{}", at);
+    if (brace == std::string::npos) break;
+    auto words = css.substr(at, brace - at);
+    if (const auto comment = words.rfind("*/"); comment != std::string::npos) words.erase(0, comment + 2);
+    words.erase(0, words.find_first_not_of(" \n"));
+    at = brace + 1;
+    if (css[brace] == '}' || words.starts_with("@media")) {
+      block = css[brace] == '}' ? "" : words;
+      continue;
+    }
+    const auto end = css.find('}', at);
+    const bool here = media.empty() ? block.empty() : block.starts_with(media);
+    if (here && (", " + words.substr(0, words.find_last_not_of(' ') + 1) + ",").find(", " + selector + ",") !=
+                    std::string::npos)
+      out += css.substr(at, end - at);
+    at = end + 1;
+  }
+  return out;
+}
+
+TEST(ReportLayout, AWideTableScrollsInABoxOfItsOwnAndAShadeShowsWhere) {
+  std::map<std::string, std::size_t> n;
+  const std::string html = report::results_page(example());
+  const auto page = html_reader::read(html);
+  for (const auto& element : page.elements)
+    if (element.name == "table" || (element.name == "div" && element.attributes.contains("tabindex")))
+      ++n[element.name];
+  EXPECT_EQ(n["div"], n["table"]) << "a box for each, which the keyboard reaches";
+  for (const auto& text : page.texts) {
+    const auto table = std::find_if(text.around.begin(), text.around.end(),
+                                    [](const auto& one) { return one.name == "table"; });
+    if (table == text.around.end()) continue;
+    ASSERT_EQ((table - 1)->attributes.at("class"), "wide") << text.words;
+  }
+  for (const char* box : {".wide", "figure"}) {
+    EXPECT_THAT(style_of(html, "", box), HasSubstr("overflow-x: auto;")) << box;
+    const std::string narrow = style_of(html, "@media screen and (max-width", box);
+    for (const char* side : {"right", "left"}) {
+      // A white cover moves with the table, the shade below it stays at the box's edge.
+      EXPECT_THAT(narrow, ContainsRegex("to " + std::string(side) + ", #fff [^;]*local")) << box;
+      EXPECT_THAT(narrow, ContainsRegex("to " + std::string(side) + ", #999, [^;]*scroll")) << box;
+    }
+  }
+  EXPECT_THAT(style_of(html, "@media screen and (max-width", ".wide table"), HasSubstr("width: max-content"));
+  EXPECT_THAT(style_of(html, "@media print", ".wide"), HasSubstr("overflow: visible"));
+}
+
+/// Numbers of columns of each table's rows; the first row is the head.
+std::vector<std::vector<int>> columns_of(const html_reader::Page& page) {
+  std::vector<std::vector<int>> out;
+  for (const auto& element : page.elements) {
+    if (element.name == "table") out.emplace_back();
+    if (element.name == "tr") out.back().push_back(0);
+    if (element.name != "th" && element.name != "td") continue;
+    const auto span = element.attributes.find("colspan");
+    out.back().back() += span == element.attributes.end() ? 1 : std::stoi(span->second);
+  }
+  return out;
+}
+
+TEST(ReportLayout, RowsHaveTheColumnsOfTheirHeadAndTimingOnlyThoseThatWereMeasured) {
+  auto json = example();
+  const auto heads = [](const html_reader::Page& page) {
+    std::multiset<std::string> out;
+    for (const auto& text : page.texts)
+      if (text.around.back().name == "th" && text.attribute("scope") == "col") out.insert(text.words);
+    return out;
+  };
+  const auto without = heads(page_of(json));
+  for (auto& cell : json["timing"]) {
+    if (cell["task"] != "task1") continue;
+    cell["active_fraction"] = 0.5;
+    cell["tau_fps"] = 12;
+  }
+  const auto page = page_of(json);
+  EXPECT_EQ(without.count("Solved") + without.count("Tau (frames/s)"), 0u);
+  EXPECT_EQ(heads(page).count("Solved"), 1u) << "of Task 1 alone";
+  EXPECT_EQ(heads(page).count("Tau (frames/s)"), 1u);
+  for (const auto& table : columns_of(page))
+    for (const int columns : table) EXPECT_EQ(columns, table.front());
+}
+
+}  // namespace
+}  // namespace apps
