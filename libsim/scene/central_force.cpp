@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/vector.hpp"
 #include "stats/base/toml.hpp"
 
 namespace sim {
-
-namespace {
-constexpr double farthest_m = 1e4;
-}
 
 std::optional<CentralForce> read_central_force(const base::TomlTable& scene,
                                                const std::array<double, 3>& origin_m) {

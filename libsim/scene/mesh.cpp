@@ -6,6 +6,7 @@
 #include <numbers>
 #include <thread>
 
+#include "libsim/scene/vector.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
 
@@ -13,18 +14,11 @@ namespace sim {
 
 namespace {
 
-using Vector = std::array<double, 3>;
 using Matrix = std::array<Vector, 3>;
 constexpr int usual_cells = 48, fewest_cells = 4;
 constexpr int margin = 2;   ///< cells round the mesh
 constexpr int spread = 64;  ///< directions of contacts, beside the axes
 constexpr unsigned most_threads = 8;
-
-Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Turns a symmetric matrix diagonal by Jacobi's rotations; what it returns has the principal axes as
 /// columns.

@@ -6,22 +6,16 @@
 #include <cstdint>
 #include <map>
 
+#include "libsim/scene/vector.hpp"
 #include "stats/base/text.hpp"
 
 namespace sim {
 
 namespace {
 
-using Vector = std::array<double, 3>;
 constexpr double farthest = 1e6;
 /// Least area of a triangle over the square of its longest edge.
 constexpr double flattest = 1e-9;
-
-Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// The words of a line, before a comment.
 std::vector<std::string_view> words_of(std::string_view line) {

@@ -6,6 +6,7 @@
 
 #include "libsim/scene/mesh_reader.hpp"
 #include "libsim/scene/overlap.hpp"
+#include "libsim/scene/vector.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
@@ -13,19 +14,10 @@ namespace sim {
 
 namespace {
 
-using Vector = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;
-constexpr double farthest_m = 1e4;
 constexpr double thinnest_m = 1e-3;
 constexpr double most_friction = 10;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vector sum(const Vector& a, double share, const Vector& b) {
-  return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
-}
 double length(const Vector& a) { return std::hypot(a[0], a[1], a[2]); }
 
 Quaternion rotation(const Vector& axis, double angle) {
@@ -82,7 +74,7 @@ Vector direction(const base::TomlTable& table, const char* key) {
   return {v[0] / size, v[1] / size, v[2] / size};
 }
 
-Vector place(const base::TomlTable& table, const char* key, const Vector& origin_m) {
+Vector place_in_tank(const base::TomlTable& table, const char* key, const Vector& origin_m) {
   const auto [least, most] = std::minmax_element(origin_m.begin(), origin_m.end());
   const auto v = table.numbers(key, 3, {*least - farthest_m, *most + farthest_m});
   return {v[0] - origin_m[0], v[1] - origin_m[1], v[2] - origin_m[2]};
@@ -92,7 +84,7 @@ void read_motion(const base::TomlTable& table, const Vector& origin_m, Obstacle&
   const std::string word = table.choice_or("motion", "fixed", {"fixed", "turns", "swings", "free"});
   if (word == "turns") {
     out.motion = ObstacleMotion::Turns;
-    out.about_m = place(table, "about_m", origin_m);
+    out.about_m = place_in_tank(table, "about_m", origin_m);
     out.axis = direction(table, "axis");
     out.rate_rad_s = table.number("rate_rad_s", {-1e3, 1e3});
   } else if (word == "swings") {
@@ -126,7 +118,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
     out.shape = ObstacleShape::Capsule;
     out.length_m = table.number("length_m", size);
   }
-  out.start.centre_m = place(table, "centre_m", origin_m);
+  out.start.centre_m = place_in_tank(table, "centre_m", origin_m);
   if (table.has("rotation_deg")) {
     const double angle = table.number("rotation_deg", {-360, 360}) * std::numbers::pi / 180;
     out.start.turn = product(rotation(direction(table, "rotation_axis"), angle), out.start.turn);

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "libsim/scene/mesh.hpp"
+#include "libsim/scene/vector.hpp"
 
 namespace sim {
 
 namespace {
-
-using Vector = std::array<double, 3>;
 
 double reach(const Obstacle& o) {
   const Vector half = half_sides_m(o);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libsim/scene/mesh_reader.hpp"
+#include "libsim/scene/vector.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/toml.hpp"
 
@@ -12,8 +13,6 @@ namespace sim {
 namespace {
 
 constexpr int newest_format = 2;
-// Far enough for any room, near enough for float coordinates to resolve 1 mm.
-constexpr double farthest_m = 1e4;
 // A double resolves 1e-10 m there.
 constexpr double farthest_origin_m = 1e6;
 constexpr double hottest_k = 1e4;

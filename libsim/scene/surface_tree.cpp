@@ -4,22 +4,15 @@
 #include <cmath>
 #include <map>
 
+#include "libsim/scene/vector.hpp"
+
 namespace sim {
 
 namespace {
 
-using Vector = std::array<double, 3>;
 constexpr int leaf_size = 4;
 constexpr int deepest = 64;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vector sum(const Vector& a, double share, const Vector& b) {
-  return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
-}
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Vector unit(const Vector& a) {
   const double length = std::sqrt(dot(a, a));
   return {a[0] / length, a[1] / length, a[2] / length};

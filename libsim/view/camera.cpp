@@ -3,17 +3,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "libsim/scene/vector.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim {
 
 namespace {
 
-Vec3d subtract(const Vec3d& a, const Vec3d& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Vec3d normalized(const Vec3d& a) {
   const double length = std::sqrt(dot(a, a));
   return {a[0] / length, a[1] / length, a[2] / length};
@@ -36,7 +32,7 @@ Mat4 multiply(const Mat4& a, const Mat4& b) {
 }
 
 Mat4 look_at(const Vec3d& eye_m, const Vec3d& target_m) {
-  const Vec3d forward = subtract(target_m, eye_m);
+  const Vec3d forward = minus(target_m, eye_m);
   const Vec3d right = cross(forward, {0, 1, 0});
   if (!(dot(right, right) > 1e-12 * dot(forward, forward))) {
     throw base::Error("camera", "eye and target coincide, or the view is straight up or down",

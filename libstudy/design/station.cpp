@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <numeric>
-#include <regex>
 
 #include "libstudy/design/plan.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/pattern.hpp"
 
 namespace study {
 
 std::optional<StationNumber> parse_station_number(const std::string& station) {
-  static const std::regex pattern("(?:.* )?([0-9]{1,9})/([0-9]{1,9})");
-  std::smatch found;
-  if (!std::regex_match(station, found, pattern)) return {};
-  const StationNumber out{std::stoi(found[1]), std::stoi(found[2])};
+  static const base::Pattern pattern("(?:.* )?([0-9]{1,9})/([0-9]{1,9})");
+  const auto found = pattern.match(station);
+  if (!found) return {};
+  const StationNumber out{std::stoi(found->at(1)), std::stoi(found->at(2))};
   if (out.number < 1 || out.number > out.count || out.count > 999)
     throw base::Error("--station " + station, "is no station's number",
                       "write 2/5 for station 2 of 5: from 1 to the number of stations, at most 999");

@@ -10,8 +10,8 @@ namespace study {
 
 namespace {
 
-constexpr std::string_view kind = "frames";
-const std::string mend = "write frames, or frames:grain=4,bias=0.3 and the like";
+constexpr std::string_view frames_kind = "frames";
+const std::string frames_mend = "write frames, or frames:grain=4,bias=0.3 and the like";
 constexpr double neutral_granularity_px = 8.5, neutral_flicker = 0.02, tau_scale = 15;
 constexpr double symptom_level = 0.6, symptom_scale = 3;
 
@@ -32,16 +32,16 @@ std::array<ObserverKey, 9> keys_of(FramesObserverParameters& p) {
 
 FramesObserverParameters parse_frames_observer(std::string_view specification) {
   FramesObserverParameters parameters;
-  if (specification == kind) return parameters;
-  if (!specification.starts_with(std::string(kind) + ":"))
-    fail_observer(specification, 0, "is not a kind of observer", mend);
-  read_observer_keys(specification, kind.size() + 1, keys_of(parameters), mend);
+  if (specification == frames_kind) return parameters;
+  if (!specification.starts_with(std::string(frames_kind) + ":"))
+    fail_observer(specification, 0, "is not a kind of observer", frames_mend);
+  read_observer_keys(specification, frames_kind.size() + 1, keys_of(parameters), frames_mend);
   return parameters;
 }
 
 std::optional<std::string> FramesObserver::simulated() const {
   FramesObserverParameters copy = parameters_;
-  return std::string(kind) + ":" + write_observer_keys(written(keys_of(copy)));
+  return std::string(frames_kind) + ":" + write_observer_keys(written(keys_of(copy)));
 }
 
 double FramesObserver::quality(const ShownStimulus& shown) const {

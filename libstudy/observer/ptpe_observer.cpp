@@ -10,8 +10,8 @@ namespace study {
 
 namespace {
 
-constexpr std::string_view kind = "ptpe:";
-const std::string mend = "write ptpe:a=31,b=0.035 with slope, noise and participant_sd as you like";
+constexpr std::string_view ptpe_kind = "ptpe:";
+const std::string ptpe_mend = "write ptpe:a=31,b=0.035 with slope, noise and participant_sd as you like";
 
 std::array<ObserverKey, 6> keys_of(PtpeObserverParameters& p) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -26,15 +26,16 @@ std::array<ObserverKey, 6> keys_of(PtpeObserverParameters& p) {
 }  // namespace
 
 PtpeObserverParameters parse_ptpe_observer(std::string_view specification) {
-  if (!specification.starts_with(kind)) fail_observer(specification, 0, "is not a kind of observer", mend);
+  if (!specification.starts_with(ptpe_kind))
+    fail_observer(specification, 0, "is not a kind of observer", ptpe_mend);
   PtpeObserverParameters parameters;
-  read_observer_keys(specification, kind.size(), keys_of(parameters), mend);
+  read_observer_keys(specification, ptpe_kind.size(), keys_of(parameters), ptpe_mend);
   return parameters;
 }
 
 std::optional<std::string> PtpeObserver::simulated() const {
   PtpeObserverParameters copy = parameters_;
-  return std::string(kind) + write_observer_keys(written(keys_of(copy)));
+  return std::string(ptpe_kind) + write_observer_keys(written(keys_of(copy)));
 }
 
 /// x - m of one stimulus.

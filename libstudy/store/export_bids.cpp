@@ -203,7 +203,7 @@ void write_people(Connection& database, const std::vector<LabelledSession>& sess
   }
 }
 
-bool is_export(const fs::path& folder) {
+bool is_bids_export(const fs::path& folder) {
   const fs::path description = folder / description_file;
   std::error_code ignored;
   if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 20)
@@ -213,14 +213,14 @@ bool is_export(const fs::path& folder) {
          json["GeneratedBy"].dump().find("\"vip-study\"") != std::string::npos;
 }
 
-bool is_our_name(const std::string& name) {
+bool is_bids_name(const std::string& name) {
   static const std::set<std::string> names{description_file, "README.md", "participants.tsv",
                                            "participants.json"};
   return names.contains(name) || name.starts_with("sub-") || name.starts_with("phenotype/") ||
          name.starts_with("code/setting_");
 }
 
-constexpr ExportKind bids_kind{"bids", is_export, is_our_name};
+constexpr ExportKind bids_kind{"bids", is_bids_export, is_bids_name};
 
 }  // namespace
 

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
+#include "stats/base/pattern.hpp"
 
 namespace study {
 
@@ -21,7 +21,7 @@ using sqlite::Statement;
 
 namespace {
 
-struct Table {
+struct CsvTable {
   const char* name;         // in the schema
   const char* file;         // of the export
   const char* order;        // makes equal databases equal files
@@ -31,29 +31,29 @@ struct Table {
 };
 
 constexpr std::array tables{
-    Table{"protocol", "protocols.csv", "protocol_id"},
-    Table{"question", "questions.csv", "question_id"},
-    Table{"ask", "asks.csv", "protocol_id, block, place"},
-    Table{"cell", "cells.csv", "protocol_id, cell"},
-    Table{"run", "runs.csv", "run_id"},
-    Table{"session", "sessions.csv", "session_id"},
-    Table{"framing", "framings.csv", "framing_id"},
-    Table{"headset", "headsets.csv", "headset_id"},
-    Table{"ipd", "ipds.csv", "ipd_id"},
-    Table{"unit", "units.csv", "unit_id"},
-    Table{"trial", "trials.csv", "trial_id"},
-    Table{"presentation", "presentations.csv", "presentation_id"},
-    Table{"frame", "frames.csv", "presentation_id, frame_index"},
-    Table{"slot", "slots.csv", "presentation_id, slot_index"},
-    Table{"head", "heads.csv", "presentation_id, slot_index", "", false, true},
-    Table{"gaze", "gaze.csv", "presentation_id, sample_index", "", false, true},
-    Table{"gaze_validation", "gaze_validations.csv", "session_id, validation, point", "", false, true},
-    Table{"response", "responses.csv", "response_id", "words"},
-    Table{"response", "words.csv", "response_id", "", true},
-    Table{"note", "notes.csv", "note_id", "", true},
-    Table{"permission_change", "permission_changes.csv", "permission_change_id"},
-    Table{"tombstone", "tombstones.csv", "participant"},
-    Table{"event", "events.csv", "event_id"},
+    CsvTable{"protocol", "protocols.csv", "protocol_id"},
+    CsvTable{"question", "questions.csv", "question_id"},
+    CsvTable{"ask", "asks.csv", "protocol_id, block, place"},
+    CsvTable{"cell", "cells.csv", "protocol_id, cell"},
+    CsvTable{"run", "runs.csv", "run_id"},
+    CsvTable{"session", "sessions.csv", "session_id"},
+    CsvTable{"framing", "framings.csv", "framing_id"},
+    CsvTable{"headset", "headsets.csv", "headset_id"},
+    CsvTable{"ipd", "ipds.csv", "ipd_id"},
+    CsvTable{"unit", "units.csv", "unit_id"},
+    CsvTable{"trial", "trials.csv", "trial_id"},
+    CsvTable{"presentation", "presentations.csv", "presentation_id"},
+    CsvTable{"frame", "frames.csv", "presentation_id, frame_index"},
+    CsvTable{"slot", "slots.csv", "presentation_id, slot_index"},
+    CsvTable{"head", "heads.csv", "presentation_id, slot_index", "", false, true},
+    CsvTable{"gaze", "gaze.csv", "presentation_id, sample_index", "", false, true},
+    CsvTable{"gaze_validation", "gaze_validations.csv", "session_id, validation, point", "", false, true},
+    CsvTable{"response", "responses.csv", "response_id", "words"},
+    CsvTable{"response", "words.csv", "response_id", "", true},
+    CsvTable{"note", "notes.csv", "note_id", "", true},
+    CsvTable{"permission_change", "permission_changes.csv", "permission_change_id"},
+    CsvTable{"tombstone", "tombstones.csv", "participant"},
+    CsvTable{"event", "events.csv", "event_id"},
 };
 
 /// A column of an exported table that the schema's views tell of its rows.
@@ -84,7 +84,7 @@ constexpr std::array added_columns{
         "(SELECT why_not FROM answer a WHERE a.response_id = response.response_id)",
         "set aside (with the showing that it judged), answered again, excluded (by the experimenter), "
         "not answered or practice; empty: the answer counts"}};
-bool is_of(const AddedColumn& column, const Table& table) {
+bool is_of(const AddedColumn& column, const CsvTable& table) {
   return std::strcmp(table.name, column.table) == 0;
 }
 
@@ -92,28 +92,28 @@ constexpr const char* ratings_file = "ratings.csv";
 constexpr const char* dictionary_file = "dictionary.csv";
 constexpr const char* dictionary_header = "file,column,type,meaning\r\n";
 
-bool is_our_name(const std::string& name) {
+bool is_csv_name(const std::string& name) {
   if (name == ratings_file || name == dictionary_file) return true;
   const bool toml = name.ends_with(".toml");
   if (toml && (name.starts_with("protocol_") || name.starts_with("setting_"))) return true;
   for (const SicknessTable& table : sickness_tables({})) {
     if (name == table.name + ".csv") return true;
   }
-  for (const Table& table : tables) {
+  for (const CsvTable& table : tables) {
     if (name == table.file) return true;
   }
   return false;
 }
 
 /// Whether a dictionary stands there that begins like ours.
-bool is_export(const fs::path& folder) {
+bool is_csv_export(const fs::path& folder) {
   std::ifstream dictionary(folder / dictionary_file, std::ios::binary);
   std::string begin(std::strlen(dictionary_header), '\0');
   dictionary.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   return begin == dictionary_header;
 }
 
-constexpr ExportKind csv_kind{"csv", is_export, is_our_name};
+constexpr ExportKind csv_kind{"csv", is_csv_export, is_csv_name};
 
 /// Found once for each table: each column of the ratings asks again for those of a table.
 const std::vector<ColumnMeaning>& known_meanings(const std::string& table, const std::string& create_sql) {
@@ -123,7 +123,7 @@ const std::vector<ColumnMeaning>& known_meanings(const std::string& table, const
   return found->second;
 }
 
-std::vector<ColumnMeaning> columns_of(Connection& database, const Table& table) {
+std::vector<ColumnMeaning> columns_of(Connection& database, const CsvTable& table) {
   Statement sql(database, "SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
   if (!sql.bind_all(table.name).step()) return {};
   auto columns = known_meanings(table.name, sql.text(0));
@@ -131,7 +131,7 @@ std::vector<ColumnMeaning> columns_of(Connection& database, const Table& table) 
   return columns;
 }
 
-std::string select_sql(Connection& database, const Table& table) {
+std::string select_sql(Connection& database, const CsvTable& table) {
   std::string list;
   for (const ColumnMeaning& column : columns_of(database, table))
     list += (list.empty() ? "" : ", ") + column.column;
@@ -142,7 +142,7 @@ std::string select_sql(Connection& database, const Table& table) {
   return "SELECT " + list + " FROM " + table.name + condition + " ORDER BY " + table.order;
 }
 
-bool is_written(const Table& table, const CsvChoice& choice) {
+bool is_written(const CsvTable& table, const CsvChoice& choice) {
   return (!table.free_words || choice.words) && (!table.gaze || choice.gaze);
 }
 
@@ -169,7 +169,7 @@ std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, co
   };
   write("(all)", {"", "(all)", "TEXT", formula_guard_meaning});
   if (dialect.mark) write("(all)", {"", "(all)", "TEXT", spreadsheet_meaning(dialect)});
-  for (const Table& table : tables) {
+  for (const CsvTable& table : tables) {
     if (!is_written(table, choice)) continue;
     for (const ColumnMeaning& column : columns_of(database, table)) write(table.file, column);
     for (const AddedColumn& column : added_columns) {
@@ -194,11 +194,13 @@ void write_protocols(Connection& database, const ExportDraft& draft) {
 /// SQLite writes a column that a later schema step adds behind the last one, before that one's comment. Here
 /// it stands on a line of its own at the end, with its meaning as the others have it.
 std::string with_added_last(const std::string& create_sql) {
-  static const std::regex added(R"(, (\w+ \w+) /\* ([^*]*) \*/)");
-  std::string out = std::regex_replace(create_sql, added, "");
-  for (std::sregex_iterator one(create_sql.begin(), create_sql.end(), added), end; one != end; ++one)
-    out += "\n" + (*one)[1].str() + ", -- " + (*one)[2].str();
-  return out;
+  static const base::Pattern added(R"(, (\w+ \w+) /\* ([^*]*) \*/)");
+  std::string last;
+  std::string out = added.replaced(create_sql, [&](const base::Groups& found) {
+    last += "\n" + found[1] + ", -- " + found[2];
+    return "";
+  });
+  return out + last;
 }
 
 }  // namespace
@@ -241,7 +243,7 @@ std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& fol
   database->execute("BEGIN");
   ExportDraft draft({study.path, csv_kind, everybody(*database), Readers::Owner, choice.dialect}, folder);
   std::vector<ExportedFile> files;
-  for (const Table& table : tables) {
+  for (const CsvTable& table : tables) {
     if (!is_written(table, choice)) continue;
     files.push_back({table.file, write_csv(*database, select_sql(*database, table), draft, table.file)});
   }

@@ -50,7 +50,7 @@ std::string pages_sql(std::int64_t session) {
          std::to_string(session) + " ORDER BY response.response_id";
 }
 
-bool is_export(const fs::path& folder) {
+bool is_psych_ds_export(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_directory(folder / "data", ignored)) return false;
   const fs::path description = folder / description_file;
@@ -60,12 +60,12 @@ bool is_export(const fs::path& folder) {
   return json.is_object() && json.contains("creator") && json["creator"] == "vip-study";
 }
 
-bool is_our_name(const std::string& name) {
+bool is_psych_ds_name(const std::string& name) {
   return name == description_file || name == "README.md" || name.starts_with("data/study-") ||
          name.starts_with("materials/setting_");
 }
 
-constexpr ExportKind psych_ds_kind{"psych-ds", is_export, is_our_name};
+constexpr ExportKind psych_ds_kind{"psych-ds", is_psych_ds_export, is_psych_ds_name};
 
 /// Each column that stands in a file, once; two files may share one. `scored`: the sessions of the export.
 Json variables(Connection& database, std::span<const SicknessSession> scored) {

@@ -13,7 +13,7 @@ using sqlite::Statement;
 
 namespace {
 
-constexpr const char* sessions_sql =
+constexpr const char* merged_sessions_sql =
     "SELECT s.session_id, s.uid, s.person, s.code, s.station, r.uid, r.started_utc, p.sha256, s.visit, "
     "s.test_data, (SELECT count(*) FROM event e WHERE e.session_id = s.session_id AND e.kind <> ?1), "
     "(SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
@@ -97,7 +97,7 @@ void check_references(Connection& source) {
 void add_source(Content& content, std::unique_ptr<Connection> source) {
   check_references(*source);
   const std::size_t index = content.sources.size();
-  Statement row(*source, sessions_sql);
+  Statement row(*source, merged_sessions_sql);
   for (row.bind_all(permission_event); row.step();) {
     SessionCopy copy;
     copy.source = index;

@@ -16,7 +16,7 @@ constexpr const char* protocols_sql =
     "FROM protocol p LEFT JOIN session s USING (protocol_id) LEFT JOIN trial t USING (session_id) "
     "GROUP BY p.protocol_id ORDER BY p.protocol_id";
 
-constexpr const char* sessions_sql =
+constexpr const char* status_sessions_sql =
     "SELECT s.protocol_id, s.participant, s.visit, coalesce(s.observer, ''), s.clock, s.test_data, "
     "count(t.trial_id), count(t.trial_id) FILTER (WHERE t.state = 'answered'), "
     "(SELECT count(*) FROM presentation p JOIN trial v USING (trial_id) "
@@ -77,7 +77,7 @@ StudyStatus read_status(const StudyFile& study) {
     if (!row.is_null(5)) protocol.trial_seconds = row.real(5);
     status.protocols.push_back(std::move(protocol));
   }
-  for (Statement row(*database, sessions_sql); row.step();) {
+  for (Statement row(*database, status_sessions_sql); row.step();) {
     status.sessions.push_back({.protocol_id = row.integer(0),
                                .participant = row.text(1),
                                .visit = static_cast<int>(row.integer(2)),

@@ -15,7 +15,7 @@ using sqlite::Statement;
 
 namespace {
 
-constexpr const char* sessions_sql =
+constexpr const char* task_sessions_sql =
     "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, "
     "coalesce((SELECT min(p.gaze_source) FROM presentation p JOIN trial t USING (trial_id) WHERE "
     "t.session_id = "
@@ -73,7 +73,7 @@ class Reader {
       : database_(database),
         protocol_id_(protocol_id),
         protocol_(protocol),
-        session_(database, sessions_sql),
+        session_(database, task_sessions_sql),
         trial_(database, trials_sql),
         showing_(database, showing_sql),
         answer_(database, answers_sql),

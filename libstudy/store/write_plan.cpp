@@ -1,5 +1,4 @@
 /// Writing a run: protocol, sessions, units and trials, all before the first of them is shown.
-#include <regex>
 #include <set>
 
 #include "libstudy/store/export_labels.hpp"
@@ -7,6 +6,7 @@
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/pattern.hpp"
 #include "stats/base/text.hpp"
 
 namespace study {
@@ -147,8 +147,8 @@ void insert_framing(sqlite::Connection& database, std::int64_t session,
 }  // namespace
 
 void check_participant_code(const std::string& code) {
-  static const std::regex pattern("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
-  if (code.size() > 32 || !std::regex_match(code, pattern)) {
+  static const base::Pattern pattern("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
+  if (code.size() > 32 || !pattern.match(code)) {
     throw base::Error("participant '" + base::shortened(code) + "'", "is not a participant code",
                       "use 1 to 32 letters, digits, _ or -, a letter or digit first, and never a name");
   }

@@ -27,9 +27,9 @@ void sync(const fs::path& path, int flags) {
 
 void sync_folder(const fs::path& folder) { sync(folder, O_DIRECTORY); }
 
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
-
 }  // namespace
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
 void sync_folder_of(const fs::path& path) { sync_folder(folder_of(path)); }
 

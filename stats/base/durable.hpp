@@ -7,6 +7,9 @@
 
 namespace base {
 
+/// The folder that holds `path`: "." for a bare name.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
 /// Brings the names in the folder of `path` to the disk. A file system that cannot sync a folder is passed
 /// by, as is a folder that is not there.
 void sync_folder_of(const std::filesystem::path& path);

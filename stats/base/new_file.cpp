@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "stats/base/durable.hpp"
-#include "stats/base/error.hpp"
 
 namespace base {
 
@@ -21,8 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* mend = "free space, or write to a folder that you may write to";
-
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
 }  // namespace
 

@@ -60,7 +60,7 @@ double quantile_normal(std::span<const double> ascending, double p) {
 }
 
 /// What the resamples were drawn from.
-struct Sample {
+struct Resampled {
   Values x;
   int n_missing = 0;
   double estimate = 0, acceleration = 0;
@@ -76,8 +76,8 @@ std::string too_few(std::size_t n, double confidence) {
       100 * most, 100 * confidence);
 }
 
-Result<Sample> prepare(std::span<const double> x, const Statistic& statistic, double confidence) {
-  Sample out;
+Result<Resampled> prepare(std::span<const double> x, const Statistic& statistic, double confidence) {
+  Resampled out;
   for (const double v : x) {
     if (std::isinf(v)) return Refusal{"an infinite value"};
     if (std::isnan(v))
@@ -124,7 +124,7 @@ std::optional<BcaInterval> bca_interval(std::span<const double> ascending, doubl
   return out;
 }
 
-Result<BootstrapInterval> summarise(const Sample& sample, Values estimates, double confidence) {
+Result<BootstrapInterval> summarise(const Resampled& sample, Values estimates, double confidence) {
   if (!std::all_of(estimates.begin(), estimates.end(), [](double v) { return std::isfinite(v); }))
     return Refusal{"the statistic is undefined for a resample"};
   BootstrapInterval out{.n = static_cast<int>(sample.x.size()),

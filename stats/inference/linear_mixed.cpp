@@ -176,7 +176,7 @@ double form(const Vector& matrix, std::span<const double> w) {
 }
 
 /// Fills in what the minimum says; false where its surroundings are no minimum.
-bool describe(const RestrictedLikelihood& likelihood, const Best& best, bool replicated,
+bool fill_fit(const RestrictedLikelihood& likelihood, const Best& best, bool replicated,
               LinearMixedFit& fit) {
   const auto at = *likelihood.at(best.lambda);
   const double variance = at.residual / likelihood.freedom(), sigma = std::sqrt(variance);
@@ -241,7 +241,7 @@ Result<LinearMixedFit> fit_linear_mixed(std::span<const double> y, std::span<con
   if (!std::isfinite(best.value)) return Refusal{"the answers leave no scatter beside the model's terms"};
   if (std::max(std::abs(best.lambda[0]), std::abs(best.lambda[1])) > largest_ratio)
     return Refusal{"each participant's answers agree with themselves and leave no residual"};
-  if (!describe(likelihood, best, replicated, fit)) return Refusal{"the mixed model did not converge"};
+  if (!fill_fit(likelihood, best, replicated, fit)) return Refusal{"the mixed model did not converge"};
   return fit;
 }
 

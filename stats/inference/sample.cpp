@@ -7,7 +7,7 @@
 namespace stats {
 
 namespace {
-const Refusal infinite{"a value is infinite"};
+const Refusal infinite_value{"a value is infinite"};
 }
 
 Result<Sample> present(std::span<const double> values) {
@@ -16,7 +16,7 @@ Result<Sample> present(std::span<const double> values) {
     if (std::isnan(v)) {
       ++out.n_missing;
     } else if (std::isinf(v)) {
-      return infinite;
+      return infinite_value;
     } else {
       out.values.push_back(v);
     }
@@ -31,7 +31,7 @@ Result<PairedSample> present_pairs(std::span<const double> x, std::span<const do
     if (std::isnan(x[i]) || std::isnan(y[i])) {
       ++out.n_missing;
     } else if (std::isinf(x[i]) || std::isinf(y[i])) {
-      return infinite;
+      return infinite_value;
     } else {
       out.x.push_back(x[i]);
       out.y.push_back(y[i]);

@@ -12,7 +12,6 @@ namespace stats {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double eps = std::numeric_limits<double>::epsilon();
 const Refusal too_few{"not enough values"};
 
@@ -39,8 +38,8 @@ std::array<double, 2> interval(double estimate, double se, double df, const TTes
   const double tail = (1 - options.confidence) / (two_sided ? 2 : 1);
   const double reach = student_upper_quantile(tail, df) * se;
   std::array<double, 2> out{estimate - reach, estimate + reach};
-  if (options.alternative == Alternative::Less) out[0] = -infinite;
-  if (options.alternative == Alternative::Greater) out[1] = infinite;
+  if (options.alternative == Alternative::Less) out[0] = -HUGE_VAL;
+  if (options.alternative == Alternative::Greater) out[1] = HUGE_VAL;
   return out;
 }
 
@@ -63,7 +62,7 @@ std::optional<Refusal> fill(TTest& test, const Scaled& s, const TTestOptions& op
 /// Interval of a standardised effect t * per_t.
 std::array<double, 2> effect_interval(const TTest& test, double df, double per_t,
                                       const TTestOptions& options) {
-  if (!options.effect_intervals) return {-infinite, infinite};
+  if (!options.effect_intervals) return {-HUGE_VAL, HUGE_VAL};
   const auto ncp = noncentrality_interval(test.t, df, options.confidence);
   return {ncp[0] * per_t, ncp[1] * per_t};
 }

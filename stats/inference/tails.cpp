@@ -16,7 +16,6 @@ namespace stats {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double smallest = std::numeric_limits<double>::denorm_min();
 const double log_2pi = std::log(2 * std::numbers::pi);
 
@@ -76,8 +75,8 @@ double deviance_part(double x, double m) {
 
 double log_binomial_mass(double k, double n, double p, double q) {
   const double other = n - k;
-  if (p <= 0) return k == 0 ? 0 : -infinite;
-  if (q <= 0) return other == 0 ? 0 : -infinite;
+  if (p <= 0) return k == 0 ? 0 : -HUGE_VAL;
+  if (q <= 0) return other == 0 ? 0 : -HUGE_VAL;
   if (k == 0) return n * log_part(q, p);
   if (other == 0) return n * log_part(p, q);
   return stirling_error(n) - stirling_error(k) - stirling_error(other) - deviance_part(k, n * p) -
@@ -85,7 +84,7 @@ double log_binomial_mass(double k, double n, double p, double q) {
 }
 
 double log_beta_lower(double a, double b, double x, double y) {
-  if (x <= 0) return -infinite;
+  if (x <= 0) return -HUGE_VAL;
   if (y <= 0) return 0;
   if (x * (a + b + 2) < a + 1) return std::min(0.0, log_beta_near(a, b, x, y));
   return std::log1p(-std::min(1.0, std::exp(log_beta_near(b, a, y, x))));
@@ -106,7 +105,7 @@ double beta_quantile(double probability, double a, double b) {
 }
 
 double log_binomial_lower(double k, double n, double p, double q) {
-  if (k < 0) return -infinite;
+  if (k < 0) return -HUGE_VAL;
   return k >= n ? 0 : log_beta_lower(n - k, k + 1, q, p);
 }
 
@@ -125,7 +124,7 @@ double normal_two_sided(double z) {
 }
 
 double probability(double log_p) {
-  if (log_p == -infinite) return 0;
+  if (log_p == -HUGE_VAL) return 0;
   return std::clamp(std::exp(log_p), smallest, 1.0);
 }
 

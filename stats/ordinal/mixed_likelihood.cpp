@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <new>
 #include <numbers>
@@ -15,8 +14,6 @@
 namespace stats {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// g(u) = sum log P(row | u) - u^2 / 2 and its derivatives.
 struct Exponent {
@@ -33,8 +30,8 @@ struct MixedLikelihood::Place {
 
   CategoryTerm term(std::size_t row, double u) const {
     const auto c = static_cast<std::size_t>(category[row]);
-    return category_term(link, c ? thresholds[c - 1] : -infinity,
-                         c < thresholds.size() ? thresholds[c] : infinity, location[row] + sd * u);
+    return category_term(link, c ? thresholds[c - 1] : -HUGE_VAL,
+                         c < thresholds.size() ? thresholds[c] : HUGE_VAL, location[row] + sd * u);
   }
   Exponent exponent(const std::vector<std::size_t>& rows, double u) const {
     Exponent e{-u * u / 2, -u, -1, 0};
@@ -97,20 +94,20 @@ bool MixedLikelihood::find_mode(Group& group, const Place& place) const {
 }
 
 double MixedLikelihood::add_group(Group& group, const Place& place, MixedGradient& gradient) {
-  if (!find_mode(group, place)) return -infinity;
+  if (!find_mode(group, place)) return -HUGE_VAL;
   const double u = group.mode, sd = place.sd;
   const auto at_mode = place.exponent(group.rows, u);
   const double curvature = -at_mode.d2, scale = 1 / std::sqrt(curvature);
   const std::size_t points = nodes_.size();
   std::vector<Exponent> at(points);
   std::vector<double> share(points);
-  double largest = -infinity, sum = 0;
+  double largest = -HUGE_VAL, sum = 0;
   for (std::size_t k = 0; k < points; ++k) {
     at[k] = place.exponent(group.rows, u + scale * nodes_[k]);
     share[k] = log_weights_[k] + at[k].g;
     largest = std::max(largest, share[k]);
   }
-  if (!std::isfinite(largest)) return -infinity;
+  if (!std::isfinite(largest)) return -HUGE_VAL;
   for (double& s : share) sum += s = std::exp(s - largest);
   for (double& s : share) s /= sum;
   // d log L = sum share d g(u_k) + by_slope d g'(mode) + by_curvature d g''(mode), since the mode moves by
@@ -150,12 +147,12 @@ double MixedLikelihood::evaluate(std::span<const double> thresholds, std::span<c
   gradient.location.assign(location.size(), 0);
   gradient.sd = 0;
   const auto falls = std::adjacent_find(thresholds.begin(), thresholds.end(), std::greater_equal<>());
-  if (falls != thresholds.end() || !std::isfinite(sd)) return -infinity;
+  if (falls != thresholds.end() || !std::isfinite(sd)) return -HUGE_VAL;
   const Place place{thresholds, location, sd, link_, category_};
   double log_likelihood = 0;
   for (auto& group : groups_) {
     log_likelihood += add_group(group, place, gradient);
-    if (!std::isfinite(log_likelihood)) return -infinity;
+    if (!std::isfinite(log_likelihood)) return -HUGE_VAL;
   }
   return log_likelihood;
 }

@@ -93,8 +93,6 @@ std::vector<LogitRow> pair_rows(const Wins& wins) {
   return rows;
 }
 
-double logistic(double x) { return 1 / (1 + std::exp(-x)); }
-
 /// Strengths with the first item at 0 and with sum 0, and the worths.
 void set_strengths(BradleyTerry& out, const LogitFit& fit) {
   out.lambda_ref1.assign(1, 0.0);

@@ -16,7 +16,6 @@ namespace {
 
 using Values = std::vector<double>;
 
-double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 double log_logistic(double x) { return x < 0 ? x - std::log1p(std::exp(x)) : -std::log1p(std::exp(-x)); }
 
 double predictor(const LogitRow& row, const Values& beta) {

@@ -1,12 +1,15 @@
 #pragma once
 /// Logistic regression on small tables: the engine of the preference models.
 
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "stats/result.hpp"
 
 namespace stats {
+
+inline double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
 /// One row of the table: `design` has one value for each coefficient.
 struct LogitRow {

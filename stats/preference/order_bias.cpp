@@ -29,13 +29,13 @@ std::vector<LogitRow> rows_with(std::span<const Comparison> trials, int items, T
   return rows;
 }
 
-struct Fitted {
+struct OrderFit {
   std::vector<LogitRow> rows;
   Result<LogitFit> fit;
 };
 
 /// The last coefficient of `with`, tested against the fit without it.
-OrderTerm last_term(const Fitted& with, const LogitFit& without, std::span<const Comparison> trials,
+OrderTerm last_term(const OrderFit& with, const LogitFit& without, std::span<const Comparison> trials,
                     double confidence) {
   const LogitFit& fit = *with.fit;
   const std::size_t size = fit.coefficients.size(), last = size - 1;
@@ -52,8 +52,6 @@ OrderTerm last_term(const Fitted& with, const LogitFit& without, std::span<const
   out.lrt_p = chi2_upper(out.lrt_chi2, 1);
   return out;
 }
-
-double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
 }  // namespace
 
@@ -79,15 +77,15 @@ Result<OrderBias> order_bias(std::span<const Comparison> trials, int items, doub
   const auto fit = [&](Terms terms) {
     auto rows = rows_with(trials, items, terms, centre);
     auto fitted = fit_logit(rows);
-    return Fitted{std::move(rows), std::move(fitted)};
+    return OrderFit{std::move(rows), std::move(fitted)};
   };
-  const Fitted with = fit(Terms::Interval), without = fit(Terms::None);
+  const OrderFit with = fit(Terms::Interval), without = fit(Terms::None);
   if (!with.fit) return Refusal{"strengths and interval: " + with.fit.reason()};
   if (!without.fit) return Refusal{"strengths: " + without.fit.reason()};
   out.interval = last_term(with, *without.fit, trials, confidence);
   out.first_probability = logistic(out.interval.estimate);
   out.first_probability_ci = {logistic(out.interval.ci[0]), logistic(out.interval.ci[1])};
-  const Fitted drifting = fit(Terms::IntervalAndDrift);
+  const OrderFit drifting = fit(Terms::IntervalAndDrift);
   if (drifting.fit) out.drift = last_term(drifting, *with.fit, trials, confidence);
   return out;
 }

@@ -9,13 +9,6 @@
 
 namespace stats {
 
-namespace {
-
-/// delta is measured in tens of frames/s, so that every coefficient is of the order 1.
-constexpr double delta_unit = 10;
-
-}  // namespace
-
 /// u = x - alpha - beta d with x = log mu - its centre and d = (delta - its centre) / delta_unit; the score
 /// less the level is u (k + m d + q u).
 struct DirectModel::Place {

@@ -20,6 +20,9 @@
 
 namespace stats {
 
+/// frames/s; fits measure delta in this unit, so that every coefficient is of the order 1.
+constexpr double delta_unit = 10;
+
 struct DirectFit {
   Curve curve;
   double level = 4;

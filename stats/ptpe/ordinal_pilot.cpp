@@ -18,8 +18,6 @@ namespace stats {
 
 namespace {
 
-constexpr double delta_unit = 10;
-
 /// Ratings as categories, at x = log mu and d = delta / delta_unit less their means.
 struct Rows {
   std::vector<double> x, d;

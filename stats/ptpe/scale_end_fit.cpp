@@ -18,8 +18,6 @@ namespace stats {
 
 namespace {
 
-/// delta is measured in tens of frames/s, so that every parameter is of the order 1.
-constexpr double delta_unit = 10;
 constexpr std::size_t parameters = 5;
 using Values = std::array<double, parameters>;
 

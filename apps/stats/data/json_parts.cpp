@@ -3,27 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <regex>
 
+#include "stats/base/pattern.hpp"
 #include "stats/inference/adjust.hpp"
 
 namespace apps {
-
-namespace {
-
-/// The text with each match replaced by what `write` makes of its group.
-template <class Write>
-std::string replaced(const std::string& text, const std::regex& what, const Write& write) {
-  std::string out;
-  auto rest = text.begin();
-  for (std::sregex_iterator found(text.begin(), text.end(), what), end; found != end; ++found) {
-    out.append(rest, (*found)[0].first).append(write((*found)[1].str()));
-    rest = (*found)[0].second;
-  }
-  return out.append(rest, text.end());
-}
-
-}  // namespace
 
 Json json_number(double value) {
   if (std::isnan(value)) return {};
@@ -50,16 +34,16 @@ Json json_interval(const std::optional<std::array<double, 2>>& interval) {
 Json json_refused(const std::string& reason) { return {{"refused", reason}}; }
 
 std::string with_names(const std::string& reason, const std::vector<std::string>& methods) {
-  static const std::regex column("\\bmethod(\\d{1,4})\\b"),
+  static const base::Pattern column("\\bmethod(\\d{1,4})\\b"),
       items("\\bitems? (\\d{1,4}(?:(?:, | and )\\d{1,4})*)"), item("(\\d{1,4})");
-  const auto named = [&](const std::string& text, const std::regex& place, std::size_t first) {
-    return replaced(text, place, [&](const std::string& number) {
-      return methods.at(static_cast<std::size_t>(std::stoi(number)) - first);
+  const auto named = [&](const std::string& text, const base::Pattern& place, std::size_t first) {
+    return place.replaced(text, [&](const base::Groups& found) {
+      return methods.at(static_cast<std::size_t>(std::stoi(found[1])) - first);
     });
   };
   // Models count methods from 0, comparisons items from 1.
-  return replaced(named(reason, column, 0), items,
-                  [&](const std::string& numbers) { return named(numbers, item, 1); });
+  return items.replaced(named(reason, column, 0),
+                        [&](const base::Groups& found) { return named(found[1], item, 1); });
 }
 
 std::string json_stars(const std::optional<double>& p) { return p ? stats::stars(*p) : ""; }

@@ -1,9 +1,10 @@
 #include "apps/stats/report/field.hpp"
 
-#include <regex>
+#include <map>
 
 #include "apps/common/svg.hpp"
 #include "apps/stats/data/json_parts.hpp"
+#include "stats/base/pattern.hpp"
 
 namespace apps::report {
 
@@ -111,14 +112,14 @@ std::string p_value(double p) {
 std::string typeset(std::string html) {
   const auto holds = [&](const char* sign) { return html.find(sign) != std::string::npos; };
   if (!holds("n_*") && !holds("mu") && !holds("delta") && !holds("+-")) return html;
-  static const std::vector<std::pair<std::regex, std::string>> signs{
-      {std::regex("\\bn_\\*"), n_star_sign},
-      {std::regex("\\bmu\\(delta\\)"), "<i>\xCE\xBC</i>(<i>\xCE\xB4</i>)"},
-      {std::regex("\\bmu\\b"), "<i>\xCE\xBC</i>"},
-      {std::regex("\\bdelta\\b"), "<i>\xCE\xB4</i>"},
-      {std::regex("\\+-"), "\xC2\xB1"}};
-  for (const auto& [pattern, sign] : signs) html = std::regex_replace(html, pattern, sign);
-  return html;
+  static const base::Pattern signs("\\bn_\\*|\\bmu\\(delta\\)|\\bmu\\b|\\bdelta\\b|\\+-");
+  static const std::map<std::string, std::string> typeset_as{
+      {"n_*", n_star_sign},
+      {"mu(delta)", "<i>\xCE\xBC</i>(<i>\xCE\xB4</i>)"},
+      {"mu", "<i>\xCE\xBC</i>"},
+      {"delta", "<i>\xCE\xB4</i>"},
+      {"+-", "\xC2\xB1"}};
+  return signs.replaced(html, [](const base::Groups& found) { return typeset_as.at(found[0]); });
 }
 
 std::string fixed(const Field& field, int decimals) {

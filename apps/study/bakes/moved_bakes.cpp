@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <regex>
 #include <set>
 
 #include "libsim/bake/bake_file.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/pattern.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -19,10 +19,9 @@ namespace {
 using Hashes = std::set<std::string>;
 
 Hashes hashes_in(const std::string& shown) {
-  static const std::regex pattern("bake ([0-9a-f]{16})");
+  static const base::Pattern pattern("bake ([0-9a-f]{16})");
   Hashes all;
-  for (std::sregex_iterator found(shown.begin(), shown.end(), pattern), end; found != end; ++found)
-    all.insert((*found)[1]);
+  for (const base::Groups& found : pattern.all(shown)) all.insert(found[1]);
   return all;
 }
 
