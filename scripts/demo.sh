@@ -40,12 +40,12 @@ phase "What a headset with 90 Hz makes of the 21 settings"
 run $bin/vip-study check protocols/ptpe_pilot.toml --refresh 90 --json $out/check.json
 
 phase "Bake SingleDam: particles and pictures"
-run $bin/vip-study bake data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 180 \
+run $bin/vip-study bake data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 90 \
   --pictures 640x360 --out $out/dam.bake
 
-phase "Play the 21 settings in real time, 3 s each, every frame rendered"
+phase "Play the 21 settings in real time, 1.5 s each, every frame rendered"
 run $bin/vip-study run protocols/ptpe_pilot.toml --db $out/pacing.db --participants 1 --observer $observer \
-  --clock real --display headless --stimulus $out/dam.bake --trial-seconds 3
+  --clock real --display headless --stimulus $out/dam.bake --trial-seconds 1.5
 
 phase "Run 16 simulated participants through the whole pilot on the virtual clock"
 run $bin/vip-study run protocols/ptpe_pilot.toml --db $out/study.db --participants 16 --observer $observer \
