@@ -6,8 +6,11 @@ set(_cxx "$<COMPILE_LANGUAGE:CXX>")
 # The code reads neither errno nor FP traps of <cmath>; NaN and infinity keep their meaning.
 target_compile_options(vip_flags INTERFACE $<${_cxx}:-fno-math-errno> $<${_cxx}:-fno-trapping-math>)
 if(VIP_WERROR)
+  # Compiled with other sources, a local name may be that of their constants, and a class may hold a type of its own file.
+  set(_unity "$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>")
   target_compile_options(vip_flags INTERFACE
-    $<${_cxx}:-Wall> $<${_cxx}:-Wextra> $<${_cxx}:-Wshadow> $<${_cxx}:-Wnon-virtual-dtor> $<${_cxx}:-Wconversion>
+    $<${_cxx}:-Wall> $<${_cxx}:-Wextra> $<IF:${_unity},-Wshadow=local,$<${_cxx}:-Wshadow>>
+    $<${_unity}:-Wno-subobject-linkage> $<${_cxx}:-Wnon-virtual-dtor> $<${_cxx}:-Wconversion>
     $<${_cxx}:-Wno-sign-conversion> $<${_cxx}:-Werror>
     # False alarms of g++ 12 inside std::string (GCC bug 105651).
     $<$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>>:-Wno-restrict>)
