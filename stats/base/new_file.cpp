@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "stats/base/durable.hpp"
+#include "stats/base/error.hpp"
 
 namespace base {
 
