@@ -141,7 +141,8 @@ TEST_F(BudgetChoice, WhereNothingKeepsItTheNearestIsNamed) {
 class BudgetE2e : public test::TableTest {};
 
 TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
-  const std::string sweep = "accuracy --quick --n-star 64 --seconds 0.2 --seeds 1 --db " + path("s.db");
+  const std::string sweep =
+      "accuracy --quick --n-star 64 --seconds 0.2 --seeds 1 --pictures none --db " + path("s.db");
   ASSERT_EQ(table(sweep).exit_code, 0);
   const auto none = table(sweep + " --budget 0.0001ms --out " + path("none.toml"));
   EXPECT_EQ(none.exit_code, 1);
@@ -159,13 +160,13 @@ TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
   EXPECT_THAT(timed.out, HasSubstr("in 95 % of the frames (the solver alone), kinetic_pct"));
   EXPECT_THAT(timed.out, HasSubstr(" n_* 64 on cpu"));
   EXPECT_THAT(timed.out, Not(HasSubstr("another scene file")));
-  const std::string view = "/vip-view --headless --backend cpu --frames 1 --setting " + path("best.toml");
-  const auto seen = test::run_shell(VIP_BIN_DIR + view + " data/scenes/jet_impact.toml --size 64x36");
+  const std::string view = "vip-view --headless --backend cpu --frames 1 --setting " + path("best.toml");
+  const auto seen = program(view + " data/scenes/jet_impact.toml --size 64x36");
   ASSERT_EQ(seen.exit_code, 0) << seen.out;
   EXPECT_THAT(seen.out, HasSubstr("n_* 64: "));
   EXPECT_THAT(seen.out, HasSubstr("note: the setting was measured on another scene file"));
   for (const std::string beside : {" --n-star 32", " --method LoRes", " --levels 2", " --tau live"}) {
-    EXPECT_NE(test::run_shell(VIP_BIN_DIR + view + " data/scenes/single_dam.toml" + beside).exit_code, 0);
+    EXPECT_NE(program(view + " data/scenes/single_dam.toml" + beside).exit_code, 0);
     EXPECT_NE(table("frame --setting " + path("best.toml") + beside).exit_code, 0) << beside;
   }
 }

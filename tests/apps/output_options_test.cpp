@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tests/apps/study_test_support.hpp"
+#include "tests/apps/table_test_support.hpp"
 
 namespace apps::test {
 namespace {
@@ -26,30 +27,37 @@ class OutputOptionsE2e : public ::testing::Test {
   OutputOptionsE2e() {
     base::write_file_atomically(folder_ / "file", "mine");
     fs::create_symlink("/dev/full", folder_ / "full");
-    // People of whom a fit can be made.
-    for (const auto& [protocol, observer] : {std::pair{"protocols/ptpe_pilot.toml", "ptpe:a=24,b=0.02"},
-                                             std::pair{"protocols/task2.toml", "random"}}) {
-      const Ended ended = Process({vip_study, "run", protocol, "--db", database_, "--observer", observer,
-                                   "--participants", "6", "--seed", "7"})
-                              .wait();
-      EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    make_quick_share(share_.path());
+    // As few people as a fit can be made of.
+    for (const std::string people : {"ptpe_pilot.toml --participants 4 --observer ptpe:a=24,b=0.02",
+                                     "task2.toml --participants 2 --observer random"}) {
+      const Ended ended = program("vip-study run protocols/" + people + " --seed 7 --db " + database_);
+      EXPECT_EQ(ended.exit_code, 0) << ended.out;
     }
     const std::string cell = power_ + " --cell " + first_cell(power_) + " --out " + shard_;
-    EXPECT_EQ(run_shell(VIP_BIN_DIR "/" + cell).exit_code, 0) << cell;
+    EXPECT_EQ(program(cell).exit_code, 0) << cell;
+  }
+
+  /// A program of the build with its arguments, as TableTest runs it.
+  Ended program(const std::string& program_and_arguments) const {
+    return run_shell(
+        "cd " + share_.path().string() +
+        " && OMP_NUM_THREADS=1 VIP_CACHE_DIR= VIP_LOCK_DIR=. VIP_SHARE_DIR=. timeout 60 " VIP_BIN_DIR "/" +
+        program_and_arguments);
   }
 
   /// The key that the command lists first.
-  static std::string first_cell(const std::string& command) {
-    return run_shell(VIP_BIN_DIR "/" + command + " --list").out.substr(0, 16);
+  std::string first_cell(const std::string& command) const {
+    return program(command + " --list").out.substr(0, 16);
   }
 
   /// Commands with the option at their ends, by what is asked for there.
   std::vector<std::string> file_options() const {
     const std::string bench =
         "vip-bench frame data/scenes/single_dam.toml --n-star 64 --frames 1 --no-render";
-    return {"vip-study check protocols/task2.toml --refresh 90 --json ",
+    return {"vip-study check protocols/demo.toml --refresh 90 --json ",
             "vip-study bake data/scenes/single_dam.toml --n-star 64 --frames 1 --force --out ",
-            "vip-study run protocols/task2.toml --observer random --participants 1 --db ",
+            "vip-study run protocols/demo.toml --observer random --participants 1 --db ",
             "vip-study merge " + database_ + " --into ",
             "vip-study salvage --db " + database_ + " --into ",
             "vip-stats fit-ptpe " + database_ + " --json ",
@@ -75,7 +83,7 @@ class OutputOptionsE2e : public ::testing::Test {
             accuracy_ + " --db " + sweep_ + " --prices-csv ",
             accuracy_ + " --db " + sweep_ + " --markdown ",
             accuracy_ + " --db " + sweep_ + " --html ",
-            accuracy_ + " --db " + sweep_ + " --budget 5ms --out ",
+            accuracy_ + " --db " + sweep_ + " --budget 5000ms --out ",
             table1_ + " --csv ",
             table1_ + " --markdown ",
             table1_ + " --cells ",
@@ -89,18 +97,18 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-stats report " + database_ + " --html " + page_ + " --csv ",
             "vip-stats task2 " + database_ + " --csv ",
             "vip-stats preregister protocols/task2.toml --out ",
-            "vip-study check protocols/task2.toml --size 64x36 --preview ",
+            "vip-study check protocols/demo.toml --size 64x36 --preview ",
             table1_ + " --svg ",
             table1_ + " --pictures ",
             table1_ + " --checkpoints-to ",
             table2_ + " --svg ",
-            "vip-view data/scenes/single_dam.toml --headless --n-star 64 --frames 1 --png "};
+            "vip-view data/scenes/single_dam.toml --headless --n-star 64 --frames 1 --size 64x36 --png "};
   }
 
   /// place: what is to be named.
   void expect_refused(const std::string& line, const std::string& target, const std::string& place) {
     const auto before = names_in(folder_.path());
-    const Ended ended = run_shell("timeout 60 " VIP_BIN_DIR "/" + line + target);
+    const Ended ended = program(line + target);
     EXPECT_EQ(ended.exit_code, 1) << line << target << "\n" << ended.out;
     EXPECT_THAT(ended.out, AllOf(HasSubstr("error: "), HasSubstr(place), HasSubstr("\n  mend: "))) << line;
     EXPECT_EQ(names_in(folder_.path()), before) << line;
@@ -112,7 +120,7 @@ class OutputOptionsE2e : public ::testing::Test {
       "vip-bench table1 --scene SingleDam --n-star 64 --checkpoints 1 --gazes 1 --repeats 1 --frames-after 1 "
       "--cumul-frames 2 --projections 1 --size 64x36";
   inline static const std::string accuracy_ =
-      "vip-bench accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
+      "vip-bench accuracy --quick --n-star 64 --seconds 0.1 --seeds 1 --pictures none";
   inline static const std::string power_ =
       "vip-stats power protocols/task2.toml --n 20:20 --effect 0.7 --studies 10";
   inline static const std::string effects_ =
@@ -120,8 +128,8 @@ class OutputOptionsE2e : public ::testing::Test {
   inline static const std::string growth_ =
       "vip-bench growth data/scenes/single_dam.toml --n-star 64,65 --frames 1 --warm-up 0";
   inline static const std::string table2_ =
-      "vip-bench table2 --scene SingleDam --n-star 64 --frames 2 --warm-up 0";
-  const TemporaryFolder folder_;
+      "vip-bench table2 --scene SingleDam --n-star 64 --methods LoRes --frames 2 --warm-up 0";
+  const TemporaryFolder folder_, share_;
   const std::string database_ = folder_ / "s.db", sweep_ = folder_ / "sweep.db",
                     page_ = folder_ / "page.html", shard_ = folder_ / "shard.json";
 };
@@ -147,13 +155,14 @@ TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
   int checked = 0;
   for (std::string line : all) {
     for (const std::string& read :
-         {database_, std::string("protocols/task2.toml"), std::string("data/scenes/single_dam.toml")}) {
+         {database_, std::string("protocols/task2.toml"), std::string("protocols/demo.toml"),
+          std::string("data/scenes/single_dam.toml")}) {
       if (const auto at = line.find(read); at != std::string::npos) line.replace(at, read.size(), input);
     }
     // table1 and table2 read no file that is named; bake looks at its scene first.
     if (line.find(input) == std::string::npos || line.find("bake") != std::string::npos) continue;
     ++checked;
-    const Ended ended = run_shell("timeout 60 " VIP_BIN_DIR "/" + line + below);
+    const Ended ended = program(line + below);
     EXPECT_EQ(ended.exit_code, 1) << line << "\n" << ended.out;
     EXPECT_THAT(ended.out, AllOf(HasSubstr(folder_ / "file"), ::testing::Not(HasSubstr(input)))) << line;
   }
@@ -173,7 +182,7 @@ TEST_F(OutputOptionsE2e, FoldersThatAreMissingAreMade) {
     outputs[line.substr(0, option)] += line.substr(option) + targets.back().string();
   }
   for (const auto& [command, named] : outputs) {
-    const Ended ended = run_shell(VIP_BIN_DIR "/" + command + named);
+    const Ended ended = program(command + named);
     EXPECT_EQ(ended.exit_code, 0) << command << named << "\n" << ended.out;
   }
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_TRUE(fs::exists(targets[i])) << all[i];

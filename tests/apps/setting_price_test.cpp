@@ -193,22 +193,22 @@ TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
 class SettingPriceE2e : public test::TableTest {
  protected:
   test::Ended view(const std::string& more) const {
-    return test::run_shell(
-        "env -u DISPLAY -u WAYLAND_DISPLAY VIP_CACHE_DIR= " VIP_BIN_DIR
-        "/vip-view data/scenes/single_dam.toml --headless --n-star 64 --backend cpu --size 64x48 "
+    return program(
+        "vip-view data/scenes/single_dam.toml --headless --n-star 64 --backend cpu --size 64x48 "
         "--frames 1 --sweep " +
         path("sweep.db") + " " + more);
   }
 };
 
 TEST_F(SettingPriceE2e, VipViewSaysWhatTheSettingInForceCostsAndErrsBy) {
-  const auto swept = table("accuracy --quick --n-star 64 --seconds 0.2 --seeds 1 --db " + path("sweep.db"));
+  const auto swept =
+      table("accuracy --quick --n-star 64 --seconds 0.2 --seeds 1 --pictures 64x36 --db " + path("sweep.db"));
   ASSERT_EQ(swept.exit_code, 0) << swept.out;
   const auto found = view("--method Ours");
   ASSERT_EQ(found.exit_code, 0) << found.out;
   EXPECT_THAT(found.out,
               AllOf(HasSubstr("sweep  "), HasSubstr(" ms a frame, 95 % within "), HasSubstr("centre_pct"),
-                    HasSubstr("picture_pct"), HasSubstr("compared pictures of 240x135"),
+                    HasSubstr("picture_pct"), HasSubstr("compared pictures of 64x36"),
                     HasSubstr("times the time of HiRes at n_* 64")));
   EXPECT_THAT(view("--method HiRes").out, HasSubstr("which others are held against"));
   EXPECT_THAT(

@@ -83,7 +83,7 @@ class Salvaging : public ::testing::Test {
     return damaged;
   }
 
-  const test::TemporaryFolder folder;
+  const test::TemporaryFolder folder{::test::memory_folder()};
   const fs::path path = folder / "study.db", into = folder / "new.db";
   std::vector<std::string> truth, lines;
   std::string bytes, journal;
