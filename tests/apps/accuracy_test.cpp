@@ -290,7 +290,7 @@ TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
 
 class AccuracyE2e : public test::TableTest {
  protected:
-  const std::string sweep = "accuracy --quick --n-star 64 --seconds 0.1 --seeds 1 --pictures 64x36";
+  const std::string sweep = "accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
   /// What the clock gave for each cell of a sweep file, by key; nothing while another program writes to it.
   std::map<std::string, std::vector<double>> times_of(const std::string& name) const {
     std::map<std::string, std::vector<double>> out;
