@@ -211,7 +211,9 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
   sub.add_option("--world", request.worlds,
                  "effect, null, margin or paper; may be repeated. Without: all that apply")
       ->check(CLI::IsMember({"effect", "null", "margin", "paper"}));
-  sub.add_option("--observer", command.observer, "Pilot: who rates, such as ptpe:a=24,b=0.02,noise=1");
+  sub.add_option(
+      "--observer", command.observer,
+      "Pilot: who rates, such as ptpe:a=24,b=0.02,noise=1; without: ptpe:a=23.68,b=0.02, as in the paper");
   sub.add_option("--question", command.choice.question,
                  "Pilot: id of a question; without: the first that the trials ask on a scale");
   add_level_choice(sub, command.choice);

@@ -2,14 +2,18 @@
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/common/options.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
+#include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
 #include "libstudy/store/export_register.hpp"
@@ -41,7 +45,8 @@ std::string p_text(const Json& p) {
 
 std::string interval_text(const Json& ci) {
   if (!ci.is_array()) return "-";
-  return "[" + number_text(ci[0], 2) + ", " + number_text(ci[1], 2) + "]";
+  const int digits = interval_decimals({number_of(ci[0]), number_of(ci[1])}, 2);
+  return "[" + number_text(ci[0], digits) + ", " + number_text(ci[1], digits) + "]";
 }
 
 /// "95 % interval".
@@ -49,14 +54,26 @@ std::string interval_head(const Json& json) {
   return fmt::format("{:g} % interval", 100 * json.at("plan").at("confidence").get<double>());
 }
 
+/// As wide as the longest name, or as `least`: a method may carry a level of effects.
+template <class Name>
+int width_of(const Json& list, int least, const Name& name) {
+  for (const auto& one : list) least = std::max(least, static_cast<int>(name(one).size()));
+  return least;
+}
+
 void print_cells(const Json& task, const std::string& interval) {
-  std::printf("\n%-28s %-5s %-9s %4s %7s %6s  %s\n", "score", "n_*", "method", "n", "mean", "sd",
-              interval.c_str());
-  for (const auto& cell : task.at("cells"))
-    std::printf("%-28s %-5s %-9s %4d %7s %6s  %s\n", word(cell.at("score")).c_str(),
-                word(cell.at("n_star")).c_str(), word(cell.at("method")).c_str(), cell.at("n").get<int>(),
-                number_text(cell.at("mean"), 2).c_str(), number_text(cell.at("sd"), 2).c_str(),
-                interval_text(cell.at("ci")).c_str());
+  const Json& cells = task.at("cells");
+  const auto width = [&](const char* field, int least) {
+    return width_of(cells, least, [&](const Json& cell) { return word(cell.at(field)); });
+  };
+  const int score = width("score", 28), n_star = width("n_star", 5), method = width("method", 9);
+  std::printf("\n%-*s %-*s %-*s %4s %7s %6s  %s\n", score, "score", n_star, "n_*", method, "method", "n",
+              "mean", "sd", interval.c_str());
+  for (const auto& cell : cells)
+    std::printf("%-*s %-*s %-*s %4d %7s %6s  %s\n", score, word(cell.at("score")).c_str(), n_star,
+                word(cell.at("n_star")).c_str(), method, word(cell.at("method")).c_str(),
+                cell.at("n").get<int>(), number_text(cell.at("mean"), 2).c_str(),
+                number_text(cell.at("sd"), 2).c_str(), interval_text(cell.at("ci")).c_str());
 }
 
 std::string pair_name(const Json& pair) { return word(pair.at("a")) + " over " + word(pair.at("b")); }
@@ -66,21 +83,42 @@ const char* test_word(const Json& pair) {
   return pair.contains("by_person") ? "shares" : pair.at("test").is_null() ? "-" : "binomial";
 }
 
+/// What the intervals of the pairs are, by name where they are not all alike.
+void print_interval_names(const Json& pairs) {
+  std::vector<std::pair<std::string, std::string>> names;  // of intervals, of their pairs
+  for (const auto& pair : pairs) {
+    const bool people = pair.contains("by_person");
+    if (!people && !pair.at("clopper_pearson").is_array()) continue;
+    const std::string name = people ? word(pair.at("by_person").at("ci_name")) : "Clopper-Pearson";
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.first == name; });
+    if (found == names.end())
+      names.emplace_back(name, pair_name(pair));
+    else
+      found->second += ", " + pair_name(pair);
+  }
+  for (const auto& [name, of] : names)
+    std::printf("interval%s: %s\n", names.size() == 1 ? "s" : (" of " + of).c_str(), name.c_str());
+}
+
 void print_pairs(const Json& task, const std::string& interval) {
-  std::printf("\n%-22s %4s %4s %6s %8s %8s  %-14s %s\n", "chosen", "k", "n", "share", "p", "Holm",
+  const int width = width_of(task.at("pairs"), 22, pair_name);
+  std::printf("\n%-*s %4s %4s %6s %8s %8s  %-16s %s\n", width, "chosen", "k", "n", "share", "p", "Holm",
               interval.c_str(), "test");
   std::string notes;
   for (const auto& pair : task.at("pairs")) {
     const bool people = pair.contains("by_person");
     const Json& share = people ? pair.at("by_person").at("share") : pair.at("share");
     const Json& ci = people ? pair.at("by_person").at("ci") : pair.at("clopper_pearson");
-    std::printf("%-22s %4d %4d %6s %8s %8s  %-14s %s\n", pair_name(pair).c_str(), pair.at("k").get<int>(),
-                pair.at("n").get<int>(), number_text(share, 2).c_str(), p_text(pair.at("p")).c_str(),
-                p_text(pair.at("p_holm")).c_str(), interval_text(ci).c_str(), test_word(pair));
+    std::printf("%-*s %4d %4d %6s %8s %8s  %-16s %s\n", width, pair_name(pair).c_str(),
+                pair.at("k").get<int>(), pair.at("n").get<int>(), number_text(share, 2).c_str(),
+                p_text(pair.at("p")).c_str(), p_text(pair.at("p_holm")).c_str(), interval_text(ci).c_str(),
+                test_word(pair));
     const std::string note =
         word(pair.at("warning")).empty() ? word(pair.at("reason")) : word(pair.at("warning"));
     if (!note.empty()) notes += pair_name(pair) + ": " + note + "\n";
   }
+  print_interval_names(task.at("pairs"));
   const Json& several = task.at("several_answers");
   if (several.at("participants") > 0)
     std::printf("%d of %d participants answered a pair more than once, at most %d times.\n",

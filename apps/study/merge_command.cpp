@@ -29,8 +29,8 @@ void print_balance(const study::Merge& done, const std::string& into) {
   for (const study::Balance& one : done.balance) {
     if (one.off())
       std::fprintf(stderr,
-                   "%s: warning: %s %s is not balanced: some orders are used at least twice more "
-                   "often than others\n",
+                   "%s: warning: %s %s is not balanced: some orders are used by at least two sessions more "
+                   "than others\n",
                    into.c_str(), one.name.c_str(), one.version.c_str());
   }
   for (const std::string& trouble : done.station_troubles) {

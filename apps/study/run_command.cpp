@@ -15,6 +15,7 @@
 #include "apps/study/session_player.hpp"
 #include "apps/study/station_warnings.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "libstudy/observer/observer.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/session/machine.hpp"
 #include "libstudy/session/session.hpp"
@@ -179,6 +180,8 @@ Played play_planned(const RunCommand& command, const study::Protocol& protocol,
 
 void run(RunCommand& command) {
   const study::Protocol protocol = read_checked_protocol(command);
+  for (const std::string& scale : study::scales_beyond(command.run.observer, protocol))
+    std::fprintf(stderr, "warning: %s: the observer gives the nearest score there\n", scale.c_str());
   choose_defaults(command.run);
   take_size(command.size, command.run);
   if (!command.bake.empty()) command.run.bake = fs::absolute(base::find_input(command.bake)).string();
@@ -195,21 +198,18 @@ void run(RunCommand& command) {
   // Complete with today's defaults, which another version may change.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
-  if (!setup.departure().empty()) {
+  if (!setup.departure().empty())
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
                  for_terminal(setup.departure()).c_str());
-  }
   for (const std::string& note : setup.stimuli->bakes().notes(command.protocol))
     std::fprintf(stderr, "%s: %s\n", command.bake.c_str(), for_terminal(note).c_str());
   for (const std::string& note : setup.stimuli->settings().notes(protocol))
     std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), for_terminal(note).c_str());
   for (const std::string& note : framing_notes(protocol, setup.scenes))
     std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), for_terminal(note).c_str());
-  if (setup.gaze && !asks_gaze(protocol)) {
+  if (setup.gaze && !asks_gaze(protocol))
     std::fprintf(stderr, "%s: does not ask %s; where one looks will not be recorded\n",
                  command.protocol.c_str(), study::gaze_question);
-  }
-
   const StopSignals signals;
   end_command(command.play.database, play_planned(command, protocol, common, codes, setup));
 }

@@ -1,10 +1,15 @@
+#include <algorithm>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "libstudy/base/random.hpp"
 #include "libstudy/observer/frames_observer.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
 #include "libstudy/observer/specification.hpp"
+#include "libstudy/protocol/protocol.hpp"
+#include "stats/base/error.hpp"
 
 namespace study {
 
@@ -72,7 +77,49 @@ std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSo
                                            make_observer(rest.empty() ? "random" : rest, features));
 }
 
+/// Of "constant:4" and "dropout:0.2,constant:4".
+std::optional<double> constant_of(std::string_view specification) {
+  std::size_t at = 0;
+  if (specification.starts_with(dropout))
+    at = std::min(specification.find(','), specification.size() - 1) + 1;
+  if (!specification.substr(at).starts_with(constant)) return {};
+  return read_observer_number(specification, at + constant.size(), specification.substr(at + constant.size()),
+                              -1e4, 1e4, "write constant:4");
+}
+
+bool takes(const Question& question, double score) {
+  const auto scores = scores_of(question);
+  return score >= scores.front() && score <= scores.back();
+}
+
+std::string scale_of(const Question& question) {
+  const auto scores = scores_of(question);
+  return "question '" + question.id + "' goes from " + std::to_string(scores.front()) + " to " +
+         std::to_string(scores.back());
+}
+
 }  // namespace
+
+std::vector<std::string> scales_beyond(std::string_view specification, const Protocol& protocol) {
+  const auto score = constant_of(specification);
+  if (!score) return {};
+  std::vector<std::string> beyond;
+  bool taken = false;
+  for (const auto& [block, question] : all_questions(protocol)) {
+    if ((question->kind != AnswerKind::Scale && question->kind != AnswerKind::Choice) || question->accept)
+      continue;
+    const bool fits = takes(*question, *score);
+    taken = taken || fits;
+    const bool of_trials = protocol.blocks.at(static_cast<std::size_t>(block)).kind == BlockKind::Stimulus;
+    if (!fits && of_trials && question->kind == AnswerKind::Scale) beyond.push_back(scale_of(*question));
+  }
+  if (!taken && !beyond.empty())
+    throw base::Error("--observer " + std::string(specification),
+                      "gives " + shortest_number(*score) + ", which no question of protocol '" +
+                          protocol.name + "' takes: " + beyond.front(),
+                      "write constant: with a score of the scale");
+  return beyond;
+}
 
 std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features) {
   if (specification == "random") return std::make_unique<RandomObserver>();

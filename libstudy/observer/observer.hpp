@@ -2,7 +2,9 @@
 /// What all simulated observers share: they read at once, wait as the clock says and answer without delay.
 
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "libstudy/observer/picture_features.hpp"
 #include "libstudy/session/participant.hpp"
@@ -48,5 +50,10 @@ int bystander_score(const Question& question, const Occasion& occasion);
 /// "frames[:key=number,...]". `features` is asked by frames; it must outlive the observer. base::Error that
 /// names the place.
 std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features);
+
+/// Scales of the protocol's trials on which the observer "constant:9", alone or behind "dropout", cannot give
+/// its score, a sentence each; it gives the nearest one there. base::Error where no question takes the score.
+/// Other observers have no such scales.
+std::vector<std::string> scales_beyond(std::string_view specification, const Protocol& protocol);
 
 }  // namespace study

@@ -14,7 +14,7 @@ struct Balance {
   int sessions = 0;                ///< that count
   std::vector<int> sequence_uses;  ///< by sequence of groups: by how many sessions; one entry: a single order
   std::vector<int> slot_uses;      ///< by slot: likewise; empty: this program cannot read the protocol
-  /// Some sequence or slot is used twice more often than another.
+  /// Some sequence or slot is used by at least two sessions more than another.
   bool off() const;
 };
 

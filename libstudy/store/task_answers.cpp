@@ -16,12 +16,12 @@ using sqlite::Statement;
 namespace {
 
 constexpr const char* task_sessions_sql =
-    "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, state, "
+    "SELECT session_id, participant, visit, coalesce(observer, ''), test_data, "
+    "iif(state = 'open' AND started_utc IS NULL AND NOT EXISTS (SELECT 1 FROM unit u WHERE u.session_id = "
+    "session.session_id AND u.state <> 'planned'), 'planned', state), "
     "coalesce((SELECT min(p.gaze_source) FROM presentation p JOIN trial t USING (trial_id) WHERE "
-    "t.session_id = "
-    "session.session_id AND p.state = 'played' AND p.gaze_source <> session.gaze_source), gaze_source), "
-    "station, "
-    "display, (SELECT min(r.answered_utc) FROM unit u JOIN response r USING (unit_id) "
+    "t.session_id = session.session_id AND p.state = 'played' AND p.gaze_source <> session.gaze_source), "
+    "gaze_source), station, display, (SELECT min(r.answered_utc) FROM unit u JOIN response r USING (unit_id) "
     "WHERE u.session_id = session.session_id), (SELECT group_concat(angles, '; ') FROM (SELECT DISTINCT "
     "iif(f.framing_id IS NULL, 'not known', printf('camera %.4g degrees, eye ', camera_angle_deg) || "
     "iif(visual_angle_deg IS NULL, 'not known', printf('%.4g degrees, ratio %.2f', visual_angle_deg, "

@@ -67,7 +67,9 @@ struct TaskSession {
   int visit = 1;
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
-  std::string state;  ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
+  /// "planned" (open, and nothing of it was shown yet), "open" (begun), "done", "refused", "not eligible",
+  /// "stopped" or "dropped out"
+  std::string state;
   /// "tracked", "head", "mouse", "fixed", "fixation" or "none"; of showings that differ, another one than was
   /// planned.
   std::string gaze_source;

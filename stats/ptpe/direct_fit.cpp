@@ -4,10 +4,25 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "stats/ptpe/small_cholesky.hpp"
 
 namespace stats {
+
+namespace {
+
+/// Of 1, x and d alone.
+template <std::size_t Terms>
+std::array<double, 9> plane_gram(const TermSums<Terms>& sums) {
+  std::array<double, 9> gram{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) gram[i * 3 + j] = sums.gram[i * Terms + j];
+  }
+  return gram;
+}
+
+}  // namespace
 
 /// u = x - alpha - beta d with x = log mu - its centre and d = (delta - its centre) / delta_unit; the score
 /// less the level is u (k + m d + q u).
@@ -77,13 +92,17 @@ DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
 /// Ordinary least squares on 1, x and d; empty when the settings do not determine it or the score does not
 /// depend on x.
 std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const {
-  std::array<double, 9> gram{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) gram[i * 3 + j] = sums.gram[i * terms + j];
-  }
-  const auto c = solve_positive<3>(gram, {sums.moment[0], sums.moment[1], sums.moment[2]});
+  const auto c = solve_positive<3>(plane_gram(sums), {sums.moment[0], sums.moment[1], sums.moment[2]});
   if (!c || std::abs((*c)[1]) < 1e-12) return std::nullopt;
   return Place{-(*c)[0] / (*c)[1], -(*c)[2] / (*c)[1], (*c)[1], 0, 0};
+}
+
+/// Why straight() is empty.
+Refusal DirectModel::no_slope(const Sums& sums, const std::string& surface) {
+  const double mean = sums.n > 0 ? sums.moment[0] / sums.n : 0;
+  if (sums.squares - sums.n * mean * mean <= 1e-12 * sums.squares) return {"all ratings are equal"};
+  if (solve_positive<3>(plane_gram(sums), {})) return {"the scores do not depend on the mean frame rate"};
+  return {"the settings rated do not determine a " + surface + " over mean and deviation"};
 }
 
 /// Of the two lines on which the score is the level, the one along which it rises with mu.
@@ -115,7 +134,8 @@ Result<DirectFit> DirectModel::described(const Sums& sums, const Place& at) cons
     inside = true;
     rises &= fit.k + fit.m * delta > 0;
   }
-  if (!inside) return Refusal{"no contour: the ratings do not meet the level within the settings shown"};
+  if (!inside)
+    return Refusal{"no contour: the model's curve does not meet the level within the settings shown"};
   if (!rises) return Refusal{"the scores do not rise with the frame rate all along the curve"};
   return fit;
 }
@@ -126,7 +146,8 @@ Result<DirectFit> DirectModel::fit(std::span<const double> weights, const Direct
   const auto scale = std::max(sums.n, 1.0);
   auto ridge = sums.gram;
   for (double& g : ridge) g /= scale;
-  if (!plane || !solve_positive<terms>(ridge, {}))
+  if (!plane) return no_slope(sums, "surface");
+  if (!solve_positive<terms>(ridge, {}))
     return Refusal{"the settings rated do not determine a surface over mean and deviation"};
   std::vector<Place> starts{*plane};
   if (start) {
@@ -154,7 +175,7 @@ Result<DirectFit> DirectModel::fit(std::span<const double> weights, const Direct
 Result<DirectFit> DirectModel::fit_straight(std::span<const double> weights) const {
   const auto sums = weighted(weights);
   const auto plane = straight(sums);
-  if (!plane) return Refusal{"the settings rated do not determine a plane over mean and deviation"};
+  if (!plane) return no_slope(sums, "plane");
   return checked(sums, *plane);
 }
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "stats/ptpe/curve.hpp"
@@ -59,6 +60,7 @@ class DirectModel {
   struct Place;
   Sums weighted(std::span<const double> weights) const;
   std::optional<Place> straight(const Sums& sums) const;
+  static Refusal no_slope(const Sums& sums, const std::string& surface);
   Result<DirectFit> checked(const Sums& sums, const Place& at) const;
   Result<DirectFit> described(const Sums& sums, const Place& at) const;
 

@@ -151,8 +151,8 @@ std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
 /// Standard deviation of answers about their expected scores. Only expected scores in the middle half of the
 /// scale count, because answers near its ends scatter less. Residuals beyond `clip` add no more, so that
 /// lapses hardly widen it.
-double spread_about(std::span<const PilotRating> ratings, const std::vector<double>& expected, double lowest,
-                    double highest) {
+Result<double> spread_about(std::span<const PilotRating> ratings, const std::vector<double>& expected,
+                            double lowest, double highest) {
   constexpr double clip = 2.5;
   const double quarter = (highest - lowest) / 4;
   double sum = 0, n = 0;
@@ -161,7 +161,10 @@ double spread_about(std::span<const PilotRating> ratings, const std::vector<doub
     sum += std::min(clip, std::abs(ratings[i].score - expected[i]));
     n += 1;
   }
-  return n > 0 ? std::sqrt(M_PI / 2) * sum / n : 0;
+  const std::string inner = "in the middle half of the scores given";
+  if (n == 0) return Refusal{"no expected score lies " + inner};
+  if (sum == 0) return Refusal{"no answer whose expected score lies " + inner + " departs from it"};
+  return std::sqrt(M_PI / 2) * sum / n;
 }
 
 Result<LapseCount> lapses_of(std::span<const PilotRating> all, const std::vector<PersonSlope>& slopes) {
@@ -180,10 +183,11 @@ Result<LapseCount> lapses_of(std::span<const PilotRating> all, const std::vector
     highest = std::max(highest, rating.score);
   }
   const auto expected = expected_scores(ratings);
-  const double sd = spread_about(ratings, expected, out.lowest, highest);
-  if (!(sd > 0)) return Refusal{"the answers to a setting do not differ"};
+  if (highest == out.lowest) return Refusal{"all answers are equal"};
+  const auto sd = spread_about(ratings, expected, out.lowest, highest);
+  if (!sd) return Refusal{sd.reason()};
   for (std::size_t i = 0; i < ratings.size(); ++i) {
-    const double chance = normal_probability((out.lowest + 0.5 - expected[i]) / sd);
+    const double chance = normal_probability((out.lowest + 0.5 - expected[i]) / *sd);
     if (chance >= lapse_tail) continue;
     ++out.at_risk;
     out.lapsed += ratings[i].score == out.lowest;

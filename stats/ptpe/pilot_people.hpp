@@ -63,8 +63,8 @@ struct PilotPeople {
   int reversed() const;
 };
 
-/// Drift is refused where positions are not known, lapses where the answers to a setting do not differ or the
-/// lowest score is improbable nowhere.
+/// Drift is refused where positions are not known. Lapses are refused where the answers do not tell how far
+/// answers scatter about what is expected of them, or the lowest score is improbable nowhere.
 PilotPeople pilot_people(std::span<const PilotRating> ratings, double confidence);
 
 /// The ratings that the rules leave, drift taken off about the middle of the session.

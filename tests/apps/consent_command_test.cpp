@@ -32,6 +32,9 @@ TEST(ConsentCommandE2e, IsToldObeyedAndChanged) {
     const Ended ran = call({vip_study, "run", protocol, "--db", db, "--clock", "virtual", "--display", "none",
                             "--observer", says, "--participant", who});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const std::string note =
+        "warning: question 'satisfaction' goes from 1 to 7: the observer gives the nearest score there";
+    EXPECT_EQ(ran.err.find(note) != std::string::npos, std::string(says) == "constant:0") << ran.err;
   }
   EXPECT_THAT(call({vip_study, "status", "--db", db}).out, HasSubstr("data not shared"));
   EXPECT_THAT(call({vip_study, "consent", "P02", "--db", db}).out,

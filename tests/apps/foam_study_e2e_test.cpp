@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "libsim/bake/bake_file.hpp"
 #include "libstudy/protocol/protocol.hpp"
@@ -53,6 +54,19 @@ class FoamStudyE2e : public ::testing::Test {
   TemporaryFolder folder_;
   const std::string page_ = folder_ / "report.html";
 };
+
+TEST_F(FoamStudyE2e, TheColumnsOfTask2StandUnderTheirHeads) {
+  report_of("1", "4");
+  const std::string told = run_program({vip_stats, "task2", folder_ / "study_1.db"}).out;
+  const auto from = told.find("\nchosen") + 1;
+  const std::string head = told.substr(from, told.find('\n', from) - from);
+  const auto at = head.find("95 %");
+  int pairs = 0;
+  std::istringstream lines(told.substr(from + head.size() + 1));
+  for (std::string line; std::getline(lines, line) && line.find(" over ") < line.find(':'); ++pairs)
+    EXPECT_EQ(line.find('['), at) << head << "\n" << line;
+  EXPECT_GT(pairs, 3);
+}
 
 // P(foam chosen) = Phi(1 / sqrt 2) = .76 for noise of 1 on each of the two.
 TEST_F(FoamStudyE2e, TheReportFindsWhatFoamIsWorth) {

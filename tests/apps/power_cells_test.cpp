@@ -247,5 +247,17 @@ TEST_F(PowerShardsE2e, ThroughTheCommandLine) {
   }
 }
 
+TEST(PowerPilotE2e, SaysWhoseAnswersItSimulates) {
+  const std::string power = VIP_BIN_DIR "/vip-stats power protocols/ptpe_pilot.toml --n 8 --studies 4";
+  const auto usual = test::run_shell(power).out;
+  EXPECT_THAT(usual, HasSubstr("true a = 23.68 frames/s, true b = 0.02 s/frame"));
+  EXPECT_THAT(usual, ::testing::Not(HasSubstr("precision reached"))) << "no precision was asked for";
+  const auto other = test::run_shell(power + " --observer ptpe:a=30,b=0.01,noise=2 --precision-a 3").out;
+  EXPECT_THAT(other, HasSubstr("true a = 30 frames/s, true b = 0.01 s/frame"));
+  EXPECT_THAT(other, HasSubstr("SD of the answers 2 "));
+  EXPECT_EQ(other.find("precision reached"), other.rfind("precision reached")) << "of a alone";
+  EXPECT_NE(other.find("precision reached"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace apps

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "apps/stats/report/field.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/tasks/results.hpp"
 #include "apps/stats/tasks/sickness_json.hpp"
@@ -44,6 +45,22 @@ const OrderedJson& made() {
     return out;
   }();
   return json;
+}
+
+// [-0.000024, 0.0217] stood as [0.0000, 0.0217].
+TEST(IntervalsOfTheReport, ShowOnWhichSideOf0TheyLie) {
+  const auto shown = [](double low, double high, int decimals) {
+    const OrderedJson ci{low, high};
+    std::string out;
+    for (const auto& text : html_reader::read(report::interval(report::Field(ci), decimals)).texts)
+      out += text.words;
+    return out;
+  };
+  EXPECT_EQ(shown(-2.4e-05, 0.0217, 4), "[\u22120.00002, 0.02170]");
+  EXPECT_EQ(shown(0.004, 0.4, 2), "[0.004, 0.400]");
+  EXPECT_EQ(shown(-0.3, -0.0049, 2), "[\u22120.300, \u22120.005]");
+  EXPECT_EQ(shown(0, 1, 2), "[0.00, 1.00]");
+  EXPECT_EQ(shown(-1e-17, 0.5, 2), "[0.00, 0.50]") << "rounding";
 }
 
 /// Without printing the whole page where it does not.

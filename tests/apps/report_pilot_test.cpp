@@ -90,6 +90,36 @@ TEST(ReportPilot, GazeDisplayFlowAndTimingArePrintedAsForTheTasks) {
   EXPECT_EQ(json.at("study").at("tracked_gaze"), true);
 }
 
+TEST(ReportPilot, ThePapersTwoLevelsStandOnThePapersScaleAlone) {
+  const auto levels = [](const study::TaskProtocol& pilot) {
+    std::set<double> out;
+    const Json json = results_of({pilot});
+    for (const auto& one : json.at("pilot").at("estimators")) out.insert(one.at("level").get<double>());
+    return out;
+  };
+  auto pilot = pilot_of_people();
+  EXPECT_EQ(levels(pilot), (std::set<double>{4, 5}));
+  pilot.questions[0].scale_min = 0;
+  pilot.questions[0].scale_max = 10;
+  EXPECT_EQ(levels(pilot), (std::set<double>{5}));
+}
+
+TEST(ReportPilot, WhoIsSimulatedHasNoTimes) {
+  auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 8, 3);
+  for (auto& session : pilot.sessions)
+    for (auto& trial : session.trials) trial.answers[0].response_time_s = 0;
+  const std::string why = "simulated participants take no time to answer";
+  const Json json = results_of({pilot});
+  const Json& times = json.at("response_times").at(0);
+  EXPECT_EQ(times.at("n"), 8 * 21);
+  for (const char* figure : {"mean", "sd", "median", "q1", "q3", "min", "max"})
+    EXPECT_TRUE(times.at(figure).is_null()) << figure;
+  EXPECT_EQ(times.at("reason"), why);
+  EXPECT_THAT(words_of(json), HasSubstr("Not given: " + why + "."));
+  for (auto& session : pilot.sessions) session.observer.clear();
+  EXPECT_EQ(results_of({pilot}).at("response_times").at(0).at("mean"), 0) << "of a person as measured";
+}
+
 TEST(ReportPilot, TheRulesOfTheTasksAreAppliedAndNamed) {
   auto pilot = pilot_of_people();
   for (auto& trial : pilot.sessions[0].trials) trial.answers[0].score = 4;

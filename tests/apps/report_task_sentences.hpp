@@ -194,10 +194,10 @@ inline std::vector<Case> task1() {
        set("/task1/detectable", Json::array())},
       {"# Time from the page's showing to the last change of the answer, s",
        set("/response_times", Json::array())},
-      {"Not given: simulated participants take no time to answer.", in_each("/response_times", "max", 2.5),
-       in_each("/response_times", "max", 0)},
+      {"Not given: simulated participants take no time to answer.", in_each("/response_times", "median", 2.5),
+       in_each("/response_times", "median", nullptr)},
       {"Not given for the other questions: simulated participants take no time to answer.",
-       in_each("/response_times", "max", 2.5), set("/response_times/0/max", 0)},
+       in_each("/response_times", "median", 2.5), set("/response_times/0/median", nullptr)},
       {"# Repeated showings", set("/task1/retest", Json::array()),
        set("/task1/retest", {{{"score", "realism"}, {"pairs", 4}}})},
   };

@@ -242,6 +242,25 @@ TEST_F(StudyCommandsE2e, AReadOnlyFolderIsAnErrorForAnUnprivilegedUserAndStillRe
   EXPECT_TRUE(snapshot(folder_.path()) == before);
 }
 
+TEST_F(StudyCommandsE2e, AnObserversScoreBeyondTheScaleIsRefusedOrNamed) {
+  const auto with = [&](const char* observer) {
+    return run_program({vip_study, "run", folder_ / "short.toml", "--db", folder_ / "constant.db",
+                        "--participants", "1", "--observer", observer, "--display", "none", "--clock",
+                        "virtual"});
+  };
+  for (const char* observer : {"constant:99", "dropout:0.1,constant:99"}) {
+    const Ended refused = with(observer);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.err,
+                HasSubstr("which no question of protocol 'short' takes: question 'satisfaction' goes "
+                          "from 1 to 7"));
+    EXPECT_FALSE(fs::exists(folder_ / "constant.db"));
+  }
+  const Ended inside = with("constant:7");
+  EXPECT_EQ(inside.exit_code, 0) << inside.err;
+  EXPECT_EQ(inside.err, "");
+}
+
 TEST_F(StudyCommandsE2e, ExportDoesNotOverwriteForeignFiles) {
   ASSERT_EQ(run().exit_code, 0);
   fs::create_directory(folder_ / "mine");

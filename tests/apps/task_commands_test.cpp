@@ -60,6 +60,13 @@ TEST_F(TaskCommandsE2e, WriteTheirResultsAsJsonAndTables) {
     EXPECT_EQ(results.at("hypotheses").size(), 3u);
     EXPECT_TRUE(fs::exists(csv / "hypotheses.csv"));
     EXPECT_EQ(results.contains("task1"), task == "task1");
+    if (task == "task1") continue;
+    for (const auto& pair : results.at("task2").at("pairs")) {
+      const std::string name = pair.contains("by_person")
+                                   ? pair.at("by_person").at("ci_name").get<std::string>()
+                                   : "Clopper-Pearson";
+      EXPECT_THAT(ended.out, ::testing::ContainsRegex("\ninterval.*: " + name.substr(0, 9)));
+    }
   }
 }
 

@@ -38,6 +38,20 @@ TEST(TaskData, EverythingOfAWholeStudy) {
   EXPECT_THAT(select(of(made_study::task2(12)), TaskKind::Task2).choices, SizeIs(120));
 }
 
+TEST(TaskData, WhoIsPlannedAloneHasNotStarted) {
+  auto protocol = made_study::task1(12);
+  for (std::size_t i = 9; i < 12; ++i) {
+    auto& session = protocol.sessions[i];
+    session.state = i < 11 ? "planned" : "open";
+    for (auto& trial : session.trials) trial.answers.clear();
+  }
+  const Json flow = flow_json(select(of(protocol)).flow);
+  EXPECT_EQ(flow.at("planned"), 2);
+  EXPECT_EQ(flow.at("started"), 10);
+  EXPECT_EQ(flow.at("open"), 1);
+  EXPECT_EQ(flow.at("done"), 9);
+}
+
 TEST(TaskData, TestDataStandBehindRealOnes) {
   auto protocol = made_study::task1(12);
   for (int i = 0; i < 3; ++i) protocol.sessions[static_cast<std::size_t>(i)].test_data = true;

@@ -170,6 +170,9 @@ TEST(SessionOutline, BalanceNamesTheNextEvenNumbers) {
   auto pairs = shipped("task2");
   EXPECT_EQ(apps::check_balance(pairs).even, 6);
   EXPECT_EQ(apps::check_balance(pairs).interval_difference, 1);
+  EXPECT_THAT(
+      apps::describe_balance(pairs, apps::check_balance(pairs)),
+      ::testing::HasSubstr("the numbers of times that the two orders of a pair come differ by at most 1"));
   pairs.participants = 30;
   EXPECT_EQ(apps::check_balance(pairs).interval_difference, 0);
   EXPECT_THAT(apps::describe_balance(pairs, apps::check_balance(pairs)),

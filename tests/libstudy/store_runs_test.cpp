@@ -5,6 +5,7 @@
 
 #include "libstudy/store/database.hpp"
 #include "libstudy/store/status.hpp"
+#include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/open_session.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -39,6 +40,23 @@ TEST(Store, ASessionThatEndedEarlyIsNotResumed) {
   sqlite::Connection look(folder / "study.db", Open::Read);
   EXPECT_EQ(look.text("SELECT words FROM note"), "felt unwell");
   EXPECT_EQ(look.integer("SELECT count(*) FROM event WHERE detail LIKE '%unwell%'"), 0);
+}
+
+TEST(Store, OnlyASessionOfWhichSomethingWasShownIsBegun) {
+  const test::TemporaryFolder folder;
+  {
+    Store store(folder / "study.db", Open::Create);
+    store.add_run(test::run_plan(test::pilot(), {"P01", "P02", "P03", "P04"}));
+    const auto sessions = store.open_runs().at(0).sessions;
+    store.finish_unit(sessions[0].id, sessions[0].units.at(0).id, 1);
+    const OpenUnit& trial = first_trial(sessions[1]);
+    store.begin_presentation(sessions[1].id, trial.trial_id, 1, 0, trial.trial->first, 1);
+    store.end_session(sessions[2].id, {EarlyEnd::Stopped, ""}, 1);
+  }
+  std::vector<std::string> states;
+  for (const TaskSession& session : read_tasks({folder / "study.db"}).protocols.at(0).sessions)
+    states.push_back(session.participant + " " + session.state);
+  EXPECT_THAT(states, ElementsAre("P01 open", "P02 open", "P03 stopped", "P04 planned"));
 }
 
 TEST(Store, SlotsOfThoseWhoCountAreTaken) {

@@ -31,6 +31,16 @@ Json json_interval(const std::optional<std::array<double, 2>>& interval) {
   return interval ? json_interval(*interval) : Json();
 }
 
+int interval_decimals(const std::array<double, 2>& interval, int decimals) {
+  constexpr int most = 8;  // what is smaller than that is rounding
+  const auto looks_like_0 = [](double end, int digits) {
+    return end != 0 && std::abs(end) <= 0.5 * std::pow(10.0, -digits);
+  };
+  for (int digits = decimals; digits <= most; ++digits)
+    if (!looks_like_0(interval[0], digits) && !looks_like_0(interval[1], digits)) return digits;
+  return decimals;
+}
+
 Json json_refused(const std::string& reason) { return {{"refused", reason}}; }
 
 std::string with_names(const std::string& reason, const std::vector<std::string>& methods) {

@@ -23,6 +23,9 @@ double number_of(const Json& json);
 /// Frames/s: no protocol has a higher rate (design.mean_fps), so an interval that ends beyond has no upper
 /// bound.
 inline constexpr double highest_rate = 1000;
+/// Digits behind the point for both ends as text: `decimals`, and more where an end would look like 0 and is
+/// not, so that one sees whether the interval holds 0.
+int interval_decimals(const std::array<double, 2>& interval, int decimals);
 /// {"refused": reason}.
 Json json_refused(const std::string& reason);
 /// A reason in which methods go by their place, as stats has them ("method0, method2", "item 1", "items 1,

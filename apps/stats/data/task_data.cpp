@@ -74,7 +74,7 @@ class Collector {
       if (!utc.empty() && (data_.first_answer_utc.empty() || utc < data_.first_answer_utc))
         data_.first_answer_utc = utc;
     }
-    data_.flow.started = static_cast<int>(sessions.size());
+    data_.flow.started = static_cast<int>(sessions.size()) - data_.flow.by_state["planned"];
   }
 
   void add_session(const TaskSession& session) {

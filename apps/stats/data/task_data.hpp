@@ -16,13 +16,12 @@ namespace apps {
 
 /// What became of the sessions of one protocol, and of their trials.
 struct TaskFlow {
-  std::map<std::string, int>
-      by_state;  ///< sessions: "open", "done", "refused", "not eligible", "stopped", "dropped out"
-  int started = 0;
-  int withdrawn = 0;           ///< participants, from whatever protocol of the database
-  int test_left_out = 0;       ///< sessions of test data beside real ones
-  int simulated_left_out = 0;  ///< sessions of observer models beside those of people
-  int protocols_left_out = 0;  ///< sessions of protocols with nothing but test data beside real ones
+  std::map<std::string, int> by_state;  ///< sessions, by TaskSession::state
+  int started = 0;                      ///< all but those that are planned alone
+  int withdrawn = 0;                    ///< participants, from whatever protocol of the database
+  int test_left_out = 0;                ///< sessions of test data beside real ones
+  int simulated_left_out = 0;           ///< sessions of observer models beside those of people
+  int protocols_left_out = 0;           ///< sessions of protocols with nothing but test data beside real ones
   int excluded_visits = 0;
   int excluded_participants = 0;  ///< who answered, and of whom nothing is left
   int analysed = 0;               ///< participants with an answer that counts

@@ -99,7 +99,8 @@ void print_coefficient(const Json& json, const std::string& name, const char* un
   print_row("standard error (of estimates)", curve, "sd", columns, decimals);
   print_row("interval's half width, median", curve, "half_width", columns, decimals);
   print_row("coverage of the interval", curve, "coverage", columns);
-  print_row("precision reached", curve, "reached", columns);
+  if (json.at("settings").at("precision_" + name).is_number())
+    print_row("precision reached", curve, "reached", columns);
 }
 
 void print_precision(const Json& json) {
@@ -107,6 +108,12 @@ void print_precision(const Json& json) {
   std::printf("question \"%s\", the curve at level %g of its scale\n",
               json.at("settings").at("question").get<std::string>().c_str(),
               json.at("settings").at("level").get<double>());
+  const Json& truth = json.at("settings").at("observer");
+  std::printf(
+      "simulated people, as --observer gives them: true a = %g frames/s, true b = %g s/frame, %g points "
+      "for each frame/s, SD of the answers %g and of people %g\n",
+      truth.at("a").get<double>(), truth.at("b").get<double>(), truth.at("slope").get<double>(),
+      truth.at("noise").get<double>(), truth.at("participant_sd").get<double>());
   for (const auto& other : json.at("settings").at("other_questions"))
     std::printf("not in this calculation: question \"%s\"; choose it with --question %s\n",
                 other.get<std::string>().c_str(), other.get<std::string>().c_str());

@@ -23,6 +23,11 @@ std::string rates(const std::array<double, 2>& ci, int decimals) {
   return fmt::format("[{:.{}f}, {:.{}f}]", ci[0], decimals, ci[1], decimals);
 }
 
+std::string slopes(const std::array<double, 2>& ci) {
+  const int decimals = interval_decimals(ci, 4);
+  return fmt::format("[{:.{}f}, {:.{}f}]", ci[0], decimals, ci[1], decimals);
+}
+
 /// One line: a, b and their intervals, or the reason why there are none.
 void print_estimate(double level, const char* name, const std::string& reason, double a, double b,
                     const std::array<double, 2>* a_ci, const std::array<double, 2>* b_ci) {
@@ -31,8 +36,8 @@ void print_estimate(double level, const char* name, const std::string& reason, d
     std::printf("%s\n", reason.c_str());
     return;
   }
-  std::printf("a = %.2f %s frames/s, b = %.4f [%.4f, %.4f] s/frame\n", a, rates(*a_ci, 2).c_str(), b,
-              (*b_ci)[0], (*b_ci)[1]);
+  std::printf("a = %.2f %s frames/s, b = %.4f %s s/frame\n", a, rates(*a_ci, 2).c_str(), b,
+              slopes(*b_ci).c_str());
 }
 
 void print_estimate(double level, const char* name, const stats::Result<stats::CurveSpread>& spread) {

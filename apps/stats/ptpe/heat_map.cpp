@@ -212,10 +212,11 @@ std::string number_of(const HeatMap& map, double value, int decimals, const std:
 std::string interval(const HeatMap& map, const std::string& name, double value,
                      const std::array<double, 2>& ci, int decimals) {
   const std::string member = "/" + name;
+  const int digits = interval_decimals(ci, decimals);
   return name + " = " + number_of(map, value, decimals, member) + " [" +
-         number_of(map, ci[0], decimals, member + "_ci/0") + ", " +
+         number_of(map, ci[0], digits, member + "_ci/0") + ", " +
          (name == "a" && ci[1] > highest_rate ? "no upper bound"
-                                              : number_of(map, ci[1], decimals, member + "_ci/1")) +
+                                              : number_of(map, ci[1], digits, member + "_ci/1")) +
          "]";
 }
 

@@ -21,32 +21,34 @@ std::string count_words(int n, const std::string& thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour) {
+/// `fitted`: the contour has a curve.
+void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour, bool fitted) {
+  const std::string inner = fitted ? "; the contour's curve goes by the others" : "";
   const auto lines = [&](int n) { return std::to_string(n) + " of " + count_words(contour.lines, "line"); };
   if (contour.above_grid > 0) {
-    flags.push_back(
-        {"leaves_grid_above", "on " + lines(contour.above_grid) +
-                                  " the contour lies above the largest mean frame rate; the fit uses "
-                                  "its inner part"});
+    flags.push_back({"leaves_grid_above", "on " + lines(contour.above_grid) +
+                                              " the level is not reached up to the largest mean frame rate" +
+                                              inner});
   }
   if (contour.below_grid > 0) {
-    flags.push_back(
-        {"leaves_grid_below", "on " + lines(contour.below_grid) +
-                                  " the contour lies below the smallest mean frame rate; the fit uses "
-                                  "its inner part"});
+    flags.push_back({"leaves_grid_below", "on " + lines(contour.below_grid) +
+                                              " the level is exceeded from the smallest mean frame rate on" +
+                                              inner});
   }
   if (contour.on_node > 0) {
-    flags.push_back(
-        {"on_node", "on " + lines(contour.on_node) +
-                        " the level is met at a setting and not crossed; such lines are left out"});
+    flags.push_back({"on_node", "on " + lines(contour.on_node) +
+                                    " the level is met at a setting and not crossed" +
+                                    (fitted ? "; such lines are left out" : "")});
   }
   if (contour.crossed_twice > 0) {
-    flags.push_back(
-        {"not_monotone", "on " + lines(contour.crossed_twice) +
-                             " the scores cross the level more than once; every crossing is used"});
+    flags.push_back({"not_monotone", "on " + lines(contour.crossed_twice) +
+                                         " the scores cross the level more than once" +
+                                         (fitted ? "; every crossing is used" : "")});
   }
   if (2 * contour.crossed < contour.lines) {
-    flags.push_back({"short_contour", "only " + lines(contour.crossed) + " cross the level"});
+    flags.push_back({"short_contour", contour.crossed == 0 ? "on no line do the scores cross the level"
+                                                           : "only on " + lines(contour.crossed) +
+                                                                 " do the scores cross the level"});
   }
 }
 
@@ -153,6 +155,11 @@ std::string unusable(const PilotFit& fit, const TaskData& data, const stats::Pil
   return "";
 }
 
+/// Whether the paper's two levels, 4 and 5, mean what they mean in the paper.
+bool on_papers_scale(const study::Question& question) {
+  return question.scale_min == 1 && question.scale_max == 7;
+}
+
 /// The ratings as categories, for the ordinal model: participants left out, no score corrected.
 struct Categories {
   std::vector<stats::PilotRating> ratings;
@@ -224,8 +231,7 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
   for (std::size_t cell = 0; cell < fit.grid.nodes.size(); ++cell) fit.scores.push_back(table.scores(cell));
   fit.deltas = fit.grid.delta;
   std::set<double> levels{level};
-  for (const double usual : {4.0, 5.0})
-    if (within_scale(usual, data.question)) levels.insert(usual);
+  if (on_papers_scale(data.question)) levels.insert({4.0, 5.0});
   Progress progress("resampling participants",
                     4 * levels.size() * static_cast<std::size_t>(bootstrap.resamples));
   std::size_t done = 0;
@@ -248,7 +254,7 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
   flag_direct(fit.flags, fit.chosen().direct);
   flag_form(fit.flags, fit.chosen().direct);
   flag_main(fit.flags, fit.main(), fit.chosen().contour);
-  flag_contour(fit.flags, fit.chosen().contour.contour);
+  flag_contour(fit.flags, fit.chosen().contour.contour, static_cast<bool>(fit.chosen().contour.fit));
   flag_resamples(fit.flags, fit.chosen().contour);
   fit.data = std::move(data);
   const auto raters = rater_flags(fit);

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "apps/stats/data/json_parts.hpp"
+
 namespace apps {
 
 namespace {
@@ -26,10 +28,11 @@ std::string reversed_text(const PilotFit& fit) {
 }
 
 std::string drift_text(const stats::SessionDrift& drift) {
+  const int digits = interval_decimals(drift.ci, 2);
   return fmt::format(
-      "scores change by {:+.2f} [{:.2f}, {:.2f}] points from the first to the last trial, "
+      "scores change by {:+.2f} [{:.{}f}, {:.{}f}] points from the first to the last trial, "
       "t({}) = {:.2f}, {}",
-      drift.change, drift.ci[0], drift.ci[1], drift.df, drift.t, p_words(drift.p));
+      drift.change, drift.ci[0], digits, drift.ci[1], digits, drift.df, drift.t, p_words(drift.p));
 }
 
 std::string lapse_text(const stats::LapseCount& lapses) {

@@ -91,14 +91,14 @@ std::string score_ratings(const Field& task1, const Field& score) {
 }
 
 std::string response_times(const Field& root, const std::string& task) {
-  bool none = false;
+  std::string none;
   Table table(
       "Time from the page's showing to the last change of the answer, s",
       {"Question", "<i>n</i>", "Median", "Quartiles", "<i>M</i>", "<i>SD</i>", "Shortest", "Longest"});
   for (const Field& one : root["response_times"].entries()) {
     if (one["task"].words() != task) continue;
-    if (one["max"].number() == 0) {  // a simulated participant takes no time
-      none = true;
+    if (!one["median"].is_number()) {
+      none = one["reason"].words();
       continue;
     }
     table.row({words(one["question"]), count(one["n"]), fixed(one["median"], 2),
@@ -106,9 +106,9 @@ std::string response_times(const Field& root, const std::string& task) {
                fixed(one["min"], 2), fixed(one["max"], 2)});
   }
   std::string body = table.empty() ? "" : table.html();
-  if (none)
+  if (!none.empty())
     body += "<p class=\"note\">Not given" + std::string(table.empty() ? "" : " for the other questions") +
-            ": simulated participants take no time to answer.</p>\n";
+            ": " + svg::escaped(none) + ".</p>\n";
   return body.empty() ? "" : subsection("Response times", body);
 }
 

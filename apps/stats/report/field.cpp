@@ -147,8 +147,8 @@ std::string p(const Field& field) {
 
 std::string interval(const Field& field, int decimals) {
   if (field.entries().size() != 2) return dash(field);
-  return "<span class=\"number\">[" + end_of(field[0], decimals) + ", " + end_of(field[1], decimals) +
-         "]</span>";
+  const int digits = interval_decimals({number_of(field[0].json()), number_of(field[1].json())}, decimals);
+  return "<span class=\"number\">[" + end_of(field[0], digits) + ", " + end_of(field[1], digits) + "]</span>";
 }
 
 std::string rate_interval(const Field& field) {

@@ -219,7 +219,8 @@ Json flow_json(const TaskFlow& flow) {
     const auto found = flow.by_state.find(state);
     return found == flow.by_state.end() ? 0 : found->second;
   };
-  return {{"started", flow.started},
+  return {{"planned", in_state("planned")},
+          {"started", flow.started},
           {"no_consent", in_state("refused")},
           {"not_eligible", in_state("not eligible")},
           {"stopped", in_state("stopped")},

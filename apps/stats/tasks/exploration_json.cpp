@@ -146,16 +146,19 @@ Json response_times_json(const TaskData& data) {
     if (found == data.response_times.end()) continue;
     const auto times = stats::describe(found->second);
     if (!times) continue;
+    const bool measured = data.simulated.empty();
+    const auto seconds = [&](double value) { return measured ? json_number(value) : Json(); };
     list.push_back({{"task", task_name(data.task)},
                     {"question", question.id},
                     {"n", times->n},
-                    {"mean", times->mean},
-                    {"sd", json_number(times->sd)},
-                    {"median", times->median},
-                    {"q1", times->q25},
-                    {"q3", times->q75},
-                    {"min", times->min},
-                    {"max", times->max}});
+                    {"mean", seconds(times->mean)},
+                    {"sd", seconds(times->sd)},
+                    {"median", seconds(times->median)},
+                    {"q1", seconds(times->q25)},
+                    {"q3", seconds(times->q75)},
+                    {"min", seconds(times->min)},
+                    {"max", seconds(times->max)},
+                    {"reason", measured ? "" : "simulated participants take no time to answer"}});
   }
   return list;
 }

@@ -176,7 +176,8 @@ std::string describe_balance(const study::Protocol& protocol, const Balance& bal
     out += balance.interval_difference == 0
                ? std::string("; within each, the two orders of a pair come equally often")
                : fmt::format(
-                     "; within each, one order of a pair comes at most {} times more often than the other",
+                     "; within each, the numbers of times that the two orders of a pair come differ by "
+                     "at most {}",
                      balance.interval_difference);
   if (balance.even == 1) return out + "; any number divides evenly";
   if (balance.even_below == balance.planned) return out + "; divides evenly";

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/stats/ptpe/simulated_ratings.hpp"
@@ -54,6 +56,28 @@ TEST(DirectFit, ReturnsTheSurfaceThatItIsGiven) {
     EXPECT_NEAR(fit->q, truth.q, 1e-5);
     EXPECT_NEAR(fit->rss, 0, 1e-9);
   }
+}
+
+TEST(DirectFit, TheReasonOfNoFitIsTheTrueOne) {
+  auto data = surface(model(24, 0.02, 3, 0.04, 0.4), 4, 0, 0);
+  const auto reasons = [&](double level) {
+    const stats::DirectModel fitted(data, level);
+    return std::pair(fitted.fit().reason(), fitted.fit_straight().reason());
+  };
+  const std::string beyond =
+      "no contour: the model's curve does not meet the level within the settings shown";
+  EXPECT_EQ(reasons(1000), std::pair(beyond, beyond));
+  for (auto& o : data) o.score = o.delta / 5;
+  EXPECT_EQ(reasons(2).second, "the scores do not depend on the mean frame rate");
+  for (const double level : {4.0, 5.0}) {
+    for (auto& o : data) o.score = 5;
+    EXPECT_EQ(reasons(level),
+              std::pair(std::string("all ratings are equal"), std::string("all ratings are equal")));
+  }
+  for (auto& o : data) o = {o.participant, 20, 5, o.mu, 5};
+  EXPECT_EQ(reasons(4),
+            std::pair(std::string("the settings rated do not determine a surface over mean and deviation"),
+                      std::string("the settings rated do not determine a plane over mean and deviation")));
 }
 
 TEST(DirectFit, NoOtherSurfaceNearbyHasASmallerSum) {

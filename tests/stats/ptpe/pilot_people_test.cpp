@@ -123,6 +123,21 @@ TEST(PilotPeople, LapsesAreFoundAndMoveNoMeanUnderTheRule) {
   EXPECT_NEAR(mean(stats::apply_rules(ratings, people, {.model_lapses = true})), mean(clean), 0.5 * lost);
 }
 
+TEST(PilotPeople, WithoutAScatterTheReasonOfNoLapsesIsTheTrueOne) {
+  const auto reason = [](double low, double middle, double high) {
+    std::vector<stats::PilotRating> ratings;
+    for (int p = 0; p < 3; ++p)
+      for (const double mu : {10.0, 20.0, 40.0})
+        ratings.push_back({p, mu, 0, mu, mu, 0, mu < 15 ? low : mu > 30 ? high : middle, 0});
+    ratings[0].score += high > low ? 1 : 0;  // the answers to this setting differ
+    return stats::pilot_people(ratings, 0.95).lapses.reason();
+  };
+  EXPECT_EQ(reason(0, 1, 10), "no expected score lies in the middle half of the scores given");
+  EXPECT_EQ(reason(0, 5, 10),
+            "no answer whose expected score lies in the middle half of the scores given departs from it");
+  EXPECT_EQ(reason(4, 4, 4), "all answers are equal");
+}
+
 TEST(PilotPeople, WithoutPositionsThereIsNoDrift) {
   const auto people = stats::pilot_people(simulated::pilot({}, 8, 1), 0.95);
   EXPECT_THAT(people.drift.reason(), HasSubstr("positions"));
