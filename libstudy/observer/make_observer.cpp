@@ -105,19 +105,22 @@ std::vector<std::string> scales_beyond(std::string_view specification, const Pro
   if (!score) return {};
   std::vector<std::string> beyond;
   bool taken = false;
+  int lowest = 0;
   for (const auto& [block, question] : all_questions(protocol)) {
     if ((question->kind != AnswerKind::Scale && question->kind != AnswerKind::Choice) || question->accept)
       continue;
     const bool fits = takes(*question, *score);
     taken = taken || fits;
     const bool of_trials = protocol.blocks.at(static_cast<std::size_t>(block)).kind == BlockKind::Stimulus;
-    if (!fits && of_trials && question->kind == AnswerKind::Scale) beyond.push_back(scale_of(*question));
+    if (fits || !of_trials || question->kind != AnswerKind::Scale) continue;
+    if (beyond.empty()) lowest = question->scale_min;
+    beyond.push_back(scale_of(*question));
   }
   if (!taken && !beyond.empty())
     throw base::Error("--observer " + std::string(specification),
                       "gives " + shortest_number(*score) + ", which no question of protocol '" +
                           protocol.name + "' takes: " + beyond.front(),
-                      "write constant: with a score of the scale");
+                      "write a score of that scale, such as constant:" + std::to_string(lowest));
   return beyond;
 }
 

@@ -99,10 +99,11 @@ std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const 
 
 /// Why straight() is empty.
 Refusal DirectModel::no_slope(const Sums& sums, const std::string& surface) {
-  const double mean = sums.n > 0 ? sums.moment[0] / sums.n : 0;
-  if (sums.squares - sums.n * mean * mean <= 1e-12 * sums.squares) return {"all ratings are equal"};
-  if (solve_positive<3>(plane_gram(sums), {})) return {"the scores do not depend on the mean frame rate"};
-  return {"the settings rated do not determine a " + surface + " over mean and deviation"};
+  if (!solve_positive<3>(plane_gram(sums), {}))
+    return {"the settings rated do not determine a " + surface + " over mean and deviation"};
+  const double mean = sums.moment[0] / sums.n;
+  const bool equal = sums.squares - sums.n * mean * mean <= 1e-12 * sums.squares;
+  return {equal ? "all ratings are equal" : "the scores do not depend on the mean frame rate"};
 }
 
 /// Of the two lines on which the score is the level, the one along which it rises with mu.

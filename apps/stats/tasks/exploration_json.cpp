@@ -147,7 +147,7 @@ Json response_times_json(const TaskData& data) {
     const auto times = stats::describe(found->second);
     if (!times) continue;
     const bool measured = data.simulated.empty();
-    const auto seconds = [&](double value) { return measured ? json_number(value) : Json(); };
+    const auto seconds = [&](const auto& value) { return measured ? json_number(value) : Json(); };
     list.push_back({{"task", task_name(data.task)},
                     {"question", question.id},
                     {"n", times->n},
