@@ -1,7 +1,9 @@
 #include "apps/common/claims.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
+#include <utility>
 
 namespace apps {
 
@@ -32,23 +34,72 @@ bool asks_scale(const std::vector<study::Question>& asked, const std::string& id
   });
 }
 
-/// Why neither H1 to H3 nor H4 to H6 are about this protocol, as far as its methods do not decide; empty:
-/// they may be.
+/// Why none of H1 to H6 is about this protocol; empty: some may be.
 std::string why_none(const study::Protocol& protocol) {
-  const auto asked = asked_questions(protocol);
   if (!protocol.design.effects.empty())
     return "effects are a factor, and H1 to H6 are about methods alone; what each level is worth is "
            "exploratory";
   if (protocol.design.timing == study::TimingSource::Settings)
     return curve_questions(protocol).empty() ? "no scale is asked about the frame rates"
                                              : "the study estimates a and b of mu = a exp(b delta)";
-  if (protocol.design.pairs) {
-    const bool chosen = std::any_of(asked.begin(), asked.end(), [](const study::Question& one) {
-      return one.kind == study::AnswerKind::Choice && one.anchors.size() == 2;
-    });
-    return chosen ? "" : "no choice between the two of a pair is asked";
+  return "";
+}
+
+bool asks_choice_of_pair(const study::Protocol& protocol) {
+  const auto asked = asked_questions(protocol);
+  return std::any_of(asked.begin(), asked.end(), [](const study::Question& one) {
+    return one.kind == study::AnswerKind::Choice && one.anchors.size() == 2;
+  });
+}
+
+struct Shown {
+  std::vector<std::string> methods, n_stars;
+};
+
+Shown shown_by(const study::Protocol& protocol) {
+  Shown out;
+  for (const auto& cell : protocol.design.cells) {
+    add_once(out.methods, cell.stimulus.method);
+    add_once(out.n_stars, cell.stimulus.n_star);
   }
-  return missing_items(asked);
+  return out;
+}
+
+/// H1 to H3.
+stats::ShownClaims claims_of_ratings(const study::Protocol& protocol, const stats::AnalysisPlan& plan) {
+  if (protocol.design.pairs) return {{}, {{"H1 to H3", methods_in_pairs}}};
+  if (const std::string missing = missing_items(asked_questions(protocol)); !missing.empty())
+    return {{}, {{"H1 to H3", missing}}};
+  const Shown shown = shown_by(protocol);
+  stats::ScoreScale realism, sickness;
+  realism.code = "realism";
+  realism.margin = plan.margin_realism;
+  sickness.code = "sickness";
+  sickness.margin = plan.margin_sickness;
+  sickness.max = 3;
+  sickness.min = 0;
+  sickness.higher_is_better = false;
+  return stats::claims_about(
+      stats::task1_hypotheses({realism, {}, 0, shown.n_stars, shown.methods},
+                              {sickness, {}, 0, shown.n_stars, shown.methods}, plan, ""),
+      shown.methods);
+}
+
+/// H4 to H6.
+stats::ShownClaims claims_of_pairs(const study::Protocol& protocol, const stats::AnalysisPlan& plan) {
+  if (!protocol.design.pairs) return {{}, {{"H4 to H6", no_pairs}}};
+  if (!asks_choice_of_pair(protocol)) return {{}, {{"H4 to H6", no_choice_of_pair}}};
+  const auto methods = shown_by(protocol).methods;
+  std::vector<stats::PairPreference> pairs;
+  for (int a = 0; a < static_cast<int>(methods.size()); ++a) {
+    for (int b = a + 1; b < static_cast<int>(methods.size()); ++b) {
+      pairs.emplace_back();
+      pairs.back().a = a;
+      pairs.back().b = b;
+      pairs.back().test = stats::Refusal{"no data"};
+    }
+  }
+  return stats::claims_about(stats::task2_hypotheses(pairs, methods, plan, ""), methods);
 }
 
 }  // namespace
@@ -75,36 +126,22 @@ std::vector<study::Question> curve_questions(const study::Protocol& protocol) {
   return out;
 }
 
+bool compares_scores(const study::Protocol& protocol, const std::vector<std::string>& items) {
+  std::vector<std::string> treatments;
+  for (const auto& cell : protocol.design.cells) add_once(treatments, study::treatment_name(cell.stimulus));
+  const auto asked = asked_questions(protocol);
+  return !protocol.design.pairs && treatments.size() > 1 && asks_scale(asked, "realism") &&
+         std::all_of(items.begin(), items.end(),
+                     [&](const std::string& item) { return asks_scale(asked, item); });
+}
+
 stats::ShownClaims hypotheses_of(const study::Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (const std::string why = why_none(protocol); !why.empty()) return {{}, {{"H1 to H6", why}}};
-  std::vector<std::string> methods, n_stars;
-  for (const auto& cell : protocol.design.cells) {
-    add_once(methods, cell.stimulus.method);
-    add_once(n_stars, cell.stimulus.n_star);
-  }
-  if (!protocol.design.pairs) {
-    stats::ScoreScale realism, sickness;
-    realism.code = "realism";
-    realism.margin = plan.margin_realism;
-    sickness.code = "sickness";
-    sickness.margin = plan.margin_sickness;
-    sickness.max = 3;
-    sickness.min = 0;
-    sickness.higher_is_better = false;
-    return stats::claims_about(stats::task1_hypotheses({realism, {}, 0, n_stars, methods},
-                                                       {sickness, {}, 0, n_stars, methods}, plan, ""),
-                               methods);
-  }
-  std::vector<stats::PairPreference> pairs;
-  for (int a = 0; a < static_cast<int>(methods.size()); ++a) {
-    for (int b = a + 1; b < static_cast<int>(methods.size()); ++b) {
-      pairs.emplace_back();
-      pairs.back().a = a;
-      pairs.back().b = b;
-      pairs.back().test = stats::Refusal{"no data"};
-    }
-  }
-  return stats::claims_about(stats::task2_hypotheses(pairs, methods, plan, ""), methods);
+  auto out = claims_of_ratings(protocol, plan);
+  auto of_pairs = claims_of_pairs(protocol, plan);
+  std::move(of_pairs.claims.begin(), of_pairs.claims.end(), std::back_inserter(out.claims));
+  std::move(of_pairs.left_out.begin(), of_pairs.left_out.end(), std::back_inserter(out.left_out));
+  return out;
 }
 
 }  // namespace apps

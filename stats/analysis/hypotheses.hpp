@@ -108,11 +108,11 @@ std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,
                                          const std::string& untestable);
 
-/// Hypotheses about methods that a study shows, and why each other one is not tested.
+/// Hypotheses about methods that a protocol shows, and why each other one is not tested.
 struct ShownClaims {
   struct LeftOut {
     std::string id;      ///< "H1"
-    std::string reason;  ///< "the study does not show FovFluid"
+    std::string reason;  ///< "the protocol does not show FovFluid"
   };
   std::vector<Hypothesis> claims;
   std::vector<LeftOut> left_out;

@@ -162,7 +162,7 @@ ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::str
       out.claims.push_back(std::move(one));
     } else {
       out.left_out.push_back(
-          {one.id, fmt::format("the study does not show {}", fmt::join(missing_methods, " and "))});
+          {one.id, fmt::format("the protocol does not show {}", fmt::join(missing_methods, " and "))});
     }
   }
   return out;

@@ -37,11 +37,12 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
   // Nothing about methods and questions that the protocol does not have is frozen.
   const auto frozen = typed("vip-stats preregister " + protocol + " --out " + at("bundle"));
   ASSERT_EQ(frozen.exit_code, 0) << frozen.out;
-  EXPECT_THAT(frozen.out, HasSubstr("not tested: H1 to H6 of comfort"));
+  EXPECT_THAT(frozen.out, HasSubstr("not tested: H1 to H3 of comfort"));
   EXPECT_EQ(Json::parse(file(folder / "bundle" / "hypotheses.json")), Json::array());
   const std::string words = file(folder / "bundle" / "PREREGISTRATION.txt");
   EXPECT_THAT(words,
-              HasSubstr("None.\n- Not tested: H1 to H6 of comfort: the trials ask no question 'realism'"));
+              HasSubstr("None.\n- Not tested: H1 to H3 of comfort: the trials ask no question 'realism'"));
+  EXPECT_THAT(words, HasSubstr("- Not tested: H4 to H6 of comfort: no pairs of methods are shown.\n"));
   EXPECT_THAT(words, Not(HasSubstr("FovFluid")));
   // plan.toml lists rules that cannot act as comments.
   for (const char* rule :

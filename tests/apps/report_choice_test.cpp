@@ -224,6 +224,7 @@ TEST(ReportChoice, RealismAloneIsAnalysed) {
   EXPECT_TRUE(json.at("hypotheses").empty());
   EXPECT_EQ(json.at("not_analysed"),
             (Json{{{"task", "task1"},
+                   {"protocol", "task1"},
                    {"what", "H1 to H3"},
                    {"reason",
                     "the trials ask no question 'disorientation', 'unrealism', 'dizziness' or 'confusion' on "
@@ -272,7 +273,7 @@ TEST(ReportChoice, AnOwnDesignSaysWhatIsNotTestedAndWhyThereAreNoTimes) {
       for (auto& answer : trial.answers) answer.response_time_s = 0;
   const Json json = results_of({{own}, 0});
   expect_true_page(json);
-  EXPECT_EQ(json.at("not_analysed").at(1).at("what"), "H1 to H6");
+  EXPECT_EQ(json.at("not_analysed").at(1).at("what"), "H1 to H3");
   EXPECT_THAT(report::results_page(json), HasSubstr("simulated participants take no time to answer"));
 }
 
@@ -285,8 +286,10 @@ TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
   expect_true_page(json);
   ASSERT_EQ(json.at("hypotheses").size(), 2u);
   EXPECT_EQ(json.at("hypotheses")[0].at("id"), "H2");
-  EXPECT_EQ(json.at("not_analysed"),
-            (Json{{{"task", "task1"}, {"what", "H1"}, {"reason", "the study does not show FovFluid"}}}));
+  EXPECT_EQ(json.at("not_analysed"), (Json{{{"task", "task1"},
+                                            {"protocol", "task1"},
+                                            {"what", "H1"},
+                                            {"reason", "the protocol does not show FovFluid"}}}));
 }
 
 /// Each of six people judges one pair in three scenes. `alike`: all choose HiRes, always.

@@ -98,7 +98,7 @@ TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
   EXPECT_EQ(age.at("range"), Json({20, 35})) << "20 to 31, in whole fives: the ends are single people";
   EXPECT_EQ(gender.at("groups"), Json::array({{{"answer", "male"}, {"n", 12}}}));
   EXPECT_EQ(gender.at("pooled").at("n"), 13);
-  EXPECT_THAT(page(), HasSubstr("What the analysed participants answered about themselves"));
+  EXPECT_THAT(page(), HasSubstr("What the analysed participants answered on pages outside the trials"));
 
   PlanInForce plan;
   plan.plan.resamples = 100;
@@ -198,6 +198,24 @@ TEST(DescriptionOfTheReport, EachPictureOfTask1HasEveryMethodAndPerson) {
        at = picture.find("stroke-opacity", at + 1))
     ++lines;
   EXPECT_EQ(lines, 2u * people) << "one for each participant at each n_*";
+}
+
+// Names of methods with a level of effects are long: nothing is drawn beyond the picture's edges.
+TEST(PageOfTheReport, PicturesHaveRoomForLongNames) {
+  const std::string name = "LoRes, rather_long_name_of_foam_and_spray";
+  Json json = made();
+  for (Json& pair : json.at("task2").at("pairs")) pair["a"] = pair["b"] = name;
+  for (Json& one : json.at("task1").at("distributions")) one["method"] = name;
+  const auto html = report::results_page(json);
+  const auto room = [&](const std::string& id, const std::string& mark) {
+    const auto at = html.find(mark, html.find("id=\"" + id + "-title\""));
+    return std::stod(html.substr(at + mark.size()));
+  };
+  const double needed = 6.5 * static_cast<double>(name.size());
+  EXPECT_GT(room("preference", "translate(") + 110, needed);
+  EXPECT_GT(room("ratings-realism", "translate(") + 182, needed);
+  const auto box = html.rfind("viewBox=\"0 0 ", html.find("id=\"preference-title\""));
+  EXPECT_GT(std::stod(html.substr(box + 13)) - room("preference", "translate(") - 606, needed);
 }
 
 // The row for the solver had the direct estimate's own interval, the sentence above it the wider one.

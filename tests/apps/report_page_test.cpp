@@ -259,6 +259,42 @@ TEST(ReportPage, OnlyWhatABundleHoldsIsCalledPreregistered) {
   EXPECT_EQ(n, 7u) << "H1 to H3 in the table and in their sections, and the list of parts";
 }
 
+OrderedJson results_of(const study::TaskProtocol& protocol) {
+  PlanInForce plan;
+  plan.plan.resamples = 100;
+  return make_results({{protocol}, 0}, {"s.db", {TaskKind::Task1}, "", plan}).json;
+}
+
+TEST(ReportPage, EveryParticipantIsInOneBoxOfTheFlow) {
+  auto task = made_study::task1(6);
+  for (std::size_t person : {0u, 1u, 2u}) {
+    task.sessions[person].state = "dropped out";
+    for (auto& trial : task.sessions[person].trials)
+      if (person < 2 || trial.position > 3)
+        for (auto& answer : trial.answers) answer.score.reset();
+  }
+  task.sessions[3].catches = {{"attention", 2, 5}};
+  const auto json = results_of(task);
+  const auto& flow = json.at("flow").at("task1");
+  EXPECT_EQ(flow.at("participants"), 6);
+  EXPECT_EQ(flow.at("no_answer"), 2);
+  EXPECT_EQ(flow.at("excluded_participants"), 1);
+  EXPECT_EQ(flow.at("analysed"), 3) << "one of them did not come back";
+  const auto html = report::results_page(json);
+  EXPECT_TRUE(holds(html, "people without an answer to a trial"));
+  EXPECT_TRUE(holds(html, "Answers count whether or not their session was completed."));
+}
+
+TEST(ReportPage, TheBannerCountsSimulatedPeopleThatAreLeftOutToo) {
+  auto task = made_study::task1(5);
+  for (auto& session : task.sessions) session.observer = "random";
+  task.sessions[0].catches = task.sessions[1].catches = {{"attention", 2, 5}};
+  const auto json = results_of(task);
+  EXPECT_EQ(json.at("flow").at("task1").at("analysed"), 3);
+  EXPECT_EQ(json.at("study").at("simulated_people"), 5);
+  EXPECT_EQ(json.at("study").at("protocols").at(0).at("simulated"), 5);
+}
+
 TEST(ReportPage, RefusesAnotherSchema) {
   EXPECT_THROW(report::results_page({{"schema", "vip-results/2"}}), base::Error);
   EXPECT_THROW(report::results_page(OrderedJson::array()), base::Error);

@@ -45,13 +45,13 @@ inline std::vector<Case> head_and_methods() {
       {"Over the water of every stimulus of # # was painted.",
        in_each("/study/protocols", "overlay", nullptr),
        in_each("/study/protocols", "overlay", "temperature")},
-      {"Pilot was begun in # sessions, of which # were completed; # participants who had answered were left "
-       "out "
-       "and # analysed, with # of # planned trials (# answered ones left out).",
+      {"Pilot was begun in # sessions, of which # were completed; of # participants # answered no trial, # "
+       "who had answered were left out and # analysed, with # of # planned trials (# answered ones left "
+       "out).",
        no_flow},
-      {"Task [12] was begun in # sessions, of which # were completed; # participants who had answered were "
-       "left "
-       "out and # analysed, with # of # planned trials (# answered ones left out).",
+      {"Task [12] was begun in # sessions, of which # were completed; of # participants # answered no "
+       "trial, # who had answered were left out and # analysed, with # of # planned trials (# answered ones "
+       "left out).",
        no_flow},
       {"The same rules of exclusion held for *Task 1 and Task 2: trials whose timing verdict was fail "
        "were left out*",
@@ -131,7 +131,9 @@ inline std::vector<Case> participants_and_timing() {
                no_timing = set("/timing", Json::array());
   const Change no_answers = set("/descriptives", Json::array());
   const Change all_analysed = set("/not_analysed", Json::array()),
-               h1_is_not = set("/not_analysed", {{{"task", "task1"}, {"what", "H1"}, {"reason", "so"}}});
+               h1_is_not =
+                   set("/not_analysed",
+                       {{{"task", "task1"}, {"protocol", "task1"}, {"what", "H1"}, {"reason", "so"}}});
   const Change one_flawed = all({set("/timing/0/fail", 1), set("/timing_totals/0/flawed_cells", 1)}),
                all_flawed =
                    all({in_each("/timing", "fail", 1), in_each("/timing_totals", "flawed_cells", 1)}),
@@ -141,7 +143,7 @@ inline std::vector<Case> participants_and_timing() {
        set("/roster", nullptr)},
       {"# Everybody in the database", set("/roster/protocols", Json::array())},
       {"The shipped analyses do not cover these parts of the study:", all_analysed, h1_is_not},
-      {"# (not analysed): #.", all_analysed, h1_is_not},
+      {"# of # (not analysed): #.", all_analysed, h1_is_not},
       {"Every answer to a trial that is analysed, whatever else is computed from it.", no_answers},
       {"A cell is what was shown in one scene at one n[*]; n counts answers.", no_answers},
       {"# Answers to #*", no_answers},
@@ -149,11 +151,15 @@ inline std::vector<Case> participants_and_timing() {
        in_each("/descriptives", "cells", Json::array())},
       {"# What became of those who began: Pilot.", set("/flow/pilot", nullptr)},
       {"# What became of those who began: Task [12].", set("/flow", Json::object())},
+      {"Answers count whether or not their session was completed.", set("/flow", Json::object())},
       {"Boxes from top to bottom: sessions started, sessions completed, participants analysed; beside them "
        "those "
        "who left in between, with the reason, and what is counted apart.",
        set("/flow", Json::object())},
       {"# All that was left out by rule or by hand", nothing_excluded},
+      {"Answers lost are scores, choices and numbers that were given, those about repeated showings with "
+       "them.",
+       nothing_excluded},
       {"Nothing of Pilot and Task 2 was left out by rule or by hand.", set("/exclusions/0/task", "pilot")},
       {"Nothing of Pilot* was left out by rule or by hand.",
        set("/exclusions", {{{"task", "task1"}}, {{"task", "pilot"}}})},
@@ -189,7 +195,8 @@ inline std::vector<Case> participants_and_timing() {
        "its showings whose timing passed, was degraded, failed or could not be judged.",
        none_flawed, all_flawed},
       {"The table below holds the counts of each cell.", none_flawed, one_flawed},
-      {"# What the analysed participants answered about themselves", set("/people", Json::array())},
+      {"# What the analysed participants answered on pages outside the trials",
+       set("/people", Json::array())},
       {"No single person is shown: groups of fewer than # people are taken together with the next smallest; "
        "a "
        "number that fewer than # people gave has no summary; ranges go to whole fives.",

@@ -99,6 +99,12 @@ inline std::vector<Case> task1() {
   const Change unanimous =
       all({set("/task1/comparisons/0/t", nullptr), set("/task1/comparisons/0/stars", "*"),
            set("/task1/comparisons/0/test", "exact sign test")});
+  const auto lacking = [](int answers) {
+    const Json side{{"missing", answers}, {"worse_by", nullptr}};
+    return in_each("/task1/comparisons", "tipping",
+                   {{"planned", 16}, {"holds", false}, {"a", side}, {"b", side}, {"reason", ""}});
+  };
+  const Change no_hypotheses = set("/hypotheses", Json::array());
   const auto stars = [](const std::string& text) { return in_each("/task1/comparisons", "stars", text); };
   return {
       {"Exploratory # participants, # reports.", no_task},
@@ -152,6 +158,10 @@ inline std::vector<Case> task1() {
        all({no_pairs, set("/hypotheses", Json::array())})},
       {"# Tipping points of the paired t tests", no_pairs},
       {"# Tipping points of the tests of H1 to H3", set("/hypotheses", Json::array())},
+      {"No participant lacks an answer to a method: there are no tipping points.", lacking(1),
+       all({lacking(0), no_hypotheses})},
+      {"No tipping points: too few answers.", lacking(1),
+       all({in_each("/task1/comparisons", "tipping", {{"refused", "too few answers"}}), no_hypotheses})},
       {"# Cumulative-link mixed models of single answers: effects of the method, log odds",
        set("/task1/ordinal", Json::array())},
       {"A penalised model has a weak prior on each effect, because maximum likelihood has no finite "

@@ -156,6 +156,21 @@ TEST(SicknessSection, SaysWhatIsMissingOnlyWhereItIs) {
   EXPECT_THAT(html_of(sessions), HasSubstr("A missing item empties its scale and the total"));
 }
 
+TEST(SicknessSection, SaysWhereTheQuestionnaireWasAskedOnce) {
+  EXPECT_THAT(html_of(three()), Not(HasSubstr("No session answered the questionnaire")));
+  auto sessions = three();
+  for (SicknessSession& one : sessions)
+    std::erase_if(one.ssq, [](const SsqPage& page) { return !page.before; });
+  const auto before = html_of(sessions);
+  EXPECT_THAT(before, HasSubstr("No session answered the questionnaire after the first trial"));
+  EXPECT_THAT(before, Not(HasSubstr("Changes of the SSQ scores")));
+  EXPECT_THAT(before, Not(HasSubstr(">After<")));
+  sessions = three();
+  for (SicknessSession& one : sessions)
+    std::erase_if(one.ssq, [](const SsqPage& page) { return page.before; });
+  EXPECT_THAT(html_of(sessions), HasSubstr("No session answered the questionnaire before the first trial"));
+}
+
 TEST(SicknessSection, ShowsOnlyWhatWasAsked) {
   auto sessions = three();
   for (SicknessSession& one : sessions) one.fms.clear();

@@ -109,6 +109,23 @@ TEST(StationClock, WhereAnImpossibleTimeFollowsLaterRowsTheOrderDecides) {
   EXPECT_TRUE(check.at("tasks").at("task1").get<bool>()) << check.dump(2);
 }
 
+TEST(StationClock, AFirstAnswerThatIsNoPersonsSaysSo) {
+  const auto text = [](int simulated, bool test_data) {
+    return report::time_json("2026-05-01T00:00:00Z", {{"task", "own"},
+                                                      {"title", "Own design"},
+                                                      {"first_answer_utc", "2026-04-01T00:00:00Z"},
+                                                      {"simulated", simulated},
+                                                      {"test_data", test_data}})
+        .at("text")
+        .get<std::string>();
+  };
+  const std::string given =
+      "The bundle was not frozen before the first answer of Own design, given 2026-04-01T00:00:00Z";
+  EXPECT_EQ(text(0, false), given + ".");
+  EXPECT_EQ(text(3, false), given + " by an observer model.");
+  EXPECT_EQ(text(0, true), given + " as test data.");
+}
+
 TEST(StationClock, WhereTheOrderDoesNotTellNothingIsCalledLate) {
   // Rows before the bundle; and two times that may both be right.
   const std::pair<const char*, const char*> cases[] = {{"1969-12-31T23:00:00Z", "2025-01-01T00:00:00Z"},

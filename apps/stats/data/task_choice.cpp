@@ -19,7 +19,7 @@ constexpr const char* realism = "realism";
 const char* what_it_shows(TaskKind task) {
   if (task == TaskKind::Pilot) return "that shows frame rates, rated on a scale";
   if (task == TaskKind::Own) return "of another design than the pilot, Task 1 and Task 2";
-  return task == TaskKind::Task2 ? "that shows pairs of methods, one of which is chosen"
+  return task == TaskKind::Task2 ? "that shows pairs of methods and asks a choice with exactly two anchors"
                                  : "that shows methods one by one, rated for 'realism' on a scale";
 }
 
@@ -152,6 +152,10 @@ bool has_answers(const TaskSession& session) {
     return std::any_of(trial.answers.begin(), trial.answers.end(),
                        [](const study::TaskAnswer& answer) { return answer.score.has_value(); });
   });
+}
+
+bool is_simulated(const TaskSession& session) {
+  return !session.observer.empty() && (has_answers(session) || !session.first_answer_utc.empty());
 }
 
 bool has_real_answers(const TaskProtocol& protocol) {

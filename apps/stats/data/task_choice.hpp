@@ -38,6 +38,8 @@ struct TaskSelection {
 double level_of(const TaskSelection& selection, const study::Question& question);
 
 bool has_answers(const study::TaskSession& session);
+/// Answered by an observer model, on whatever page.
+bool is_simulated(const study::TaskSession& session);
 bool has_real_answers(const study::TaskProtocol& protocol);
 
 /// A protocol of a task that is not analysed, as it holds nothing but test data and others hold real data.

@@ -46,7 +46,7 @@ class Collector {
     leave_out_sessions();
     data_.exclusions = find_exclusions(data_.protocol, data_.question, rules);
     for (const TaskSession& session : data_.protocol.sessions) add_session(session);
-    count_excluded_people();
+    count_people();
     data_.flow.analysed = static_cast<int>(data_.participants.size());
   }
 
@@ -78,6 +78,11 @@ class Collector {
   }
 
   void add_session(const TaskSession& session) {
+    if (session.state != "planned") people_.insert(session.participant);
+    if (is_simulated(session)) {
+      add_once(data_.simulated, session.participant);
+      add_once(data_.observers, session.observer);
+    }
     bool counted = false;
     for (const TaskTrial& trial : session.trials) counted = add_trial(session, trial) || counted;
     if (!counted) return;
@@ -88,9 +93,6 @@ class Collector {
     for (const auto& setting : session.settings) ++data_.settings[setting_words(setting)];
     if (!session.unblinded.empty()) ++data_.unblinded[session.unblinded];
     if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
-    if (session.observer.empty()) return;
-    add_once(data_.simulated, session.participant);
-    add_once(data_.observers, session.observer);
   }
 
   /// True when an answer about it counts.
@@ -205,7 +207,9 @@ class Collector {
     return found == list.end() ? -1 : static_cast<int>(found - list.begin());
   }
 
-  void count_excluded_people() {
+  void count_people() {
+    data_.flow.participants = static_cast<int>(people_.size());
+    data_.flow.no_answer = static_cast<int>(people_.size() - answered_.size());
     data_.flow.excluded_visits =
         static_cast<int>(std::count_if(data_.exclusions.begin(), data_.exclusions.end(),
                                        [](const stats::Exclusion& one) { return one.position < 0; }));
@@ -216,7 +220,7 @@ class Collector {
   }
 
   TaskData& data_;
-  std::set<std::string> answered_;  ///< codes
+  std::set<std::string> people_, answered_;  ///< codes: of all, and of those who answered a trial
 };
 
 }  // namespace

@@ -18,12 +18,14 @@ namespace apps {
 struct TaskFlow {
   std::map<std::string, int> by_state;  ///< sessions, by TaskSession::state
   int started = 0;                      ///< all but those that are planned alone
+  int participants = 0;                 ///< of the sessions started
+  int no_answer = 0;                    ///< participants who answered no trial, practice and repeats aside
   int withdrawn = 0;                    ///< participants, from whatever protocol of the database
   int test_left_out = 0;                ///< sessions of test data beside real ones
   int simulated_left_out = 0;           ///< sessions of observer models beside those of people
   int protocols_left_out = 0;           ///< sessions of protocols with nothing but test data beside real ones
   int excluded_visits = 0;
-  int excluded_participants = 0;  ///< who answered, and of whom nothing is left
+  int excluded_participants = 0;  ///< who answered a trial, and of whom nothing is left
   int analysed = 0;               ///< participants with an answer that counts
   int trials_planned = 0, trials_answered = 0, trials_excluded = 0, trials_analysed = 0;
   int practice = 0, repeat = 0;
@@ -68,7 +70,7 @@ struct TaskData {
   bool test_data = false;                 ///< there are no real data: test data are analysed
   std::vector<std::string> participants;  ///< codes
   std::vector<std::string> scenes;        ///< short: "single_dam"
-  std::vector<std::string> simulated;     ///< participants answered by observer models
+  std::vector<std::string> simulated;     ///< participants answered by observer models, excluded ones too
   std::vector<std::string> observers;     ///< different models
   std::map<std::string, int> gaze, stations, displays, angles, settings, unblinded,
       mixed_pictures;            ///< sessions

@@ -58,10 +58,15 @@ int widest_scale(const study::Protocol& protocol) {
 
 /// Keys of the plan that cannot act, and why.
 std::map<std::string, std::string> idle_rules(const std::vector<study::Protocol>& protocols,
-                                              const stats::AnalysisPlan& plan, bool hypotheses) {
+                                              const stats::AnalysisPlan& plan) {
   const auto none = [&](auto holds) { return std::none_of(protocols.begin(), protocols.end(), holds); };
   std::map<std::string, std::string> out;
-  if (!hypotheses) out["realism"] = out["sickness"] = "no hypothesis is tested";
+  if (none([](const auto& one) { return compares_scores(one, {}); }))
+    out["realism"] = "no ratings of realism compare methods";
+  if (none([](const auto& one) {
+        return compares_scores(one, {"disorientation", "dizziness", "confusion"});
+      }))
+    out["sickness"] = "no ratings of cybersickness compare methods";
   if (none([](const auto& one) { return one.design.timing != study::TimingSource::Native; }))
     out["timing"] = "without a schedule there is no verdict";
   if (none([](const auto& one) { return has_block(one, study::BlockKind::Catch); }))
@@ -81,11 +86,10 @@ std::map<std::string, std::string> idle_rules(const std::vector<study::Protocol>
 
 }  // namespace
 
-std::string frozen_plan(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
-                        bool hypotheses) {
+std::string frozen_plan(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan) {
   std::vector<std::string> hashes;
   for (const auto& protocol : protocols) hashes.push_back(protocol.sha256);
-  const auto idle = idle_rules(protocols, plan, hypotheses);
+  const auto idle = idle_rules(protocols, plan);
   std::istringstream lines(format_plan(plan, hashes));
   std::string out;
   for (std::string line; std::getline(lines, line);) {
@@ -128,8 +132,7 @@ std::string bundle_text(const std::vector<study::Protocol>& protocols, const sta
   std::string curves;
   for (const auto& protocol : protocols) curves += curves_text(protocol, plan);
   if (!curves.empty()) out += "\nCurves\n" + curves;
-  out += "\nMargins, level, exclusion rules and seed (plan.toml)\n" +
-         frozen_plan(protocols, plan, !hypotheses.empty());
+  out += "\nMargins, level, exclusion rules and seed (plan.toml)\n" + frozen_plan(protocols, plan);
   if (with_power) out += "\nPower: power.json\n";
   return out +
          "\nTo check this folder: sha256sum -c MANIFEST.sha256\nThe bundle's hash is the SHA-256 of "

@@ -19,11 +19,10 @@ inline constexpr std::size_t largest_bundle_file = 1 << 24;
 nlohmann::ordered_json fixed_part(const nlohmann::ordered_json& hypothesis);
 
 /// plan.toml of a bundle: a rule that cannot act on what these protocols show and ask is a comment which says
-/// why. `hypotheses`: whether any is tested.
-std::string frozen_plan(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
-                        bool hypotheses);
+/// why.
+std::string frozen_plan(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan);
 
-/// For people, to be deposited with the hash. `untested`: "H1: the study does not show FovFluid".
+/// For people, to be deposited with the hash. `untested`: "H1 of task1: the protocol does not show FovFluid".
 std::string bundle_text(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
                         const nlohmann::ordered_json& hypotheses, const std::vector<std::string>& untested,
                         bool with_power, const std::string& frozen_utc);

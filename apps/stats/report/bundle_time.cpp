@@ -46,12 +46,17 @@ Json time_json(const std::string& frozen, const Json& used) {
     return json;
   }
   const std::string first = used.at("first_answer_utc");
+  const bool simulated = used.value("simulated", 0) > 0, rehearsal = used.value("test_data", false);
   const bool before = frozen < first;
   json["first_answer_utc"] = first;
   json["frozen_before"] = before && !order.known ? Json() : Json(before);
   json["clocks_disagree"] = !order.text.empty();
   json["text"] = "The bundle was " + std::string(before ? "" : "not ") +
-                 "frozen before the first answer of " + title + ", given " + first + "." + order.text;
+                 "frozen before the first answer of " + title + ", given " + first +
+                 (simulated   ? " by an observer model."
+                  : rehearsal ? " as test data."
+                              : ".") +
+                 order.text;
   return json;
 }
 

@@ -41,7 +41,7 @@ std::string label_of(const Field& task1, const Field& entry) {
 }
 
 std::string people_tables(const Field& root) {
-  Table table("What the analysed participants answered about themselves",
+  Table table("What the analysed participants answered on pages outside the trials",
               {"Question", "<i>n</i>", "No answer", "Answers"});
   const auto parts = root["people"].entries();
   for (const Field& part : parts) {

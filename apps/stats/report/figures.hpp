@@ -1,12 +1,31 @@
 #pragma once
 /// The page's figures, each from a part of the results.
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "apps/common/svg.hpp"
 #include "apps/stats/report/field.hpp"
 
 namespace apps::report {
+
+/// Pixels that the longest of these names takes in letters of 13 pixels. Their true width is the browser's:
+/// 8 pixels are more than what a letter of its sans-serif fonts takes on average.
+inline double room_for(const std::vector<std::string>& names) {
+  std::ptrdiff_t longest = 0;
+  for (const std::string& name : names)
+    longest = std::max(longest, std::count_if(name.begin(), name.end(), [](char byte) {
+                         return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // first of a letter
+                       }));
+  return 8.0 * static_cast<double>(longest);
+}
+
+/// Elements of a picture, moved to the right to make that room.
+inline std::string moved_right(const std::string& elements, double px) {
+  return "<g transform=\"translate(" + svg::number(px, 0) + " 0)\">\n" + elements + "</g>\n";
+}
 
 /// One score of Task 1 as in the paper's Fig. 9: a box for each method within each n_*, its mean an X,
 /// brackets with stars over pairs that differ. `score`: an entry of task1.scores.

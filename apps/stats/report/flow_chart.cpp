@@ -64,14 +64,15 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
       "Boxes from top to bottom: sessions started, sessions completed, participants analysed; beside them "
       "those who left in between, with the reason, and what is counted apart.";
   const std::vector<std::pair<std::vector<Entry>, std::vector<Entry>>> steps{
-      {{{"sessions started", flow["started"]}},
+      {{{"sessions started", flow["started"]}, {"participants in them", flow["participants"]}},
        those_with_some({{"did not consent", flow["no_consent"]},
                         {"not eligible", flow["not_eligible"]},
                         {"stopped early", flow["stopped"]},
                         {"did not come back", flow["dropped_out"]},
                         {"still open", flow["open"]}})},
       {{{"sessions completed", flow["done"]}},
-       those_with_some({{"people left out by rule or hand", flow["excluded_participants"]}})},
+       those_with_some({{"people without an answer to a trial", flow["no_answer"]},
+                        {"people left out by rule or hand", flow["excluded_participants"]}})},
       {{{"participants analysed", flow["analysed"]},
         {"trials planned", flow["trials_planned"]},
         {"trials answered", flow["trials_answered"]},

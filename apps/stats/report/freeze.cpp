@@ -1,5 +1,6 @@
 #include <cerrno>
 #include <cstring>
+#include <set>
 
 #include "apps/common/claims.hpp"
 #include "apps/stats/report/bundle_parts.hpp"
@@ -34,12 +35,27 @@ std::vector<study::Protocol> read_protocols(const std::vector<fs::path>& paths) 
   return out;
 }
 
+/// Whether all of "H1", or of "H1 to H3", are among these.
+bool all_among(const std::string& range, const std::set<std::string>& ids) {
+  for (char number = range.at(1); number <= range.back(); ++number)
+    if (!ids.contains(std::string("H") + number)) return false;
+  return true;
+}
+
+/// A protocol that tests some is not blamed for those that another one tests.
 std::vector<std::string> untested_of(const std::vector<study::Protocol>& protocols,
                                      const stats::AnalysisPlan& plan) {
-  std::vector<std::string> out;
+  std::vector<stats::ShownClaims> shown;
+  std::set<std::string> tested;
   for (const auto& protocol : protocols) {
-    for (const auto& [id, reason] : hypotheses_of(protocol, plan).left_out)
-      out.push_back(id + " of " + protocol.name + ": " + reason);
+    shown.push_back(hypotheses_of(protocol, plan));
+    for (const auto& claim : shown.back().claims) tested.insert(claim.id);
+  }
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < protocols.size(); ++i) {
+    for (const auto& [id, reason] : shown[i].left_out)
+      if (shown[i].claims.empty() || !all_among(id, tested))
+        out.push_back(id + " of " + protocols[i].name + ": " + reason);
   }
   return out;
 }
@@ -82,7 +98,7 @@ Files contents(const BundleRequest& request) {
   }
   const auto plan = with_levels(request.plan, protocols);
   files["hypotheses.json"] = base::json_text(hypotheses, 2) + "\n";
-  files["plan.toml"] = frozen_plan(protocols, plan, !hypotheses.empty());
+  files["plan.toml"] = frozen_plan(protocols, plan);
   if (request.power) {
     files["power.json"] = base::read_file(*request.power, largest_bundle_file);
     if (!Json::accept(files["power.json"]))

@@ -127,7 +127,14 @@ std::string decisions_tipping(const Field& hypotheses) {
 
 std::string tipping_points(const Field& root) {
   const std::string tables = tipping(root["task1"]) + decisions_tipping(root["hypotheses"]);
-  if (tables.empty()) return "";
+  if (tables.empty()) {
+    const auto pairs = root["task1"]["comparisons"].entries();
+    if (pairs.empty()) return "";
+    for (const Field& c : pairs)
+      if (!c["tipping"].there())
+        return paragraph("No tipping points: " + typeset(svg::escaped(c["tipping"].reason())) + ".");
+    return paragraph("No participant lacks an answer to a method: there are no tipping points.");
+  }
   return paragraph(
              "A tipping point is by how many points missing answers to one method must be worse than those "
              "of the others let expect before the decision changes; any: none is enough.") +

@@ -20,8 +20,9 @@ std::string exclusions_table(const Field& root) {
   }
   if (table.empty()) return "";
   return table.html() +
-         (one_trial ? "<p class=\"note\">Trials are counted from nought, in the order of showing.</p>\n"
-                    : "");
+         "<p class=\"note\">Answers lost are scores, choices and numbers that were given, those "
+         "about repeated showings with them." +
+         (one_trial ? " Trials are counted from nought, in the order of showing." : "") + "</p>\n";
 }
 
 /// Parts of which the results list no exclusion.
@@ -190,8 +191,8 @@ std::string descriptives_section(const Field& root) {
 std::string not_analysed_section(const Field& root) {
   std::vector<std::string> lines;
   for (const Field& one : root["not_analysed"].entries())
-    lines.push_back("<strong>" + words(one["what"]) + "</strong> (not analysed): " + words(one["reason"]) +
-                    ".");
+    lines.push_back("<strong>" + words(one["what"]) + "</strong> of " + words(one["protocol"]) +
+                    " (not analysed): " + words(one["reason"]) + ".");
   if (lines.empty()) return "";
   return section("not-analysed", "Not analysed",
                  "<div class=\"warning\">" +
@@ -205,7 +206,8 @@ std::string participants_section(const Field& root) {
     const Field flow = root["flow"][key];
     if (flow.there())
       body += figure(flow_chart(flow, std::string("flow-") + key, title),
-                     std::string("What became of those who began: ") + title + ".");
+                     std::string("What became of those who began: ") + title +
+                         ". Answers count whether or not their session was completed.");
   }
   body += people_tables(root) + exclusions_table(root) + untouched(root);
   return body.empty() ? "" : section("participants", "Participants and exclusions", body);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "apps/stats/report/figures.hpp"
 
 namespace apps::report {
@@ -8,6 +10,7 @@ using svg::Point;
 using svg::text;
 
 constexpr double left = 118, width = 480, right_label = 104, row = 40, bar = 22, top = 62;
+constexpr double gap = 8;  ///< between a bar and the names beside it
 
 double x_of(double share) { return left + width * share; }
 
@@ -27,7 +30,7 @@ std::string stars_of(const Field& pair) {
   return plain + " / " + (holm.empty() ? "n.s." : holm);
 }
 
-std::string bars(const Field& pair, double y) {
+std::string bars(const Field& pair, double y, double stars_end) {
   const Field shown = tested_share(pair);
   const double share = shown.number(), middle = y + bar / 2, base = y + bar / 2 + 5;
   const std::string frame = " stroke=\"#000000\" stroke-width=\"1\"";
@@ -40,15 +43,22 @@ std::string bars(const Field& pair, double y) {
       "font-size=\"13\" stroke-width=\"4\" stroke-linejoin=\"round\" paint-order=\"stroke\" "
       "stroke=\"#ffffff\" fill=\"#000000\" data-unit=\"%\"";
   out += text({x_of(0) + 6, base}, decimal(100 * share, 0) + " %", halo + data_field(shown));
-  const double right = left + width;
-  return out + text({right + right_label + 56, base}, stars_of(pair),
-                    "text-anchor=\"end\" font-size=\"13\" class=\"stars\"");
+  return out +
+         text({stars_end, base}, stars_of(pair), "text-anchor=\"end\" font-size=\"13\" class=\"stars\"");
 }
 
 }  // namespace
 
 svg::Picture preference_bars(const Field& pairs) {
-  svg::Picture picture{.width = left + width + right_label + 60, .id = "preference"};
+  std::vector<std::string> left_names, right_names;
+  for (const Field& pair : pairs.entries()) {
+    left_names.push_back(pair["a"].words());
+    right_names.push_back(pair["b"].words());
+  }
+  const double more = std::max(0.0, room_for(left_names) + gap - left);
+  const double right_room = std::max(right_label, room_for(right_names) + gap);
+  const double end = left + width + right_room + 60;
+  svg::Picture picture{.width = more + end, .id = "preference"};
   picture.title = "Which of two methods was preferred";
   picture.description =
       "A bar for each pair of methods: the plain part on the left is the share of answers that chose the "
@@ -61,15 +71,15 @@ svg::Picture preference_bars(const Field& pairs) {
   double y = top;
   for (const Field& pair : pairs.entries()) {
     const std::string name = "font-size=\"13\"";
-    picture.body += text({left - 8, y + bar / 2 + 5}, pair["a"].words(),
+    picture.body += text({left - gap, y + bar / 2 + 5}, pair["a"].words(),
                          "text-anchor=\"end\" " + name + data_field(pair["a"]));
     if (pair["share"].is_number()) {
-      picture.body += bars(pair, y);
+      picture.body += bars(pair, y, end - 4);
     } else {
       picture.body += text({left + 6, y + bar / 2 + 5}, "not given: " + pair["share"].reason(), name);
     }
     picture.body +=
-        text({left + width + 8, y + bar / 2 + 5}, pair["b"].words(), name + data_field(pair["b"]));
+        text({left + width + gap, y + bar / 2 + 5}, pair["b"].words(), name + data_field(pair["b"]));
     y += row;
   }
   const double bottom = y - row + bar + 8;
@@ -82,10 +92,11 @@ svg::Picture preference_bars(const Field& pairs) {
   picture.body += svg::line({x_of(0.5), top - 8}, {x_of(0.5), bottom},
                             "stroke=\"#000000\" stroke-width=\"1.5\" stroke-dasharray=\"2 4\"");
   picture.body +=
-      text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"") +
       text({left, 44}, "plain: the left one was chosen", "font-size=\"12\"") +
       text({left + width, 44}, "hatched: the right one was chosen", "text-anchor=\"end\" font-size=\"12\"") +
-      text({picture.width - 4, 44}, "p / Holm", "text-anchor=\"end\" font-size=\"12\"");
+      text({end - 4, 44}, "p / Holm", "text-anchor=\"end\" font-size=\"12\"");
+  picture.body =
+      text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"") + moved_right(picture.body, more);
   picture.height = bottom + 34;
   return picture;
 }

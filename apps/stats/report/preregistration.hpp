@@ -27,8 +27,8 @@ struct BundleRequest {
 /// be read or two share a name; nothing is then left behind.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
-/// Hypotheses of the shipped analyses that these protocols do not test, each with the reason: "H1 of study:
-/// the study does not show FovFluid".
+/// Hypotheses of the shipped analyses that these protocols do not test, each with the reason: "H1 of task1:
+/// the protocol does not show FovFluid".
 std::vector<std::string> untested_claims(const BundleRequest& request);
 
 /// A bundle as it lies there now.

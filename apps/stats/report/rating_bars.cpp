@@ -77,7 +77,8 @@ std::string drawn(const Field& entry, const std::string& name, double y) {
 
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title) {
-  svg::Picture picture{.width = left + width + 20, .id = id};
+  const double more = std::max(0.0, room_for(names) + 8 - left);
+  svg::Picture picture{.width = more + left + width + 20, .id = id};
   picture.title = title;
   picture.description =
       "A bar for each line of names: the shares of its answers that gave each score, from the lowest at the "
@@ -94,8 +95,9 @@ svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<st
                     text({x, y + 22}, svg::number(25 * i, 0) + " %",
                          "class=\"axis\" text-anchor=\"middle\" font-size=\"12\"");
   }
-  picture.body += text({8, 20}, title, "font-size=\"15\" font-weight=\"bold\"");
   if (!entries.empty()) picture.body += legend(entries.front()["counts"].entries());
+  picture.body =
+      text({8, 20}, title, "font-size=\"15\" font-weight=\"bold\"") + moved_right(picture.body, more);
   picture.height = y + 34;
   return picture;
 }

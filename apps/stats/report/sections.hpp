@@ -56,7 +56,7 @@ std::string reliability(const Field& task1);
 std::string by_n_star(const Field& task1);
 std::string detectable_scores(const Field& task1);
 std::string detectable_preference(const Field& task2);
-/// Of the section of participants: what they answered about themselves.
+/// Of the section of participants: what they answered outside the trials.
 std::string people_tables(const Field& root);
 std::string score_factors(const Field& task1);
 std::string preference_factors(const Field& task2);

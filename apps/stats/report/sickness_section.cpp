@@ -43,7 +43,10 @@ std::string ssq(const Field& ssq) {
   if (!ssq.there()) return "";
   Table levels("SSQ scores before and after", with_columns({"Score"}, described_columns));
   Table changes("Changes of the SSQ scores, after less before", with_columns({"Score"}, changed_columns));
+  const auto never = [&](const char* when) { return ssq[when].is_number() && ssq[when].number() == 0; };
+  const bool both = !never("pages_before") && !never("pages_after");
   for (const auto& [key, name] : {std::pair{"before", "Before"}, {"after", "After"}}) {
+    if (never(key == std::string("before") ? "pages_before" : "pages_after")) continue;
     levels.group(name);
     for (const Field& score : ssq["scores"].entries())
       levels.row(with_columns({words(score["label"])}, described(score[key])));
@@ -56,8 +59,14 @@ std::string ssq(const Field& ssq) {
   if (ssq["incomplete"].number() > 0)
     note += "A missing item empties its scale and the total: " + count(ssq["incomplete"]) + " of " +
             count(ssq["pages"]) + " pages lack some. ";
-  note += "Changes are of the participants with both; signed-rank tests are two-sided and not corrected.";
-  return levels.html() + changes.html() + "<p class=\"note\">" + note + "</p>\n";
+  if (both) {
+    note += "Changes are of the participants with both; signed-rank tests are two-sided and not corrected.";
+  } else {
+    note += std::string("No session answered the questionnaire ") +
+            (never("pages_after") ? "after the first trial" : "before the first trial") +
+            ", so there are no changes.";
+  }
+  return levels.html() + (both ? changes.html() : "") + "<p class=\"note\">" + note + "</p>\n";
 }
 
 std::string fms(const Field& fms, const std::string& id) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -93,7 +94,8 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
   }
   // What only passed needs no bar.
   std::erase_if(order, [&](const std::string& name) { return lines[name].n[1] + lines[name].n[2] <= 0; });
-  svg::Picture picture{.width = left + width + 20, .id = "timing-" + task};
+  const double more = std::max(0.0, room_for(order) + 8 - left);
+  svg::Picture picture{.width = more + left + width + 20, .id = "timing-" + task};
   picture.title = "Verdicts on the timing of the showings";
   picture.description =
       std::string("A bar for each ") +
@@ -112,7 +114,8 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
                     text({x, y + 22}, svg::number(25 * i, 0) + " %",
                          "class=\"axis\" text-anchor=\"middle\" font-size=\"12\"");
   }
-  picture.body += text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"") + legend(picture.id);
+  picture.body = text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"") +
+                 moved_right(picture.body + legend(picture.id), more);
   picture.height = y + 34;
   return picture;
 }

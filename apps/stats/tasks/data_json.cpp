@@ -221,6 +221,8 @@ Json flow_json(const TaskFlow& flow) {
   };
   return {{"planned", in_state("planned")},
           {"started", flow.started},
+          {"participants", flow.participants},
+          {"no_answer", flow.no_answer},
           {"no_consent", in_state("refused")},
           {"not_eligible", in_state("not eligible")},
           {"stopped", in_state("stopped")},

@@ -21,10 +21,13 @@ struct ShownSetting {
   auto operator<=>(const ShownSetting&) const = default;
 };
 
-/// What a line of the table is about; of a pair both stimuli, the earlier in the protocol first.
+/// What a line of the table is about; of a pair both stimuli, the earlier in the protocol first. Where an
+/// answer does not name one of the two, it may be about the order, so that each order has a line.
 struct Cell {
   std::size_t scene = 0, n_star = 0;
   std::vector<ShownSetting> shown;
+  bool by_order = false;  ///< of a pair: of one order of showing alone
+  bool turned = false;    ///< that which shows the later one first
   auto operator<=>(const Cell&) const = default;
 };
 
@@ -77,6 +80,8 @@ class Describer {
       cell.shown.push_back(shown(*trial.second, trial.second_nominal));
       in_order = cell.shown[0] <= cell.shown[1];
       if (!in_order) std::swap(cell.shown[0], cell.shown[1]);
+      cell.by_order = !is_choice_of_pair(question, cell);
+      cell.turned = cell.by_order && !in_order;
     }
     Given& given = cells[cell];
     given.scores.push_back(*answer->score);
@@ -89,9 +94,12 @@ class Describer {
     return several_settings_ ? fmt::format("{}, {:g} frames/s, SD {:g}", method, one.mean, one.sd) : method;
   }
 
-  /// "LoRes" or "LoRes and HiRes".
+  /// "LoRes", "LoRes and HiRes" of both orders, or "first HiRes, then LoRes".
   std::string name(const Cell& cell) const {
-    return cell.shown.size() == 1 ? name(cell.shown[0]) : name(cell.shown[0]) + " and " + name(cell.shown[1]);
+    if (cell.shown.size() == 1) return name(cell.shown[0]);
+    if (!cell.by_order) return name(cell.shown[0]) + " and " + name(cell.shown[1]);
+    return "first " + name(cell.shown[cell.turned ? 1 : 0]) + ", then " +
+           name(cell.shown[cell.turned ? 0 : 1]);
   }
 
   /// Which of a pair was chosen.

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "apps/common/claims.hpp"
 #include "apps/stats/ptpe/pilot_fit.hpp"
 #include "apps/stats/tasks/costs_json.hpp"
 #include "apps/stats/tasks/data_json.hpp"
@@ -32,11 +33,12 @@ struct TaskPart {
 /// Why a design is one that no shipped analysis is about.
 std::string what_it_lacks(const TaskData& data) {
   const auto& protocol = data.protocol;
-  const std::string lacks = protocol.pairs && protocol.methods.size() > 1
-                                ? "asks no choice between the two of a pair"
-                            : protocol.pairs   ? "shows pairs of one method"
-                            : protocol.pilot() ? "asks no question on a scale"
-                                               : "asks no question 'realism' on a scale";
+  const std::string lacks =
+      protocol.pairs && protocol.methods.size() > 1
+          ? "asks no question of kind choice with exactly two anchors, one for each of a pair"
+      : protocol.pairs   ? "shows pairs of one method"
+      : protocol.pilot() ? "asks no question on a scale"
+                         : "asks no question 'realism' on a scale";
   return "protocol " + protocol.name + " " + lacks;
 }
 
@@ -44,12 +46,24 @@ std::string why_not_analysed(const TaskData& data) {
   return what_it_lacks(data) + ", so no shipped analysis covers it; its answers are described by cell";
 }
 
+/// All that no shipped analysis covers of such a design.
+std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
+  std::vector<stats::ShownClaims::LeftOut> out{{"own design", why_not_analysed(data)}};
+  const std::string lacks = what_it_lacks(data);
+  if (data.protocol.methods.size() < 2) {
+    out.push_back({"H1 to H6", lacks});
+  } else {
+    out.push_back({"H1 to H3", data.protocol.pairs ? methods_in_pairs : lacks});
+    out.push_back({"H4 to H6", data.protocol.pairs ? lacks : no_pairs});
+  }
+  return out;
+}
+
 /// What stands under the task's own name, and its hypotheses. Refused with the reason.
 stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   const TaskData& data = part.data;
   const stats::AnalysisPlan& plan = request.plan.plan;
-  if (data.task == TaskKind::Own)
-    part.not_analysed = {{"own design", why_not_analysed(data)}, {"H1 to H6", what_it_lacks(data)}};
+  if (data.task == TaskKind::Own) part.not_analysed = left_out_of_own(data);
   if (const std::string nothing = nothing_counts(data); !nothing.empty()) return stats::Refusal{nothing};
   if (data.task == TaskKind::Own) return stats::Refusal{why_not_analysed(data)};
   if (data.task == TaskKind::Pilot) {
@@ -118,7 +132,10 @@ void append(Json& list, const Json& more) {
 Json not_analysed_json(const TaskPart& part) {
   Json list = Json::array();
   for (const auto& [what, reason] : part.not_analysed)
-    list.push_back({{"task", task_name(part.data.task)}, {"what", what}, {"reason", reason}});
+    list.push_back({{"task", task_name(part.data.task)},
+                    {"protocol", part.data.protocol.name},
+                    {"what", what},
+                    {"reason", reason}});
   return list;
 }
 
@@ -172,11 +189,12 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
 /// Of the document at this place in "apart".
 std::string apart_name(std::size_t index) { return "apart " + std::to_string(index + 1); }
 
-/// How many simulated participants there are in all parts: one person may be in several.
-std::size_t simulated_people(const std::vector<TaskPart>& first, const std::vector<TaskPart>& others) {
+/// How many simulated participants answered, whether or not it counts: one may be in several protocols.
+std::size_t simulated_people(const study::TaskStudy& study) {
   std::set<std::string> people;
-  for (const auto* list : {&first, &others})
-    for (const TaskPart& part : *list) people.insert(part.data.simulated.begin(), part.data.simulated.end());
+  for (const study::TaskProtocol& protocol : study.protocols)
+    for (const study::TaskSession& session : protocol.sessions)
+      if (is_simulated(session)) people.insert(session.participant);
   return people.size();
 }
 
@@ -213,7 +231,7 @@ Results make_results(const study::TaskStudy& study, const ResultsRequest& reques
       (&one == &chosen->front() ? first : others).push_back(analyse(study, one, request, out.missing));
   }
   out.json = assemble(request, first, study.about_people);
-  out.json["study"]["simulated_people"] = simulated_people(first, others);
+  out.json["study"]["simulated_people"] = simulated_people(study);
   out.json["roster"] = roster_json(study, sections_of(first, others));
   if (!others.empty()) out.json["apart"] = Json::array();
   for (TaskPart& part : others) {

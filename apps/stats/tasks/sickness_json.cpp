@@ -95,17 +95,23 @@ std::string label_of(stats::SsqScale scale) {
 }
 
 Json ssq_json(const People& people, const stats::AnalysisPlan& plan) {
-  int pages = 0, incomplete = 0;
+  int pages = 0, before = 0, incomplete = 0;
   for (const auto& [code, sessions] : people) {
     for (const auto* session : sessions) {
       pages += static_cast<int>(session->ssq.size());
+      before += static_cast<int>(std::count_if(session->ssq.begin(), session->ssq.end(),
+                                               [](const study::SsqPage& page) { return page.before; }));
       incomplete += static_cast<int>(std::count_if(
           session->ssq.begin(), session->ssq.end(),
           [](const study::SsqPage& page) { return !stats::ssq_sum(stats::SsqScale::Total, page.answers); }));
     }
   }
   if (pages == 0) return {};
-  Json json{{"pages", pages}, {"incomplete", incomplete}, {"scores", Json::array()}};
+  Json json{{"pages", pages},
+            {"pages_before", before},
+            {"pages_after", pages - before},
+            {"incomplete", incomplete},
+            {"scores", Json::array()}};
   stats::SsqAnswers worst;
   worst.fill(stats::ssq_item_max);
   for (const stats::SsqScale scale : stats::ssq_scales) {
