@@ -79,7 +79,7 @@ may stand beside them.
 | pilot: one method at several frame rates | a question of kind scale; `vip-stats fit-ptpe --question ID` takes one of several | |
 | Task 1: methods shown one by one | `realism`, of kind scale; for H1 to H3 also `disorientation`, `unrealism`, `dizziness` and `confusion`, on one scale | |
 | Task 2: pairs | a question of kind choice with two anchors, the lower one for the first interval | |
-| all | | questions of kind number and choice in blocks of kind demographics, such as `age` and `gender`: the report describes the participants by them, in summary |)"},
+| all | | questions of kind number, choice and scale in blocks of kind demographics, screening and question, such as `age` and `gender`, unless a trial asks them too: the report gives the answers in summary |)"},
       {"block.question.anchors", "anchors",
        R"(Words by score, as in `anchors = {1 = "poor", 7 = "good"}`.)"}};
   return texts;

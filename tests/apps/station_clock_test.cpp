@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "apps/stats/report/bundle_parts.hpp"
 #include "apps/stats/report/preregistration.hpp"
 #include "apps/stats/tasks/results.hpp"
 #include "apps/study/station_warnings.hpp"
@@ -111,13 +112,12 @@ TEST(StationClock, WhereAnImpossibleTimeFollowsLaterRowsTheOrderDecides) {
 
 TEST(StationClock, AFirstAnswerThatIsNoPersonsSaysSo) {
   const auto text = [](int simulated, bool test_data) {
-    return report::time_json("2026-05-01T00:00:00Z", {{"task", "own"},
-                                                      {"title", "Own design"},
-                                                      {"first_answer_utc", "2026-04-01T00:00:00Z"},
-                                                      {"simulated", simulated},
-                                                      {"test_data", test_data}})
-        .at("text")
-        .get<std::string>();
+    const nlohmann::ordered_json used{{"task", "own"},
+                                      {"title", "Own design"},
+                                      {"first_answer_utc", "2026-04-01T00:00:00Z"},
+                                      {"simulated", simulated},
+                                      {"test_data", test_data}};
+    return std::string(report::time_json("2026-05-01T00:00:00Z", used).at("text"));
   };
   const std::string given =
       "The bundle was not frozen before the first answer of Own design, given 2026-04-01T00:00:00Z";
