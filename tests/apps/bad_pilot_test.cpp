@@ -101,7 +101,7 @@ TEST(BadPilotE2e, NoNoteSaysWhatAFitUsesThatIsNotThere) {
   const auto told = [&](const char* name, Surface surface, double noise) {
     testing_pilot::write_database(folder / name, scored(surface, noise), sixteen);
     return apps::test::run_shell(VIP_BIN_DIR "/vip-stats fit-ptpe " + (folder / name).string() +
-                                 " --resamples 20")
+                                 " --resamples 100")
         .out;
   };
   const auto below = told(

@@ -52,8 +52,9 @@ TEST(IntervalsOfTheReport, ShowOnWhichSideOf0TheyLie) {
   const auto shown = [](double low, double high, int decimals) {
     const OrderedJson ci{low, high};
     std::string out;
-    for (const auto& text : html_reader::read(report::interval(report::Field(ci), decimals)).texts)
-      out += text.words;
+    const std::string html =
+        "<html><body><p>" + report::interval(report::Field(ci), decimals) + "</p></body></html>";
+    for (const auto& text : html_reader::read(html).texts) out += text.words;
     return out;
   };
   EXPECT_EQ(shown(-2.4e-05, 0.0217, 4), "[\u22120.00002, 0.02170]");

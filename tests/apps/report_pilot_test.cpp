@@ -132,7 +132,7 @@ TEST(ReportPilot, TheRulesOfTheTasksAreAppliedAndNamed) {
   EXPECT_EQ(json.at("exclusions").at(1).at("rule"), "catch");
   EXPECT_THAT(words_of(json), AllOf(HasSubstr("Rules of exclusion for Pilot: trials"),
                                     HasSubstr("Rules of exclusion for Task 2: trials"),
-                                    HasSubstr("2 participants who had answered were left out")));
+                                    HasSubstr("2 who had answered were left out")));
 }
 
 // Before, nothing stood of a part of which no answer counts, and "nothing was left out" with it.
