@@ -52,8 +52,7 @@ TEST(IntervalsOfTheReport, ShowOnWhichSideOf0TheyLie) {
   const auto shown = [](double low, double high, int decimals) {
     const OrderedJson ci{low, high};
     std::string out;
-    const std::string html =
-        "<html><body><p>" + report::interval(report::Field(ci), decimals) + "</p></body></html>";
+    const std::string html = "<!DOCTYPE html>" + report::interval(report::Field(ci), decimals);
     for (const auto& text : html_reader::read(html).texts) out += text.words;
     return out;
   };
