@@ -43,5 +43,6 @@ for source in "${sources[@]}"; do
 done
 [ ${#known[@]} -gt 0 ] || { echo "tidy: nothing that changed is compiled"; exit 0; }
 printf '%s\0' "${known[@]}" | xargs -0 -P "$(nproc)" -n 1 clang-tidy -p build/tidy --quiet \
-  --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument 2> >(grep -v 'warnings\? generated\|^Suppressed\|^Use -' >&2)
+  --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument \
+  --extra-arg=-Wno-unused-command-line-argument 2> >(grep -v 'warnings\? generated\|^Suppressed\|^Use -' >&2)
 echo "tidy: ${#known[@]} sources are clean"
