@@ -15,6 +15,9 @@ inline constexpr const char* no_pairs = "no pairs of methods are shown";
 inline constexpr const char* no_choice_of_pair =
     "no question of kind choice with exactly two anchors, one for each of a pair, is asked";
 
+/// Items of the cybersickness score that leaves unrealism out.
+inline const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
+
 /// H1 to H3 for a protocol that shows methods one by one and asks for realism and cybersickness, H4 to H6 for
 /// one that lets people choose of pairs, as far as it shows their methods; and why others are not tested.
 stats::ShownClaims hypotheses_of(const study::Protocol& protocol, const stats::AnalysisPlan& plan);

@@ -213,7 +213,9 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
       ->check(CLI::IsMember({"effect", "null", "margin", "paper"}));
   sub.add_option(
       "--observer", command.observer,
-      "Pilot: who rates, such as ptpe:a=24,b=0.02,noise=1; without: ptpe:a=23.68,b=0.02, as in the paper");
+      fmt::format(
+          "Pilot: who rates, such as ptpe:a=24,b=0.02,noise=1; without: ptpe:a={:g},b={:g}, as in the paper",
+          request.observer.a, request.observer.b));
   sub.add_option("--question", command.choice.question,
                  "Pilot: id of a question; without: the first that the trials ask on a scale");
   add_level_choice(sub, command.choice);

@@ -51,9 +51,9 @@ int bystander_score(const Question& question, const Occasion& occasion);
 /// names the place.
 std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features);
 
-/// Scales of the protocol's trials on which the observer "constant:9", alone or behind "dropout", cannot give
-/// its score, a sentence each; it gives the nearest one there. base::Error where no question takes the score.
-/// Other observers have no such scales.
+/// The scales of the trials that do not hold the score of an observer such as "constant:9" (alone or behind
+/// "dropout"), a sentence each: there it gives the nearest score. Empty for observers of other kinds.
+/// base::Error where no question takes the score.
 std::vector<std::string> scales_beyond(std::string_view specification, const Protocol& protocol);
 
 }  // namespace study

@@ -98,18 +98,18 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
 
 TEST(BadPilotE2e, NoNoteSaysWhatAFitUsesThatIsNotThere) {
   const TemporaryFolder folder;
-  const auto told = [&](const char* name, Surface surface, double noise) {
+  const auto printed = [&](const char* name, Surface surface, double noise) {
     testing_pilot::write_database(folder / name, scored(surface, noise), sixteen);
     return apps::test::run_shell(VIP_BIN_DIR "/vip-stats fit-ptpe " + (folder / name).string() +
                                  " --resamples 100")
         .out;
   };
-  const auto below = told(
+  const auto below = printed(
       "below.db", [](double mu, double) { return 1 + mu / 50; }, 0.5);
   EXPECT_THAT(below, HasSubstr("note: on no line do the scores cross the level"));
   EXPECT_THAT(below, HasSubstr("the level is not reached up to the largest mean frame rate\n"));
   EXPECT_THAT(below, testing::Not(HasSubstr("the contour's curve goes by")));
-  const auto equal = told(
+  const auto equal = printed(
       "equal.db", [](double, double) { return 5.0; }, 0);
   EXPECT_THAT(equal, testing::ContainsRegex("direct +all ratings are equal\n"));
   EXPECT_THAT(equal, testing::Not(HasSubstr("the settings rated do not determine")));

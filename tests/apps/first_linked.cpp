@@ -1,7 +1,7 @@
-/// Strings and JSON, compiled with more than the tests are (tests/CMakeLists.txt). Of a template's code the
-/// linker takes the copy that comes first, also for the libraries that a test calls: it is this one.
+/// Code of strings and JSON, compiled at -O2. Each file that uses a template holds a copy of its code, and
+/// the linker keeps the first copy for the whole program. This file is linked first: otherwise the libraries
+/// would run the copies of the tests, which are compiled at -O0.
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>

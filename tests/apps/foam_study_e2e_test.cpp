@@ -57,12 +57,12 @@ class FoamStudyE2e : public ::testing::Test {
 
 TEST_F(FoamStudyE2e, TheColumnsOfTask2StandUnderTheirHeads) {
   report_of("1", "4");
-  const std::string told = run_program({vip_stats, "task2", folder_ / "study_1.db"}).out;
-  const auto from = told.find("\nchosen") + 1;
-  const std::string head = told.substr(from, told.find('\n', from) - from);
+  const std::string printed = run_program({vip_stats, "task2", folder_ / "study_1.db"}).out;
+  const auto from = printed.find("\nchosen") + 1;
+  const std::string head = printed.substr(from, printed.find('\n', from) - from);
   const auto at = head.find("95 %");
   int pairs = 0;
-  std::istringstream lines(told.substr(from + head.size() + 1));
+  std::istringstream lines(printed.substr(from + head.size() + 1));
   for (std::string line; std::getline(lines, line) && line.find(" over ") < line.find(':'); ++pairs)
     EXPECT_EQ(line.find('['), at) << head << "\n" << line;
   EXPECT_GT(pairs, 3);

@@ -185,7 +185,7 @@ TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
                 "answers."));
 }
 
-/// What vip-stats fit-ptpe prints of the pilot that the results are of.
+/// The text that vip-stats fit-ptpe prints about the pilot of these results.
 std::string terminal_of(const study::TaskProtocol& pilot) {
   const auto data = collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}});
   ::testing::internal::CaptureStdout();

@@ -46,7 +46,7 @@ const Json& whole_study() {
   return json;
 }
 
-/// What tells rows of a table that the page sets in different ways.
+/// Rows of one kind print the same sentences.
 std::string kind_of(const Json& row) {
   std::string kind;
   for (const char* key : {"task", "score", "question", "n_star", "level"})
@@ -54,7 +54,7 @@ std::string kind_of(const Json& row) {
   return kind;
 }
 
-/// Leaves the first two rows of each kind in long tables, so that a page takes milliseconds.
+/// Keeps two rows of each kind in tables of more than ten, so that a page is made in milliseconds.
 void shorten(Json& json) {
   if (json.is_array() && json.size() > 10 && json.front().is_object()) {
     std::map<std::string, int> seen;

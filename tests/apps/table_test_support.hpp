@@ -49,9 +49,9 @@ inline void make_quick_share(const std::filesystem::path& share) {
 class TableTest : public ::testing::Test {
  protected:
   TableTest() { make_quick_share(share.path()); }
-  /// A program of the build with its arguments, for a shell. Scenes come from the share, not from the current
-  /// folder. With the machine's lock in a folder of the test's own it does not wait for the sweeps of other
-  /// tests: no test asserts a time.
+  /// The shell command that runs a program of the build with these arguments. The program reads scenes from
+  /// the share. It takes the lock of timed runs in a folder of the test's own, so it does not wait for other
+  /// tests; no test asserts a time.
   std::string line_of(const std::string& program_and_arguments) const {
     return "cd " + share.path().string() +
            " && exec env -u DISPLAY -u WAYLAND_DISPLAY OMP_NUM_THREADS=1 VIP_CACHE_DIR= VIP_LOCK_DIR=. "

@@ -18,13 +18,13 @@ Json json_number(double value);
 Json json_number(const std::optional<double>& value);
 Json json_interval(const std::array<double, 2>& interval);
 Json json_interval(const std::optional<std::array<double, 2>>& interval);
-/// What json_number() wrote; nought for null.
+/// The number that json_number() wrote; 0 for null.
 double number_of(const Json& json);
 /// Frames/s: no protocol has a higher rate (design.mean_fps), so an interval that ends beyond has no upper
 /// bound.
 inline constexpr double highest_rate = 1000;
-/// Digits behind the point for both ends as text: `decimals`, and more where an end would look like 0 and is
-/// not, so that one sees whether the interval holds 0.
+/// Digits behind the point for both ends of an interval as text: `decimals`, or as many more as it takes that
+/// no end looks like 0 that is not 0. So a reader sees whether the interval holds 0.
 int interval_decimals(const std::array<double, 2>& interval, int decimals);
 /// {"refused": reason}.
 Json json_refused(const std::string& reason);

@@ -48,8 +48,9 @@ struct MainEstimate {
   stats::Result<MainSpread> spread;
 };
 
-/// The estimates at the level wished, and on the paper's scale of 1 to 7 at its two levels, 4.0 and 5.0, with
-/// the harmonic and with the arithmetic realised mean. The ordinal one is made with the harmonic mean only.
+/// The estimates at the level of the study, with the harmonic and with the arithmetic realised mean. On the
+/// paper's scale of 1 to 7 also those at the paper's two levels, 4.0 and 5.0. The ordinal one is made with
+/// the harmonic mean only.
 struct PilotFit {
   TaskData data;
   double level = 4;

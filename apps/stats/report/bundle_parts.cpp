@@ -63,9 +63,7 @@ std::map<std::string, std::string> idle_rules(const std::vector<study::Protocol>
   std::map<std::string, std::string> out;
   if (none([](const auto& one) { return compares_scores(one, {}); }))
     out["realism"] = "no ratings of realism compare methods";
-  if (none([](const auto& one) {
-        return compares_scores(one, {"disorientation", "dizziness", "confusion"});
-      }))
+  if (none([](const auto& one) { return compares_scores(one, items_without_unrealism); }))
     out["sickness"] = "no ratings of cybersickness compare methods";
   if (none([](const auto& one) { return one.design.timing != study::TimingSource::Native; }))
     out["timing"] = "without a schedule there is no verdict";

@@ -11,8 +11,8 @@
 
 namespace apps::report {
 
-/// Pixels that the longest of these names takes in letters of 13 pixels. Their true width is the browser's:
-/// 8 pixels are more than what a letter of its sans-serif fonts takes on average.
+/// Width in pixels to keep free for the longest of these names, at a font size of 13 pixels. The browser
+/// alone knows the true width. 8 pixels a letter are more than sans-serif fonts take on average.
 inline double room_for(const std::vector<std::string>& names) {
   std::ptrdiff_t longest = 0;
   for (const std::string& name : names)

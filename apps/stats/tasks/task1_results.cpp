@@ -13,7 +13,6 @@ namespace {
 using stats::ScoreScale;
 
 const std::vector<std::string> sickness_items{"disorientation", "unrealism", "dizziness", "confusion"};
-const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
 
 std::vector<ScoreScale> score_scales(const stats::AnalysisPlan& plan) {
   return {{"realism", "Realism", true, 1, 7, true, {"realism"}, plan.margin_realism},
