@@ -31,7 +31,7 @@ run cmake --build --preset release --target vip-study vip-stats vip-view
 built=$SECONDS
 
 mkdir -p "$out"
-for made in dam.bake check.json pacing.db study.db csv fit.json fitted.toml heat.svg pictures; do
+for made in dam.bake check.json pacing.db study.db short_pauses.toml csv fit.json fitted.toml heat.svg pictures; do
   [ ! -e "$out/$made" ] || echo "demo: replaces $out/$made"
   rm -rf "${out:?}/$made" "$out/$made"-{wal,shm,journal} "$out/$made.answers.jsonl"
 done
@@ -40,12 +40,14 @@ phase "What a headset with 90 Hz makes of the 21 settings"
 run $bin/vip-study check protocols/ptpe_pilot.toml --refresh 90 --json $out/check.json
 
 phase "Bake SingleDam: particles and pictures"
-run $bin/vip-study bake data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 90 \
+run $bin/vip-study bake data/scenes/single_dam.toml --method HiRes --n-star 2k --frames 60 \
   --pictures 640x360 --out $out/dam.bake
 
-phase "Play the 21 settings in real time, 1.5 s each, every frame rendered"
-run $bin/vip-study run protocols/ptpe_pilot.toml --db $out/pacing.db --participants 1 --observer $observer \
-  --clock real --display headless --stimulus $out/dam.bake --trial-seconds 1.5
+phase "Play the 21 settings in real time, 1.2 s each, every frame rendered"
+# A protocol is a file. This copy asks for a black of 0.25 s before each trial: a simulated observer needs no rest.
+run sed -n 's/"black 3"\(.*]\).*/"black 0.25"\1/; w '$out/short_pauses.toml protocols/ptpe_pilot.toml
+run $bin/vip-study run $out/short_pauses.toml --db $out/pacing.db --participants 1 --observer $observer \
+  --clock real --display headless --stimulus $out/dam.bake --trial-seconds 1.2
 
 phase "Run 16 simulated participants through the whole pilot on the virtual clock"
 run $bin/vip-study run protocols/ptpe_pilot.toml --db $out/study.db --participants 16 --observer $observer \
@@ -68,6 +70,7 @@ printf '\nfiles in %s:\n' $out
 describe() { printf '  %-28s %s\n' "$1" "$2"; }
 describe check.json "what 90 Hz makes of the protocol"
 describe dam.bake "frames and pictures of SingleDam"
+describe short_pauses.toml "the protocol of the real-time run"
 describe pacing.db "the real-time run: every frame's times and every trial's verdict"
 describe study.db "16 simulated participants"
 describe csv/ "study.db as tables with a data dictionary"

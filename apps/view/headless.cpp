@@ -66,16 +66,31 @@ class PictureFolder {
   int written_ = 0;
 };
 
+/// Whose rate is the rate that --ptpe speaks of.
+constexpr int last_frames = 30;
+
 /// Frame intervals without the time that pictures take on their way to the disk.
 struct Timing {
-  stats::FpsWindow window{30};
+  stats::FpsWindow window{last_frames};
   double step_s = 0, draw_s = 0;
   int steps = 0, draws = 0;
 };
 
-void print_timing(const Timing& timing) {
+void print_timing(const Timing& timing, int frames, const PreparedFluid& prepared) {
   if (timing.steps) std::printf("step   %8.2f ms a frame\n", 1e3 * timing.step_s / timing.steps);
-  if (timing.draws) std::printf("draw   %8.2f ms a frame\n", 1e3 * timing.draw_s / timing.draws);
+  if (!timing.draws) return;
+  std::printf("draw   %8.2f ms a frame\n", 1e3 * timing.draw_s / timing.draws);
+  if (timing.draws == frames) return;
+  const std::string measured =
+      prepared.ptpe ? fmt::format(" and the last {}, whose rate is measured", last_frames) : "";
+  std::printf("       %d of %d frames were drawn: those of the pictures%s\n", timing.draws, frames,
+              measured.c_str());
+}
+
+/// Does anything need the frame drawn? tau speaks of frames that are shown. Saliency reads each picture.
+bool is_drawn(int frame, int frames, bool kept, const ViewOptions& options, const PreparedFluid& prepared) {
+  if (kept || options.png_folder.empty() || prepared.follows_picture) return true;
+  return prepared.ptpe && (prepared.follows_rate || frame >= frames - last_frames);
 }
 
 void print_tolerance(const sim::PtpeFile& file, const stats::FpsMoments& fps) {
@@ -127,8 +142,7 @@ void run_headless(const ViewOptions& options) {
     }
     const double stepped = seconds_now();
     const bool kept = !options.png_folder.empty() && frame % options.every == 0;
-    // tau speaks of frames that are shown, so --ptpe draws them all; saliency reads each picture.
-    if (kept || prepared.ptpe || prepared.follows_picture || options.png_folder.empty()) {
+    if (is_drawn(frame, frames, kept, options, prepared)) {
       picture.draw(*prepared.fluid, view, target.framebuffer());
       glFinish();
       ++timing.draws;
@@ -144,7 +158,7 @@ void run_headless(const ViewOptions& options) {
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   check_finite(*prepared.fluid, options.scene);
-  print_timing(timing);
+  print_timing(timing, frames, prepared);
   if (prepared.follows_picture) std::printf("seen   %s\n", in_words(prepared.fluid->report().seen).c_str());
   if (timing.draws) print_render_counts(picture.renderer().counts());
   if (prepared.ptpe) print_tolerance(*prepared.ptpe, timing.window.moments());

@@ -50,6 +50,7 @@ struct PreparedFluid {
   std::unique_ptr<sim::Simulation> fluid;
   double finest_spacing_m = 0;   ///< 2 r_*
   bool follows_picture = false;  ///< levels come from what was drawn last
+  bool follows_rate = false;     ///< the solver reads the rate of the frames
   double frame_dt_s = 0;         ///< of the fluid
   SolverSetting setting;         ///< in force at frame 0
 };

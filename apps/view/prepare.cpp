@@ -82,6 +82,8 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
   prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
+  prepared.follows_rate =
+      (choice.temporal.always || sim::traits_of(choice.method).temporal) && !choice.temporal.fixed_tau;
   {
     Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));
     choice.settling =

@@ -68,6 +68,17 @@ class Holds {
     return holds;
   }
 
+  /// What mean() needs of new counts. The whole numbers of a harmonic mean need no pass over the frames.
+  void recount_for_mean() {
+    if (target_.mean_kind == FpsMean::Arithmetic) return recount();
+    total_ = 0;
+    std::int64_t shorter = 0;
+    for (std::size_t edge = 0; edge < counts_.size(); ++edge) {
+      total_ += (counts_[edge] - shorter) * (target_.shortest + static_cast<std::int64_t>(edge));
+      shorter = counts_[edge];
+    }
+  }
+
   void recount() {
     total_ = 0;
     sum_ = squares_ = distance2_ = 0;
@@ -91,7 +102,8 @@ class Holds {
 };
 
 /// Minimises the objective + spread x (sum of squared deviations from the mean) + price x (the mean's sum):
-/// frame i crosses an edge when its x_i lies above a threshold.
+/// frame i crosses an edge when its x_i lies above a threshold. Then the mean holds, and after recount() the
+/// rest.
 void place(Holds& holds, const HoldTarget& target, double spread, double price) {
   std::int64_t last = 0;
   const auto& x = target.rates;
@@ -104,7 +116,7 @@ void place(Holds& holds, const HoldTarget& target, double spread, double price) 
     last = std::max<std::int64_t>(last, above - x.begin());
     holds.set(edge, last);
   }
-  holds.recount();
+  holds.recount_for_mean();
 }
 
 /// Finds the price at which the wished mean is passed; more price shortens holds.
@@ -121,6 +133,7 @@ void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
     (mean_at(middle) < target.mean ? low : high) = middle;
   }
   place(holds, target, spread, high);
+  holds.recount();
 }
 
 /// Bisects the weight on the spread until the standard deviation is passed.

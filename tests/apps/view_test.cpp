@@ -36,6 +36,19 @@ class ViewE2e : public ::testing::Test {
                 " --method LoRes --n-star 64 --backend cpu --size 64x48 --frames 3 " + more);
   }
 
+  /// A file of --ptpe.
+  std::string fitted() const {
+    sim::PtpeFile file;
+    file.model = {31.5, 0.035};
+    file.a_ci = {30, 33};
+    file.b_ci = {0.03, 0.04};
+    file.n_participants = 16;
+    file.protocol_sha256 = std::string(64, 'a');
+    file.date_utc = base::utc_now();
+    base::write_file_atomically(folder / "fitted.toml", sim::format_ptpe_file(file));
+    return (folder / "fitted.toml").string();
+  }
+
   test::TemporaryFolder folder;
 };
 
@@ -78,19 +91,28 @@ TEST_F(ViewE2e, LeavesOutTheEffectsThatAreTurnedOff) {
 }
 
 TEST_F(ViewE2e, LoadsAFittedModel) {
-  sim::PtpeFile file;
-  file.model = {31.5, 0.035};
-  file.a_ci = {30, 33};
-  file.b_ci = {0.03, 0.04};
-  file.n_participants = 16;
-  file.protocol_sha256 = std::string(64, 'a');
-  file.date_utc = base::utc_now();
-  base::write_file_atomically(folder / "fitted.toml", sim::format_ptpe_file(file));
-  const auto outcome = small_run("--ptpe " + (folder / "fitted.toml").string());
+  const auto outcome = small_run("--ptpe " + fitted());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   EXPECT_NE(outcome.out.find("a = 31.5000"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("tau = "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("over the last 2 frames"), std::string::npos) << outcome.out;
+}
+
+TEST_F(ViewE2e, DrawsOnlyWhatAPictureTheSolverOrTheMeasuredRateNeeds) {
+  const auto run = [&](const std::string& method_and_more) {
+    const auto ended =
+        view("--headless " + scene() + " --n-star 64 --backend cpu --size 64x48 --frames 41 --every 40 " +
+             "--png " + (folder / "out").string() + " --method " + method_and_more);
+    EXPECT_EQ(ended.exit_code, 0) << ended.out;
+    return ended.out;
+  };
+  const auto plain = run("LoRes"), rated = run("LoRes --ptpe " + fitted()), seen = run("Ours");
+  EXPECT_NE(plain.find("2 of 41 frames were drawn: those of the pictures\n"), std::string::npos) << plain;
+  EXPECT_NE(rated.find("31 of 41 frames were drawn: those of the pictures and the last 30, whose rate"),
+            std::string::npos)
+      << rated;
+  EXPECT_EQ(seen.find("were drawn"), std::string::npos) << "saliency reads each picture\n" << seen;
+  EXPECT_NE(seen.find("draw "), std::string::npos) << seen;
 }
 
 TEST_F(ViewE2e, BadInputIsOneErrorAndNoPicture) {
