@@ -14,7 +14,7 @@ std::string attributes_of(const std::string& attributes) {
   return attributes.empty() || attributes.front() == ' ' ? attributes : " " + attributes;
 }
 
-std::string drawn(const Picture& picture, const std::string& space) {
+std::string drawn(const Picture& picture, const std::string& space, const std::string& background) {
   const std::string title = picture.id + "-title", description = picture.id + "-description";
   const std::string width = number(picture.width, 0), height = number(picture.height, 0);
   return "<svg" + space + attribute("viewBox", "0 0 " + width + " " + height) + attribute("width", width) +
@@ -23,8 +23,8 @@ std::string drawn(const Picture& picture, const std::string& space) {
          " font-family=\"DejaVu Sans, Arial, sans-serif\">\n<title" + attribute("id", title) + ">" +
          escaped(picture.title) + "</title>\n<desc" + attribute("id", description) + ">" +
          escaped(picture.description) + "</desc>\n" +
-         (picture.definitions.empty() ? "" : "<defs>\n" + picture.definitions + "</defs>\n") +
-         rectangle({0, 0}, {picture.width, picture.height}, "fill=\"#ffffff\"") + picture.body + "</svg>\n";
+         (picture.definitions.empty() ? "" : "<defs>\n" + picture.definitions + "</defs>\n") + background +
+         picture.body + "</svg>\n";
 }
 
 }  // namespace
@@ -102,11 +102,13 @@ std::string cross(Point centre, double reach, const std::string& attributes) {
               attributes);
 }
 
-std::string element(const Picture& picture) { return drawn(picture, ""); }
+// Without a background: it would cover the shade by which a frame says that there is more to scroll to.
+std::string element(const Picture& picture) { return drawn(picture, "", ""); }
 
 std::string document(const Picture& picture) {
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
-         drawn(picture, " xmlns=\"http://www.w3.org/2000/svg\"");
+         drawn(picture, " xmlns=\"http://www.w3.org/2000/svg\"",
+               rectangle({0, 0}, {picture.width, picture.height}, "fill=\"#ffffff\""));
 }
 
 }  // namespace apps::svg

@@ -5,8 +5,10 @@
 namespace apps {
 
 CLI::Option* add_protocol_choice(CLI::App& command, ChoiceOptions& options) {
-  return command.add_option("--protocol", options.protocol,
-                            "First digits of a protocol's SHA-256; without: every protocol by itself");
+  return command.add_option(
+      "--protocol", options.protocol,
+      "Name of a protocol, 'NAME VERSION', or first digits of its SHA-256; without: every protocol "
+      "by itself");
 }
 
 CLI::Option* add_level_choice(CLI::App& command, ChoiceOptions& options) {

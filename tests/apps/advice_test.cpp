@@ -262,6 +262,11 @@ TEST(AdviceE2e, ChoosingAsAdvisedIsTaken) {
   const auto protocols = listed(run_shell(fit).out, "choose one with --protocol: ");
   ASSERT_EQ(protocols.size(), 2u);
   for (const auto& protocol : protocols) {
+    const std::string whole = protocol.substr(protocol.find_first_not_of(' '));  // "pilot 3.0 0123456789ab"
+    for (const std::string& by : {whole, whole.substr(0, whole.find_last_of(' '))})
+      EXPECT_NE(run_shell(fit + " --protocol '" + by + "'").out.find("choose one with --question"),
+                std::string::npos)
+          << by;
     const std::string chosen = fit + " --protocol " + last_word(protocol);
     const auto questions = listed(run_shell(chosen).out, "choose one with --question: ");
     ASSERT_EQ(questions.size(), 2u);

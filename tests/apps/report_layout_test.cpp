@@ -9,6 +9,7 @@
 #include <set>
 
 #include "apps/stats/report/page.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/html_reader.hpp"
 
@@ -79,8 +80,56 @@ TEST(ReportLayout, AWideTableScrollsInABoxOfItsOwnAndAShadeShowsWhere) {
           << box;
     }
   }
+  for (auto at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) {
+    const auto desc = html.find("</desc>", at);
+    EXPECT_FALSE(html.substr(desc + 7, 80).starts_with("\n<rect")) << "a background that covers the shade";
+  }
   EXPECT_THAT(style_of(html, "@media screen and (max-width", ".wide table"), HasSubstr("width: max-content"));
   EXPECT_THAT(style_of(html, "@media print", ".wide"), HasSubstr("overflow: visible"));
+}
+
+/// Width of the picture whose id begins so.
+double picture_width(const std::string& html, const std::string& id) {
+  const auto at = html.find("aria-labelledby=\"" + id);
+  if (at == std::string::npos) throw base::Error(id, "no such picture", "");
+  return std::stod(html.substr(html.rfind("viewBox=\"0 0 ", at) + 13));
+}
+
+TEST(ReportLayout, MethodsStandSideBySideHoweverLongTheirNames) {
+  const std::string name = "LoRes, rather_long_name_of_foam_and_spray";
+  OrderedJson json = example();
+  for (const char* list : {"cells", "by_scene", "participant_means"})
+    for (OrderedJson& one : json.at("task1").at(list))
+      if (one["method"] == "Ours") one["method"] = name;
+  for (OrderedJson& one : json.at("task1").at("methods"))
+    if (one == "Ours") one = name;
+  for (OrderedJson& one : json.at("task1").at("scenes")) one = name;
+  const auto html = report::results_page(json);
+  const double needed = 6.5 * static_cast<double>(name.size());
+  for (const char* id : {"box-plot-realism", "person-lines-realism", "scene-lines-realism"})
+    EXPECT_GT(picture_width(html, id), needed * 5 * 2) << id << ": five methods at two n_*";
+  EXPECT_GT(picture_width(html, "scene-lines-realism"), (needed + 40) * 3) << "three scenes in the legend";
+}
+
+TEST(ReportLayout, PicturesOfShortNamesFitANarrowScreen) {
+  const std::string html = report::results_page(example());
+  for (const char* id : {"ratings-realism", "flow-pilot"})
+    EXPECT_LE(picture_width(html, id), 500 - 2 * 11) << id;
+}
+
+TEST(ReportLayout, ScoresThatWereNotGivenAreNotListed) {
+  const std::string html = report::results_page(example());
+  int listed = 0, left_out = 0;
+  const OrderedJson flat = example().at("descriptives").flatten();
+  for (const auto& [place, value] : flat.items()) {
+    if (!place.ends_with("/count")) continue;
+    const bool of_scale = flat.at(place.substr(0, place.size() - 5) + "answer").is_number();
+    const bool there = html.find("data-field=\"/descriptives" + place + "\"") != std::string::npos;
+    EXPECT_EQ(there, value != 0 || !of_scale) << place;
+    ++(there ? listed : left_out);
+  }
+  EXPECT_GT(listed, 0);
+  EXPECT_GT(left_out, 0);
 }
 
 /// Numbers of columns of each table's rows; the first row is the head.

@@ -281,7 +281,7 @@ TEST(ReportPage, EveryParticipantIsInOneBoxOfTheFlow) {
   EXPECT_EQ(flow.at("excluded_participants"), 1);
   EXPECT_EQ(flow.at("analysed"), 3) << "one of them did not come back";
   const auto html = report::results_page(json);
-  EXPECT_TRUE(holds(html, "people without an answer to a trial"));
+  EXPECT_TRUE(holds(html, "people without an answer to analyse"));
   EXPECT_TRUE(holds(html, "Answers count whether or not their session was completed."));
 }
 

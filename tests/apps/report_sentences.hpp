@@ -45,12 +45,14 @@ inline std::vector<Case> head_and_methods() {
       {"Over the water of every stimulus of # # was painted.",
        in_each("/study/protocols", "overlay", nullptr),
        in_each("/study/protocols", "overlay", "temperature")},
-      {"Pilot was begun in # sessions, of which # were completed; of # participants # answered no trial, # "
-       "who had answered were left out and # analysed, with # of # planned trials (# answered ones left "
+      {"Pilot was begun in # sessions, of which # were completed; of # participants # gave no answer to "
+       "analyse, # who had answered were left out and # analysed, with # of # planned trials (# answered "
+       "ones left "
        "out).",
        no_flow},
-      {"Task [12] was begun in # sessions, of which # were completed; of # participants # answered no "
-       "trial, # who had answered were left out and # analysed, with # of # planned trials (# answered ones "
+      {"Task [12] was begun in # sessions, of which # were completed; of # participants # gave no answer "
+       "to analyse, # who had answered were left out and # analysed, with # of # planned trials (# answered "
+       "ones "
        "left out).",
        no_flow},
       {"The same rules of exclusion held for *Task 1 and Task 2: trials whose timing verdict was fail "

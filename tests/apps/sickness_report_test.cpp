@@ -149,6 +149,15 @@ std::string html_of(const std::vector<SicknessSession>& sessions) {
   return report::results_page(json);
 }
 
+// A model answers within milliseconds: the page said 0.0 minutes for every asking.
+TEST(SicknessSection, WhoIsSimulatedHasNoMinutes) {
+  EXPECT_THAT(html_of(three()), HasSubstr("Minutes (median)"));
+  auto sessions = three();
+  for (auto& one : sessions) one.observer = "random";
+  EXPECT_TRUE(sickness_json(sessions, quick_plan())[0]["fms"]["times"][2]["minutes"].is_null());
+  EXPECT_THAT(html_of(sessions), Not(HasSubstr("Minutes (median)")));
+}
+
 TEST(SicknessSection, SaysWhatIsMissingOnlyWhereItIs) {
   auto sessions = three();
   EXPECT_THAT(html_of(sessions), Not(HasSubstr("empties its scale")));

@@ -52,6 +52,15 @@ TEST(TaskData, WhoIsPlannedAloneHasNotStarted) {
   EXPECT_EQ(flow.at("done"), 9);
 }
 
+TEST(TaskData, WhoAnsweredASideQuestionAloneWasNotLeftOut) {
+  auto protocol = made_study::task2(12);
+  for (auto& trial : protocol.sessions[0].trials) trial.answers = {{"fms", 3}};
+  const auto flow = select(of(protocol), TaskKind::Task2).flow;
+  EXPECT_EQ(flow.no_answer, 1);
+  EXPECT_EQ(flow.excluded_participants, 0);
+  EXPECT_EQ(flow.analysed, 11);
+}
+
 TEST(TaskData, TestDataStandBehindRealOnes) {
   auto protocol = made_study::task1(12);
   for (int i = 0; i < 3; ++i) protocol.sessions[static_cast<std::size_t>(i)].test_data = true;

@@ -36,11 +36,22 @@ bool asks(const TaskProtocol& protocol, bool (*wanted)(const Question&)) {
   return std::any_of(protocol.questions.begin(), protocol.questions.end(), wanted);
 }
 
-bool is_asked_for(const TaskProtocol& protocol, const TaskSelection& selection) {
-  return kind_of(protocol) == selection.task && protocol.sha256.starts_with(selection.protocol);
+std::string name_of(const TaskProtocol& protocol) { return protocol.name + " " + protocol.version; }
+
+/// "name 1.0 0123456789ab".
+std::string hashed_name(const TaskProtocol& protocol) {
+  return name_of(protocol) + " " + protocol.sha256.substr(0, 12);
 }
 
-std::string name_of(const TaskProtocol& protocol) { return protocol.name + " " + protocol.version; }
+/// By the first digits of the SHA-256, by name, by name and version, or as messages list it.
+bool is_meant(const TaskProtocol& protocol, const std::string& by) {
+  return protocol.sha256.starts_with(by) || by == protocol.name || by == name_of(protocol) ||
+         by == hashed_name(protocol);
+}
+
+bool is_asked_for(const TaskProtocol& protocol, const TaskSelection& selection) {
+  return kind_of(protocol) == selection.task && is_meant(protocol, selection.protocol);
+}
 
 std::ptrdiff_t answered_sessions(const TaskProtocol& protocol) {
   return std::count_if(protocol.sessions.begin(), protocol.sessions.end(), has_answers);
@@ -64,11 +75,6 @@ constexpr const char* choose_question = "choose one with --question: ";
 
 void list_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
-}
-
-/// "name 1.0 0123456789ab".
-std::string hashed_name(const TaskProtocol& protocol) {
-  return name_of(protocol) + " " + protocol.sha256.substr(0, 12);
 }
 
 std::vector<std::string> protocols_of(const std::vector<ChosenTask>& all) {
@@ -184,7 +190,7 @@ stats::Result<std::vector<ChosenTask>> choose_tasks(const study::TaskStudy& stud
   if (protocols.empty()) {
     return stats::Refusal{
         std::string("the database holds no protocol ") + what_it_shows(selection.task) +
-        (selection.protocol.empty() ? "" : " and whose SHA-256 begins with " + selection.protocol)};
+        (selection.protocol.empty() ? "" : " and is '" + selection.protocol + "' by name or SHA-256")};
   }
   std::vector<SetAside> set_aside;
   if (real > 0) {
@@ -236,7 +242,7 @@ stats::Refusal nothing_chosen(const study::TaskStudy& study, const std::string& 
   std::vector<std::string> names, questions;
   for (const TaskProtocol& one : study.protocols) {
     names.push_back(hashed_name(one));
-    if (!one.sha256.starts_with(protocol)) continue;
+    if (!is_meant(one, protocol)) continue;
     for (const Question& question : one.questions)
       if (is_main_question(one, question) || kind_of(one) == TaskKind::Own) list_once(questions, question.id);
   }
@@ -246,7 +252,7 @@ stats::Refusal nothing_chosen(const study::TaskStudy& study, const std::string& 
   }
   if (questions.empty()) {
     mend = choose_protocol + base::joined(names);
-    return {"holds no protocol whose SHA-256 begins with " + protocol};
+    return {"holds no protocol '" + protocol + "', by name or SHA-256"};
   }
   mend = choose_question + base::joined(questions);
   return {"asks no such question that is analysed by itself"};

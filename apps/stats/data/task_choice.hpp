@@ -27,7 +27,7 @@ TaskKind kind_of(const study::TaskProtocol& protocol);
 /// What the options of a command ask for.
 struct TaskSelection {
   TaskKind task = TaskKind::Task1;
-  std::string protocol;  ///< leading digits of the SHA-256; empty: all
+  std::string protocol;  ///< its name, with or without version, or leading digits of its SHA-256; empty: all
   stats::AnalysisPlan plan;
   std::string question = {};         ///< its id; empty: all
   std::optional<double> level = {};  ///< pilot: score of the curve; none: that of level_of()
@@ -71,7 +71,7 @@ stats::Result<ChosenTask> choose_task(const study::TaskStudy& study, const TaskS
 /// What to do where choose_task() is refused: only what there is to choose from; empty: it is not.
 std::string mend_of_choice(const study::TaskStudy& study, const TaskSelection& selection);
 
-/// Why no analysis at all, of whatever task, was chosen, and what to do. `protocol`: digits as given.
+/// Why no analysis at all, of whatever task, was chosen, and what to do. `protocol`: as given.
 stats::Refusal nothing_chosen(const study::TaskStudy& study, const std::string& protocol, std::string& mend);
 
 /// A curve is fitted between the ends of its scale. The reason and the mend are the same for every command.

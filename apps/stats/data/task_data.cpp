@@ -114,7 +114,9 @@ class Collector {
     }
     ++data_.flow.trials_planned;
     if (record.answers == 0) return false;
-    answered_.insert(session.participant);
+    // Who answered a side question alone is not left out: there is nothing to analyse.
+    if (record.answer == record.answer || data_.task == TaskKind::Task1 || data_.task == TaskKind::Own)
+      answered_.insert(session.participant);
     ++data_.flow.trials_answered;
     ++(excluded ? data_.flow.trials_excluded : data_.flow.trials_analysed);
     if (!analysed) return false;
@@ -220,7 +222,7 @@ class Collector {
   }
 
   TaskData& data_;
-  std::set<std::string> people_, answered_;  ///< codes: of all, and of those who answered a trial
+  std::set<std::string> people_, answered_;  ///< codes: of all, and of those with an answer to analyse
 };
 
 }  // namespace

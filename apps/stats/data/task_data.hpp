@@ -19,7 +19,7 @@ struct TaskFlow {
   std::map<std::string, int> by_state;  ///< sessions, by TaskSession::state
   int started = 0;                      ///< all but those that are planned alone
   int participants = 0;                 ///< of the sessions started
-  int no_answer = 0;                    ///< participants who answered no trial, practice and repeats aside
+  int no_answer = 0;                    ///< participants without an answer to analyse, practice and repeats aside
   int withdrawn = 0;                    ///< participants, from whatever protocol of the database
   int test_left_out = 0;                ///< sessions of test data beside real ones
   int simulated_left_out = 0;           ///< sessions of observer models beside those of people

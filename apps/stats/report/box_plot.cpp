@@ -14,7 +14,7 @@ using svg::line;
 using svg::Point;
 using svg::text;
 
-constexpr double left = 62, right_margin = 14, group_gap = 46, step = 74, box_half = 21;
+constexpr double left = 62, right_margin = 14, group_gap = 46, least_step = 74, box_half = 21;
 constexpr double plot_height = 270, bracket_step = 19, below = 78;
 constexpr const char* ink = "stroke=\"#000000\" stroke-width=\"1.4\" fill=\"none\"";
 
@@ -31,6 +31,14 @@ struct Group {
   std::vector<Field> cells;  ///< in the order of the methods
   std::vector<Bracket> brackets;
 };
+
+/// From one box to the next, with room for the longest name of a method.
+double step_of(const std::vector<Group>& groups) {
+  std::vector<std::string> names;
+  for (const Group& group : groups)
+    for (const Field& cell : group.cells) names.push_back(cell["method"].words());
+  return std::max(least_step, room_for(names) + 10);
+}
 
 /// Short brackets lie low; one that shares a stretch with another goes above it.
 void stack(std::vector<Bracket>& brackets) {
@@ -102,7 +110,7 @@ std::string labels(const Field& cell, double x, double bottom) {
   return out;
 }
 
-std::string bracket(const Bracket& b, double origin, double lowest) {
+std::string bracket(const Bracket& b, double origin, double step, double lowest) {
   const double y = lowest - bracket_step * static_cast<double>(b.layer);
   const double from = origin + step * static_cast<double>(b.first) + 4;
   const double to = origin + step * static_cast<double>(b.last) - 4;
@@ -129,6 +137,7 @@ std::string axis_marks(const Axis& axis, double right) {
 
 svg::Picture box_plot(const Field& task1, const Field& score) {
   const auto groups = groups_of(task1, score["code"].words());
+  const double step = step_of(groups);
   std::size_t layers = 0;
   double right = left + 10;
   for (const auto& group : groups) {
@@ -158,13 +167,14 @@ svg::Picture box_plot(const Field& task1, const Field& score) {
       picture.body += labels(cell, x, bottom);
       x += step;
     }
-    for (const auto& b : group.brackets) picture.body += bracket(b, origin, top_bracket);
+    for (const auto& b : group.brackets) picture.body += bracket(b, origin, step, top_bracket);
     const double last = x - step;
     picture.body += line({origin - step / 2 + 6, bottom + 46}, {last + step / 2 - 6, bottom + 46}, ink);
-    picture.body += svg::marked_text(
-        {(origin + last) / 2, bottom + 66},
-        "n* = <tspan" + data_field(group.n_star) + ">" + svg::escaped(group.n_star.words()) + "</tspan>",
-        "text-anchor=\"middle\" font-size=\"14\"");
+    picture.body +=
+        svg::marked_text({(origin + last) / 2, bottom + 66},
+                         "<tspan font-style=\"italic\">n</tspan>* = <tspan" + data_field(group.n_star) + ">" +
+                             svg::escaped(group.n_star.words()) + "</tspan>",
+                         "text-anchor=\"middle\" font-size=\"14\"");
     origin = x + group_gap;
   }
   picture.body += line({left, axis.top}, {left, bottom}, ink);

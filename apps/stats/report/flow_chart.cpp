@@ -58,7 +58,7 @@ std::vector<Entry> those_with_some(const std::vector<Entry>& all) {
 }  // namespace
 
 svg::Picture flow_chart(const Field& flow, const std::string& id, const std::string& task) {
-  svg::Picture picture{.width = side_x + side_width + 12, .id = id};
+  svg::Picture picture{.width = main_x + main_width + 60, .id = id};
   picture.title = "Flow of participants, " + task;
   picture.description =
       "Boxes from top to bottom: sessions started, sessions completed, participants analysed; beside them "
@@ -71,7 +71,7 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
                         {"did not come back", flow["dropped_out"]},
                         {"still open", flow["open"]}})},
       {{{"sessions completed", flow["done"]}},
-       those_with_some({{"people without an answer to a trial", flow["no_answer"]},
+       those_with_some({{"people without an answer to analyse", flow["no_answer"]},
                         {"people left out by rule or hand", flow["excluded_participants"]}})},
       {{{"participants analysed", flow["analysed"]},
         {"trials planned", flow["trials_planned"]},
@@ -94,6 +94,7 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
     picture.body += main.drawn;
     double next = y + main.height + 34;
     if (!gone.empty()) {
+      picture.width = side_x + side_width + 12;
       // The side box stands beside the arrow to the next step; beside the last box itself.
       const bool last = i + 1 == steps.size();
       const Box side = box(side_x, last ? y : y + main.height + 12, side_width, gone);

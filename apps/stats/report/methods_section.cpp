@@ -61,7 +61,7 @@ std::string people_text(const Field& flow) {
     if (!part.there()) continue;
     out += std::string(title) + " was begun in " + count(part["started"]) + " sessions, of which " +
            count(part["done"]) + " were completed; of " + count(part["participants"]) + " participants " +
-           count(part["no_answer"]) + " answered no trial, " + count(part["excluded_participants"]) +
+           count(part["no_answer"]) + " gave no answer to analyse, " + count(part["excluded_participants"]) +
            " who had answered were left out and " + count(part["analysed"]) + " analysed, with " +
            count(part["trials_analysed"]) + " of " + count(part["trials_planned"]) + " planned trials (" +
            count(part["trials_excluded"]) + " answered ones left out). ";

@@ -69,9 +69,11 @@ std::string roster(const Field& roster) {
          (table.empty() ? "" : table.html());
 }
 
+/// A score that was never given is left out, so that a scale of many points has short lines.
 std::string distribution(const Field& cell) {
   std::string out;
   for (const Field& one : cell["distribution"].entries()) {
+    if (one["answer"].is_number() && one["count"].number() == 0) continue;
     const Field answer = one["answer"];
     out += (out.empty() ? "" : "; ") + (answer.is_number() ? count(answer) : words(answer)) + ": " +
            count(one["count"]);
@@ -168,7 +170,7 @@ std::string descriptives_section(const Field& root) {
       const std::string text = words(question["text"]);
       Table table("Answers to " + words(question["question"]) + (text.empty() ? "" : ": " + text),
                   {"Shown", "Scene", n_star_sign, "<i>n</i>", "Participants", "Mean", "<i>SD</i>", "Median",
-                   "Answers: how often"});
+                   "Answers given: how often"});
       for (const Field& c : question["cells"].entries())
         table.row({words(c["shown"]), words(c["scene"]), words(c["n_star"]), count(c["n"]),
                    count(c["participants"]), fixed(c["mean"], 2), fixed(c["sd"], 2), fixed(c["median"], 1),

@@ -11,7 +11,7 @@ namespace {
 
 using svg::text;
 
-constexpr double left = 190, width = 430, row = 24, bar = 18, top = 70;
+constexpr double left = 190, width = 330, row = 24, bar = 18, top = 70;
 
 /// From blue at the lowest score over a light grey to orange at the highest: distinguishable with any common
 /// colour vision, and by lightness where there is none.
@@ -77,7 +77,8 @@ std::string drawn(const Field& entry, const std::string& name, double y) {
 
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title) {
-  const double more = std::max(0.0, room_for(names) + 8 - left);
+  // Where names are short the picture is narrow, so that it fits a narrow screen.
+  const double more = std::max(room_for(names), room_for({"score"})) + 8 - left;
   svg::Picture picture{.width = more + left + width + 20, .id = id};
   picture.title = title;
   picture.description =

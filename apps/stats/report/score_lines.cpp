@@ -14,13 +14,14 @@ using svg::line;
 using svg::Point;
 using svg::text;
 
-constexpr double left = 52, step = 84, gap = 34, plot_height = 240, top = 34, below = 64;
+constexpr double left = 52, least_step = 84, gap = 34, plot_height = 240, top = 34, below = 64;
 constexpr const char* ink = "stroke=\"#000000\" stroke-width=\"1.2\" fill=\"none\"";
 
 /// Panels side by side, one for each n_*, with the methods along x and the score along y.
 struct Panels {
   std::vector<Field> n_stars, methods;
   double min = 1, max = 7;
+  double step = least_step;  ///< from one method to the next
 
   double width() const { return step * static_cast<double>(methods.size()); }
   double origin(std::size_t panel) const { return left + static_cast<double>(panel) * (width() + gap); }
@@ -32,9 +33,16 @@ struct Panels {
   }
 };
 
+std::vector<std::string> words_of(const std::vector<Field>& list) {
+  std::vector<std::string> out;
+  for (const Field& one : list) out.push_back(one.words());
+  return out;
+}
+
 Panels panels_of(const Field& task1, const Field& score) {
-  return {task1["n_stars"].entries(), task1["methods"].entries(), score["min"].number(),
-          score["max"].number()};
+  const std::vector<Field> methods = task1["methods"].entries();
+  return {task1["n_stars"].entries(), methods, score["min"].number(), score["max"].number(),
+          std::max(least_step, room_for(words_of(methods)) + 10)};
 }
 
 std::string frame(const Panels& panels) {
@@ -145,8 +153,8 @@ svg::Picture person_lines(const Field& task1, const Field& score) {
     std::size_t person = 0;
     for (const auto& [participant, means] : people) {
       // A little aside, so that equal scores do not lie on each other.
-      const double aside =
-          0.30 * step * ((static_cast<double>(person++) + 0.5) / static_cast<double>(people.size()) - 0.5);
+      const double aside = 0.30 * panels.step *
+                           ((static_cast<double>(person++) + 0.5) / static_cast<double>(people.size()) - 0.5);
       std::vector<std::optional<Point>> points(panels.methods.size());
       for (std::size_t m = 0; m < points.size(); ++m) {
         if (!means[p][m]) continue;
@@ -169,6 +177,7 @@ svg::Picture person_lines(const Field& task1, const Field& score) {
 svg::Picture scene_lines(const Field& task1, const Field& score) {
   const Panels panels = panels_of(task1, score);
   const std::vector<Field> scenes = task1["scenes"].entries();
+  const double column = std::max(190.0, 50 + room_for(words_of(scenes)));  // of the legend
   svg::Picture picture = picture_of(panels, score, "scene-lines");
   picture.title = score["label"].words() + " by scene";
   picture.description =
@@ -178,7 +187,7 @@ svg::Picture scene_lines(const Field& task1, const Field& score) {
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     const Style& style = styles[s % styles.size()];
     const double aside =
-        0.4 * step * ((static_cast<double>(s) + 0.5) / static_cast<double>(scenes.size()) - 0.5);
+        0.4 * panels.step * ((static_cast<double>(s) + 0.5) / static_cast<double>(scenes.size()) - 0.5);
     for (std::size_t p = 0; p < panels.n_stars.size(); ++p) {
       std::vector<std::optional<Point>> points(panels.methods.size());
       each_cell(panels, task1["by_scene"], score, p, [&](const Field& cell, std::size_t m) {
@@ -195,11 +204,13 @@ svg::Picture scene_lines(const Field& task1, const Field& score) {
       });
       picture.body += polyline(points, stroke(style, "2"));
     }
-    const double x = left + 190 * static_cast<double>(s % 3),
+    const double x = left + column * static_cast<double>(s % 3),
                  y = panels.bottom() + 64 + 20 * static_cast<double>(s / 3);
     picture.body += line({x, y - 5}, {x + 34, y - 5}, stroke(style, "2")) +
                     text({x + 40, y}, scenes[s].words(), "font-size=\"13\"" + data_field(scenes[s]));
   }
+  picture.width =
+      std::max(picture.width, left + column * static_cast<double>(std::min<std::size_t>(scenes.size(), 3)));
   picture.height += 14 + 20 * static_cast<double>(scenes.empty() ? 0 : (scenes.size() - 1) / 3);
   return picture;
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "apps/stats/report/figures.hpp"
 #include "apps/stats/report/html.hpp"
 #include "apps/stats/report/sections.hpp"
@@ -79,9 +81,18 @@ std::string fms(const Field& fms, const std::string& id) {
   };
   part("Whole session", fms);
   for (const Field& block : fms["blocks"].entries()) part("Block " + words(block["block"]), block);
-  Table times("FMS over the session", with_columns({"Asked", "Minutes (median)"}, described_columns));
-  for (const Field& time : fms["times"].entries())
-    times.row(with_columns({count(time["asked"]), fixed(time["minutes"], 1)}, described(time)));
+  // A model takes no time to answer.
+  const auto asked = fms["times"].entries();
+  const bool timed =
+      std::any_of(asked.begin(), asked.end(), [](const Field& time) { return time["minutes"].is_number(); });
+  std::vector<std::string> head{"Asked"};
+  if (timed) head.emplace_back("Minutes (median)");
+  Table times("FMS over the session", with_columns(head, described_columns));
+  for (const Field& time : asked) {
+    std::vector<std::string> cells{count(time["asked"])};
+    if (timed) cells.push_back(fixed(time["minutes"], 1));
+    times.row(with_columns(cells, described(time)));
+  }
   Table change("Change of the FMS from the first answer to the last",
                with_columns({"Score"}, changed_columns));
   change.row(with_columns({"FMS"}, changed(fms["change"])));

@@ -177,11 +177,13 @@ Json times_json(const People& people) {
       for (const auto* session : sessions) {
         if (asked >= session->fms.size()) continue;
         scores.push_back(session->fms[asked].score);
-        minutes.push_back(session->fms[asked].minutes);
+        // Of a model the time that the program took, which is none of a session.
+        if (!is_simulated(*session)) minutes.push_back(session->fms[asked].minutes);
       }
     }
     if (scores.empty()) return list;
-    Json line{{"asked", asked + 1}, {"minutes", stats::describe(minutes)->median}};
+    const auto when = stats::describe(minutes);
+    Json line{{"asked", asked + 1}, {"minutes", when ? Json(when->median) : Json()}};
     line.update(summary_json(stats::describe(scores)));
     list.push_back(std::move(line));
   }
