@@ -281,7 +281,9 @@ TEST(ReportPage, EveryParticipantIsInOneBoxOfTheFlow) {
   EXPECT_EQ(flow.at("excluded_participants"), 1);
   EXPECT_EQ(flow.at("analysed"), 3) << "one of them did not come back";
   const auto html = report::results_page(json);
-  EXPECT_TRUE(holds(html, "people without an answer to analyse"));
+  for (const char* box : {"participants in them", "people without an answer to analyse",
+                          "people left out by rule or hand", "participants analysed"})
+    EXPECT_TRUE(holds(html, box)) << box;
   EXPECT_TRUE(holds(html, "Answers count whether or not their session was completed."));
 }
 

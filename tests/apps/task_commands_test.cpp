@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -176,6 +177,20 @@ struct Task2Output {
   nlohmann::json results;
 };
 
+/// What the lines say that the interval of a pair is; empty: no line says it, or two say different names.
+std::string interval_name(const std::string& lines, const std::string& pair) {
+  std::set<std::string> names;
+  std::istringstream all(lines);
+  for (std::string line; std::getline(all, line);) {
+    const auto colon = line.rfind(": ");
+    if (line.starts_with("intervals: ") ||
+        (line.starts_with("interval of ") &&
+         (line.substr(12, colon - 12) + ",").find(pair + ",") != std::string::npos))
+      names.insert(line.substr(colon + 2));
+  }
+  return names.size() == 1 ? *names.begin() : "";
+}
+
 /// What vip-stats task2 prints and writes of them. Each line of a pair is held against the results.
 Task2Output task2_of_six(bool again) {
   const TemporaryFolder folder;
@@ -188,6 +203,11 @@ Task2Output task2_of_six(bool again) {
   for (const auto& pair : results.at("pairs")) {
     const auto name = pair.at("a").get<std::string>() + " over " + pair.at("b").get<std::string>();
     EXPECT_EQ(line_of(ended.out, name), line_of(pair)) << name;
+    const bool people = pair.contains("by_person");
+    EXPECT_EQ(interval_name(ended.out, name),
+              people ? pair.at("by_person").at("ci_name").get<std::string>() : "Clopper-Pearson")
+        << name << "\n"
+        << ended.out;
   }
   return {ended.out, results};
 }
