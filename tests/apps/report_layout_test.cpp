@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "apps/stats/report/page.hpp"
@@ -109,6 +111,27 @@ TEST(ReportLayout, MethodsStandSideBySideHoweverLongTheirNames) {
   for (const char* id : {"box-plot-realism", "person-lines-realism", "scene-lines-realism"})
     EXPECT_GT(picture_width(html, id), needed * 5 * 2) << id << ": five methods at two n_*";
   EXPECT_GT(picture_width(html, "scene-lines-realism"), (needed + 40) * 3) << "three scenes in the legend";
+}
+
+// Stars touched the end of a bracket above them.
+TEST(ReportLayout, NoBracketRunsThroughTheStarsOfAnother) {
+  const std::string html = report::results_page(example());
+  const auto from = html.find("aria-labelledby=\"box-plot-realism");
+  const std::string plot = html.substr(from, html.find("</svg>", from) - from);
+  const std::regex bracket(R"re(d="M([0-9.]+),([0-9.]+)L\1,([0-9.]+)L([0-9.]+),\3L\4,\2")re");
+  const std::regex stars(R"re(<text x="([0-9.]+)" y="([0-9.]+)"[^>]*>(\*+)</text>)re");
+  int brackets = 0, compared = 0;
+  for (std::sregex_iterator one(plot.begin(), plot.end(), bracket), end; one != end; ++one, ++brackets) {
+    const double foot = std::stod((*one)[2]), head = std::stod((*one)[3]);
+    for (std::sregex_iterator mark(plot.begin(), plot.end(), stars); mark != end; ++mark, ++compared) {
+      const double x = std::stod((*mark)[1]), y = std::stod((*mark)[2]);
+      for (const int side : {1, 4})
+        EXPECT_FALSE(std::abs(x - std::stod((*one)[side])) < 15 && foot > y - 15 && head < y)
+            << x << " " << y;
+    }
+  }
+  EXPECT_GT(brackets, 2);
+  EXPECT_EQ(compared, brackets * brackets) << "stars over each";
 }
 
 TEST(ReportLayout, PicturesOfShortNamesFitANarrowScreen) {

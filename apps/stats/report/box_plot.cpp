@@ -15,7 +15,7 @@ using svg::Point;
 using svg::text;
 
 constexpr double left = 62, right_margin = 14, group_gap = 46, least_step = 74, box_half = 21;
-constexpr double plot_height = 270, bracket_step = 19, below = 78;
+constexpr double plot_height = 270, bracket_step = 24, below = 78;
 constexpr const char* ink = "stroke=\"#000000\" stroke-width=\"1.4\" fill=\"none\"";
 
 /// A pair that differs, as a bracket over its boxes.
