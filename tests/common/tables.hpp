@@ -11,10 +11,10 @@
 namespace test {
 
 /// One map from the header's names to the values for each line.
-using Rows = std::vector<std::map<std::string, std::string>>;
+using NamedRows = std::vector<std::map<std::string, std::string>>;
 
 /// Split at `separator` outside quotes; the quotes go.
-inline Rows read_table(const std::filesystem::path& path, char separator) {
+inline NamedRows read_table(const std::filesystem::path& path, char separator) {
   std::vector<std::vector<std::string>> lines{{""}};
   bool quoted = false;
   for (const char c : base::read_file(path, 1u << 30)) {
@@ -28,7 +28,7 @@ inline Rows read_table(const std::filesystem::path& path, char separator) {
       lines.back().back() += c;
   }
   lines.pop_back();
-  Rows rows;
+  NamedRows rows;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     rows.emplace_back();
     for (std::size_t j = 0; j < lines[0].size(); ++j) rows.back()[lines[0][j]] = lines[i].at(j);
@@ -36,7 +36,7 @@ inline Rows read_table(const std::filesystem::path& path, char separator) {
   return rows;
 }
 
-inline Rows read_csv(const std::filesystem::path& path) { return read_table(path, ','); }
-inline Rows read_tsv(const std::filesystem::path& path) { return read_table(path, '\t'); }
+inline NamedRows read_csv(const std::filesystem::path& path) { return read_table(path, ','); }
+inline NamedRows read_tsv(const std::filesystem::path& path) { return read_table(path, '\t'); }
 
 }  // namespace test

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using sqlite::Open;
-using ::test::Rows;
+using ::test::NamedRows;
 
 /// Positions of the trials of a lab session of Task 1, the practice first.
 enum Trials { practice, plain, unanswered, set_aside, repeated, excluded, cut, again, parted };
@@ -153,7 +153,7 @@ TEST_F(Counting, EveryExportSaysOfEachShowingWhetherItCounts) {
   sqlite::Statement row(
       look, "SELECT presentation_id, position, attempt FROM presentation JOIN trial USING (trial_id)");
   while (row.step()) shown[row.text(0)] = {row.integer(1), row.integer(2)};
-  Rows presentations = ::test::read_csv(folder_ / "csv/presentations.csv");
+  NamedRows presentations = ::test::read_csv(folder_ / "csv/presentations.csv");
   ASSERT_EQ(presentations.size(), expected.size());
   for (auto& line : presentations) {
     SCOPED_TRACE(line["presentation_id"]);
@@ -164,7 +164,7 @@ TEST_F(Counting, EveryExportSaysOfEachShowingWhetherItCounts) {
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "bids")) {
     if (entry.path().string().ends_with("_events.tsv")) events = entry.path();
   }
-  Rows lines = ::test::read_tsv(events);
+  NamedRows lines = ::test::read_tsv(events);
   ASSERT_EQ(lines.size(), expected.size());
   for (auto& line : lines) {
     const std::string& why = expected.at({std::stoi(line["trial"]), std::stoi(line["attempt"])});
@@ -179,7 +179,7 @@ TEST_F(Counting, EveryExportSaysOfEachShowingWhetherItCounts) {
 TEST_F(Counting, EveryExportSaysOfEachAnswerWhetherItCounts) {
   export_csv(path_, folder_ / "csv");
   export_psych_ds(path_, folder_ / "psych");
-  Rows responses = ::test::read_csv(folder_ / "csv/responses.csv");
+  NamedRows responses = ::test::read_csv(folder_ / "csv/responses.csv");
   std::map<std::string, int> reasons;
   for (auto& line : responses) ++reasons[line["why_not"] + " " + line["counts"]];
   // Six questions a trial, and one on a page.

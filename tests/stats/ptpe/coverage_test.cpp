@@ -6,16 +6,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <ostream>
 #include <vector>
 
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/ptpe/ordinal_pilot.hpp"
 #include "tests/stats/ptpe/simulated_ratings.hpp"
-
-namespace simulated {
-void PrintTo(const Truth& truth, std::ostream* out) { *out << "a = " << truth.a << ", b = " << truth.b; }
-}  // namespace simulated
 
 namespace {
 

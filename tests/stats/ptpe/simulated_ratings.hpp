@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <random>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct Truth {
   double a = 24, b = 0.02;
   double slope = 0.14, noise = 1, participant_sd = 0.5;
 };
+inline void PrintTo(const Truth& truth, std::ostream* out) {
+  *out << "a = " << truth.a << ", b = " << truth.b;
+}
 
 /// The paper's 21 settings, each rated once by each participant; realised = nominal.
 inline std::vector<stats::PilotRating> pilot(const Truth& truth, int participants, std::uint64_t seed) {
