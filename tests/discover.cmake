@@ -1,6 +1,7 @@
 # cmake -P, after a test program is linked: writes its ctest entries to ENTRIES. A suite of the label `unit` is one entry, since its
 # tests take less time than a start of the program and of ctest's bookkeeping for each; GoogleTest names the test that failed. Every
 # other test is an entry, and with ONE_BY_ONE these too: it runs side by side with others of its suite, with a time limit of its own.
+# A test in real time counts as two, so that fewer others run beside it.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status TIMEOUT 60)
 if(NOT status EQUAL 0)
@@ -13,9 +14,13 @@ set(suites "")
 function(add_entry name filter label timeout)
   # A suite is skipped when all of its tests are, not when one is; what follows in the output says that others failed.
   set(skipped "\\[  PASSED  \\] 0 tests\\.\n\\[  SKIPPED \\] [0-9]+ tests?, listed below:\n(\\[  SKIPPED \\] [^\n]*\n?)+$")
+  set(processors 1)
+  if(name MATCHES "Real(Time|Clock)")
+    set(processors 2)
+  endif()
   string(APPEND entries "add_test([=[${name}]=] ${PROGRAM} [=[--gtest_filter=${filter}]=] --gtest_also_run_disabled_tests)\n"
          "set_tests_properties([=[${name}]=] PROPERTIES WORKING_DIRECTORY [=[${FOLDER}]=] LABELS ${label} TIMEOUT ${timeout}"
-         " ENVIRONMENT OMP_WAIT_POLICY=passive SKIP_REGULAR_EXPRESSION [=[${skipped}]=])\n")
+         " ENVIRONMENT OMP_WAIT_POLICY=passive PROCESSORS ${processors} SKIP_REGULAR_EXPRESSION [=[${skipped}]=])\n")
   set(entries "${entries}" PARENT_SCOPE)
 endfunction()
 foreach(line IN LISTS listed)

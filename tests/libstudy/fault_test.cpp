@@ -152,7 +152,7 @@ void try_calls(const Flow& flow, const Named& fault, long first, long step) {
 /// Some calls over the whole length of the flow, other ones for each kind of fault; FaultsSlow tries them
 /// all.
 void try_some(const char* name) {
-  constexpr long tries = 5;
+  constexpr long tries = 3;
   for (const Flow& flow : all_flows())
     if (flow.name == std::string(name)) {
       const long step = std::max(1L, Trials(flow).calls() / tries);
