@@ -54,7 +54,8 @@ TEST(Store, OnlyASessionOfWhichSomethingWasShownIsBegun) {
     store.end_session(sessions[2].id, {EarlyEnd::Stopped, ""}, 1);
   }
   std::vector<std::string> states;
-  for (const TaskSession& session : read_tasks({folder / "study.db"}).protocols.at(0).sessions)
+  const auto tasks = read_tasks({folder / "study.db"});
+  for (const TaskSession& session : tasks.protocols.at(0).sessions)
     states.push_back(session.participant + " " + session.state);
   EXPECT_THAT(states, ElementsAre("P01 open", "P02 open", "P03 stopped", "P04 planned"));
 }
