@@ -2,13 +2,13 @@
 
 namespace apps {
 
-nlohmann::json account_json(std::int64_t frame, const study::FrameFacts& facts) {
-  nlohmann::json out{{"frame", frame}, {"particles", facts.particles_by_level}};
+base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
+  base::Json out{{"frame", frame}, {"particles", facts.particles_by_level}};
   const auto t = facts.tolerance.value_or(study::FrameTolerance{});
   const bool known = facts.tolerance.has_value();
-  out["active_fraction"] = known ? nlohmann::json(t.active_fraction) : nlohmann::json();
+  out["active_fraction"] = known ? base::Json(t.active_fraction) : base::Json();
   out["tau_fps"] = or_null(t.tau_fps);
-  out["beta"] = known ? nlohmann::json(t.beta) : nlohmann::json();
+  out["beta"] = known ? base::Json(t.beta) : base::Json();
   out["mu_fps"] = or_null(t.mu_fps);
   out["delta_fps"] = or_null(t.delta_fps);
   if (const auto& met = facts.guards) {
@@ -24,13 +24,13 @@ nlohmann::json account_json(std::int64_t frame, const study::FrameFacts& facts) 
   return out;
 }
 
-nlohmann::json divergence_json(const std::optional<sim::Divergence>& divergence) {
+base::Json divergence_json(const std::optional<sim::Divergence>& divergence) {
   if (!divergence) return {};
-  nlohmann::json out{{"frame", divergence->frame},
-                     {"particle", divergence->particle},
-                     {"cause", sim::in_words(divergence->cause)},
-                     {"count", divergence->count},
-                     {"in_words", sim::in_words(*divergence)}};
+  base::Json out{{"frame", divergence->frame},
+                 {"particle", divergence->particle},
+                 {"cause", sim::in_words(divergence->cause)},
+                 {"count", divergence->count},
+                 {"in_words", sim::in_words(*divergence)}};
   if (const auto& at = divergence->where_m) out["where_m"] = *at;
   return out;
 }

@@ -6,8 +6,8 @@
 
 namespace apps {
 
-nlohmann::json effect_books(const sim::Scene& scene, const sim::FrameReport& report) {
-  nlohmann::json out = nlohmann::json::object();
+base::Json effect_books(const sim::Scene& scene, const sim::FrameReport& report) {
+  base::Json out = base::Json::object();
   for (const sim::Effect& effect : scene.effects) {
     if (effect.coefficient == 0) continue;
     if (effect.kind == sim::EffectKind::Foam) {
@@ -34,7 +34,7 @@ nlohmann::json effect_books(const sim::Scene& scene, const sim::FrameReport& rep
   return out;
 }
 
-std::string in_words(const nlohmann::json& books) {
+std::string in_words(const base::Json& books) {
   std::string out;
   if (books.contains("foam")) {
     const auto& foam = books["foam"];

@@ -1,7 +1,6 @@
 #include <omp.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 
@@ -21,6 +20,7 @@
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -64,7 +64,7 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
 
 /// What each frame's account says; over all of them, how many particles there were and the share solved.
 struct Accounts {
-  nlohmann::json all = nlohmann::json::array();
+  base::Json all = base::Json::array();
   double solved = 0, particles = 0;
   void add(const sim::Simulation& fluid, double frame_dt_s) {
     const auto facts = to_facts(fluid.frame() * frame_dt_s, fluid.account());
@@ -88,8 +88,8 @@ void measure_apart(sim::Simulation& fluid, Accuracy& accuracy, LaunchSums* launc
 
 /// Launches and bandwidth for the result; nothing without --passes.
 struct Passes {
-  nlohmann::json launches = nlohmann::json::array();
-  nlohmann::json bandwidth_gb_s;
+  base::Json launches = base::Json::array();
+  base::Json bandwidth_gb_s;
 };
 Passes passes_of(sim::Simulation& fluid, const FrameOptions& options, LaunchSums& launches,
                  const PassWater& water) {
@@ -103,7 +103,7 @@ Passes passes_of(sim::Simulation& fluid, const FrameOptions& options, LaunchSums
 
 }  // namespace
 
-nlohmann::json run_frames(const FrameOptions& options) {
+base::Json run_frames(const FrameOptions& options) {
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   const Pictures pictures = make_pictures(scene, options);
   const auto fluid = make_fluid(scene, options);
@@ -144,7 +144,7 @@ nlohmann::json run_frames(const FrameOptions& options) {
   const auto report = fluid->report();
   const double mean =
       std::accumulate(solve_ms.begin(), solve_ms.end(), 0.0) / static_cast<double>(solve_ms.size());
-  nlohmann::json result{
+  base::Json result{
       {"program", "vip-bench frame"},
       {"version", base::version()},
       {"scene", scene.name},

@@ -1,11 +1,11 @@
 #pragma once
 /// What vip-bench frame is asked and runs.
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "apps/common/picture_size.hpp"
 #include "libsim/simulation.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -33,6 +33,6 @@ struct FrameOptions {
 };
 
 /// Every figure of the run.
-nlohmann::json run_frames(const FrameOptions& options);
+base::Json run_frames(const FrameOptions& options);
 
 }  // namespace apps

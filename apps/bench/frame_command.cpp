@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
@@ -19,6 +18,7 @@
 #include "libsim/scene/scene.hpp"
 #include "libstudy/session/machine.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -69,7 +69,7 @@ void add_solver_numbers(CLI::App& command, sim::SimulationOptions& fluid) {
       ->check(number_in(0.5, 8.0));
 }
 
-void print_frame(const nlohmann::json& result) {
+void print_frame(const base::Json& result) {
   std::printf("%s %s n_* %s on %s: %lld particles, %d frames\n", result["scene"].get<std::string>().c_str(),
               result["method"].get<std::string>().c_str(), result["n_star"].get<std::string>().c_str(),
               result["backend"].get<std::string>().c_str(), result["particles"].get<long long>(),
@@ -126,7 +126,7 @@ void refuse_beside_peers(const CLI::App& command) {
 }
 
 /// Runs the peers' setting in place of the options' own.
-nlohmann::json run_peers(FrameOptions options) {
+base::Json run_peers(FrameOptions options) {
   const auto peers = read_peers(base::find_input("data/peers.csv"));
   options.scene = peers_scene;
   options.method = peers_method;
@@ -134,13 +134,13 @@ nlohmann::json run_peers(FrameOptions options) {
   options.fluid.frame_dt_s = peers_dt_s;
   options.no_render = true;
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
-  nlohmann::json result = run_frames(options);
+  base::Json result = run_frames(options);
   // Of a GPU the program knows no name.
   const std::string machine = result["backend"] == "cpu" ? study::describe_machine() : "";
   const OurRow ours = our_row(result, peers_dt_s, scene.solver_iterations, machine);
   print_frame(result);
   std::printf("\n%s\n%s\n", to_markdown(peers_table(peers, ours)).c_str(), peers_note(peers, ours).c_str());
-  result["machine"] = machine.empty() ? nlohmann::json() : nlohmann::json(machine);
+  result["machine"] = machine.empty() ? base::Json() : base::Json(machine);
   result["peers"] = to_json(peers);
   return result;
 }
@@ -169,9 +169,9 @@ void take_setting(FrameOptions& options) {
 }
 
 /// Runs and prints what was asked for.
-nlohmann::json run(const FrameOptions& options) {
+base::Json run(const FrameOptions& options) {
   if (options.peers) return run_peers(options);
-  nlohmann::json result = run_frames(options);
+  base::Json result = run_frames(options);
   print_frame(result);
   return result;
 }

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -21,6 +20,7 @@
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -70,10 +70,10 @@ class HeadsetBench {
     }
   }
 
-  nlohmann::json facts() const {
+  base::Json facts() const {
     const HeadsetRate rate = session_.rate();
     return {{"headset", session_.description()},
-            {"refresh_hz", rate.measured_hz ? nlohmann::json(*rate.measured_hz) : nlohmann::json()},
+            {"refresh_hz", rate.measured_hz ? base::Json(*rate.measured_hz) : base::Json()},
             {"fluid", fluid_->description()},
             {"particles", fluid_->simulation().particle_count()},
             {"drawn_by", sim::gl_description()},
@@ -113,12 +113,12 @@ class HeadsetBench {
   std::int64_t step_ = 0;
 };
 
-nlohmann::json figures_of(const std::vector<double>& ms) {
+base::Json figures_of(const std::vector<double>& ms) {
   const double mean = std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size());
   return {{"mean_ms", mean}, {"p95_ms", quantile(ms, 0.95)}, {"p99_ms", quantile(ms, 0.99)}};
 }
 
-void print_stage(const char* name, const nlohmann::json& figures) {
+void print_stage(const char* name, const base::Json& figures) {
   fmt::print("  {:<10} {:8.3f} mean {:8.3f} p95 {:8.3f} p99\n", name, figures["mean_ms"].get<double>(),
              figures["p95_ms"].get<double>(), figures["p99_ms"].get<double>());
 }
@@ -128,7 +128,7 @@ void run_headset(const HeadsetBenchOptions& options) {
   Stages stages;
   bench.run(options.warm_up, nullptr);
   bench.run(options.frames, &stages);
-  nlohmann::json result = bench.facts();
+  base::Json result = bench.facts();
   result["program"] = "vip-bench headset";
   result["version"] = base::version();
   result["frames"] = options.frames;

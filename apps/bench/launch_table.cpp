@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -13,13 +13,13 @@ void LaunchSums::add(const std::vector<sim::LaunchTime>& stretch) {
   }
 }
 
-nlohmann::json launches_json(const std::vector<sim::LaunchTime>& passes, int frames, const PassWater& water,
-                             double gb_s) {
-  nlohmann::json out = nlohmann::json::array();
+base::Json launches_json(const std::vector<sim::LaunchTime>& passes, int frames, const PassWater& water,
+                         double gb_s) {
+  base::Json out = base::Json::array();
   for (const auto& pass : passes) {
     const double launches = static_cast<double>(pass.launches) / frames, ms = pass.ms / frames;
     const auto least = floor_of(pass.label, launches, ms, water, gb_s);
-    const auto or_none = [&](double value) { return least ? nlohmann::json(value) : nlohmann::json(); };
+    const auto or_none = [&](double value) { return least ? base::Json(value) : base::Json(); };
     const PassFloor floor = least.value_or(PassFloor{});
     out.push_back({{"pass", pass.label},
                    {"launches_a_frame", launches},
@@ -31,11 +31,11 @@ nlohmann::json launches_json(const std::vector<sim::LaunchTime>& passes, int fra
   return out;
 }
 
-std::string launch_lines(const nlohmann::json& launches, double gb_s) {
+std::string launch_lines(const base::Json& launches, double gb_s) {
   std::string out = fmt::format("  bandwidth    {:8.1f} GB/s of a copy in memory, read plus written\n", gb_s);
   out += fmt::format("  {:<32} {:>10} {:>8} {:>10} {:>10} {:>11}\n", "pass", "ms a frame", "launches",
                      "least MB", "floor ms", "times floor");
-  const auto cell = [](const nlohmann::json& value, double scale, int digits) {
+  const auto cell = [](const base::Json& value, double scale, int digits) {
     return value.is_null() ? std::string("-") : fmt::format("{:.{}f}", value.get<double>() * scale, digits);
   };
   for (const auto& pass : launches) {

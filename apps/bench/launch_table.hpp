@@ -2,12 +2,12 @@
 /// The solver's launches over many frames, each pass beside the least time that memory takes for it.
 
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/bench/pass_bytes.hpp"
 #include "libsim/exec/launch_time.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -24,10 +24,10 @@ class LaunchSums {
 
 /// An array with pass, launches_a_frame, ms_a_frame, bytes_a_frame, floor_ms_a_frame and times_floor of each;
 /// the last three are null where the table of pass_bytes.hpp has no row.
-nlohmann::json launches_json(const std::vector<sim::LaunchTime>& passes, int frames, const PassWater& water,
-                             double gb_s);
+base::Json launches_json(const std::vector<sim::LaunchTime>& passes, int frames, const PassWater& water,
+                         double gb_s);
 
 /// The lines for it, and how fast memory is.
-std::string launch_lines(const nlohmann::json& launches, double gb_s);
+std::string launch_lines(const base::Json& launches, double gb_s);
 
 }  // namespace apps

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "apps/common/timing.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -18,13 +18,13 @@ void PassTable::add(std::span<const sim::PassTime> picture) {
   }
 }
 
-nlohmann::json PassTable::figures() const {
-  nlohmann::json out = nlohmann::json::object();
+base::Json PassTable::figures() const {
+  base::Json out = base::Json::object();
   for (const Pass& pass : passes_) out[pass.name] = quantile(pass.ms, 0.5);
   return out;
 }
 
-void print_passes(const nlohmann::json& figures) {
+void print_passes(const base::Json& figures) {
   std::vector<std::pair<std::string, double>> passes;
   double sum = 0;
   for (const auto& [pass, ms] : figures.items()) {

@@ -1,12 +1,12 @@
 #pragma once
 /// The renderer's passes over many pictures.
 
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "libsim/render/fluid_renderer.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -17,7 +17,7 @@ class PassTable {
   void clear() { passes_.clear(); }
   bool empty() const { return passes_.empty(); }
   /// An object: the median of each pass.
-  nlohmann::json figures() const;
+  base::Json figures() const;
 
  private:
   struct Pass {
@@ -28,6 +28,6 @@ class PassTable {
 };
 
 /// The lines of PassTable::figures(), the longest pass first, and their sum.
-void print_passes(const nlohmann::json& figures);
+void print_passes(const base::Json& figures);
 
 }  // namespace apps

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <type_traits>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -132,7 +132,7 @@ std::vector<PeerRow> read_peers(const std::filesystem::path& path) {
   return out;
 }
 
-OurRow our_row(const nlohmann::json& result, double dt_s, int iterations, const std::string& machine) {
+OurRow our_row(const base::Json& result, double dt_s, int iterations, const std::string& machine) {
   OurRow out;
   PeerRow& row = out.as_peer;
   row.program = "ViP-Lab";
@@ -168,9 +168,9 @@ std::string peers_note(const std::vector<PeerRow>& peers, const OurRow& ours) {
   return out;
 }
 
-nlohmann::json to_json(const std::vector<PeerRow>& peers) {
-  nlohmann::json out = nlohmann::json::array();
-  const auto or_none = [](const auto& value) { return value ? nlohmann::json(*value) : nlohmann::json(); };
+base::Json to_json(const std::vector<PeerRow>& peers) {
+  base::Json out = base::Json::array();
+  const auto or_none = [](const auto& value) { return value ? base::Json(*value) : base::Json(); };
   for (const auto& peer : peers) {
     out.push_back({{"program", peer.program},
                    {"solver", peer.solver},

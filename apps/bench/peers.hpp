@@ -2,12 +2,12 @@
 /// Other programs' times at one setting, and ours at the same.
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/bench/cells.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -32,12 +32,12 @@ struct OurRow {
   double ms_p95 = 0, neighbours = 0, substeps = 0;
 };
 /// From the result of run_frames. machine: empty where the program does not know it.
-OurRow our_row(const nlohmann::json& result, double dt_s, int iterations, const std::string& machine);
+OurRow our_row(const base::Json& result, double dt_s, int iterations, const std::string& machine);
 
 /// The peers' rows, then ours.
 TextTable peers_table(const std::vector<PeerRow>& peers, const OurRow& ours);
 /// What may be read off it, with a warning unless every peer's source names our machine.
 std::string peers_note(const std::vector<PeerRow>& peers, const OurRow& ours);
-nlohmann::json to_json(const std::vector<PeerRow>& peers);
+base::Json to_json(const std::vector<PeerRow>& peers);
 
 }  // namespace apps

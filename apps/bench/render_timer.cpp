@@ -3,7 +3,6 @@
 #include <epoxy/gl.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "apps/bench/pass_table.hpp"
@@ -11,6 +10,7 @@
 #include "apps/common/timing.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -92,7 +92,7 @@ void RenderTimer::look(sim::Simulation& fluid) {
   state_->picture.look(fluid, view, gaze_through(view, 0.5 * shown.width, 0.5 * shown.height));
 }
 
-nlohmann::json RenderTimer::figures() const {
+base::Json RenderTimer::figures() const {
   const State& s = *state_;
   if (s.render_ms.empty()) return nullptr;
   const auto counts = s.picture.renderer().counts();
@@ -112,7 +112,7 @@ nlohmann::json RenderTimer::figures() const {
           {"passes", s.passes.figures()}};
 }
 
-void print_render_figures(const nlohmann::json& figures) {
+void print_render_figures(const base::Json& figures) {
   std::printf("  transfer     %8.3f ms a frame (median), %.3f p95, %.3f p99; %s\n",
               figures["transfer_ms_median"].get<double>(), figures["transfer_ms_p95"].get<double>(),
               figures["transfer_ms_p99"].get<double>(), figures["transfer"].get<std::string>().c_str());

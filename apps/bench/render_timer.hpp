@@ -2,13 +2,13 @@
 /// Renders the fluid of a bench beside its solver, and keeps both clocks apart.
 
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "apps/common/picture_size.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libsim/simulation.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -34,7 +34,7 @@ class RenderTimer {
 
   /// Keys render_ms_median, _p95, _p99, the same of transfer_ms, passes, ... of all pictures since warm_up;
   /// null before the first.
-  nlohmann::json figures() const;
+  base::Json figures() const;
 
  private:
   struct State;
@@ -42,6 +42,6 @@ class RenderTimer {
 };
 
 /// The lines of the table for RenderTimer::figures().
-void print_render_figures(const nlohmann::json& figures);
+void print_render_figures(const base::Json& figures);
 
 }  // namespace apps

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +23,7 @@
 #include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/new_file.hpp"
 
 namespace apps {
@@ -64,9 +63,9 @@ bool writes_files(const FitCommand& command) {
   return !command.out.empty() || !command.json.empty() || !command.svg.empty();
 }
 
-void write_json(const FitCommand& command, nlohmann::ordered_json json) {
+void write_json(const FitCommand& command, base::Json json) {
   if (!command.lacking.empty()) json["incomplete"] = command.lacking;
-  if (!command.json.empty()) base::write_file_atomically(command.json, base::json_text(json, 2) + "\n");
+  if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
 }
 
 /// `what`: "own pilot 1.0, question "smooth""; empty: none was chosen.
@@ -85,7 +84,7 @@ std::string fitted_name(const ChosenTask& chosen) {
 /// fit.json, and the same for people; with a truth also whether it was recovered.
 void report(const FitCommand& command, const PilotFit& fit, const std::optional<stats::PtpeModel>& truth) {
   auto json = fit_json(fit);
-  auto refused = nlohmann::ordered_json::array();
+  auto refused = base::Json::array();
   for (const auto& doubt : fit.doubts) refused.push_back({{"code", doubt.code}, {"text", doubt.text}});
   json["solver_file"] = {{"max_relative_half_width", command.max_width},
                          {"too_wide", fit.ok() && command.too_wide(fit)},
@@ -131,24 +130,24 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
   const base::FileLock lock(command.out);
   const auto text = sim::format_ptpe_file(ptpe_file(fit));
   const auto main = fit.main();
-  nlohmann::ordered_json record{{"database", std::filesystem::path(command.database).filename().string()},
-                                {"protocol", fit.data.protocol.name},
-                                {"protocol_sha256", fit.data.protocol.sha256},
-                                {"estimator", "direct"},
-                                {"level", fit.level},
-                                {"a", main.fit->a},
-                                {"b", main.fit->b},
-                                {"a_ci", main.spread->a_ci},
-                                {"b_ci", main.spread->b_ci},
-                                {"n_participants", fit.participants},
-                                {"n_simulated", fit.data.simulated.size()},
-                                {"test_data", fit.data.test_data},
-                                {"exclude", timing_rule_name(command.rules.exclusions.timing)},
-                                {"relative_half_width", fit.relative_half_width()},
-                                {"max_relative_half_width", command.max_width},
-                                {"forced", command.force && (command.too_wide(fit) || command.doubted(fit))},
-                                {"form_rejected", command.other_form(fit)},
-                                {"version", base::version()}};
+  base::Json record{{"database", std::filesystem::path(command.database).filename().string()},
+                    {"protocol", fit.data.protocol.name},
+                    {"protocol_sha256", fit.data.protocol.sha256},
+                    {"estimator", "direct"},
+                    {"level", fit.level},
+                    {"a", main.fit->a},
+                    {"b", main.fit->b},
+                    {"a_ci", main.spread->a_ci},
+                    {"b_ci", main.spread->b_ci},
+                    {"n_participants", fit.participants},
+                    {"n_simulated", fit.data.simulated.size()},
+                    {"test_data", fit.data.test_data},
+                    {"exclude", timing_rule_name(command.rules.exclusions.timing)},
+                    {"relative_half_width", fit.relative_half_width()},
+                    {"max_relative_half_width", command.max_width},
+                    {"forced", command.force && (command.too_wide(fit) || command.doubted(fit))},
+                    {"form_rejected", command.other_form(fit)},
+                    {"version", base::version()}};
   if (!command.lacking.empty()) record["incomplete"] = command.lacking;
   append_calibration(command.out, text, record);
   base::write_file_atomically(command.out, text);

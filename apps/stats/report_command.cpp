@@ -20,7 +20,7 @@
 #include "libstudy/store/status.hpp"
 #include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -104,7 +104,7 @@ void write_report(const ReportCommand& command) {
     for (const auto& folder : csv_folders(json, command.csv)) files.make_folder(folder);
     write_csv_folder(json, command.csv, write);
   }
-  if (!command.json.empty()) write(command.json, base::json_text(json, 2) + "\n");
+  if (!command.json.empty()) write(command.json, json.dump(2) + "\n");
   if (!command.html.empty()) {
     write(command.html, page);
     std::printf("%s: %zu kB\n", command.html.c_str(), page.size() / 1000);

@@ -18,7 +18,7 @@
 #include "apps/stats/tasks/results.hpp"
 #include "libstudy/store/export_register.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -120,7 +120,7 @@ void print_pairs(const Json& task, const std::string& interval) {
   }
   print_interval_names(task.at("pairs"));
   const Json& several = task.at("several_answers");
-  if (several.at("participants") > 0)
+  if (several.at("participants").get<int>() > 0)
     std::printf("%d of %d participants answered a pair more than once, at most %d times.\n",
                 several.at("participants").get<int>(), several.at("of").get<int>(),
                 several.at("most").get<int>());
@@ -213,7 +213,7 @@ void run(const TaskCommand& command) {
     throw base::Error(command.database, results.missing.front().reason + "; nothing was written",
                       results.missing.front().mend);
   }
-  if (!command.json.empty()) write(command.json, base::json_text(results.json, 2) + "\n");
+  if (!command.json.empty()) write(command.json, results.json.dump(2) + "\n");
   if (!command.csv.empty()) {
     for (const auto& folder : csv_folders(results.json, command.csv)) files->make_folder(folder);
     write_csv_folder(results.json, command.csv, write);

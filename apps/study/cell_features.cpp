@@ -1,7 +1,6 @@
 #include "apps/study/cell_features.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/common/picture_measure.hpp"
@@ -9,7 +8,7 @@
 #include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -79,8 +78,7 @@ study::PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
 }
 
 std::string to_json(const std::string& key, const study::PictureFeatures& features) {
-  return nlohmann::ordered_json{
-             {"key", key}, {"granularity_px", features.granularity_px}, {"flicker", features.flicker}}
+  return base::Json{{"key", key}, {"granularity_px", features.granularity_px}, {"flicker", features.flicker}}
              .dump(2) +
          "\n";
 }
@@ -89,8 +87,8 @@ std::string to_json(const std::string& key, const study::PictureFeatures& featur
 std::optional<study::PictureFeatures> read_features(const std::filesystem::path& path,
                                                     const std::string& key) {
   if (!std::filesystem::exists(path)) return {};
-  const auto json = base::parse_json<nlohmann::json>(base::read_file(path, 1 << 16));
-  const auto of = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
+  const auto json = base::parse_json(base::read_file(path, 1 << 16));
+  const auto of = [&](const char* name) { return json.contains(name) ? json[name] : base::Json(); };
   if (of("key") != key || !of("granularity_px").is_number() || !of("flicker").is_number()) return {};
   const study::PictureFeatures found{of("granularity_px"), of("flicker")};
   if (found.granularity_px <= 0 || found.flicker <= 0) return {};

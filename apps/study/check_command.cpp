@@ -1,7 +1,6 @@
 /// vip-study check: what a protocol comes to, on a display and on this machine.
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/common/headless_display.hpp"
@@ -18,6 +17,7 @@
 #include "libstudy/protocol/find_protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 

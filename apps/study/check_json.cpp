@@ -1,22 +1,22 @@
-#include <nlohmann/json.hpp>
 
 #include "apps/common/claims.hpp"
 #include "apps/study/bakes/bake_plan.hpp"
 #include "apps/study/check_report.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
 namespace {
 
-nlohmann::ordered_json setting_json(const CheckedSetting& checked, const study::RefreshVerdict& verdict,
-                                    double refresh_hz) {
-  nlohmann::ordered_json json{{"mean_fps", checked.setting.mean},
-                              {"sd_fps", checked.setting.sd},
-                              {"duration_s", checked.setting.duration_s},
-                              {"cells", checked.cells},
-                              {"frames", verdict.frames},
-                              {"status", study::feasibility_name(verdict.feasibility)},
-                              {"reason", verdict.reason}};
+base::Json setting_json(const CheckedSetting& checked, const study::RefreshVerdict& verdict,
+                        double refresh_hz) {
+  base::Json json{{"mean_fps", checked.setting.mean},
+                  {"sd_fps", checked.setting.sd},
+                  {"duration_s", checked.setting.duration_s},
+                  {"cells", checked.cells},
+                  {"frames", verdict.frames},
+                  {"status", study::feasibility_name(verdict.feasibility)},
+                  {"reason", verdict.reason}};
   if (verdict.holds.empty()) return json;
   json["best_mean_fps"] = verdict.mean;
   json["best_sd_fps"] = verdict.sd;
@@ -27,11 +27,11 @@ nlohmann::ordered_json setting_json(const CheckedSetting& checked, const study::
 }
 
 /// The level; null where the design does not vary effects.
-nlohmann::ordered_json effects_json(const study::StimulusSpec& what) {
-  return what.effects.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(what.effects);
+base::Json effects_json(const study::StimulusSpec& what) {
+  return what.effects.empty() ? base::Json() : base::Json(what.effects);
 }
 
-void add_refresh(nlohmann::ordered_json& json, const CheckReport& report) {
+void add_refresh(base::Json& json, const CheckReport& report) {
   if (!report.refresh) return;
   const RefreshCheck& check = *report.refresh;
   json["refresh_hz"] = check.refresh_hz;
@@ -43,7 +43,7 @@ void add_refresh(nlohmann::ordered_json& json, const CheckReport& report) {
     json["settings"].push_back(setting_json(report.settings[i], check.verdicts[i], check.refresh_hz));
 }
 
-void add_common(nlohmann::ordered_json& json, const CheckReport& report) {
+void add_common(base::Json& json, const CheckReport& report) {
   if (!report.settings.empty()) {
     const Span speeds = play_speeds(report);
     json["play_speed"] = {speeds.least, speeds.most};
@@ -59,16 +59,16 @@ void add_common(nlohmann::ordered_json& json, const CheckReport& report) {
   }
 }
 
-void add_framing(nlohmann::ordered_json& json, const CheckReport& report) {
+void add_framing(base::Json& json, const CheckReport& report) {
   for (const FramedScene& one : report.scenes) {
     const auto& drawn = one.view.viewport;
-    nlohmann::ordered_json framing{{"scene", one.file},
-                                   {"width_px", drawn.width},
-                                   {"height_px", drawn.height},
-                                   {"camera_angle_deg", one.framing.camera_deg},
-                                   {"visual_angle_deg", nullptr},
-                                   {"angle_ratio", nullptr},
-                                   {"cut", one.cut}};
+    base::Json framing{{"scene", one.file},
+                       {"width_px", drawn.width},
+                       {"height_px", drawn.height},
+                       {"camera_angle_deg", one.framing.camera_deg},
+                       {"visual_angle_deg", nullptr},
+                       {"angle_ratio", nullptr},
+                       {"cut", one.cut}};
     if (one.framing.visual_deg) {
       framing["visual_angle_deg"] = *one.framing.visual_deg;
       framing["angle_ratio"] = *one.framing.ratio();
@@ -77,7 +77,7 @@ void add_framing(nlohmann::ordered_json& json, const CheckReport& report) {
   }
 }
 
-void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) {
+void add_measured(base::Json& json, const MeasuredReport& measured) {
   json["too_slow"] = measured.too_slow;
   json["collapse"] = measured.collapse;
   for (const auto& one : measured.cells) {
@@ -98,8 +98,8 @@ void add_measured(nlohmann::ordered_json& json, const MeasuredReport& measured) 
 }
 
 /// What vip-stats will tell of the study beside the answers by cell.
-nlohmann::ordered_json analyses_json(const study::Protocol& protocol) {
-  auto tested = nlohmann::ordered_json::array(), fitted = tested, not_tested = tested;
+base::Json analyses_json(const study::Protocol& protocol) {
+  auto tested = base::Json::array(), fitted = tested, not_tested = tested;
   const auto shown = hypotheses_of(protocol, {});
   for (const auto& one : shown.claims) tested.push_back(one.id);
   for (const auto& question : curve_questions(protocol))
@@ -110,22 +110,21 @@ nlohmann::ordered_json analyses_json(const study::Protocol& protocol) {
 
 }  // namespace
 
-nlohmann::ordered_json report_json(const CheckReport& report) {
+base::Json report_json(const CheckReport& report) {
   const auto& protocol = report.protocol;
-  nlohmann::ordered_json json{
-      {"protocol", protocol.name},
-      {"protocol_version", protocol.version},
-      {"protocol_sha256", protocol.sha256},
-      {"mean", mean_name(protocol)},
-      {"timing", timing_name(protocol.design)},
-      {"needs_gaze", protocol.needs_gaze},
-      {"overlay", protocol.design.paint_temperature ? "temperature" : "none"},
-      {"units", report.outline.units},
-      {"trials", report.outline.trials},
-      {"overrun_s", overrun_s(protocol)},
-      {"plan_s", report.outline.shown_s},
-      {"plan_with_answers_s", {report.outline.trials_s.least, report.outline.trials_s.most}},
-      {"session_s", {report.outline.session_s.least, report.outline.session_s.most}}};
+  base::Json json{{"protocol", protocol.name},
+                  {"protocol_version", protocol.version},
+                  {"protocol_sha256", protocol.sha256},
+                  {"mean", mean_name(protocol)},
+                  {"timing", timing_name(protocol.design)},
+                  {"needs_gaze", protocol.needs_gaze},
+                  {"overlay", protocol.design.paint_temperature ? "temperature" : "none"},
+                  {"units", report.outline.units},
+                  {"trials", report.outline.trials},
+                  {"overrun_s", overrun_s(protocol)},
+                  {"plan_s", report.outline.shown_s},
+                  {"plan_with_answers_s", {report.outline.trials_s.least, report.outline.trials_s.most}},
+                  {"session_s", {report.outline.session_s.least, report.outline.session_s.most}}};
   for (const auto& one : report.outline.blocks) {
     json["blocks"].push_back({{"id", one.block->id},
                               {"kind", study::block_kind_name(one.block->kind)},

@@ -1,7 +1,6 @@
 #pragma once
 /// What `vip-study check` found, for people and as JSON.
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "apps/study/check/refresh_check.hpp"
 #include "apps/study/check/session_outline.hpp"
 #include "apps/study/session_framing.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -32,6 +32,6 @@ double overrun_s(const study::Protocol& protocol);
 Span play_speeds(const CheckReport& report);
 
 void print_report(const CheckReport& report);
-nlohmann::ordered_json report_json(const CheckReport& report);
+base::Json report_json(const CheckReport& report);
 
 }  // namespace apps

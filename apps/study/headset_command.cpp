@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/common/headset/offer.hpp"
@@ -17,6 +16,7 @@
 #include "libstudy/protocol/find_protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -77,18 +77,18 @@ void print_exact_settings(const std::vector<CheckedSetting>& settings,
   }
 }
 
-nlohmann::ordered_json offer_json(const HeadsetOffer& offer) {
-  nlohmann::ordered_json out{{"runtime", offer.runtime},      {"runtime_version", offer.runtime_version},
-                             {"headset", offer.headset},      {"eyes", nlohmann::ordered_json::array()},
-                             {"opaque", offer.opaque},        {"position", offer.position},
-                             {"eye_gaze", offer.eye_gaze},    {"time_converts", offer.time_converts},
-                             {"extensions", offer.extensions}};
+base::Json offer_json(const HeadsetOffer& offer) {
+  base::Json out{{"runtime", offer.runtime},      {"runtime_version", offer.runtime_version},
+                 {"headset", offer.headset},      {"eyes", base::Json::array()},
+                 {"opaque", offer.opaque},        {"position", offer.position},
+                 {"eye_gaze", offer.eye_gaze},    {"time_converts", offer.time_converts},
+                 {"extensions", offer.extensions}};
   for (const EyePicture& eye : offer.eyes)
     out["eyes"].push_back({{"width_px", eye.width}, {"height_px", eye.height}});
   if (offer.session) {
     out["refresh_hz"] = offer.session->refresh_hz;
     if (offer.session->refresh_now) out["refresh_now_hz"] = *offer.session->refresh_now;
-    out["formats"] = nlohmann::ordered_json::array();
+    out["formats"] = base::Json::array();
     for (const std::int64_t format : offer.session->formats) out["formats"].push_back(gl_format_name(format));
   }
   return out;
@@ -99,7 +99,7 @@ void print_headset(const HeadsetOptions& options) {
   if (!options.protocol.empty()) protocol = study::read_protocol(study::find_protocol(options.protocol));
   const HeadsetOffer offer = read_headset_offer();
   print_offer(offer);
-  nlohmann::ordered_json json = offer_json(offer);
+  base::Json json = offer_json(offer);
   if (protocol) {
     const std::vector<CheckedSetting> settings = checked_settings(*protocol);
     std::vector<RefreshCheck> checks;

@@ -1,12 +1,11 @@
 #include "apps/study/run_options.hpp"
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "apps/common/picture_size.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -14,11 +13,11 @@ namespace {
 
 constexpr int format_version = 2;
 
-nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+base::Json number_or_null(const std::optional<double>& value) {
+  return value ? base::Json(*value) : base::Json();
 }
 
-std::optional<double> optional_number(const nlohmann::json& json) {
+std::optional<double> optional_number(const base::Json& json) {
   if (json.is_null()) return {};
   return json.get<double>();
 }
@@ -28,23 +27,24 @@ std::optional<double> optional_number(const nlohmann::json& json) {
 }
 
 /// Of a display; 0: the whole monitor.
-int side_of(const nlohmann::json& json, const std::string& place) {
+int side_of(const base::Json& json, const std::string& place) {
   const auto side = json.get<double>();
   if (side != 0 && !(side >= least_picture_side && side <= most_picture_side)) unreadable(place);
   return static_cast<int>(side);
 }
 
-int monitor_of(const nlohmann::json& json, const std::string& place) {
+int monitor_of(const base::Json& json, const std::string& place) {
   const auto found = json.find("monitor");
   if (found == json.end()) return 0;
   // Any number that is no int converts to one without a word, or with undefined behaviour.
-  if (!found->is_number_integer() || *found < 0 || *found > std::numeric_limits<int>::max())
+  if (!found->is_number_integer() || found->get<double>() < 0 ||
+      found->get<double>() > std::numeric_limits<int>::max())
     unreadable(place);
   return found->get<int>();
 }
 
 /// What a damaged record would run at is not what was recorded.
-std::vector<std::string> settings_of(const nlohmann::json& json, const std::string& place) {
+std::vector<std::string> settings_of(const base::Json& json, const std::string& place) {
   std::vector<std::string> out;
   const auto found = json.find("settings");
   if (found == json.end()) return out;
@@ -58,21 +58,21 @@ std::vector<std::string> settings_of(const nlohmann::json& json, const std::stri
 }  // namespace
 
 std::string format_run_options(const RunOptions& options) {
-  nlohmann::ordered_json json{{"format", format_version},
-                              {"observer", options.observer},
-                              {"clock", options.clock},
-                              {"display", options.display},
-                              {"width_px", options.width_px},
-                              {"height_px", options.height_px},
-                              {"monitor", options.monitor},
-                              {"bake", options.bake},
-                              {"backend", options.backend},
-                              {"answer", options.answer},
-                              {"gaze", options.gaze},
-                              {"accept_slow", options.accept_slow},
-                              {"station", options.station},
-                              {"screen_width_mm", number_or_null(options.screen_width_mm)},
-                              {"viewing_distance_mm", number_or_null(options.viewing_distance_mm)}};
+  base::Json json{{"format", format_version},
+                  {"observer", options.observer},
+                  {"clock", options.clock},
+                  {"display", options.display},
+                  {"width_px", options.width_px},
+                  {"height_px", options.height_px},
+                  {"monitor", options.monitor},
+                  {"bake", options.bake},
+                  {"backend", options.backend},
+                  {"answer", options.answer},
+                  {"gaze", options.gaze},
+                  {"accept_slow", options.accept_slow},
+                  {"station", options.station},
+                  {"screen_width_mm", number_or_null(options.screen_width_mm)},
+                  {"viewing_distance_mm", number_or_null(options.viewing_distance_mm)}};
   for (const std::string& text : options.settings)
     json["settings"].push_back({{"sha256", base::sha256_hex(text)}, {"text", text}});
   return json.dump();
@@ -80,7 +80,7 @@ std::string format_run_options(const RunOptions& options) {
 
 RunOptions parse_run_options(const std::string& text, const std::string& place) {
   try {
-    const auto json = base::parse_json<nlohmann::json>(text);
+    const auto json = base::parse_json(text);
     if (json.at("format") != format_version) {
       throw base::Error(place, "options of another format",
                         "finish it with the version of vip-study that wrote it");
@@ -102,7 +102,7 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
     options.viewing_distance_mm = optional_number(json.at("viewing_distance_mm"));
     options.settings = settings_of(json, place);
     return options;
-  } catch (const nlohmann::json::exception&) {
+  } catch (const base::Json::exception&) {
     unreadable(place);
   }
 }

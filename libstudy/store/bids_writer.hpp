@@ -3,18 +3,17 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "libstudy/store/export_folder.hpp"
 #include "libstudy/store/export_labels.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace study::bids {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 /// A table of texts, the first line its header.
 using Table = std::vector<std::vector<std::string>>;
 
@@ -42,7 +41,7 @@ class Writer {
   /// Without a header line, compressed by gzip: the same table gives the same bytes.
   void compressed_table(const std::string& name, const Table& rows);
   void text(const std::string& name, const std::string& text);
-  void json(const std::string& name, const Json& json) { text(name, base::json_text(json, 2) + "\n"); }
+  void json(const std::string& name, const Json& json) { text(name, json.dump(2) + "\n"); }
 
   std::vector<ExportedFile> files;
 

@@ -10,7 +10,7 @@
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/run_settings.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace study {
 
@@ -208,7 +208,7 @@ bool is_bids_export(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 20)
     return false;
-  const auto json = base::parse_json<Json>(base::read_file(description, 1u << 20));
+  const auto json = base::parse_json(base::read_file(description, 1u << 20));
   return json.is_object() && json.contains("GeneratedBy") &&
          json["GeneratedBy"].dump().find("\"vip-study\"") != std::string::npos;
 }

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 
@@ -13,13 +12,13 @@
 #include "libstudy/store/run_settings.hpp"
 #include "libstudy/store/sickness_table.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/new_file.hpp"
 
 namespace study {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 using sqlite::Connection;
 
 namespace {
@@ -56,7 +55,7 @@ bool is_psych_ds_export(const fs::path& folder) {
   const fs::path description = folder / description_file;
   if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 24)
     return false;
-  const auto json = base::parse_json<Json>(base::read_file(description, 1u << 24));
+  const auto json = base::parse_json(base::read_file(description, 1u << 24));
   return json.is_object() && json.contains("creator") && json["creator"] == "vip-study";
 }
 
@@ -105,7 +104,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
                   {"creator", "vip-study"},
                   {"version", base::version()},
                   {"variableMeasured", variables(database, scored)}};
-  write_file(draft, description_file, base::json_text(json, 2) + "\n");
+  write_file(draft, description_file, json.dump(2) + "\n");
   write_file(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "

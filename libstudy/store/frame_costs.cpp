@@ -1,15 +1,14 @@
 #include "libstudy/store/frame_costs.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "stats/base/error.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace study {
 
 std::string format_frame_costs(const std::vector<FrameCosts>& costs) {
-  auto json = nlohmann::ordered_json::array();
+  auto json = base::Json::array();
   for (const FrameCosts& one : costs) {
     json.push_back({{"scene", one.what.scene},
                     {"method", one.what.method},
@@ -18,7 +17,7 @@ std::string format_frame_costs(const std::vector<FrameCosts>& costs) {
                     {"p95_ms", one.p95_ms}});
     if (!one.what.effects.empty()) json.back()["effects"] = one.what.effects;
   }
-  return base::json_text(json);
+  return json.dump();
 }
 
 std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::string& place) {
@@ -28,7 +27,7 @@ std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::st
   };
   try {
     std::vector<FrameCosts> out;
-    const auto json = base::parse_json<nlohmann::json>(text);
+    const auto json = base::parse_json(text);
     if (!json.is_array()) throw unreadable();
     for (const auto& one : json) {
       out.push_back({{one.at("scene"), one.at("method"), one.at("n_star"), one.value("effects", "")},
@@ -37,7 +36,7 @@ std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::st
       if (!(out.back().mean_ms >= 0) || !(out.back().p95_ms >= 0)) throw unreadable();
     }
     return out;
-  } catch (const nlohmann::json::exception&) {
+  } catch (const base::Json::exception&) {
     throw unreadable();
   }
 }

@@ -9,17 +9,16 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace study {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 namespace {
 
@@ -104,7 +103,7 @@ class Reader {
       batch_.push_back(std::move(*row));
       return;
     }
-    const Json mark = base::parse_json<Json>(text, journal::most_levels);
+    const Json mark = base::parse_json(text, journal::most_levels);
     if (!mark.is_object() || !take(mark)) {
       ++skipped_;
       return;
@@ -201,7 +200,7 @@ std::string kept_line(std::int64_t number) { return Json{{"kept", number}}.dump(
 std::string rewrite_line(const std::vector<std::string>& persons) {
   Json line;
   line["rewrite"] = Json(persons);
-  return base::json_text(line) + '\n';
+  return line.dump() + '\n';
 }
 
 JournalFile::~JournalFile() { close(); }

@@ -3,15 +3,14 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "libstudy/store/schema.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace study::journal {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 using sqlite::Connection;
 using sqlite::Statement;
 
@@ -61,7 +60,7 @@ std::string key_of(const Table& table, const Json& line) {
   for (const std::string& name : table.key) {
     const auto value = line.find(name);
     if (value == line.end()) return {};
-    key += (key.empty() ? "" : " ") + base::json_text(*value);
+    key += (key.empty() ? "" : " ") + value->dump();
   }
   return key;
 }
@@ -77,7 +76,7 @@ Row row_of(const Table& table, const Statement& statement) {
       (context ? of : line)[name] = value_of(statement, i);
   }
   if (!of.empty()) line["of"] = of;
-  return {&table, key_of(table, line), base::json_text(line)};
+  return {&table, key_of(table, line), line.dump()};
 }
 
 std::string selection(const Table& table, const std::string& condition) {
@@ -91,7 +90,7 @@ std::string selection(const Table& table, const std::string& condition) {
 
 void bind_value(Statement& statement, int index, const Json& value) {
   if (value.is_string())
-    statement.bind_at(index, value.get_ref<const std::string&>());
+    statement.bind_at(index, value.text());
   else if (value.is_number_float())
     statement.bind_at(index, value.get<double>());
   else if (value.is_number())
@@ -143,7 +142,7 @@ std::optional<Row> stands_as(Connection& database, const Row& wanted) {
 }
 
 std::optional<Row> read_row(const std::string& text) {
-  const Json line = base::parse_json<Json>(text, most_levels);
+  const Json line = base::parse_json(text, most_levels);
   if (!line.is_object() || !line.contains("table") || !line["table"].is_string()) return {};
   const Table* table = find_table(line["table"].get<std::string>());
   if (!table) return {};
@@ -156,7 +155,7 @@ std::string column(const Row& row, const std::string& name) {
   const Json line = Json::parse(row.line);
   const auto value = line.find(name);
   if (value == line.end() || value->is_null()) return {};
-  return value->is_string() ? value->get<std::string>() : base::json_text(*value);
+  return value->is_string() ? value->get<std::string>() : value->dump();
 }
 
 bool put(Connection& database, const Row& row, Put how) {

@@ -7,20 +7,19 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "libstudy/store/export_rows.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/file_hash.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/new_file.hpp"
 
 namespace study {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 using export_rows::this_host;
 
 namespace {
@@ -103,7 +102,7 @@ void change(const std::function<void(std::vector<OwnExport>&)>& how) {
   std::vector<OwnExport> all = read_all(file);
   how(all);
   std::string text;
-  for (const OwnExport& made : all) text += base::json_text(json_of(made)) + '\n';
+  for (const OwnExport& made : all) text += json_of(made).dump() + '\n';
   base::NewFile next(file, base::Readers::Owner);
   next.write(text);
   next.put_in_place();

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/pilot_database.hpp"
 #include "tests/apps/process.hpp"
 
@@ -78,7 +78,7 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
     for (const char* name : {"ptpe.toml", "ptpe.toml.history.jsonl", "heat.svg"})
       EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
     // The numbers may be looked at, with the reason in them.
-    const auto json = nlohmann::json::parse(base::read_file(folder / "fit.json", 1 << 24));
+    const auto json = base::Json::parse(base::read_file(folder / "fit.json", 1 << 24));
     if (bad.forced) {
       EXPECT_FALSE(json.at("solver_file").at("refused").empty());
     }
@@ -143,7 +143,7 @@ TEST(BadPilotE2e, ACurveOfAnotherFormReachesNoSolverUnlessItIsAccepted) {
     EXPECT_FALSE(std::filesystem::exists(folder / "ptpe.toml"));
     EXPECT_FALSE(std::filesystem::exists(folder / "ptpe.toml.history.jsonl"));
   }
-  const auto json = nlohmann::json::parse(base::read_file(folder / "fit.json", 1 << 24));
+  const auto json = base::Json::parse(base::read_file(folder / "fit.json", 1 << 24));
   EXPECT_EQ(json.at("form").at("rejected"), true);
   EXPECT_LT(json.at("form").at("ci")[1], 0);
   EXPECT_GT(json.at("form").at("detectable"), 0);
@@ -153,7 +153,7 @@ TEST(BadPilotE2e, ACurveOfAnotherFormReachesNoSolverUnlessItIsAccepted) {
   const auto accepted = apps::test::run_shell(fit + " --accept-form");
   EXPECT_EQ(accepted.exit_code, 0) << accepted.out;
   EXPECT_TRUE(std::filesystem::exists(folder / "ptpe.toml"));
-  const auto record = nlohmann::json::parse(base::read_file(folder / "ptpe.toml.history.jsonl", 1 << 24));
+  const auto record = base::Json::parse(base::read_file(folder / "ptpe.toml.history.jsonl", 1 << 24));
   EXPECT_EQ(record.at("form_rejected"), true);
   EXPECT_EQ(record.at("forced"), false);
   EXPECT_THAT(base::read_file(folder / "heat.svg", 1 << 24), HasSubstr("free curve"));

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/bench/timed_run.hpp"
 #include "libsim/scene/effects.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/needs_effects.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -30,7 +30,7 @@ class BenchFrameE2e : public ::testing::Test {
   }
 
   fs::path json() const { return folder / "frame.json"; }
-  nlohmann::json figures() const { return nlohmann::json::parse(base::read_file(json(), 1 << 20)); }
+  base::Json figures() const { return base::Json::parse(base::read_file(json(), 1 << 20)); }
 
   test::TemporaryFolder folder;
   std::string text;  ///< stdout and stderr
@@ -150,7 +150,7 @@ TEST_F(BenchFrameE2e, RefusesStepsAndNumbersThatBreakTheWater) {
 
 TEST_F(BenchFrameE2e, TellsTheBooksOfTheEffectsThatASceneLists) {
   ASSERT_EQ(bench("--no-render"), 0) << text;
-  EXPECT_EQ(figures()["effects"], nlohmann::json::object());
+  EXPECT_EQ(figures()["effects"], base::Json::object());
   NEEDS_EFFECTS;
   const auto of = [&](const std::string& scene) {
     const auto ended = apps::test::run_shell(VIP_BIN_DIR "/vip-bench frame data/scenes/" + scene +

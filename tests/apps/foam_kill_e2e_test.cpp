@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "apps/study/cell_stimuli.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 #include "tests/common/needs_effects.hpp"
 
@@ -130,7 +130,7 @@ TEST_F(FoamKillE2e, LiveWaterAndItsPlanGoOnAsIfNothingHadBeen) {
   const std::string results = folder_ / "results.json", vip_stats = VIP_BIN_DIR "/vip-stats";
   const Ended reported = run_program({vip_stats, "report", killed_, "--json", results});
   ASSERT_EQ(reported.exit_code, 0) << reported.err;
-  const auto pairs = nlohmann::json::parse(base::read_file(results, 1 << 24)).at("task2").at("pairs");
+  const auto pairs = base::Json::parse(base::read_file(results, 1 << 24)).at("task2").at("pairs");
   ASSERT_EQ(pairs.size(), 3u);
   for (const auto& pair : pairs) EXPECT_EQ(pair.at("n"), 1) << pair;
 }

@@ -3,19 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 #include "libsim/bake/bake_file.hpp"
 #include "libstudy/protocol/protocol.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/shown_study.hpp"
 #include "tests/common/needs_effects.hpp"
 
 namespace apps::test {
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

@@ -2,9 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "libsim/bake/bake_file.hpp"
+#include "stats/base/json.hpp"
 #include "stats/ptpe/ptpe.hpp"
 #include "tests/apps/study_test_support.hpp"
 #include "tests/common/tables.hpp"
@@ -97,7 +96,7 @@ class FrameAccountE2e : public ::testing::Test {
     ASSERT_EQ(ended.exit_code, 0) << ended.err;
   }
   /// What vip-bench frame reports of the same 29 frames.
-  nlohmann::json bench_accounts() {
+  base::Json bench_accounts() {
     const std::string json = folder_ / "frame.json";
     const Ended ended = apps::test::run_shell(
         bench +
@@ -105,7 +104,7 @@ class FrameAccountE2e : public ::testing::Test {
         "--dt 0.016666666666666666 --look --size 64x36 --warm-up 0 --frames 29 --json " +
         json);
     EXPECT_EQ(ended.exit_code, 0) << ended.out;
-    return nlohmann::json::parse(base::read_file(json, 1 << 24))["accounts"];
+    return base::Json::parse(base::read_file(json, 1 << 24))["accounts"];
   }
   std::string database() const { return folder_ / (name_ + ".db"); }
   std::int64_t count(const std::string& condition) const {
@@ -120,7 +119,7 @@ class FrameAccountE2e : public ::testing::Test {
   std::string name_ = "study";
 };
 
-void expect_account(const Statement& row, std::map<std::string, int>& column, const nlohmann::json& account) {
+void expect_account(const Statement& row, std::map<std::string, int>& column, const base::Json& account) {
   EXPECT_EQ(row.integer(column["content_step"]), account["frame"].get<std::int64_t>());
   for (const char* number : {"active_fraction", "tau_fps", "beta", "mu_fps", "delta_fps"}) {
     ASSERT_FALSE(row.is_null(column[number])) << number;

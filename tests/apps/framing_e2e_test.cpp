@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "libsim/render/png.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -153,7 +153,7 @@ TEST_F(FramingE2e, CheckShowsBeforeTheFirstParticipantWhatWillBeSeen) {
   ASSERT_EQ(kept.exit_code, 0) << kept.out;
   EXPECT_THAT(kept.out, AllOf(HasSubstr("camera 75 deg"), HasSubstr("27.4"), HasSubstr("(ratio 0.3"),
                               HasSubstr("what must stay visible does")));
-  const auto json = nlohmann::json::parse(base::read_file(folder_ / "check.json", 1 << 20));
+  const auto json = base::Json::parse(base::read_file(folder_ / "check.json", 1 << 20));
   EXPECT_EQ(json.at("framing").at(0).at("camera_angle_deg"), 75);
   EXPECT_TRUE(json.at("framing").at(0).at("cut").empty());
   const std::string page = base::read_file(folder_ / "page/index.html", 1 << 20);

@@ -2,8 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "stats/base/json.hpp"
 #include "tests/apps/headset_runs.hpp"
 
 namespace apps {
@@ -69,9 +68,9 @@ TEST_F(HeadsetE2e, SaysWhichSettingsOfAProtocolAreExact) {
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
   for (const char* line : {"at 72 Hz: 10 exact", "at 90 Hz: 14 exact", "at 120 Hz: 19 exact"})
     EXPECT_THAT(ended.out, HasSubstr(line));
-  const auto read = nlohmann::json::parse(base::read_file(json, 1 << 20));
+  const auto read = base::Json::parse(base::read_file(json, 1 << 20));
   EXPECT_EQ(read["runtime"], "Simulated runtime");
-  EXPECT_EQ(read["refresh_hz"], (nlohmann::json{72, 90, 120}));
+  EXPECT_EQ(read["refresh_hz"], (base::Json{72, 90, 120}));
   EXPECT_EQ(read["eyes"].size(), 2u);
   ASSERT_EQ(read["protocol"].size(), 3u);
   EXPECT_EQ(read["protocol"][2]["exact"], 19);
@@ -113,7 +112,7 @@ TEST_F(HeadsetE2e, TheBenchSplitsAFramesTime) {
                                              "--warm-up", "1", "--passes", "--json", json},
                                             "size=32x32");
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  const auto figures = nlohmann::json::parse(base::read_file(json, 1 << 20));
+  const auto figures = base::Json::parse(base::read_file(json, 1 << 20));
   const auto mean = [&](const char* stage) { return figures["stages"][stage]["mean_ms"].get<double>(); };
   EXPECT_NEAR(mean("whole"), mean("step") + mean("draw") + mean("hand_over"), 1e-6);
   EXPECT_GT(mean("step"), 0);

@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -64,7 +63,7 @@ TEST_F(IncompleteE2e, IsSaidByEveryReaderThatGoesOnOnlyWhenTold) {
   }
   EXPECT_THAT(base::read_file(page_, 1u << 30), HasSubstr("stand in the journal alone"));
   for (const std::string& file : {json_, task_}) {
-    const auto json = nlohmann::json::parse(base::read_file(file, 1u << 30));
+    const auto json = base::Json::parse(base::read_file(file, 1u << 30));
     EXPECT_THAT(json["study"]["incomplete"].get<std::string>(), HasSubstr("stand in the journal alone"));
   }
   EXPECT_THAT(Process({stats, "task1", database_}).wait().err, HasSubstr("--incomplete"));
@@ -73,7 +72,7 @@ TEST_F(IncompleteE2e, IsSaidByEveryReaderThatGoesOnOnlyWhenTold) {
   EXPECT_THAT(fit.err, HasSubstr("--incomplete"));
   EXPECT_FALSE(fs::exists(folder_ / "fit.json"));
   Process({stats, "fit-ptpe", database_, "--json", folder_ / "fit.json", "--incomplete"}).wait();
-  EXPECT_TRUE(nlohmann::json::parse(base::read_file(folder_ / "fit.json", 1u << 30)).contains("incomplete"));
+  EXPECT_TRUE(base::Json::parse(base::read_file(folder_ / "fit.json", 1u << 30)).contains("incomplete"));
 }
 
 TEST_F(IncompleteE2e, IsMadeWholeByTheCommandThatTheMessageNames) {

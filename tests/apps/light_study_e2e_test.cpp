@@ -3,17 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "libsim/bake/bake_file.hpp"
 #include "libsim/scene/picture_effects_text.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/shown_study.hpp"
 
 namespace apps::test {
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;

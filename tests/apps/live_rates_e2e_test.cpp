@@ -4,9 +4,9 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "libstudy/store/task_answers.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -128,7 +128,7 @@ TEST_F(LiveRatesE2e, CheckMeasuresForTheSessionsOfItsSize) {
   const Ended checked = check();
   ASSERT_EQ(checked.exit_code, 0) << checked.err;
   EXPECT_THAT(checked.out, HasSubstr("measured here:"));
-  const auto json = nlohmann::json::parse(base::read_file(folder_ / "check.json", 1 << 20));
+  const auto json = base::Json::parse(base::read_file(folder_ / "check.json", 1 << 20));
   EXPECT_EQ(json.at("measured").at(0).at("asked_mean_fps"), 1);
   EXPECT_GT(json.at("measured").at(0).at("fps_mean"), 0);
   EXPECT_THAT(run().err, AllOf(HasSubstr("live on this station"), Not(HasSubstr("measuring"))));

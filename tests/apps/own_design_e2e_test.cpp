@@ -4,9 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/new_file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/report_walk.hpp"

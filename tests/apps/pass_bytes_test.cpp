@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/bench/launch_table.hpp"
@@ -13,6 +12,7 @@
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 namespace {

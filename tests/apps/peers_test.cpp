@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/temporary_folder.hpp"
 
@@ -137,7 +136,7 @@ TEST_F(PeersE2e, PrintsThePeersAndUs) {
   EXPECT_THAT(ended.out, HasSubstr("| SPlisHSPlasH | DFSPH | 32768 | 0.005 | - | cpu | 2 | 58 | - | - |"));
   EXPECT_THAT(ended.out, HasSubstr("| ViP-Lab | PBF | 32768 | 0.005 | 4 | cpu |"));
   EXPECT_THAT(ended.out, HasSubstr("one machine only"));
-  const auto result = nlohmann::json::parse(base::read_file(json, 1 << 20));
+  const auto result = base::Json::parse(base::read_file(json, 1 << 20));
   EXPECT_EQ(result["scene"], "PeersDam");
   EXPECT_EQ(result["method"], "HiRes");
   EXPECT_EQ(result["particles"], 32768);

@@ -177,7 +177,8 @@ TEST_F(PowerShards, WhatIsNoneIsRefusedAndLeftAsItIs) {
   auto text = sound;
   refused(text.replace(text.find("shard/1"), 7, "shard/2"), "newer program");
   Json fewer = Json::parse(sound);
-  fewer["outcomes"][0][1].erase(0);
+  Json& figures = fewer["outcomes"][0][1];
+  figures = std::vector<Json>(figures.begin() + 1, figures.end());
   refused(fewer.dump(), "damaged or cut short");
   fewer = Json::parse(sound);
   fewer["outcomes"][0][0][0] = "many";

@@ -115,7 +115,8 @@ TEST(PowerPersonByMethod, TakesTheShareOfPersonByMethodFromAnEarlierStudy) {
   const auto ended = apps::test::Process(arguments).wait();
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   const Json settings = Json::parse(base::read_file(json, 1 << 24)).at("settings");
-  for (const auto& model : Json::parse(base::read_file(earlier, 1 << 24)).at("task1").at("mixed")) {
+  const Json before = Json::parse(base::read_file(earlier, 1 << 24));
+  for (const auto& model : before.at("task1").at("mixed")) {
     const std::string score = model.at("score");
     if (score == "sickness_without_unrealism") continue;
     const double method = model.at("sd_method"), residual = model.at("sd_residual");

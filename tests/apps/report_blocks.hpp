@@ -1,11 +1,11 @@
 #pragma once
 /// The report's prose: paragraphs, list items, captions and descriptions, with the values that they quote.
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/stats/report/page.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
 
 namespace report_blocks {
@@ -51,7 +51,7 @@ inline Block block_of(const std::string& html) {
   return out;
 }
 
-inline std::vector<Block> blocks_of(const nlohmann::ordered_json& json) {
+inline std::vector<Block> blocks_of(const base::Json& json) {
   const std::string html = apps::report::results_page(json);
   std::vector<Block> out;
   for (const std::string name : {"p", "li", "figcaption", "caption", "desc"}) {

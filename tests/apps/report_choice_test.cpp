@@ -4,13 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/tasks/csv.hpp"
 #include "apps/stats/tasks/results.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/report_blocks.hpp"
 #include "tests/apps/report_walk.hpp"

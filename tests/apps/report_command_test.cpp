@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/stats/report/page.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/temporary_folder.hpp"
 
@@ -32,7 +31,7 @@ TEST(ReportCommandE2e, MakesThePageOfASimulatedPilotFromItsJson) {
                           at("r.json") + " --csv " + at("csv") + " --preregistered " + at("bundle"));
   ASSERT_EQ(made.exit_code, 0) << made.out;
   const auto html = base::read_file(folder / "r.html", 1 << 24);
-  const auto json = nlohmann::ordered_json::parse(base::read_file(folder / "r.json", 1 << 24));
+  const auto json = base::Json::parse(base::read_file(folder / "r.json", 1 << 24));
   EXPECT_TRUE(html == report::results_page(json)) << "the page is not made of the JSON alone";
   EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
   EXPECT_NE(html.find("<svg"), std::string::npos);

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/tasks/people_json.hpp"
 #include "apps/stats/tasks/results.hpp"
+#include "stats/base/json.hpp"
 #include "stats/inference/t_test.hpp"
 #include "tests/apps/html_reader.hpp"
 #include "tests/apps/made_task_study.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/stats/report/field.hpp"
@@ -13,6 +12,7 @@
 #include "apps/stats/tasks/sickness_json.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/report_walk.hpp"
@@ -21,7 +21,7 @@
 namespace apps {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
+using OrderedJson = base::Json;
 
 const OrderedJson& example() {
   static const auto json =

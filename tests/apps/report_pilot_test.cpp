@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/stats/ptpe/estimates_json.hpp"
 #include "apps/stats/ptpe/fit_text.hpp"
 #include "apps/stats/report/page.hpp"
 #include "apps/stats/tasks/results.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/report_walk.hpp"

@@ -3,13 +3,14 @@
 /// and such in which it is false.
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "stats/base/json.hpp"
+
 namespace report_sentences {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 using Change = std::function<void(Json&)>;
 
 struct Case {

@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/stats/tasks/results.hpp"
 #include "apps/stats/tasks/sickness_json.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/report_blocks.hpp"
 #include "tests/apps/report_sentences.hpp"

@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
 
 namespace report_walk {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 /// Digits behind the point.
 inline int decimals(const std::string& text) {

@@ -4,12 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "apps/study/cell_stimuli.hpp"
 #include "apps/study/run_options.hpp"
 #include "libstudy/store/task_answers.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/measured_setting.hpp"
 #include "tests/apps/small_dam.hpp"
 #include "tests/apps/study_test_support.hpp"

@@ -79,7 +79,7 @@ TEST(StationClock, TheOrderOfRowsIsKeptWithTheSessionAndSurvivesAMerge) {
 
 /// What a comparison with a bundle of now says of Task 1, where the clock of one session told `told` after
 /// rows of `not_before`.
-nlohmann::ordered_json compared(const std::string& told, const std::string& not_before) {
+base::Json compared(const std::string& told, const std::string& not_before) {
   const ::test::TemporaryFolder folder;
   report::BundleRequest request;
   request.protocols = {"protocols/task1.toml"};
@@ -112,11 +112,11 @@ TEST(StationClock, WhereAnImpossibleTimeFollowsLaterRowsTheOrderDecides) {
 
 TEST(StationClock, AFirstAnswerThatIsNoPersonsSaysSo) {
   const auto text = [](int simulated, bool test_data) {
-    const nlohmann::ordered_json used{{"task", "own"},
-                                      {"title", "Own design"},
-                                      {"first_answer_utc", "2026-04-01T00:00:00Z"},
-                                      {"simulated", simulated},
-                                      {"test_data", test_data}};
+    const base::Json used{{"task", "own"},
+                          {"title", "Own design"},
+                          {"first_answer_utc", "2026-04-01T00:00:00Z"},
+                          {"simulated", simulated},
+                          {"test_data", test_data}};
     return std::string(report::time_json("2026-05-01T00:00:00Z", used).at("text"));
   };
   const std::string given =

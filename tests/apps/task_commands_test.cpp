@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string>
 
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/task_database.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -31,7 +31,7 @@ std::string study(const std::string& protocol, int participants, const std::stri
          std::to_string(participants) + " --observer " + observer + " --db " + database.string();
 }
 
-nlohmann::json json_of(const fs::path& path) { return nlohmann::json::parse(base::read_file(path, 1 << 24)); }
+base::Json json_of(const fs::path& path) { return base::Json::parse(base::read_file(path, 1 << 24)); }
 
 /// One folder with a database of both tasks for all tests.
 class TaskCommandsE2e : public ::testing::Test {
@@ -136,11 +136,11 @@ Words line_of(const std::string& out, const std::string& beginning) {
 }
 
 /// What the line of a pair says by the results: chosen, answers, share, p, p after Holm, interval, test.
-Words line_of(const nlohmann::json& pair) {
+Words line_of(const base::Json& pair) {
   const bool people = pair.contains("by_person");
   const auto& tested = people ? pair.at("by_person") : pair;
   const auto& ci = tested.at(people ? "ci" : "clopper_pearson");
-  const auto text = [](const nlohmann::json& value, int decimals) {
+  const auto text = [](const base::Json& value, int decimals) {
     return fmt::format("{:.{}f}", value.get<double>(), decimals);
   };
   return {text(pair.at("k"), 0),   text(pair.at("n"), 0),         text(tested.at("share"), 2),
@@ -174,7 +174,7 @@ std::vector<task_database::Trial> answers_of_six(bool again) {
 
 struct Task2Output {
   std::string lines;
-  nlohmann::json results;
+  base::Json results;
 };
 
 /// What the lines say that the interval of a pair is; empty: no line says it, or two say different names.

@@ -5,16 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/task_database.hpp"
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 using ::test::TemporaryFolder;
 using ::testing::ElementsAre;
 

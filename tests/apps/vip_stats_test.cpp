@@ -8,7 +8,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string>
@@ -20,6 +19,7 @@
 #include "libstudy/store/store.hpp"
 #include "libstudy/store/task_answers.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/pilot_database.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -37,8 +37,8 @@ apps::test::Ended vip_stats(const std::string& arguments, const std::string& bef
   return apps::test::run_shell(before + as + VIP_BIN_DIR "/vip-stats " + arguments);
 }
 
-nlohmann::json read_json(const std::filesystem::path& path) {
-  return nlohmann::json::parse(base::read_file(path, 1 << 24));
+base::Json read_json(const std::filesystem::path& path) {
+  return base::Json::parse(base::read_file(path, 1 << 24));
 }
 
 TEST(VipStatsE2e, FitsADatabaseAndWritesAllThreeFiles) {
@@ -73,7 +73,7 @@ TEST(VipStatsE2e, ReportsAllThreeEstimators) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   const auto json = read_json(json_path);
   std::map<std::string, int> levels;
-  std::map<std::string, nlohmann::json> at_level;
+  std::map<std::string, base::Json> at_level;
   for (const auto& entry : json.at("estimators")) {
     ++levels[entry.at("code")];
     if (entry.at("level") == 4) at_level[entry.at("code")] = entry;
@@ -109,14 +109,14 @@ TEST(VipStatsE2e, RefusesATooWideIntervalUnlessForced) {
   EXPECT_EQ(read_json(folder / "fit.json").at("solver_file").at("too_wide"), true);
   ASSERT_EQ(vip_stats(fit + " --force").exit_code, 0);
   EXPECT_NO_THROW(sim::read_ptpe_file(folder / "fitted.toml"));
-  const auto record = nlohmann::json::parse(base::read_file(folder / "fitted.toml.history.jsonl", 1 << 20));
+  const auto record = base::Json::parse(base::read_file(folder / "fitted.toml.history.jsonl", 1 << 20));
   EXPECT_EQ(record.at("forced"), true);
 }
 
-std::vector<nlohmann::json> read_lines(const std::filesystem::path& path) {
+std::vector<base::Json> read_lines(const std::filesystem::path& path) {
   std::istringstream text(base::read_file(path, 1 << 20));
-  std::vector<nlohmann::json> lines;
-  for (std::string line; std::getline(text, line);) lines.push_back(nlohmann::json::parse(line));
+  std::vector<base::Json> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(base::Json::parse(line));
   return lines;
 }
 

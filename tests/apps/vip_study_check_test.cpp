@@ -5,13 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/study/check/measured_check.hpp"
 #include "apps/study/check/refresh_check.hpp"
 #include "apps/study/check/session_outline.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/study_test_support.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -34,7 +34,7 @@ TEST(VipStudyCheckE2e, ReportsThePilotOn90Hz) {
   EXPECT_THAT(outcome.out, testing::HasSubstr("14 exact, 7 approximate, 0 unreachable of 21"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("play speed: 0.17 to 0.83 of real time"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("gaze: not needed"));
-  const auto json = nlohmann::json::parse(base::read_file(json_path, 1 << 20));
+  const auto json = base::Json::parse(base::read_file(json_path, 1 << 20));
   EXPECT_EQ(json.at("exact"), 14);
   EXPECT_EQ(json.at("settings").size(), 21u);
   EXPECT_EQ(json.at("common_refreshes").size(), 11u);
@@ -89,7 +89,7 @@ TEST(VipStudyCheckE2e, ReportsBlocksBalanceAndStimuliOfTask1) {
   EXPECT_THAT(outcome.out, testing::HasSubstr("Ours-TSp faucet 32k"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("gaze: needed"));
   EXPECT_THAT(outcome.out, testing::HasSubstr("cut, and fails, when it goes on for 30 s past its 30 s"));
-  const auto json = nlohmann::json::parse(base::read_file(json_path, 1 << 20));
+  const auto json = base::Json::parse(base::read_file(json_path, 1 << 20));
   EXPECT_EQ(json.at("timing"), "table2");
   EXPECT_EQ(json.at("overrun_s"), 30);
   EXPECT_EQ(json.at("trials"), 10);

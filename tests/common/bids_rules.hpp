@@ -31,7 +31,7 @@ class BidsRules {
   }
 
  private:
-  using Json = nlohmann::json;
+  using Json = base::Json;
 
   explicit BidsRules(const std::filesystem::path& folder) : folder_(folder), files_(files_below(folder)) {}
 
@@ -173,7 +173,7 @@ class BidsRules {
         require(field == "n/a" || is_number(field), name, "no header, numbers alone: " + field);
     }
     for (const Json& column : columns)
-      require(json.contains(column) && json[column.get<std::string>()].contains("Description"), name,
+      require(json.contains(column.text()) && json[column.text()].contains("Description"), name,
               "column " + column.dump() + " is described");
     require(one_of(json.value("PhysioType", Json()), {"generic", "eyetrack"}), name, "PhysioType");
     if (json.value("PhysioType", "") == "eyetrack") check_eye(name, json);

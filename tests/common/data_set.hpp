@@ -4,13 +4,13 @@
 #include <zlib.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 
 namespace test {
 
@@ -25,10 +25,9 @@ inline std::set<std::string> files_below(const std::filesystem::path& folder) {
 }
 
 /// Null where there is none or it cannot be read.
-inline nlohmann::json json_at(const std::filesystem::path& path) {
+inline base::Json json_at(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return nullptr;
-  auto json = nlohmann::json::parse(base::read_file(path, 1u << 24), nullptr, false);
-  return json.is_discarded() ? nlohmann::json() : json;
+  return base::parse_json(base::read_file(path, 1u << 24));
 }
 
 inline std::string unzipped(const std::filesystem::path& path) {

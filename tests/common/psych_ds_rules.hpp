@@ -21,7 +21,7 @@ inline std::vector<std::string> psych_ds_broken_by(const std::filesystem::path& 
     require(json.value(key, "") != "", std::string("JSON_KEY_REQUIRED ") + key);
   require(json.contains("variableMeasured"), "JSON_KEY_REQUIRED variableMeasured");
   std::set<std::string> described, found;
-  for (const auto& variable : json.value("variableMeasured", nlohmann::json::array())) {
+  for (const auto& variable : json.value("variableMeasured", base::Json::array())) {
     require(variable.value("@type", "") == "PropertyValue", "OBJECT_TYPE_MISSING " + variable.dump());
     require(variable.value("description", "") != "", "no description " + variable.dump());
     require(described.insert(variable.value("name", "")).second, "described twice " + variable.dump());

@@ -7,12 +7,12 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "tests/faults/child.hpp"
 
 namespace faults {
@@ -78,7 +78,7 @@ bool names_subject(const std::string& text, const std::string& participant) {
 std::set<std::string> journal_responses(const std::string& bytes) {
   std::map<std::int64_t, std::string> last;
   for (std::size_t at = 0, end; (end = bytes.find('\n', at)) != std::string::npos; at = end + 1) {
-    const auto line = nlohmann::json::parse(bytes.substr(at, end - at), nullptr, false);
+    const auto line = base::parse_json(bytes.substr(at, end - at));
     if (!line.is_object() || line.value("table", "") != "response") continue;
     const auto text = [&](const char* name) {
       const auto& value = line.at(name);

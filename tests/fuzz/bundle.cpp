@@ -13,7 +13,7 @@
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 constexpr const char* names[] = {"about.json", "hypotheses.json", "plan.toml", "MANIFEST.sha256"};
 

@@ -9,13 +9,13 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "libstudy/store/merge.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json.hpp"
 #include "tests/libstudy/journal_fixture.hpp"
 #include "tests/libstudy/session_fixture.hpp"
 
@@ -90,7 +90,7 @@ TEST(AnswerJournal, HasALineForEachAnswerThatReadsByItself) {
   std::set<std::string> uids;
   int answers = 0;
   for (std::string line; std::getline(file, line);) {
-    const auto read = nlohmann::json::parse(line);
+    const auto read = base::Json::parse(line);
     if (read.value("table", "") == "session") uids.insert(read.at("uid"));
     if (read.value("table", "") != "response") continue;
     ++answers;

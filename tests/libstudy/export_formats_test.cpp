@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study {
@@ -65,7 +65,7 @@ std::vector<std::vector<std::string>> read_table(const fs::path& path, char by) 
   return rows;
 }
 
-nlohmann::json read_json(const fs::path& path) { return nlohmann::json::parse(test::bytes_of(path)); }
+base::Json read_json(const fs::path& path) { return base::Json::parse(test::bytes_of(path)); }
 
 std::set<std::string> files_below(const fs::path& folder) {
   std::set<std::string> files;

@@ -25,8 +25,8 @@ class ExportRules : public ::testing::Test {
     export_psych_ds(database, psych_);
   }
   /// Changes a JSON file of an export.
-  static void change(const fs::path& path, const std::function<void(nlohmann::json&)>& how) {
-    nlohmann::json json = ::test::json_at(path);
+  static void change(const fs::path& path, const std::function<void(base::Json&)>& how) {
+    base::Json json = ::test::json_at(path);
     ASSERT_TRUE(json.is_object()) << path;
     how(json);
     base::write_file_atomically(path, json.dump());
@@ -46,14 +46,14 @@ TEST_F(ExportRules, OfBidsHoldForGazeOfEyeAndMouse) {
 
 TEST_F(ExportRules, OfBidsSeeNonsenseInTheFieldsOfAnEye) {
   const fs::path eye = bids_ / (session_ + "_recording-eye1_physio.json");
-  const nlohmann::json sound = ::test::json_at(eye);
-  const std::vector<std::pair<std::string, nlohmann::json>> nonsense{
+  const base::Json sound = ::test::json_at(eye);
+  const std::vector<std::pair<std::string, base::Json>> nonsense{
       {"RecordedEye", "third"},        {"SampleCoordinateSystem", "moon"},
       {"SamplingFrequency", 0},        {"StartTime", "noon"},
       {"PhysioType", "guess"},         {"Columns", {"x_coordinate"}},
       {"x_coordinate", {{"Units", 3}}}};
   for (const auto& [key, value] : nonsense) {
-    nlohmann::json json = sound;
+    base::Json json = sound;
     json[key] = value;
     base::write_file_atomically(eye, json.dump());
     EXPECT_THAT(BidsRules::broken_by(bids_), Contains(HasSubstr("_physio"))) << key;
@@ -62,7 +62,7 @@ TEST_F(ExportRules, OfBidsSeeNonsenseInTheFieldsOfAnEye) {
   for (const char* key : {"ScreenDistance", "ScreenSize", "ScreenResolution", "ScreenOrigin"}) {
     const fs::path events = bids_ / (session_ + "_events.json");
     const std::string before = test::bytes_of(events);
-    change(events, [&](nlohmann::json& json) { json["StimulusPresentation"].erase(key); });
+    change(events, [&](base::Json& json) { json["StimulusPresentation"].erase(key); });
     EXPECT_THAT(BidsRules::broken_by(bids_), Contains(HasSubstr(key)));
     base::write_file_atomically(events, before);
   }
@@ -83,7 +83,7 @@ TEST_F(ExportRules, OfBidsSeeFilesAndTablesOutOfPlace) {
 TEST_F(ExportRules, OfPsychDsHoldAndSeeWhatBreaksThem) {
   EXPECT_THAT(::test::psych_ds_broken_by(psych_), IsEmpty());
   change(psych_ / "dataset_description.json",
-         [](nlohmann::json& json) { json["variableMeasured"][0]["name"] = "in_no_file"; });
+         [](base::Json& json) { json["variableMeasured"][0]["name"] = "in_no_file"; });
   EXPECT_THAT(::test::psych_ds_broken_by(psych_), Contains("VARIABLE_MISSING_FROM_CSV_COLUMNS in_no_file"));
   EXPECT_THAT(::test::psych_ds_broken_by(psych_), Contains(HasSubstr("CSV_COLUMN_MISSING_FROM_METADATA")));
   base::write_file_atomically(psych_ / "data" / "mine.csv", "a\n1,2\n");

@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
+#include "stats/base/json.hpp"
 #include "tests/common/bids_rules.hpp"
 #include "tests/libstudy/headset_fixture.hpp"
 
@@ -56,12 +55,12 @@ TEST(HeadsetExports, AreMotionAndAnEyeInTheHeadInBids) {
             "6e-09\t0.5\t1.5\t-0.25\t0\t0.6\t0\t0.8\t1\t0\n"
             "0.010000006\tn/a\tn/a\tn/a\t0\t0.6\t0\t0.8\t0\t0\n");
   EXPECT_THAT(test::bytes_of(motion.string() + "channels.tsv"), HasSubstr("\nquat_w\tquat_w\tORNT\thead\t"));
-  const auto eye = nlohmann::json::parse(
+  const auto eye = base::Json::parse(
       test::bytes_of(folder / "bids" / session / "beh" / (stem + "_recording-eye1_physio.json")));
   EXPECT_EQ(eye["SampleCoordinateSystem"], "eye-in-head");
   EXPECT_EQ(eye["AverageCalibrationError"], 0.5);
   const auto events =
-      nlohmann::json::parse(test::bytes_of(folder / "bids" / session / "beh" / (stem + "_events.json")));
+      base::Json::parse(test::bytes_of(folder / "bids" / session / "beh" / (stem + "_events.json")));
   EXPECT_EQ(events["StimulusPresentation"]["HeadMountedDisplay"]["headset"], "a headset");
   EXPECT_EQ(events["StimulusPresentation"]["HeadMountedDisplay"]["ipd_mm"][0], 63);
   EXPECT_FALSE(fs::exists(folder / "bids/sub-P02/ses-askingv1/motion")) << "refused gaze";
@@ -76,8 +75,7 @@ TEST(HeadsetExports, OfASingleSampleHaveTheDisplaysRateInBidsOrNoPlaceThere) {
   export_bids(path, folder / "bids", true);
   EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), IsEmpty());
   for (const std::string& recording : recordings) {
-    const auto json =
-        nlohmann::json::parse(test::bytes_of(folder / "bids" / session / (recording + ".json")));
+    const auto json = base::Json::parse(test::bytes_of(folder / "bids" / session / (recording + ".json")));
     EXPECT_EQ(json["SamplingFrequency"], 89.5);
   }
   Connection(path, Open::Write).execute("DELETE FROM headset; UPDATE session SET refresh_hz = NULL");
@@ -105,7 +103,7 @@ TEST(HeadsetExports, OfAHeadThatStoodInAreBehaviourInBids) {
   EXPECT_EQ(test::bytes_of(head.string() + ".tsv"),
             "timestamp\tx_coordinate\ty_coordinate\tvalid\ttracked\n"
             "0.01\tn/a\tn/a\t0\t0\n0.02\t0.5\t0.25\t1\t1\n");
-  const auto json = nlohmann::json::parse(test::bytes_of(head.string() + ".json"));
+  const auto json = base::Json::parse(test::bytes_of(head.string() + ".json"));
   EXPECT_THAT(json["Description"].get<std::string>(), HasSubstr("No eye was recorded"));
   export_bids(path, folder / "few");
   EXPECT_FALSE(fs::exists(folder / "few/sub-P01/ses-askingv1/beh" / head.filename().concat(".tsv")));

@@ -4,11 +4,10 @@
 
 #include <zlib.h>
 
-#include <nlohmann/json.hpp>
-
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
+#include "stats/base/json.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 
 namespace study {
@@ -165,7 +164,7 @@ TEST_F(GazeExport, BidsHoldsTheEyeAsAnEyeAndTheMouseAsBehaviour) {
       folder_ / "bids/sub-P01/ses-askingv1/beh/sub-P01_ses-askingv1_task-asking_recording-eye1_physio";
   EXPECT_EQ(unzipped(eye.string() + ".tsv.gz"),
             "0.01\t0.25\t0.5\t1\n0.02\tn/a\tn/a\t0\n0.03\t0.5\t0.75\t1\n");
-  const auto json = nlohmann::json::parse(test::bytes_of(eye.string() + ".json"));
+  const auto json = base::Json::parse(test::bytes_of(eye.string() + ".json"));
   EXPECT_EQ(json["PhysioType"], "eyetrack");
   EXPECT_EQ(json["RecordedEye"], "cyclopean");
   EXPECT_EQ(json["SampleCoordinateSystem"], "gaze-on-screen");

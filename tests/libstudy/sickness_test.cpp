@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -13,6 +12,7 @@
 #include "libstudy/store/export_psych_ds.hpp"
 #include "libstudy/store/sickness_table.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study {
@@ -178,7 +178,7 @@ TEST_F(SicknessStudy, BidsHasTheScoresBesideTheItems) {
   EXPECT_THAT(ssq[0], EndsWith("before_ssq_oculomotor\ttask1labv1_ssq_before_ssq_disorientation\t"
                                "task1labv1_ssq_before_ssq_total"));
   EXPECT_THAT(ssq[1], EndsWith("\tn/a\tn/a\t159.18\t292.32\tn/a"));
-  const auto meaning = nlohmann::json::parse(test::bytes_of(folder_ / "bids" / "phenotype" / "ssq.json"));
+  const auto meaning = base::Json::parse(test::bytes_of(folder_ / "bids" / "phenotype" / "ssq.json"));
   EXPECT_THAT(meaning["task1labv1_ssq_before_ssq_total"]["Description"].get<std::string>(),
               HasSubstr("3.74 times"));
   const auto fms = lines_of(folder_ / "bids" / "phenotype" / "fmssummary.tsv");
@@ -201,7 +201,7 @@ TEST_F(SicknessStudy, PsychDsHasAFileForEachAndDescribesEveryColumn) {
   ASSERT_THAT(ssq, SizeIs(2));
   EXPECT_THAT(ssq[1], EndsWith(",200.34,159.18,292.32,235.62"));
   EXPECT_FALSE(fs::exists(data / (stem + "fms_data.csv"))) << "FMS was not answered";
-  const auto json = nlohmann::json::parse(test::bytes_of(folder_ / "pds" / "dataset_description.json"));
+  const auto json = base::Json::parse(test::bytes_of(folder_ / "pds" / "dataset_description.json"));
   std::set<std::string> described;
   for (const auto& variable : json["variableMeasured"]) described.insert(variable["name"].get<std::string>());
   std::istringstream header(ssq[0]);

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <string_view>
+
+#include "stats/base/json.hpp"
 
 namespace oracle {
 
 /// Fails for each field of a case's answer that is neither in `compared` nor about the answer itself.
-inline void expect_known_fields(const nlohmann::json& c, std::initializer_list<std::string_view> compared) {
+inline void expect_known_fields(const base::Json& c, std::initializer_list<std::string_view> compared) {
   for (const auto& [field, want] : c.at("expect").items()) {
     const bool about = field == "status" || field == "reason" || want.is_null();
     EXPECT_TRUE(about || std::find(compared.begin(), compared.end(), field) != compared.end())

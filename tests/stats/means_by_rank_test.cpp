@@ -3,17 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "stats/analysis/task1.hpp"
+#include "stats/base/json.hpp"
 #include "stats/inference/wilcoxon.hpp"
 #include "tests/stats/analysis_fixture.hpp"
 
 namespace stats {
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 
 json made_by_r() {
   std::ifstream in(std::string(VIP_TEST_DIR) + "/stats/r/means_by_rank.json");

@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
 #include "stats/analysis/hypotheses.hpp"
+#include "stats/base/json.hpp"
 #include "tests/stats/analysis_fixture.hpp"
 
 namespace stats {
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 

@@ -5,17 +5,17 @@
 
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <vector>
 
 #include "stats/analysis/mixed_scores.hpp"
+#include "stats/base/json.hpp"
 #include "tests/stats/analysis_fixture.hpp"
 
 namespace stats {
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using ::testing::HasSubstr;
 
 json made_by_r() {

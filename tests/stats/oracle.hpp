@@ -8,10 +8,11 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "stats/base/json.hpp"
 
 namespace oracle {
 
@@ -20,15 +21,15 @@ inline std::filesystem::path folder() {
   return other ? std::filesystem::path(other) : std::filesystem::path(VIP_TEST_DIR) / "stats" / "oracle";
 }
 
-inline nlohmann::json cases(const std::string& family) {
+inline base::Json cases(const std::string& family) {
   const auto path = folder() / (family + ".json");
   std::ifstream in(path);
   if (!in) throw std::runtime_error("cannot read " + path.string());
-  return nlohmann::json::parse(in).at("cases");
+  return base::Json::parse(in).at("cases");
 }
 
 /// A number, "Inf" or "-Inf"; null = missing = NaN.
-inline double number(const nlohmann::json& item) {
+inline double number(const base::Json& item) {
   if (item.is_null()) return std::numeric_limits<double>::quiet_NaN();
   if (item == "Inf") return std::numeric_limits<double>::infinity();
   if (item == "-Inf") return -std::numeric_limits<double>::infinity();
@@ -36,14 +37,14 @@ inline double number(const nlohmann::json& item) {
 }
 
 /// null = missing = NaN.
-inline std::vector<double> numbers(const nlohmann::json& list) {
+inline std::vector<double> numbers(const base::Json& list) {
   std::vector<double> out;
   for (const auto& item : list) out.push_back(number(item));
   return out;
 }
 
 /// Whether a field is there and not null, that is, to be compared.
-inline bool asks(const nlohmann::json& expect, const std::string& field) {
+inline bool asks(const base::Json& expect, const std::string& field) {
   return expect.contains(field) && !expect.at(field).is_null();
 }
 
@@ -54,7 +55,7 @@ inline double bound(double expected, double rtol, double scale) {
 
 /// `got` against one expected number, to `rtol` of it. Where the answer is zero, or zero but for the rounding
 /// of the program that computed it (1e-12 of `scale`, the size of what was subtracted), to rtol of `scale`.
-inline void expect_number(const std::string& what, double got, const nlohmann::json& expected, double rtol,
+inline void expect_number(const std::string& what, double got, const base::Json& expected, double rtol,
                           double scale = 1) {
   if (expected.is_null()) return;
   const double want = number(expected);
@@ -68,7 +69,7 @@ inline void expect_number(const std::string& what, double got, const nlohmann::j
 
 /// expect_number for a field of a case: nothing when the pack does not ask for it, a failure when it does and
 /// there is no value. rtol is the case's own unless given.
-inline void expect_field(const nlohmann::json& c, const std::string& field, std::optional<double> got,
+inline void expect_field(const base::Json& c, const std::string& field, std::optional<double> got,
                          double scale = 1, std::optional<double> rtol = {}) {
   if (!asks(c.at("expect"), field)) return;
   const std::string what = c.at("id").get<std::string>() + ": " + field;
@@ -81,13 +82,13 @@ inline void expect_field(const nlohmann::json& c, const std::string& field, std:
 
 /// A case that has no answer must be refused with a reason.
 template <class R>
-void expect_refused(const nlohmann::json& c, const R& result) {
+void expect_refused(const base::Json& c, const R& result) {
   EXPECT_FALSE(result) << c.at("id") << ": a number where there is none";
   if (!result) {
     EXPECT_FALSE(result.reason().empty()) << c.at("id");
   }
 }
 
-inline bool is_undefined(const nlohmann::json& c) { return c.at("expect").at("status") == "undefined"; }
+inline bool is_undefined(const base::Json& c) { return c.at("expect").at("status") == "undefined"; }
 
 }  // namespace oracle

@@ -2,16 +2,16 @@
 /// How numbers, intervals and refusals stand in the results (docs/results.md).
 
 #include <array>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "stats/base/json.hpp"
 #include "stats/result.hpp"
 
 namespace apps {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 /// A finite number, "Inf" or "-Inf", or null when it is none.
 Json json_number(double value);

@@ -9,7 +9,7 @@
 #include "apps/stats/data/task_choice.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/nearest.hpp"
 #include "stats/base/text.hpp"
 
@@ -75,8 +75,8 @@ double share_of_method(const std::filesystem::path& file, const Json& results, c
 }  // namespace
 
 PersonByMethod person_by_method_of(const std::filesystem::path& file) {
-  const Json results = base::parse_json<Json>(base::read_file(file, most_result_bytes));
-  if (results.is_discarded() || !results.is_object() || results.value("schema", Json()) != "vip-results/1") {
+  const Json results = base::parse_json(base::read_file(file, most_result_bytes));
+  if (!results.is_object() || results.value("schema", Json()) != "vip-results/1") {
     throw base::Error(file.string(), "is not the JSON of a study's results",
                       "write it with vip-stats report STUDY.db --json " + file.filename().string());
   }

@@ -8,7 +8,7 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -119,8 +119,8 @@ Json read_shard(const fs::path& file) {
     throw base::Error(file.string(), "is not a shard of vip-stats power",
                       "name files that vip-stats power --cell wrote");
   }
-  const Json out = base::parse_json<Json>(text);
-  if (out.is_discarded() || !out.is_object() || !out.contains("studies") || !out.at("studies").is_object() ||
+  const Json out = base::parse_json(text);
+  if (!out.is_object() || !out.contains("studies") || !out.at("studies").is_object() ||
       !out.contains("outcomes"))
     refuse_damaged(file);
   if (out.at("schema") != schema) {

@@ -1,17 +1,16 @@
 #include "apps/stats/ptpe/calibration_history.hpp"
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 constexpr std::size_t largest_record = 1 << 26;
 
@@ -27,7 +26,7 @@ Json last_of(const std::filesystem::path& path, const std::string& record) {
   std::string line, before;
   Json last;
   for (int number = 1; std::getline(lines, line); ++number) {
-    last = base::parse_json<Json>(line);
+    last = base::parse_json(line);
     if (!last.is_object() || !last.contains("file_sha256") || !last.contains("previous_sha256"))
       damaged(path, number, "is no calibration");
     if (last["previous_sha256"] != (before.empty() ? "" : base::sha256_hex(before)))
@@ -48,7 +47,7 @@ void add_line(std::string& record, Json entry, const std::string& text) {
   entry["file"] = text;
   entry["file_sha256"] = base::sha256_hex(text);
   entry["previous_sha256"] = before.empty() ? "" : base::sha256_hex(before);
-  record += base::json_text(entry) + "\n";
+  record += entry.dump() + "\n";
 }
 
 }  // namespace

@@ -3,8 +3,9 @@
 /// first. The solver reads FILE alone.
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -14,7 +15,6 @@ std::filesystem::path history_of(const std::filesystem::path& file);
 /// changed or taken out shows. A file that stands there and is not the newest of the record (written before
 /// there was one, or changed by hand) is taken down first. The record grows as a whole or not at all.
 /// base::Error when the record that stands is damaged or cannot be written; nothing is changed then.
-void append_calibration(const std::filesystem::path& file, const std::string& text,
-                        const nlohmann::ordered_json& entry);
+void append_calibration(const std::filesystem::path& file, const std::string& text, const base::Json& entry);
 
 }  // namespace apps

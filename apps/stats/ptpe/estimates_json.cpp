@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "apps/stats/data/json_parts.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 

@@ -1,10 +1,10 @@
-#include <nlohmann/json.hpp>
 
 #include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/ptpe/estimates_json.hpp"
 #include "apps/stats/ptpe/pilot_fit.hpp"
 #include "apps/stats/ptpe/pilot_people_json.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "stats/gsl_errors.hpp"
 #include "stats/inference/describe.hpp"
 #include "stats/mean_interval.hpp"

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/ptpe/estimates_json.hpp"
 #include "apps/stats/ptpe/pilot_people_json.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 

@@ -3,13 +3,13 @@
 
 #include <array>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/stats/data/task_data.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "stats/base/json.hpp"
 #include "stats/ptpe/direct_fit.hpp"
 #include "stats/ptpe/ordinal_pilot.hpp"
 #include "stats/ptpe/pilot.hpp"
@@ -82,9 +82,9 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
                    const stats::PilotRules& rules = {});
 
 /// The same for a database without usable data: only the reason is known.
-nlohmann::ordered_json failed_fit_json(std::optional<double> level, const std::string& reason);
+base::Json failed_fit_json(std::optional<double> level, const std::string& reason);
 /// Every number of the fit, for fit.json. No NaN: what is undefined is null with its reason beside it.
-nlohmann::ordered_json fit_json(const PilotFit& fit);
+base::Json fit_json(const PilotFit& fit);
 /// For the solver; the fit is ok().
 sim::PtpeFile ptpe_file(const PilotFit& fit);
 

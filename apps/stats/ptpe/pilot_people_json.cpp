@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/stats/data/json_parts.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 std::string p_words(double p) {
   return fmt::format("p {} {:.3f}", p < 0.001 ? "<" : "=", std::max(p, 0.001));

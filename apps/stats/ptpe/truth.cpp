@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "libstudy/observer/ptpe_observer.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -52,7 +52,7 @@ std::string format_recovery(const PilotFit& fit, const Recovery& recovery) {
          line("b", spread.b_ci, recovery.b_held, recovery.truth.b);
 }
 
-nlohmann::ordered_json recovery_json(const Recovery& recovery) {
+base::Json recovery_json(const Recovery& recovery) {
   return {{"a", recovery.truth.a},
           {"b", recovery.truth.b},
           {"a_ci_holds_it", recovery.a_held},

@@ -1,10 +1,10 @@
 #pragma once
 /// Whether a fit recovers what simulated participants were made with.
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "apps/stats/ptpe/pilot_fit.hpp"
+#include "stats/base/json.hpp"
 #include "stats/ptpe/ptpe.hpp"
 
 namespace apps {
@@ -26,6 +26,6 @@ Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth);
 
 /// Two lines for people, and the same for fit.json.
 std::string format_recovery(const PilotFit& fit, const Recovery& recovery);
-nlohmann::ordered_json recovery_json(const Recovery& recovery);
+base::Json recovery_json(const Recovery& recovery);
 
 }  // namespace apps

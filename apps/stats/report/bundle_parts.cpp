@@ -15,7 +15,7 @@ namespace apps::report {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 std::string hypothesis_text(const Json& hypothesis) {
   std::string out = hypothesis.at("id").get<std::string>() + " (" + hypothesis.at("kind").get<std::string>() +

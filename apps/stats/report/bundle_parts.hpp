@@ -2,12 +2,12 @@
 /// What freezing and comparing a preregistration share.
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/analysis/hypotheses.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps::report {
 
@@ -16,7 +16,7 @@ inline constexpr std::size_t largest_bundle_file = 1 << 24;
 
 /// What preregistration fixes of a hypothesis: no estimate, no p. Takes "hypotheses" of the results just as
 /// well as hypothesis_json(), so that both sides of a comparison pass through here.
-nlohmann::ordered_json fixed_part(const nlohmann::ordered_json& hypothesis);
+base::Json fixed_part(const base::Json& hypothesis);
 
 /// plan.toml of a bundle: a rule that cannot act on what these protocols show and ask is a comment which says
 /// why.
@@ -24,11 +24,11 @@ std::string frozen_plan(const std::vector<study::Protocol>& protocols, const sta
 
 /// For people, to be deposited with the hash. `untested`: "H1 of task1: the protocol does not show FovFluid".
 std::string bundle_text(const std::vector<study::Protocol>& protocols, const stats::AnalysisPlan& plan,
-                        const nlohmann::ordered_json& hypotheses, const std::vector<std::string>& untested,
+                        const base::Json& hypotheses, const std::vector<std::string>& untested,
                         bool with_power, const std::string& frozen_utc);
 
 /// Whether the bundle is older than the first answer of a part, by the clocks of both, or by the order of
 /// rows where these disagree: an entry of "times". `used`: of the results' study.protocols.
-nlohmann::ordered_json time_json(const std::string& frozen_utc, const nlohmann::ordered_json& used);
+base::Json time_json(const std::string& frozen_utc, const base::Json& used);
 
 }  // namespace apps::report

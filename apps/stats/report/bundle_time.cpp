@@ -5,7 +5,7 @@ namespace apps::report {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 /// What is known of the sessions whose clock contradicts the order of the rows.
 struct ByOrder {
@@ -23,7 +23,7 @@ ByOrder judge_by_order(const std::string& frozen, const Json& used) {
     const bool by_clock = frozen < shown, by_order = one.at("impossible") == true && frozen < least;
     out.known = out.known && (by_clock || by_order);
     out.text += " The clock of " + (station.empty() ? "the station" : "station " + station) + " showed " +
-                shown + " at the first answer of " + std::string(one.at("participant")) +
+                shown + " at the first answer of " + one.at("participant").text() +
                 ", after rows of the database of " + least + ": ";
     out.text += by_clock   ? "the bundle is older than both."
                 : by_order ? "that time is not possible, and by the order of the rows the bundle is older."

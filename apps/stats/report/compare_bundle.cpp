@@ -12,7 +12,7 @@ namespace apps::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 /// Lines of a changed protocol that the page quotes.
 constexpr std::size_t most_lines = 12;
@@ -38,15 +38,10 @@ std::map<std::string, std::string> read_manifest(const std::string& text, const 
 constexpr int most_levels = 16;
 
 Json parsed(const std::string& bytes, const fs::path& file) {
-  bool deep = false;
-  const auto not_deep = [&](int depth, Json::parse_event_t, const Json&) {
-    deep = deep || depth > most_levels;
-    return !deep;
-  };
-  Json json = Json::parse(bytes, not_deep, false);
-  if (deep) no_bundle(file, "is nested more than " + std::to_string(most_levels) + " levels deep");
-  if (json.is_discarded()) no_bundle(file, "is no JSON");
-  return json;
+  if (base::nested_deeper_than(most_levels, bytes))
+    no_bundle(file, "is nested more than " + std::to_string(most_levels) + " levels deep");
+  if (!Json::accept(bytes)) no_bundle(file, "is no JSON");
+  return Json::parse(bytes);
 }
 
 bool has_texts(const Json& object, std::initializer_list<const char*> keys) {
@@ -131,7 +126,7 @@ bool same_part(const std::string& name, const Json& planned, const Json& tested,
 bool same_hypothesis(Json planned, Json tested, Json& differences) {
   const std::string id = tested.at("id");
   std::map<std::string, Json> before;
-  for (const Json& test : planned.at("tests")) before[test.at("label")] = test;
+  for (const Json& test : planned.at("tests")) before[test.at("label").text()] = test;
   bool same = true;
   for (const Json& test : tested.at("tests")) {
     const std::string label = test.at("label"), name = id + ", " + label;
@@ -157,7 +152,7 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
   bool same = true;
   std::map<std::string, Json> planned;
   for (const Json& hypothesis : bundle.hypotheses)
-    if (hypothesis.at("task") == task) planned[hypothesis.at("id")] = hypothesis;
+    if (hypothesis.at("task") == task) planned[hypothesis.at("id").text()] = hypothesis;
   for (const Json& hypothesis : results.value("hypotheses", Json::array())) {
     if (hypothesis.at("task") != task) continue;
     const std::string id = hypothesis.at("id");

@@ -2,13 +2,14 @@
 /// Places in the results' JSON, and how they are printed. Every number of the page goes through here, with
 /// its place beside it as data-field, so that page and JSON can be compared.
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "stats/base/json.hpp"
+
 namespace apps::report {
 
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 
 /// A value of the results with its JSON pointer. What is absent reads as null.
 class Field {

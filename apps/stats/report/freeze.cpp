@@ -10,7 +10,7 @@
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 #include "stats/base/new_file.hpp"
 #include "stats/base/text.hpp"
 
@@ -19,7 +19,7 @@ namespace apps::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = base::Json;
 using Files = std::map<std::string, std::string>;  ///< bytes by name
 
 std::vector<study::Protocol> read_protocols(const std::vector<fs::path>& paths) {
@@ -97,7 +97,7 @@ Files contents(const BundleRequest& request) {
       hypotheses.push_back(fixed_part(hypothesis_json(hypothesis)));
   }
   const auto plan = with_levels(request.plan, protocols);
-  files["hypotheses.json"] = base::json_text(hypotheses, 2) + "\n";
+  files["hypotheses.json"] = hypotheses.dump(2) + "\n";
   files["plan.toml"] = frozen_plan(protocols, plan);
   if (request.power) {
     files["power.json"] = base::read_file(*request.power, largest_bundle_file);

@@ -1,13 +1,14 @@
 #pragma once
 /// The report: one HTML page of a study's results.
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+
+#include "stats/base/json.hpp"
 
 namespace apps::report {
 
 /// The page of a document of schema vip-results/1 (docs/results.md), rendered from it alone: no script, no
 /// outside resource, a style sheet for screen and print. base::Error for another schema.
-std::string results_page(const nlohmann::ordered_json& results);
+std::string results_page(const base::Json& results);
 
 }  // namespace apps::report

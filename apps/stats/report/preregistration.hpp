@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "apps/stats/data/plan_file.hpp"
 #include "libstudy/store/status.hpp"
 #include "stats/analysis/plan.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps::report {
 
@@ -35,7 +35,7 @@ std::vector<std::string> untested_claims(const BundleRequest& request);
 struct Bundle {
   std::string sha256;                ///< of the manifest
   std::vector<std::string> altered;  ///< files that are missing or do not have the manifest's hash
-  nlohmann::ordered_json about, hypotheses;
+  base::Json about, hypotheses;
   std::map<std::string, std::string> protocols;  ///< text by SHA-256 of the protocol
   PlanInForce plan;
 };
@@ -45,8 +45,7 @@ Bundle read_bundle(const std::filesystem::path& folder);
 
 /// "preregistration" of the results (docs/results.md): whether each task's protocol and hypotheses are those
 /// of the bundle, and what differs. `results`: as study_results() gave them under the bundle's plan.
-nlohmann::ordered_json compare_with_bundle(const Bundle& bundle,
-                                           const std::vector<study::ProtocolRow>& protocols,
-                                           const nlohmann::ordered_json& results);
+base::Json compare_with_bundle(const Bundle& bundle, const std::vector<study::ProtocolRow>& protocols,
+                               const base::Json& results);
 
 }  // namespace apps::report

@@ -1,11 +1,10 @@
 #include "apps/study/check/kept_times.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/json_depth.hpp"
+#include "stats/base/json.hpp"
 
 namespace apps {
 
@@ -33,10 +32,10 @@ std::optional<StepTimes> read_step_times(const fs::path& folder, const std::stri
   const fs::path path = file_of(folder, key);
   if (folder.empty() || !fs::exists(path)) return {};
   try {
-    const auto json = base::parse_json<nlohmann::json>(base::read_file(path, most_bytes));
+    const auto json = base::parse_json(base::read_file(path, most_bytes));
     const StepTimes times{json.at("compute_s"), json.at("draw_s")};
     if (json.at("key") == key && is_sound(times)) return times;
-  } catch (const nlohmann::json::exception&) {
+  } catch (const base::Json::exception&) {
   } catch (const base::Error&) {
   }
   return {};
@@ -44,7 +43,7 @@ std::optional<StepTimes> read_step_times(const fs::path& folder, const std::stri
 
 void keep_step_times(const fs::path& folder, const std::string& key, const StepTimes& times) {
   if (folder.empty()) return;
-  const nlohmann::ordered_json json{{"key", key}, {"compute_s", times.compute_s}, {"draw_s", times.draw_s}};
+  const base::Json json{{"key", key}, {"compute_s", times.compute_s}, {"draw_s", times.draw_s}};
   std::error_code ignored;
   fs::create_directories(folder, ignored);
   try {

@@ -15,7 +15,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using oracle::number;
 using stats::Alternative;
 using stats::binomial_test;

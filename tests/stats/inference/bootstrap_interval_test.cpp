@@ -18,7 +18,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using stats::bootstrap_interval;
 using Values = std::vector<double>;
 

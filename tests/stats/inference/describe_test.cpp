@@ -17,7 +17,7 @@ using Values = std::vector<double>;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-void expect_description(const nlohmann::json& c, const Values& x, const stats::Description& got) {
+void expect_description(const base::Json& c, const Values& x, const stats::Description& got) {
   using oracle::expect_field;
   const double scale = got.sd.value_or(0);
   expect_field(c, "n", static_cast<double>(got.n));

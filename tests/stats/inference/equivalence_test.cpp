@@ -18,7 +18,7 @@ using oracle::expect_field;
 using Values = std::vector<double>;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-void expect_case(const nlohmann::json& c, const Result<EquivalenceTest>& got, double reference) {
+void expect_case(const base::Json& c, const Result<EquivalenceTest>& got, double reference) {
   if (oracle::is_undefined(c)) {
     oracle::expect_refused(c, got);
     return;

@@ -17,7 +17,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using stats::friedman_test;
 using stats::repeated_anova;
 using Values = std::vector<double>;

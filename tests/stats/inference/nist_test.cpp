@@ -7,11 +7,11 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "stats/base/json.hpp"
 #include "stats/inference/describe.hpp"
 #include "stats/inference/linear_fit.hpp"
 #include "stats/inference/nonlinear_fit.hpp"
@@ -20,7 +20,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using Values = std::vector<double>;
 constexpr double eight_digits = 1e-8, six_digits = 1e-6;
 

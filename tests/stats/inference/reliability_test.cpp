@@ -29,8 +29,8 @@ TEST(CronbachAlpha, OfTwoItemsByHand) {
 }
 
 TEST(CronbachAlpha, AgreesWithRsAnalysisOfVariance) {
-  const auto made = nlohmann::json::parse(
-      base::read_file(std::string(VIP_TEST_DIR) + "/stats/r/cronbach_alpha.json", 1 << 20));
+  const auto made =
+      base::Json::parse(base::read_file(std::string(VIP_TEST_DIR) + "/stats/r/cronbach_alpha.json", 1 << 20));
   int seen = 0;
   for (const auto& study : made.at("studies")) {
     const auto got = cronbach_alpha(oracle::numbers(study.at("rows")), study.at("items"));

@@ -19,7 +19,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double nct_rtol = 1e-6;
 
-TTestOptions options(const nlohmann::json& input) {
+TTestOptions options(const base::Json& input) {
   TTestOptions out;
   const auto side = input.value("alternative", std::string("two.sided"));
   if (side == "less") out.alternative = Alternative::Less;
@@ -29,8 +29,8 @@ TTestOptions options(const nlohmann::json& input) {
   return out;
 }
 
-void expect_interval(const nlohmann::json& c, const std::string& field, std::array<double, 2> got,
-                     double scale, double rtol) {
+void expect_interval(const base::Json& c, const std::string& field, std::array<double, 2> got, double scale,
+                     double rtol) {
   if (!oracle::asks(c.at("expect"), field)) return;
   for (std::size_t i = 0; i < 2; ++i) {
     oracle::expect_number(c.at("id").get<std::string>() + ": " + field, got[i],
@@ -38,7 +38,7 @@ void expect_interval(const nlohmann::json& c, const std::string& field, std::arr
   }
 }
 
-void expect_common(const nlohmann::json& c, const TTest& got) {
+void expect_common(const base::Json& c, const TTest& got) {
   expect_field(c, "t", got.t);
   expect_field(c, "df", got.df);
   expect_field(c, "p", got.p);
@@ -47,7 +47,7 @@ void expect_common(const nlohmann::json& c, const TTest& got) {
   expect_interval(c, "ci", got.ci, got.stderr_estimate, c.at("rtol").get<double>());
 }
 
-void expect_fields(const nlohmann::json& c, const OneSampleTTest& got) {
+void expect_fields(const base::Json& c, const OneSampleTTest& got) {
   expect_field(c, "n", static_cast<double>(got.n));
   expect_field(c, "mean", got.mean, got.sd);
   expect_field(c, "sd", got.sd);
@@ -57,7 +57,7 @@ void expect_fields(const nlohmann::json& c, const OneSampleTTest& got) {
       c, {"t", "df", "p", "estimate", "stderr", "ci", "n", "mean", "sd", "cohen_d", "d_ci95_nct"});
 }
 
-void expect_fields(const nlohmann::json& c, const PairedTTest& got) {
+void expect_fields(const base::Json& c, const PairedTTest& got) {
   expect_field(c, "n", static_cast<double>(got.n));
   expect_field(c, "mean_x", got.mean_x, got.sd_x);
   expect_field(c, "mean_y", got.mean_y, got.sd_y);
@@ -75,7 +75,7 @@ void expect_fields(const nlohmann::json& c, const PairedTTest& got) {
           "cohen_dz", "hedges_gz", "cohen_dav", "cohen_drm", "dz_ci95_nct"});
 }
 
-void expect_fields(const nlohmann::json& c, const IndependentTTest& got) {
+void expect_fields(const base::Json& c, const IndependentTTest& got) {
   expect_field(c, "sd_pooled", got.sd_pooled);
   expect_field(c, "cohen_ds", got.cohen_ds);
   expect_field(c, "hedges_gs", got.hedges_gs);
@@ -86,7 +86,7 @@ void expect_fields(const nlohmann::json& c, const IndependentTTest& got) {
 }
 
 template <class T>
-void expect_case(const nlohmann::json& c, const Result<T>& got) {
+void expect_case(const base::Json& c, const Result<T>& got) {
   if (oracle::is_undefined(c)) {
     oracle::expect_refused(c, got);
     return;

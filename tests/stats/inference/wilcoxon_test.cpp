@@ -18,13 +18,13 @@ using Values = std::vector<double>;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-void expect_flag(const nlohmann::json& c, const std::string& field, bool got) {
+void expect_flag(const base::Json& c, const std::string& field, bool got) {
   if (oracle::asks(c.at("expect"), field)) {
     EXPECT_EQ(got, c.at("expect").at(field).get<bool>()) << c.at("id") << ": " << field;
   }
 }
 
-void expect_signed(const nlohmann::json& c, const SignedRank& got) {
+void expect_signed(const base::Json& c, const SignedRank& got) {
   expect_field(c, "n", static_cast<double>(got.n));
   expect_field(c, "n_nonzero", static_cast<double>(got.n_nonzero));
   expect_field(c, "W_plus", got.w_plus);
@@ -79,7 +79,7 @@ void expect_signed(const nlohmann::json& c, const SignedRank& got) {
   }
 }
 
-void expect_ranked(const nlohmann::json& c, const MannWhitney& got) {
+void expect_ranked(const base::Json& c, const MannWhitney& got) {
   expect_field(c, "U_x", got.u);
   expect_field(c, "rank_biserial", got.rank_biserial);
   expect_field(c, "A12", got.probability_of_superiority);

@@ -16,7 +16,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using stats::fit_cumulative_link;
 using stats::fit_cumulative_link_mixed;
 using stats::Link;

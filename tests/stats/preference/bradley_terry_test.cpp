@@ -15,7 +15,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using stats::bradley_terry;
 using stats::BradleyTerry;
 using stats::BradleyTerryMethod;

@@ -5,16 +5,16 @@
 
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "stats/base/json.hpp"
 #include "stats/preference/bradley_terry.hpp"
 #include "stats/preference/order_bias.hpp"
 #include "tests/stats/uniformity.hpp"
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using stats::Comparison;
 
 /// glm stops at a relative change of the deviance of 1e-14, which leaves a coefficient this far from the

@@ -13,7 +13,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using stats::fit_exponential;
 
 /// The answer in the words of the oracle.

@@ -5,11 +5,11 @@
 
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
 #include "stats/ptpe/form_test.hpp"
 #include "stats/ptpe/pilot_people.hpp"
 #include "stats/ptpe/scale_end_fit.hpp"
@@ -31,7 +31,7 @@ void expect_interval(const std::array<double, 2>& got, double low, double high, 
   EXPECT_NEAR(got[1], high, relative * std::abs(high) + 2e-8);
 }
 
-void expect_form(const std::vector<stats::PilotObservation>& observations, const nlohmann::json& study) {
+void expect_form(const std::vector<stats::PilotObservation>& observations, const base::Json& study) {
   const auto form = stats::form_test(observations, {std::log(26), 0.02}, 4, 0.95);
   ASSERT_TRUE(form) << form.reason();
   EXPECT_NEAR(form->c, study.at("c"), 1e-6);
@@ -39,7 +39,7 @@ void expect_form(const std::vector<stats::PilotObservation>& observations, const
   EXPECT_NEAR(form->p, study.at("p"), 1e-5);
 }
 
-void expect_estimates(const std::vector<stats::PilotObservation>& observations, const nlohmann::json& study) {
+void expect_estimates(const std::vector<stats::PilotObservation>& observations, const base::Json& study) {
   const auto direct = stats::estimate_direct(observations, 4, {0});
   ASSERT_TRUE(direct.jackknife) << direct.jackknife.reason();
   EXPECT_EQ(direct.out_of_reach, study.at("out_of_reach").get<std::vector<double>>());
@@ -56,7 +56,7 @@ void expect_estimates(const std::vector<stats::PilotObservation>& observations, 
 
 TEST(PilotForm, AgreesWithR) {
   const auto made =
-      nlohmann::json::parse(base::read_file(std::string(VIP_TEST_DIR) + "/stats/r/pilot_form.json", 1 << 20));
+      base::Json::parse(base::read_file(std::string(VIP_TEST_DIR) + "/stats/r/pilot_form.json", 1 << 20));
   int seen = 0;
   for (const auto& study : made.at("studies")) {
     const auto ratings = ratings_of(study.at("rows"));

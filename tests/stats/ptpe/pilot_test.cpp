@@ -16,7 +16,7 @@
 
 namespace {
 
-using nlohmann::json;
+using json = base::Json;
 using stats::ContourPoint;
 using stats::PilotRating;
 using stats::ScoreGrid;

@@ -1,0 +1,270 @@
+#pragma once
+/// A JSON value. nlohmann's library parses and prints it, in json.cpp alone: its templates took half of the
+/// compile time of files that build a table of results.
+
+#include <compare>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <iosfwd>
+#include <map>
+#include <ranges>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace base {
+
+/// A text that is no JSON, a member that is missing, or a value of another kind than the one that is asked
+/// for.
+class JsonError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A place within a value, as RFC 6901 writes it: "/task1/mixed/0". The empty text is the value itself.
+class JsonPointer {
+ public:
+  /// Throws JsonError where the text neither is empty nor begins with '/'.
+  explicit JsonPointer(std::string_view text);
+  const std::vector<std::string>& steps() const { return steps_; }
+  std::string text() const;
+  bool empty() const { return steps_.empty(); }
+  const std::string& back() const { return steps_.back(); }
+  JsonPointer parent() const;
+
+ private:
+  std::vector<std::string> steps_;
+};
+
+/// Null, a truth value, a number, a text, an array, or an object whose members keep the order in which they
+/// were added. A list in braces is an object if each of its elements is a pair that begins with a text, as in
+/// {{"n", 3}, {"mean", 2.5}}; otherwise it is an array. Numbers that are not finite are printed as null.
+class Json {
+ public:
+  using exception = JsonError;
+  using json_pointer = JsonPointer;
+  using value_type = Json;
+  using iterator = Json*;
+  using const_iterator = const Json*;
+
+  Json() = default;
+  Json(std::nullptr_t) {}
+  Json(bool value);
+  Json(int value);
+  Json(long value);
+  Json(long long value);
+  Json(unsigned value);
+  Json(unsigned long value);
+  Json(unsigned long long value);
+  Json(double value);
+  Json(const char* value);
+  Json(std::string value);
+  Json(std::string_view value);
+  Json(std::initializer_list<Json> values);
+  /// Other pointers would become truth values.
+  template <class T>
+  Json(const T*) = delete;
+  /// Of vectors, arrays, sets and spans.
+  template <std::ranges::input_range Values>
+  requires(!std::convertible_to<const Values&, std::string_view> && !std::derived_from<Values, Json>)
+      Json(const Values& values)
+      : Json(array()) {
+    for (const auto& value : values) push_back(Json(static_cast<std::ranges::range_value_t<Values>>(value)));
+  }
+  template <class T>
+  Json(const std::map<std::string, T>& members) : type_(Type::Object) {
+    for (const auto& [key, value] : members) (*this)[key] = Json(value);
+  }
+  Json(const Json&);
+  Json(Json&&) noexcept;
+  Json& operator=(const Json&);
+  Json& operator=(Json&&) noexcept;
+  ~Json();
+
+  static Json array();
+  static Json array(std::initializer_list<Json> values);
+  static Json object();
+  /// Throws JsonError where an element is not a pair that begins with a text.
+  static Json object(std::initializer_list<Json> members);
+
+  /// Throws JsonError with the place where the text stops being JSON.
+  static Json parse(std::string_view text);
+  static Json parse(std::istream& text);
+  static bool accept(std::string_view text);
+  /// On one line where `indent` is negative. Bytes that are not UTF-8 become U+FFFD: a database may hold any.
+  std::string dump(int indent = -1) const;
+
+  bool is_null() const { return type_ == Type::Null; }
+  bool is_boolean() const { return type_ == Type::Boolean; }
+  bool is_number() const { return is_number_integer() || type_ == Type::Double; }
+  bool is_number_integer() const { return type_ == Type::Signed || type_ == Type::Unsigned; }
+  bool is_number_unsigned() const { return type_ == Type::Unsigned; }
+  bool is_number_float() const { return type_ == Type::Double; }
+  bool is_string() const { return type_ == Type::Text; }
+  bool is_array() const { return type_ == Type::Array; }
+  bool is_object() const { return type_ == Type::Object; }
+  bool is_structured() const { return is_array() || is_object(); }
+  bool is_primitive() const { return !is_structured(); }
+
+  /// Elements or members; 0 for null, 1 for every other value.
+  std::size_t size() const;
+  bool empty() const { return size() == 0; }
+  Json* begin() { return items_.data(); }
+  Json* end() { return items_.data() + items_.size(); }
+  const Json* begin() const { return items_.data(); }
+  const Json* end() const { return items_.data() + items_.size(); }
+
+  struct Member {
+    std::string key;
+    Json& value;
+  };
+  struct ConstMember {
+    std::string key;
+    const Json& value;
+  };
+  /// The members with their keys, or the elements with their indices as texts; none of other values.
+  std::vector<Member> items();
+  std::vector<ConstMember> items() const;
+
+  bool contains(std::string_view key) const { return find(key) != end(); }
+  bool contains(const JsonPointer& place) const;
+  /// end() where there is no such member.
+  Json* find(std::string_view key);
+  const Json* find(std::string_view key) const;
+  /// Throws JsonError where there is no such member or element.
+  Json& at(std::string_view key);
+  const Json& at(std::string_view key) const;
+  Json& at(std::size_t index);
+  const Json& at(std::size_t index) const;
+  Json& at(const JsonPointer& place);
+  const Json& at(const JsonPointer& place) const;
+  /// Adds a missing member with the value null; null becomes an object. Constant values throw JsonError.
+  Json& operator[](std::string_view key);
+  const Json& operator[](std::string_view key) const { return at(key); }
+  Json& operator[](const char* key) { return (*this)[std::string_view(key)]; }
+  const Json& operator[](const char* key) const { return at(std::string_view(key)); }
+  Json& operator[](std::size_t index) { return at(index); }
+  const Json& operator[](std::size_t index) const { return at(index); }
+  Json& operator[](int index) { return at(static_cast<std::size_t>(index)); }
+  const Json& operator[](int index) const { return at(static_cast<std::size_t>(index)); }
+  Json& operator[](const JsonPointer& place);
+  const Json& operator[](const JsonPointer& place) const { return at(place); }
+  Json& front() { return at(std::size_t{0}); }
+  const Json& front() const { return at(std::size_t{0}); }
+  Json& back() { return at(size() - 1); }
+  const Json& back() const { return at(size() - 1); }
+
+  /// Null becomes an array. Throw JsonError for other kinds of values.
+  void push_back(Json value);
+  template <class T>
+  void emplace_back(T&& value) {
+    push_back(Json(std::forward<T>(value)));
+  }
+  /// Adds the members of an object; those that exist get its values.
+  void update(const Json& object);
+  /// How many members went, 0 or 1.
+  std::size_t erase(std::string_view key);
+
+  /// Throws JsonError where the value is of another kind. Numbers are converted, as C++ does.
+  template <class T>
+  T get() const {
+    T out;
+    get_to(out);
+    return out;
+  }
+  void get_to(bool& out) const;
+  void get_to(double& out) const;
+  void get_to(std::string& out) const;
+  void get_to(Json& out) const { out = *this; }
+  template <std::integral T>
+  void get_to(T& out) const {
+    out = type_ == Type::Unsigned ? static_cast<T>(unsigned_number()) : static_cast<T>(signed_number());
+  }
+  void get_to(float& out) const { out = static_cast<float>(get<double>()); }
+  template <class T>
+  void get_to(std::vector<T>& out) const {
+    out.clear();
+    for (const Json& value : elements()) out.push_back(value.get<T>());
+  }
+  template <class T>
+  void get_to(std::map<std::string, T>& out) const {
+    out.clear();
+    for (const auto& [key, value] : items()) out[key] = value.template get<T>();
+  }
+  template <class T>
+  void get_to(std::set<T>& out) const {
+    out.clear();
+    for (const Json& value : elements()) out.insert(value.get<T>());
+  }
+  /// As get(); what compares and computes asks for the kind by name.
+  template <class T>
+  requires(std::same_as<T, std::string> || std::same_as<T, double> || std::same_as<T, int> ||
+           std::same_as<T, std::vector<double>> || std::same_as<T, std::set<std::string>>)
+  operator T() const {
+    return get<T>();
+  }
+  /// Throws JsonError where the value is no text.
+  const std::string& text() const;
+  /// The member's value, or `otherwise` where there is none. Throws JsonError where it is of another kind.
+  template <class T>
+  T value(std::string_view key, T otherwise) const {
+    const Json* found = find(key);
+    return found == end() ? otherwise : found->get<T>();
+  }
+  std::string value(std::string_view key, const char* otherwise) const {
+    return value(key, std::string(otherwise));
+  }
+  Json value(const JsonPointer& place, const Json& otherwise) const;
+
+  /// Numbers are equal by their value, objects whatever the order of their members.
+  friend bool operator==(const Json& a, const Json& b);
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  friend bool operator==(const Json& a, T b) { return a == Json(b); }
+  /// Numbers and texts have an order, each among themselves.
+  friend std::partial_ordering operator<=>(const Json& a, const Json& b);
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  friend std::partial_ordering operator<=>(const Json& a, T b) { return a <=> Json(b); }
+  /// For messages of tests.
+  friend std::ostream& operator<<(std::ostream& out, const Json& value);
+
+ private:
+  enum class Type : unsigned char { Null, Boolean, Signed, Unsigned, Double, Text, Array, Object };
+  std::int64_t signed_number() const;
+  std::uint64_t unsigned_number() const;
+  const std::vector<Json>& elements() const;
+  const Json* found(const JsonPointer& place) const;
+  [[noreturn]] void wrong_kind(const char* wanted) const;
+  friend struct JsonLibrary;
+
+  Type type_ = Type::Null;
+  union {
+    bool boolean_;
+    std::int64_t signed_;
+    std::uint64_t unsigned_ = 0;
+    double double_;
+  };
+  std::string text_;
+  /// Elements, or the members' values, whose keys are `keys_`.
+  std::vector<Json> items_;
+  std::vector<std::string> keys_;
+};
+
+/// True where brackets and braces outside of strings are nested deeper than `levels`. The text may be no
+/// JSON. A deep tree overflows the stack where it is printed or compared.
+bool nested_deeper_than(int levels, std::string_view json);
+
+/// Levels that no file of this program reaches.
+inline constexpr int most_json_levels = 32;
+
+/// JSON that outsiders made: null where it is no JSON or nested deeper than `levels`.
+Json parse_json(std::string_view text, int levels = most_json_levels);
+
+}  // namespace base
