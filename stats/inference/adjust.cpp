@@ -34,30 +34,8 @@ Values step_up(Values values) {
   return values;
 }
 
-/// Algorithm of Wright 1992, appendix: every subset of the m largest p bounds the adjusted ones from below.
-Values hommel(const Values& sorted) {
-  const std::size_t n = sorted.size();
-  Values adjusted = sorted;
-  for (std::size_t m = n; m > 1; --m) {
-    const auto size = static_cast<double>(m);
-    double least = 1;
-    for (std::size_t rank = 1; rank <= m; ++rank)
-      least = std::min(least, size * sorted[n - m + rank - 1] / static_cast<double>(rank));
-    for (std::size_t i = 0; i < n; ++i) {
-      const double bound = i >= n - m ? least : std::min(least, size * sorted[i]);
-      adjusted[i] = std::max(adjusted[i], bound);
-    }
-  }
-  return adjusted;
-}
-
 Values adjusted_in_order(const Values& sorted, Adjustment method) {
   const auto n = static_cast<double>(sorted.size());
-  const auto harmonic = [n] {
-    double sum = 0;
-    for (double i = n; i >= 1; --i) sum += 1 / i;
-    return sum;
-  };
   switch (method) {
     case Adjustment::None:
       return sorted;
@@ -65,14 +43,8 @@ Values adjusted_in_order(const Values& sorted, Adjustment method) {
       return scaled(sorted, [n](double) { return n; });
     case Adjustment::Holm:
       return step_down(scaled(sorted, [n](double i) { return n - i + 1; }));
-    case Adjustment::Hochberg:
-      return step_up(scaled(sorted, [n](double i) { return n - i + 1; }));
-    case Adjustment::Hommel:
-      return hommel(sorted);
     case Adjustment::BenjaminiHochberg:
       return step_up(scaled(sorted, [n](double i) { return n / i; }));
-    case Adjustment::BenjaminiYekutieli:
-      return step_up(scaled(sorted, [n, sum = harmonic()](double i) { return n / i * sum; }));
   }
   throw std::invalid_argument("an unknown adjustment");
 }

@@ -9,16 +9,13 @@
 
 namespace stats {
 
-/// The first four bound the chance of one or more false rejections in the family, the last two the expected
-/// share of false ones among the rejections.
+/// Bonferroni and Holm bound the chance of one or more false rejections in the family, Benjamini and Hochberg
+/// the expected share of false ones among the rejections.
 enum class Adjustment {
   None,
   Bonferroni,
-  Holm,                ///< Holm 1979; valid under any dependence
-  Hochberg,            ///< Hochberg 1988; independent or positively dependent tests
-  Hommel,              ///< Hommel 1988; as Hochberg, never larger
-  BenjaminiHochberg,   ///< Benjamini and Hochberg 1995
-  BenjaminiYekutieli,  ///< Benjamini and Yekutieli 2001; any dependence
+  Holm,               ///< Holm 1979; valid under any dependence
+  BenjaminiHochberg,  ///< Benjamini and Hochberg 1995
 };
 
 struct AdjustedP {

@@ -11,9 +11,9 @@ namespace stats {
 
 namespace {
 
-TTestOptions options(double alpha, double null_value = 0) {
+TTestOptions options(double alpha) {
   if (!(alpha > 0 && alpha < 0.5)) throw std::invalid_argument("alpha must lie between 0 and 1/2");
-  return {.confidence = 1 - 2 * alpha, .null_value = null_value, .effect_intervals = false};
+  return {.confidence = 1 - 2 * alpha, .effect_intervals = false};
 }
 
 void require_order(const Margins& margins) {
@@ -22,7 +22,7 @@ void require_order(const Margins& margins) {
 }
 
 /// Both one-sided tests from the t against a difference of zero.
-EquivalenceTest against(const TTest& test, const Margins& margins, double alpha, std::size_t n) {
+EquivalenceTest against(const PairedTTest& test, const Margins& margins, double alpha) {
   EquivalenceTest out;
   out.stderr_estimate = test.stderr_estimate;
   out.estimate = test.t * test.stderr_estimate;
@@ -34,43 +34,19 @@ EquivalenceTest against(const TTest& test, const Margins& margins, double alpha,
   out.p = std::max(out.p_lower, out.p_upper);
   const double reach = student_upper_quantile(alpha, out.df);
   out.ci = {(test.t - reach) * test.stderr_estimate, (test.t + reach) * test.stderr_estimate};
-  out.n = n;
+  out.n = test.n;
   out.n_missing = test.n_missing;
   return out;
 }
 
 }  // namespace
 
-Result<EquivalenceTest> equivalence_one(std::span<const double> x, double reference, Margins margins,
-                                        double alpha) {
-  require_order(margins);
-  const auto test = t_test_one(x, options(alpha, reference));
-  if (!test) return Refusal{test.reason()};
-  return against(*test, margins, alpha, test->n);
-}
-
 Result<EquivalenceTest> equivalence_paired(std::span<const double> x, std::span<const double> y,
                                            Margins margins, double alpha) {
   require_order(margins);
   const auto test = t_test_paired(x, y, options(alpha));
   if (!test) return Refusal{test.reason()};
-  return against(*test, margins, alpha, test->n);
-}
-
-Result<EquivalenceTest> equivalence_independent(std::span<const double> x, std::span<const double> y,
-                                                Margins margins, double alpha) {
-  require_order(margins);
-  const auto test = t_test_independent(x, y, options(alpha));
-  if (!test) return Refusal{test.reason()};
-  return against(*test, margins, alpha, test->n_x + test->n_y);
-}
-
-Result<EquivalenceTest> equivalence_welch(std::span<const double> x, std::span<const double> y,
-                                          Margins margins, double alpha) {
-  require_order(margins);
-  const auto test = t_test_welch(x, y, options(alpha));
-  if (!test) return Refusal{test.reason()};
-  return against(*test, margins, alpha, test->n_x + test->n_y);
+  return against(*test, margins, alpha);
 }
 
 }  // namespace stats

@@ -1,5 +1,5 @@
 #pragma once
-/// Equivalence by t-tests against margins (Schuirmann 1987; Lakens 2017). Missing
+/// Equivalence by paired t-tests against margins (Schuirmann 1987; Lakens 2017). Missing
 /// values, refusals and errors as in t_test.hpp.
 
 #include <array>
@@ -28,14 +28,8 @@ struct EquivalenceTest {
   std::size_t n_missing = 0;
 };
 
-/// Mean of x - reference. alpha in (0, 1/2).
-Result<EquivalenceTest> equivalence_one(std::span<const double> x, double reference, Margins margins,
-                                        double alpha = 0.05);
+/// Mean of x - y over pairs. alpha in (0, 1/2).
 Result<EquivalenceTest> equivalence_paired(std::span<const double> x, std::span<const double> y,
                                            Margins margins, double alpha = 0.05);
-Result<EquivalenceTest> equivalence_independent(std::span<const double> x, std::span<const double> y,
-                                                Margins margins, double alpha = 0.05);
-Result<EquivalenceTest> equivalence_welch(std::span<const double> x, std::span<const double> y,
-                                          Margins margins, double alpha = 0.05);
 
 }  // namespace stats

@@ -26,19 +26,16 @@ void reflect(Column& column, const Column& mirror, Wide mirror_square, std::size
   for (std::size_t i = from; i < column.size(); ++i) column[i] -= factor * mirror[i];
 }
 
-/// Columns whose part beyond the columns before is less than this share of their length depend on them.
-struct Precision {
-  double dependence;
-};
-constexpr Precision of_double{1e-14};  // the columns themselves are rounded
-constexpr Precision of_wide{1e-25};
+/// Columns whose part beyond the columns before is less than this share of their length depend on them: the
+/// columns themselves are rounded.
+constexpr double dependence = 1e-14;
 
 /// Householder's QR: the columns become R, y becomes Q^T y. False when columns depend on each other.
-bool triangulate(std::vector<Column>& columns, Column& y, Precision precision) {
+bool triangulate(std::vector<Column>& columns, Column& y) {
   for (std::size_t j = 0; j < columns.size(); ++j) {
     const double length = std::sqrt(dot(columns[j], columns[j], 0).value());
     const Wide below = dot(columns[j], columns[j], j);
-    if (!(std::sqrt(below.value()) > precision.dependence * length)) return false;
+    if (!(std::sqrt(below.value()) > dependence * length)) return false;
     Column mirror = columns[j];
     const Wide norm = sqrt(below);
     mirror[j] += mirror[j] < Wide(0) ? -norm : norm;
@@ -63,22 +60,19 @@ std::vector<Column> inverse(const std::vector<Column>& r) {
   return out;
 }
 
-double residual_f(double explained, double rss, double slopes, double df) {
-  return explained / slopes / (rss / df);
-}
-
 /// Fits scaled columns; exponents bring the results back.
 Result<LinearFit> fit(std::vector<Column> columns, const std::vector<int>& exponents, Column y,
-                      int y_exponent, bool intercept, Precision precision) {
+                      int y_exponent, bool intercept, std::size_t n_missing) {
   const auto n = y.size(), p = columns.size();
   if (n < p || p == 0) return Refusal{"fewer rows than coefficients"};
   const auto of_y = moments(y);
   const Wide total = intercept ? of_y.squares : dot(y, y, 0);
-  if (!triangulate(columns, y, precision)) return Refusal{"the columns depend on each other"};
+  if (!triangulate(columns, y)) return Refusal{"the columns depend on each other"};
   const auto inverted = inverse(columns);
 
   LinearFit out;
   out.n = n;
+  out.n_missing = n_missing;
   out.df = static_cast<double>(n - p);
   const double rss = dot(y, y, p).value();
   out.rss = std::ldexp(rss, 2 * y_exponent);
@@ -97,7 +91,7 @@ Result<LinearFit> fit(std::vector<Column> columns, const std::vector<int>& expon
   if (!(total.high > 0)) return out;
   out.r2 = (Wide(1) - dot(y, y, p) / total).value();
   if (slopes > 0 && out.df > 0 && rss > 0) {
-    out.f = residual_f((total - dot(y, y, p)).value(), rss, slopes, out.df);
+    out.f = (total - dot(y, y, p)).value() / slopes / (rss / out.df);
     out.f_p = fisher_upper(std::max(*out.f, 0.0), slopes, out.df);
   }
   return out;
@@ -132,13 +126,6 @@ Result<Rows> complete(const std::vector<std::vector<double>>& columns, std::span
   return out;
 }
 
-Result<LinearFit> with_missing(Result<LinearFit> result, std::size_t n_missing) {
-  if (!result) return result;
-  LinearFit out = *result;
-  out.n_missing = n_missing;
-  return out;
-}
-
 }  // namespace
 
 Result<LinearFit> fit_linear(const std::vector<std::vector<double>>& columns, std::span<const double> y,
@@ -156,60 +143,8 @@ Result<LinearFit> fit_linear(const std::vector<std::vector<double>>& columns, st
     design.push_back(scaled(column, exponents.back()));
   }
   const int y_exponent = common_exponent(rows->y);
-  return with_missing(
-      fit(std::move(design), exponents, scaled(rows->y, y_exponent), y_exponent, intercept, of_double),
-      rows->n_missing);
-}
-
-Result<LinearFit> fit_polynomial(std::span<const double> x, std::span<const double> y, std::size_t degree) {
-  const auto pairs = present_pairs(x, y);
-  if (!pairs) return Refusal{pairs.reason()};
-  const int exponent = common_exponent(pairs->x), y_exponent = common_exponent(pairs->y);
-  const auto base = scaled(pairs->x, exponent);
-  std::vector<Column> design{Column(base.size(), Wide(1))};
-  std::vector<int> exponents{0};
-  for (std::size_t k = 1; k <= degree; ++k) {
-    design.push_back(design.back());
-    for (std::size_t i = 0; i < base.size(); ++i) design[k][i] = design[k][i] * base[i];
-    exponents.push_back(exponent * static_cast<int>(k));
-  }
-  return with_missing(
-      fit(std::move(design), exponents, scaled(pairs->y, y_exponent), y_exponent, true, of_wide),
-      pairs->n_missing);
-}
-
-Result<OneWayAnova> anova_one_way(const std::vector<std::vector<double>>& groups) {
-  OneWayAnova out;
-  std::vector<double> all;
-  std::vector<std::vector<double>> kept;
-  for (const auto& group : groups) {
-    const auto sample = present(group);
-    if (!sample) return Refusal{sample.reason()};
-    out.n_missing += sample->n_missing;
-    if (sample->values.empty()) continue;
-    kept.push_back(sample->values);
-    all.insert(all.end(), sample->values.begin(), sample->values.end());
-  }
-  out.n = all.size();
-  if (kept.size() < 2) return Refusal{"fewer than two groups with values"};
-  if (all.size() <= kept.size()) return Refusal{"no degree of freedom within the groups"};
-  const int exponent = common_exponent(all);
-  const auto grand = moments(scaled(all, exponent));
-  Wide within, between;
-  for (const auto& group : kept) {
-    const auto m = moments(scaled(group, exponent));
-    within += m.squares;
-    between += (m.mean - grand.mean) * (m.mean - grand.mean) * Wide(static_cast<double>(m.n));
-  }
-  if (!(within.high > 0)) return Refusal{"all values within the groups are equal"};
-  out.df_between = static_cast<double>(kept.size() - 1);
-  out.df_within = static_cast<double>(all.size() - kept.size());
-  out.ss_between = std::ldexp(between.value(), 2 * exponent);
-  out.ss_within = std::ldexp(within.value(), 2 * exponent);
-  out.f = residual_f(between.value(), within.value(), out.df_between, out.df_within);
-  out.p = fisher_upper(out.f, out.df_between, out.df_within);
-  out.eta_squared = (between / (between + within)).value();
-  return out;
+  return fit(std::move(design), exponents, scaled(rows->y, y_exponent), y_exponent, intercept,
+             rows->n_missing);
 }
 
 }  // namespace stats

@@ -1,5 +1,5 @@
 #pragma once
-/// Ordinary least squares and one-way analysis of variance.
+/// Ordinary least squares.
 
 #include <cstddef>
 #include <optional>
@@ -27,18 +27,4 @@ struct LinearFit {
 /// differ. Refused: fewer rows than coefficients, an infinite value, columns that depend on each other.
 Result<LinearFit> fit_linear(const std::vector<std::vector<double>>& columns, std::span<const double> y,
                              bool intercept = true);
-/// y on x, x^2 ... x^degree, the powers exact to double-double.
-Result<LinearFit> fit_polynomial(std::span<const double> x, std::span<const double> y, std::size_t degree);
-
-struct OneWayAnova {
-  std::size_t n = 0, n_missing = 0;
-  double df_between = 0, df_within = 0;
-  double ss_between = 0, ss_within = 0;
-  double f = 0, p = 0;
-  double eta_squared = 0;  ///< ss_between / total
-};
-
-/// Refused: fewer than two groups with values, no degree of freedom within, all values within groups equal.
-Result<OneWayAnova> anova_one_way(const std::vector<std::vector<double>>& groups);
-
 }  // namespace stats

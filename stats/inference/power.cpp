@@ -48,21 +48,6 @@ std::string why_no_t_power(double d, double alpha) {
   return open_unit(alpha) ? "" : "alpha must lie between 0 and 1";
 }
 
-/// The n at which a power that rises with n is met, from 2 on.
-Result<SampleSize> sample_size(double wanted, const std::function<double(double)>& power) {
-  double high = 2;
-  while (power(high) < wanted) {
-    if (high >= most_participants) return Refusal{"more than 1e7 participants would be needed"};
-    high = std::min(2 * high, most_participants);
-  }
-  if (high == 2) return SampleSize{2, 2, power(2)};
-  const double n = find_root([&](double x) { return power(x) - wanted; }, high / 2, high);
-  // The root may fall short of a whole number that meets the power exactly.
-  double whole = std::ceil(n);
-  if (whole - 1 >= 2 && power(whole - 1) >= wanted) --whole;
-  return SampleSize{n, static_cast<int>(whole), power(whole)};
-}
-
 /// ln of the density of chi(df) / sqrt(df).
 double log_chi_density(double s, double df) {
   return std::numbers::ln2 + df / 2 * std::log(df / 2) - std::lgamma(df / 2) + (df - 1) * std::log(s) -
@@ -157,15 +142,6 @@ Result<double> t_power(double n, double d, double alpha, Design design, Alternat
   if (!(n > 1) || n > most_participants) return Refusal{"n must be above 1 and at most 1e7"};
   if (const auto reason = why_no_t_power(d, alpha); !reason.empty()) return Refusal{reason};
   return t_power_of(n, d, alpha, design, alternative);
-}
-
-Result<SampleSize> t_sample_size(double d, double power, double alpha, Design design,
-                                 Alternative alternative) {
-  if (const auto reason = why_no_t_power(d, alpha); !reason.empty()) return Refusal{reason};
-  if (d == 0 || (d < 0 && alternative == Alternative::Greater) || (d > 0 && alternative == Alternative::Less))
-    return Refusal{"no number of participants finds an effect that is not there"};
-  if (!(power > alpha && power < 1)) return Refusal{"the power must lie between alpha and 1"};
-  return sample_size(power, [&](double n) { return t_power_of(n, d, alpha, design, alternative); });
 }
 
 Result<double> tost_power(double n, const Equivalence& equivalence) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Power of the tests that the study uses, and the number of participants for a wished power. Exact: no
-/// simulation and no normal approximation.
+/// Power of the tests that the study uses, and the smallest effect that a test finds. Exact: no simulation
+/// and no normal approximation.
 
 #include <optional>
 
@@ -22,17 +22,6 @@ Result<double> t_power(double n, double d, double alpha = 0.05, Design design = 
 /// (alpha, 1).
 Result<double> t_detectable(double n, double power, double alpha = 0.05, Design design = Design::Paired,
                             Alternative alternative = Alternative::TwoSided);
-
-struct SampleSize {
-  double n_real = 0;  ///< where the power is met exactly
-  int n = 0;          ///< the smallest whole number that meets it
-  double power = 0;   ///< at n
-};
-
-/// Participants (per group) for a power of the t-test. Refused: d = 0 or of the wrong sign, power outside
-/// (alpha, 1), more than 1e7 participants.
-Result<SampleSize> t_sample_size(double d, double power, double alpha = 0.05, Design design = Design::Paired,
-                                 Alternative alternative = Alternative::TwoSided);
 
 /// An equivalence test (two one-sided t-tests) in the units of the scale.
 struct Equivalence {

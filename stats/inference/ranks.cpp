@@ -63,42 +63,4 @@ RankSumTails signed_rank_tails(std::span<const double> ranks, double sum) {
   return tails(weights, sum);
 }
 
-double rank_sum_work(std::span<const double> ranks, std::size_t chosen) {
-  const double total = std::accumulate(ranks.begin(), ranks.end(), 0.0);
-  return static_cast<double>(ranks.size()) * static_cast<double>(std::min(chosen, ranks.size() - chosen)) *
-         2 * total;
-}
-
-RankSumTails rank_sum_tails(std::span<const double> ranks, std::size_t chosen, double sum) {
-  if (2 * chosen > ranks.size()) {
-    const double total = std::accumulate(ranks.begin(), ranks.end(), 0.0);
-    const auto other = rank_sum_tails(ranks, ranks.size() - chosen, total - sum);
-    return {other.upper, other.lower};
-  }
-  auto steps = doubled(ranks);
-  std::sort(steps.begin(), steps.end());
-  // At most the largest `chosen` ranks add up.
-  const auto largest =
-      std::accumulate(steps.end() - static_cast<std::ptrdiff_t>(chosen), steps.end(), std::size_t{0});
-  const std::size_t width = largest + 1;
-  // weights[m][s]: choices of m ranks so far that add up to s, as probabilities of the draw.
-  std::vector<double> weights((chosen + 1) * width, 0.0);
-  weights[0] = 1;
-  std::size_t seen = 0;
-  for (const auto step : steps) {
-    ++seen;
-    for (std::size_t m = std::min(seen, chosen); m > 0; --m) {
-      double* to = &weights[m * width];
-      const double* from = &weights[(m - 1) * width];
-      for (std::size_t s = width; s-- > step;) to[s] += from[s - step];
-    }
-    // The number of choices grows like a binomial coefficient; keep it in range.
-    const double scale = *std::max_element(weights.begin(), weights.end());
-    if (scale > 1e200) {
-      for (auto& w : weights) w /= 1e200;
-    }
-  }
-  return tails(std::span(weights).subspan(chosen * width, width), sum);
-}
-
 }  // namespace stats

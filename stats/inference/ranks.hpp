@@ -25,10 +25,4 @@ struct RankSumTails {
 /// S adds each rank with probability 1/2: the signed-rank test's null distribution given the ranks.
 RankSumTails signed_rank_tails(std::span<const double> ranks, double sum);
 
-/// S adds `chosen` of the ranks, every choice equally likely: the rank-sum test's.
-RankSumTails rank_sum_tails(std::span<const double> ranks, std::size_t chosen, double sum);
-
-/// Steps that rank_sum_tails takes.
-double rank_sum_work(std::span<const double> ranks, std::size_t chosen);
-
 }  // namespace stats

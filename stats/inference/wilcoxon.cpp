@@ -15,10 +15,8 @@ namespace stats {
 namespace {
 
 constexpr std::size_t largest_exact_n = 1000;
-constexpr double largest_exact_work = 1e9;
-/// Walsh averages, or differences between groups, that are held at once (200 MB).
+/// Walsh averages that are held at once (200 MB).
 constexpr double most_pairs = 2.5e7;
-const Refusal too_many{"more pairs of values than 2.5e7"};
 
 double two_sided(const RankSumTails& tails) { return std::min(1.0, 2 * std::min(tails.lower, tails.upper)); }
 
@@ -124,7 +122,7 @@ Result<SignedRank> signed_rank(std::span<const double> differences, double confi
   if (!sample) return Refusal{sample.reason()};
   if (sample->values.empty()) return Refusal{"no values"};
   const auto n_values = static_cast<double>(sample->values.size());
-  if (n_values * (n_values + 1) / 2 > most_pairs) return too_many;
+  if (n_values * (n_values + 1) / 2 > most_pairs) return Refusal{"more pairs of values than 2.5e7"};
   std::vector<double> nonzero;
   for (const double d : sample->values) {
     if (d != 0) nonzero.push_back(d);
@@ -162,46 +160,6 @@ Result<SignedRank> signed_rank(const ExactDifferences& differences, double confi
   out.hodges_lehmann /= differences.denominator;
   if (out.hodges_lehmann_ci)
     for (double& end : *out.hodges_lehmann_ci) end /= differences.denominator;
-  return out;
-}
-
-Result<MannWhitney> mann_whitney(std::span<const double> x, std::span<const double> y) {
-  const auto a = present(x), b = present(y);
-  if (!a) return Refusal{a.reason()};
-  if (!b) return Refusal{b.reason()};
-  if (a->values.empty() || b->values.empty()) return Refusal{"a group without values"};
-  if (static_cast<double>(a->values.size()) * static_cast<double>(b->values.size()) > most_pairs)
-    return too_many;
-  std::vector<double> all = a->values;
-  all.insert(all.end(), b->values.begin(), b->values.end());
-  const auto ranked = midranks(all);
-  MannWhitney out;
-  out.n_x = a->values.size();
-  out.n_y = b->values.size();
-  out.n_missing = a->n_missing + b->n_missing;
-  out.has_ties = ranked.has_ties();
-  double rank_sum = 0;
-  for (std::size_t i = 0; i < out.n_x; ++i) rank_sum += ranked.ranks[i];
-  const auto n_x = static_cast<double>(out.n_x), n_y = static_cast<double>(out.n_y), n = n_x + n_y;
-  out.u = rank_sum - n_x * (n_x + 1) / 2;
-  out.probability_of_superiority = out.u / (n_x * n_y);
-  out.rank_biserial = 2 * out.probability_of_superiority - 1;
-  if (rank_sum_work(ranked.ranks, out.n_x) <= largest_exact_work) {
-    const auto tails = rank_sum_tails(ranked.ranks, out.n_x, rank_sum);
-    out.p_exact = two_sided(tails);
-    out.p_exact_less = tails.lower;
-    out.p_exact_greater = tails.upper;
-  }
-  const double variance = n_x * n_y / 12 * (n + 1 - ranked.tie_sum / (n * (n - 1)));
-  if (variance > 1e-9 * n_x * n_y) {
-    out.p_normal = normal_p(out.u - n_x * n_y / 2, variance, 0.5);
-    out.p_normal_uncorrected = normal_p(out.u - n_x * n_y / 2, variance, 0);
-  }
-  std::vector<double> differences;
-  for (const double u : a->values) {
-    for (const double v : b->values) differences.push_back(u - v);
-  }
-  out.hodges_lehmann = median_in_place(differences);
   return out;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Wilcoxon's signed-rank test and the test of Mann and Whitney. NaN = missing: dropped and counted. More
-/// than 2.5e7 pairs of values (7,070 differences, two groups of 5,000) are refused.
+/// Wilcoxon's signed-rank test. NaN = missing: dropped and counted. More than 2.5e7 pairs of values (7,070
+/// differences) are refused.
 
 #include <array>
 #include <cstddef>
@@ -42,21 +42,5 @@ struct SignedRank {
 Result<SignedRank> signed_rank(std::span<const double> differences, double confidence = 0.95);
 /// Differences of means: equal ones are ties, whatever the counts.
 Result<SignedRank> signed_rank(const ExactDifferences& differences, double confidence = 0.95);
-
-struct MannWhitney {
-  std::size_t n_x = 0, n_y = 0, n_missing = 0;
-  double u = 0;                           ///< pairs in which x is the larger, ties counting one half
-  double probability_of_superiority = 0;  ///< u / (n_x n_y), Vargha and Delaney's A
-  double rank_biserial = 0;               ///< 2 A - 1
-  bool has_ties = false;
-  std::optional<double> p_exact;  ///< two-sided, conditional on the midranks; empty beyond 1e9 steps of work
-  std::optional<double> p_exact_less, p_exact_greater;
-  std::optional<double> p_normal;  ///< with continuity correction; empty when all values are equal
-  std::optional<double> p_normal_uncorrected;  ///< without
-  double hodges_lehmann = 0;                   ///< median of all x_i - y_j
-};
-
-/// Refused: a group without values, an infinite value.
-Result<MannWhitney> mann_whitney(std::span<const double> x, std::span<const double> y);
 
 }  // namespace stats

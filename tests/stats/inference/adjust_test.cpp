@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,13 @@ using stats::adjust;
 using stats::Adjustment;
 using Values = std::vector<double>;
 
-const std::map<std::string, Adjustment> methods{
-    {"bonferroni", Adjustment::Bonferroni}, {"holm", Adjustment::Holm},
-    {"hochberg", Adjustment::Hochberg},     {"hommel", Adjustment::Hommel},
-    {"BH", Adjustment::BenjaminiHochberg},  {"BY", Adjustment::BenjaminiYekutieli},
-    {"fdr", Adjustment::BenjaminiHochberg}, {"none", Adjustment::None}};
+const std::map<std::string, Adjustment> methods{{"bonferroni", Adjustment::Bonferroni},
+                                                {"holm", Adjustment::Holm},
+                                                {"BH", Adjustment::BenjaminiHochberg},
+                                                {"fdr", Adjustment::BenjaminiHochberg},
+                                                {"none", Adjustment::None}};
+/// Other packs hold them; the project has no such adjustment.
+const std::set<std::string> absent{"hochberg", "hommel", "BY"};
 
 TEST(Adjust, AgreesWithTheReferenceAnswers) {
   for (const auto& c : oracle::cases("adjust")) {
@@ -33,7 +36,7 @@ TEST(Adjust, AgreesWithTheReferenceAnswers) {
       continue;
     }
     for (const auto& [field, want] : c.at("expect").items()) {
-      if (field == "status" || field == "reason" || want.is_null()) continue;
+      if (field == "status" || field == "reason" || want.is_null() || absent.contains(field)) continue;
       const std::string id = c.at("id").get<std::string>() + ": " + field;
       ASSERT_TRUE(methods.contains(field)) << id << ": nobody compares it";
       const auto got = adjust(p, methods.at(field), family);
@@ -47,36 +50,29 @@ TEST(Adjust, AgreesWithTheReferenceAnswers) {
   }
 }
 
-/// Holm by closed testing: the largest Bonferroni p of all subsets with the hypothesis in. Hommel: Simes'.
-double closed(const Values& p, std::size_t index, bool simes) {
+/// Holm by closed testing: the largest Bonferroni p of all subsets with the hypothesis in.
+double closed(const Values& p, std::size_t index) {
   double worst = 0;
   for (unsigned subset = 1; subset < 1u << p.size(); ++subset) {
     if (!(subset >> index & 1u)) continue;
     Values members;
     for (std::size_t i = 0; i < p.size(); ++i)
       if (subset >> i & 1u) members.push_back(p[i]);
-    std::sort(members.begin(), members.end());
-    double combined = 1;
-    for (std::size_t i = 0; i < (simes ? members.size() : 1); ++i)
-      combined =
-          std::min(combined, static_cast<double>(members.size()) * members[i] / static_cast<double>(i + 1));
-    worst = std::max(worst, combined);
+    const double least = *std::min_element(members.begin(), members.end());
+    worst = std::max(worst, std::min(1.0, static_cast<double>(members.size()) * least));
   }
   return worst;
 }
 
-TEST(Adjust, HolmAndHommelAreClosedTests) {
+TEST(Adjust, HolmIsAClosedTest) {
   uniformity::Draws draws(3);
   for (int round = 0; round < 200; ++round) {
     Values p;
     for (std::size_t i = 0; i < 1 + static_cast<std::size_t>(round) % 8; ++i)
       p.push_back(std::pow(draws.uniform(), 2));
     if (p.size() > 2) p[2] = p[0];  // ties
-    const auto holm = adjust(p, Adjustment::Holm), hommel = adjust(p, Adjustment::Hommel);
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      EXPECT_NEAR(holm->p[i], closed(p, i, false), 1e-15);
-      EXPECT_NEAR(hommel->p[i], closed(p, i, true), 1e-15);
-    }
+    const auto holm = adjust(p, Adjustment::Holm);
+    for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(holm->p[i], closed(p, i), 1e-15);
   }
 }
 
@@ -101,10 +97,7 @@ TEST(Adjust, StrongerMethodsGiveNoLargerP) {
     for (std::size_t i = 0; i < p.size(); ++i) {
       const double rounding = 1e-15;
       EXPECT_LE(of(Adjustment::Holm)[i], of(Adjustment::Bonferroni)[i] + rounding);
-      EXPECT_LE(of(Adjustment::Hochberg)[i], of(Adjustment::Holm)[i] + rounding);
-      EXPECT_LE(of(Adjustment::Hommel)[i], of(Adjustment::Hochberg)[i] + rounding);
-      EXPECT_LE(of(Adjustment::BenjaminiHochberg)[i], of(Adjustment::Hommel)[i] + rounding);
-      EXPECT_LE(of(Adjustment::BenjaminiHochberg)[i], of(Adjustment::BenjaminiYekutieli)[i] + rounding);
+      EXPECT_LE(of(Adjustment::BenjaminiHochberg)[i], of(Adjustment::Holm)[i] + rounding);
     }
   }
 }

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -14,15 +12,13 @@
 #include "stats/base/json.hpp"
 #include "stats/inference/describe.hpp"
 #include "stats/inference/linear_fit.hpp"
-#include "stats/inference/nonlinear_fit.hpp"
-#include "tests/stats/inference/formula.hpp"
 #include "tests/stats/oracle.hpp"
 
 namespace {
 
 using json = base::Json;
 using Values = std::vector<double>;
-constexpr double eight_digits = 1e-8, six_digits = 1e-6;
+constexpr double eight_digits = 1e-8;
 
 /// Certified data sets of one class.
 json certified(const std::string& kind) {
@@ -32,12 +28,6 @@ json certified(const std::string& kind) {
 }
 
 double number(const json& item) { return std::stod(item.get<std::string>()); }
-
-Values numbers(const json& list) {
-  Values out;
-  for (const auto& item : list) out.push_back(number(item));
-  return out;
-}
 
 /// The columns of numbers below the last line that starts with "Data:".
 std::vector<Values> columns(const json& data_set) {
@@ -82,32 +72,17 @@ TEST(Nist, Univariate) {
   }
 }
 
-TEST(Nist, Anova) {
-  const auto sets = certified("anova");
-  ASSERT_FALSE(sets.empty()) << "the pack has no ANOVA data of NIST";
-  for (const auto& [name, set] : sets.items()) {
-    const auto data = columns(set);
-    ASSERT_EQ(data.size(), 2u) << name;
-    std::map<double, Values> by_level;
-    double largest = 0;
-    for (std::size_t i = 0; i < data[0].size(); ++i) {
-      by_level[data[0][i]].push_back(data[1][i]);
-      largest = std::max(largest, std::abs(data[1][i]));
-    }
-    std::vector<Values> groups;
-    for (const auto& [level, values] : by_level) groups.push_back(values);
-    const auto got = stats::anova_one_way(groups);
-    ASSERT_TRUE(got) << name << ": " << got.reason();
-    ASSERT_EQ(got->n, set.at("n").get<std::size_t>()) << name;
-    // The data have more digits than a double at 1e12: no program that reads doubles can know them.
-    const double spread = std::sqrt(number(set.at("ms_within")));
-    const double rtol = std::max(eight_digits, 4 * std::numeric_limits<double>::epsilon() * largest / spread);
-    expect_digits(name + ": df between", got->df_between, number(set.at("df_between")), 0);
-    expect_digits(name + ": df within", got->df_within, number(set.at("df_within")), 0);
-    expect_digits(name + ": between", got->ss_between, number(set.at("ss_between")), rtol);
-    expect_digits(name + ": within", got->ss_within, number(set.at("ss_within")), rtol);
-    expect_digits(name + ": F", got->f, number(set.at("F")), rtol);
+/// x, x^2 ... x^degree; empty when a power is not a whole number that a double holds exactly.
+std::vector<Values> powers(const Values& x, std::size_t degree) {
+  std::vector<Values> out{x};
+  while (out.size() < degree) {
+    out.push_back(out.back());
+    for (std::size_t i = 0; i < x.size(); ++i) out.back()[i] *= x[i];
   }
+  for (const auto& column : out)
+    for (const double v : column)
+      if (v != std::floor(v) || std::abs(v) > 0x1p53) return {};
+  return out;
 }
 
 TEST(Nist, Linear) {
@@ -121,9 +96,10 @@ TEST(Nist, Linear) {
     const auto& parameters = set.at("params");
     const bool intercept = parameters.contains("B0");
     // One predictor with more coefficients than a line has is a polynomial.
-    const bool polynomial = intercept && data.size() == 1 && parameters.size() > 2;
-    const auto got = polynomial ? stats::fit_polynomial(data[0], y, parameters.size() - 1)
-                                : stats::fit_linear(data, y, intercept);
+    if (intercept && data.size() == 1 && parameters.size() > 2) data = powers(data[0], parameters.size() - 1);
+    // Other packs hold polynomials whose powers would be rounded: fit_linear cannot know those digits.
+    if (data.empty()) continue;
+    const auto got = stats::fit_linear(data, y, intercept);
     ASSERT_TRUE(got) << name << ": " << got.reason();
     ASSERT_EQ(got->coefficients.size(), parameters.size()) << name;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -132,85 +108,6 @@ TEST(Nist, Linear) {
       expect_digits(name + ": " + label, got->coefficients[i], number(want.at("est")), eight_digits);
       expect_digits(name + ": error of " + label, got->standard_errors[i], number(want.at("se")),
                     eight_digits);
-    }
-  }
-}
-
-/// A data set of NIST with its model.
-class NistModel {
- public:
-  explicit NistModel(const json& set) : n_parameters_(set.at("certified").size()) {
-    auto data = columns(set);
-    y_ = data.at(0);
-    data.erase(data.begin());
-    auto text = set.at("model").get<std::string>();
-    if (const auto equals = text.find('='); equals != std::string::npos) {
-      if (text.find("log") < equals) {
-        for (auto& v : y_) v = std::log(v);
-      }
-      text = text.substr(equals + 1);
-    }
-    node_ = formula::Parser(text).parse();
-    for (std::size_t i = 0; i < y_.size(); ++i) {
-      predictors_.emplace_back();
-      for (const auto& column : data) predictors_.back().push_back(column[i]);
-    }
-  }
-
-  stats::NonlinearModel model() const {
-    stats::NonlinearModel out{n_parameters_, y_.size(), {}, {}};
-    out.residuals = [this](std::span<const double> b, std::span<double> r) {
-      for (std::size_t i = 0; i < y_.size(); ++i) r[i] = at(b, i).value - y_[i];
-    };
-    out.jacobian = [this](std::span<const double> b, std::span<double> jacobian) {
-      for (std::size_t i = 0; i < y_.size(); ++i) {
-        const auto here = at(b, i);
-        std::copy_n(here.slope.begin(), n_parameters_,
-                    jacobian.begin() + static_cast<std::ptrdiff_t>(i * n_parameters_));
-      }
-    };
-    return out;
-  }
-
-  /// Sums of squares below this are rounding of the data.
-  double rounding() const {
-    double squares = 0;
-    for (const double v : y_) squares += v * v;
-    return 1e-20 * squares;
-  }
-
- private:
-  formula::Dual at(std::span<const double> b, std::size_t i) const {
-    return node_({{b.begin(), b.end()}, predictors_[i]});
-  }
-
-  std::size_t n_parameters_;
-  Values y_;
-  std::vector<Values> predictors_;
-  formula::Node node_;
-};
-
-TEST(Nist, NonlinearFromBothStarts) {
-  const auto sets = certified("nonlinear");
-  ASSERT_FALSE(sets.empty()) << "the pack has no nonlinear NIST data";
-  for (const auto& [name, set] : sets.items()) {
-    const NistModel data(set);
-    const auto want = numbers(set.at("certified")), errors = numbers(set.at("se"));
-    const double rss = number(set.at("rss"));
-    for (const char* start : {"start1", "start2"}) {
-      const auto got = stats::fit_nonlinear(data.model(), numbers(set.at(start)));
-      const auto where = name + " from " + start;
-      if (!got) {
-        ADD_FAILURE() << where << ": " << got.reason();
-        continue;
-      }
-      for (std::size_t i = 0; i < want.size(); ++i) {
-        const auto label = where + ": b" + std::to_string(i + 1);
-        expect_digits(label, got->parameters[i], want[i], six_digits);
-        if (rss > data.rounding())
-          expect_digits(label + "'s error", got->standard_errors[i], errors[i], six_digits);
-      }
-      if (rss > data.rounding()) expect_digits(where + ": rss", got->rss, rss, six_digits);
     }
   }
 }

@@ -45,17 +45,6 @@ void expect_t_power(const json& c) {
   oracle::expect_field(c, "power", *got);
 }
 
-void expect_t_size(const json& c) {
-  const auto& in = c.at("input");
-  const auto got = stats::t_sample_size(number(in.at("d")), number(in.at("power")), number(in.at("alpha")),
-                                        design(in), side(in));
-  if (oracle::is_undefined(c)) return oracle::expect_refused(c, got);
-  ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
-  oracle::expect_known_fields(c, {"n_real", "n"});
-  oracle::expect_field(c, "n_real", got->n_real);
-  oracle::expect_field(c, "n", got->n);
-}
-
 void expect_binomial_power(const json& c) {
   const auto& in = c.at("input");
   const auto got = stats::binomial_power(number(in.at("n")), number(in.at("p1")), number(in.at("p0")),
@@ -73,11 +62,9 @@ TEST(Power, AgreesWithTheReferenceAnswers) {
     const std::string op = c.at("op");
     if (op == "power.t")
       expect_t_power(c);
-    else if (op == "power.t.n")
-      expect_t_size(c);
     else if (op == "power.binom")
       expect_binomial_power(c);
-    else
+    else if (op != "power.t.n")  // other packs hold it; the project does not solve for n
       ADD_FAILURE() << c.at("id") << ": nobody tests " << op;
   }
 }
@@ -111,22 +98,6 @@ TEST(Power, SidesMirrorAndAddUp) {
     EXPECT_NEAR(*stats::t_power(12, d), right + left, 1e-12);
     EXPECT_NEAR(*stats::t_power(12, -d), right + left, 1e-12);
     EXPECT_NEAR(*stats::t_power(12, -d, 0.025, Design::Paired, Alternative::Less), right, 1e-12);
-  }
-}
-
-TEST(Power, TheSampleSizeIsTheSmallestThatHasThePower) {
-  for (const double d : {0.15, 0.5, 1.0, -0.5, 8.0}) {
-    for (const double wanted : {0.3, 0.8, 0.95}) {
-      for (const auto type : {Design::Paired, Design::TwoSample}) {
-        const auto size = stats::t_sample_size(d, wanted, 0.05, type);
-        ASSERT_TRUE(size) << size.reason();
-        EXPECT_GE(*stats::t_power(size->n, d, 0.05, type), wanted);
-        EXPECT_EQ(size->power, *stats::t_power(size->n, d, 0.05, type));
-        if (size->n > 2) {
-          EXPECT_LT(*stats::t_power(size->n - 1, d, 0.05, type), wanted);
-        }
-      }
-    }
   }
 }
 
@@ -232,11 +203,6 @@ TEST(Power, RefusesWhatHasNoAnswer) {
     EXPECT_NE(stats::tost_power(26, {.alpha = alpha}).reason(), "");
   }
   EXPECT_NE(stats::t_power(26, unknown).reason(), "");
-  EXPECT_NE(stats::t_sample_size(0, 0.8).reason(), "");
-  EXPECT_NE(stats::t_sample_size(-0.5, 0.8, 0.05, Design::Paired, Alternative::Greater).reason(), "");
-  EXPECT_NE(stats::t_sample_size(0.5, 0.01).reason(), "");
-  EXPECT_NE(stats::t_sample_size(0.5, 1).reason(), "");
-  EXPECT_NE(stats::t_sample_size(1e-5, 0.8).reason(), "");
   EXPECT_NE(stats::tost_power(26, {.sd = 0}).reason(), "");
   EXPECT_NE(stats::tost_power(26, {.low = 1, .high = 0}).reason(), "");
   for (const double n : {0.0, 2.5, -1.0, unknown}) EXPECT_NE(stats::binomial_power(n, 0.7).reason(), "");

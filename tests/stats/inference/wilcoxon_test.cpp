@@ -79,41 +79,17 @@ void expect_signed(const base::Json& c, const SignedRank& got) {
   }
 }
 
-void expect_ranked(const base::Json& c, const MannWhitney& got) {
-  expect_field(c, "U_x", got.u);
-  expect_field(c, "rank_biserial", got.rank_biserial);
-  expect_field(c, "A12", got.probability_of_superiority);
-  expect_flag(c, "has_ties", got.has_ties);
-  expect_field(c, "p_normal_cc", got.p_normal);
-  expect_field(c, "p_normal_nocc", got.p_normal_uncorrected);
-  expect_field(c, "p_exact_conditional", got.p_exact);
-  expect_field(c, "p_exact_R", got.p_exact);
-  oracle::expect_known_fields(c, {"U_x", "rank_biserial", "A12", "has_ties", "p_normal_cc", "p_normal_nocc",
-                                  "p_exact_conditional", "p_exact_R"});
-}
-
 TEST(Wilcoxon, Oracle) {
   for (const auto& c : oracle::cases("wilcoxon")) {
-    const auto& input = c.at("input");
     const auto op = c.at("op").get<std::string>();
-    if (op == "wilcoxon.signed") {
-      const auto got = signed_rank(oracle::numbers(input.at("d")));
-      if (oracle::is_undefined(c)) {
-        oracle::expect_refused(c, got);
-      } else {
-        ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
-        expect_signed(c, *got);
-      }
-    } else if (op == "mannwhitney") {
-      const auto got = mann_whitney(oracle::numbers(input.at("x")), oracle::numbers(input.at("y")));
-      if (oracle::is_undefined(c)) {
-        oracle::expect_refused(c, got);
-      } else {
-        ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
-        expect_ranked(c, *got);
-      }
+    if (op == "mannwhitney") continue;  // other packs hold it; the project has no test of two groups' ranks
+    ASSERT_EQ(op, "wilcoxon.signed") << c.at("id");
+    const auto got = signed_rank(oracle::numbers(c.at("input").at("d")));
+    if (oracle::is_undefined(c)) {
+      oracle::expect_refused(c, got);
     } else {
-      ADD_FAILURE() << c.at("id") << ": unknown operation " << op;
+      ASSERT_TRUE(got) << c.at("id") << ": " << got.reason();
+      expect_signed(c, *got);
     }
   }
 }
@@ -254,55 +230,6 @@ TEST(SignedRank, LargeSamplesTurnToTheNormal) {
   ASSERT_TRUE(got && got->p_exact);
   EXPECT_NEAR(*got->p_exact, got->p_normal, 1e-3);
   EXPECT_FALSE(signed_rank(sampling::normal(random, 1001))->p_exact);
-}
-
-TEST(MannWhitney, ExactMeansAllChoices) {
-  // 2 of 5: the ranks of {7, 9} among {1, 4, 5, 7, 9} are the largest sum of ten.
-  const auto got = mann_whitney(Values{7, 9}, Values{1, 4, 5});
-  ASSERT_TRUE(got);
-  EXPECT_EQ(got->u, 6);
-  EXPECT_DOUBLE_EQ(*got->p_exact_greater, 0.1);
-  EXPECT_DOUBLE_EQ(*got->p_exact, 0.2);
-  EXPECT_EQ(got->hodges_lehmann, 4.5) << "differences 2 3 4 5 6 8";
-}
-
-TEST(MannWhitney, EdgesAndRefusals) {
-  EXPECT_EQ(mann_whitney(Values{}, Values{1}).reason(), "a group without values");
-  EXPECT_EQ(mann_whitney(Values{1}, Values{unknown}).reason(), "a group without values");
-  EXPECT_EQ(mann_whitney(Values{infinite}, Values{1}).reason(), "a value is infinite");
-  EXPECT_FALSE(mann_whitney(Values(6000, 1.0), Values(6000, 2.0)));
-  const auto same = mann_whitney(Values{4, 4, 4}, Values{4, 4});
-  ASSERT_TRUE(same);
-  EXPECT_EQ(*same->p_exact, 1);
-  EXPECT_EQ(same->rank_biserial, 0);
-  EXPECT_FALSE(same->p_normal || same->p_normal_uncorrected);
-}
-
-TEST(MannWhitney, OrderShiftScaleAndSwap) {
-  const Values x{3, 1, 4, 1, 5, 9, 2}, y{2, 7, 1, 8, 2, 8, 1, 8, 2};
-  const auto base = mann_whitney(x, y), swapped = mann_whitney(y, x);
-  Values sx(x.rbegin(), x.rend()), sy = y;
-  for (auto& v : sx) v = (v + 1024) * 0x1p300;
-  for (auto& v : sy) v = (v + 1024) * 0x1p300;
-  const auto moved = mann_whitney(sx, sy);
-  ASSERT_TRUE(base && swapped && moved);
-  EXPECT_EQ(*moved->p_exact, *base->p_exact);
-  EXPECT_EQ(moved->u, base->u);
-  EXPECT_NEAR(*swapped->p_exact, *base->p_exact, 1e-15);
-  EXPECT_NEAR(*swapped->p_exact_less, *base->p_exact_greater, 1e-15);
-  EXPECT_EQ(swapped->rank_biserial, -base->rank_biserial);
-  EXPECT_DOUBLE_EQ(*swapped->p_normal, *base->p_normal);
-}
-
-TEST(MannWhitney, PValuesAreUniformUnderTheNull) {
-  constexpr std::size_t sets = 4000;
-  std::mt19937_64 random(33);
-  std::vector<double> p;
-  for (std::size_t i = 0; i < sets; ++i) {
-    const auto got = mann_whitney(sampling::normal(random, 8), sampling::normal(random, 11));
-    p.push_back(spread(*got->p_exact_greater, *got->p_exact_less, random));
-  }
-  EXPECT_LT(sampling::uniform_distance(p), sampling::critical_distance(sets));
 }
 
 }  // namespace
