@@ -146,7 +146,8 @@ TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
   ASSERT_EQ(table(sweep).exit_code, 0);
   const auto none = table(sweep + " --budget 0.0001ms --out " + path("none.toml"));
   EXPECT_EQ(none.exit_code, 1);
-  EXPECT_THAT(none.out, HasSubstr("Nearest is LoRes"));
+  // Which one is nearest depends on how busy the machine is.
+  EXPECT_THAT(none.out, HasSubstr("--budget 0.0001ms: is kept by no setting of the sweep. Nearest is "));
   EXPECT_FALSE(std::filesystem::exists(path("none.toml")));
   const auto chosen = table(sweep + " --budget 100000ms --error kinetic --out " + path("best.toml"));
   ASSERT_EQ(chosen.exit_code, 0) << chosen.out;
