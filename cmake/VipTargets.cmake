@@ -5,12 +5,14 @@ target_include_directories(vip_flags INTERFACE ${PROJECT_SOURCE_DIR})
 set(_cxx "$<COMPILE_LANGUAGE:CXX>")
 # The code reads neither errno nor FP traps of <cmath>; NaN and infinity keep their meaning.
 target_compile_options(vip_flags INTERFACE $<${_cxx}:-fno-math-errno> $<${_cxx}:-fno-trapping-math>)
+set(_unity "$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>")
+# In a unit, which is no main file to g++, a class may hold a type of its own source.
+target_compile_options(vip_flags INTERFACE $<${_unity}:-Wno-subobject-linkage>)
 if(VIP_WERROR)
-  # Compiled with other sources, a local name may be that of their constants, and a class may hold a type of its own file.
-  set(_unity "$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>,$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>")
+  # A local name may be that of a constant of another source of its unit.
   target_compile_options(vip_flags INTERFACE
     $<${_cxx}:-Wall> $<${_cxx}:-Wextra> $<IF:${_unity},-Wshadow=local,$<${_cxx}:-Wshadow>>
-    $<${_unity}:-Wno-subobject-linkage> $<${_cxx}:-Wnon-virtual-dtor> $<${_cxx}:-Wconversion>
+    $<${_cxx}:-Wnon-virtual-dtor> $<${_cxx}:-Wconversion>
     $<${_cxx}:-Wno-sign-conversion> $<${_cxx}:-Werror>
     # False alarms of g++ 12 inside std::string (GCC bug 105651).
     $<$<AND:${_cxx},$<CXX_COMPILER_ID:GNU>>:-Wno-restrict>)
@@ -37,17 +39,22 @@ if(VIP_LIBFUZZER)
   target_link_options(vip_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# vip_precompile(TARGET HEADERS...) what most files of a target include is read once. It shortens the build and changes nothing
-# else: each file still includes what it uses, which -DVIP_PRECOMPILE=OFF shows. vip_precompile(TARGET REUSE_FROM OTHER) takes
-# those of a target that is compiled with the same flags. Templates of such headers are instantiated in every file, whether it
-# uses them or not: CLI11, which few files need, cost each of the others 2.6 s.
+# vip_precompile(TARGET [HEADERS...]) reads once what most files of a target include. It shortens the build and changes nothing
+# else: each file still includes what it uses, which -DVIP_PRECOMPILE=OFF shows. Without HEADERS the targets of a folder and those
+# below it share the standard headers, which have no definitions but vip_flags': g++ refuses headers that were compiled with a
+# definition that the file lacks. vip_precompile(TARGET REUSE_FROM OTHER) takes those of a target that is compiled with the same
+# flags. Templates of such headers are instantiated in every file, whether it uses them or not: CLI11, which few files need, cost
+# each of the others 2.6 s.
+set(vip_standard_headers <algorithm> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <set> <sstream>
+    <string> <vector>)
 function(vip_precompile target)
   if(VIP_PRECOMPILE)
     if("${ARGV1}" STREQUAL "REUSE_FROM")
       target_precompile_headers(${target} ${ARGN})
+    elseif(ARGN)
+      target_precompile_headers(${target} PRIVATE ${vip_standard_headers} ${ARGN})
     else()
-      target_precompile_headers(${target} PRIVATE <algorithm> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
-                                <optional> <set> <sstream> <string> <vector> ${ARGN})
+      target_precompile_headers(${target} REUSE_FROM ${vip_headers})
     endif()
     # What comes from there is no system header to g++ 12: its false alarms inside std::string show (GCC bug 105329).
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
@@ -56,7 +63,18 @@ function(vip_precompile target)
   endif()
 endfunction()
 
-# vip_unity(TARGET [FIRST regex] [APART sources...]) compiles the sources of each folder eight at a time as one, so that what they
+# vip_shared_headers(NAME) compiles the standard headers with the flags that are in force, for vip_precompile after it.
+function(vip_shared_headers name)
+  if(VIP_PRECOMPILE)
+    file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers.cpp CONTENT "")
+    add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/headers.cpp)
+    target_link_libraries(${name} PRIVATE vip_flags)
+    target_precompile_headers(${name} PRIVATE ${vip_standard_headers})
+    set(vip_headers ${name} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# vip_unity(TARGET [FIRST regex] [APART sources...]) compiles the sources of each folder twelve at a time as one, so that what they
 # include is read, and its templates are instantiated, once. A name in an anonymous namespace occurs once in a folder, apart from
 # the sources named here. Sources whose names match FIRST share their units. Each file still includes what it uses, which
 # -DVIP_UNITY=OFF shows.
@@ -86,7 +104,7 @@ function(vip_unity target)
     if(NOT DEFINED count_${group})
       set(count_${group} 0)
     endif()
-    math(EXPR unit "${count_${group}} / 8")
+    math(EXPR unit "${count_${group}} / 12")
     math(EXPR count_${group} "${count_${group}} + 1")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group}_${unit})
   endforeach()

@@ -7,10 +7,10 @@ base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
   const auto t = facts.tolerance.value_or(study::FrameTolerance{});
   const bool known = facts.tolerance.has_value();
   out["active_fraction"] = known ? base::Json(t.active_fraction) : base::Json();
-  out["tau_fps"] = or_null(t.tau_fps);
+  out["tau_fps"] = t.tau_fps;
   out["beta"] = known ? base::Json(t.beta) : base::Json();
-  out["mu_fps"] = or_null(t.mu_fps);
-  out["delta_fps"] = or_null(t.delta_fps);
+  out["mu_fps"] = t.mu_fps;
+  out["delta_fps"] = t.delta_fps;
   if (const auto& met = facts.guards) {
     out["guards"] = {{"speed_limited", met->speed_limited},
                      {"coincident_pairs", met->coincident_pairs},

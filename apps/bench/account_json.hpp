@@ -9,12 +9,7 @@
 
 namespace apps {
 
-/// null: not measured.
-inline base::Json or_null(const std::optional<double>& value) {
-  return value ? base::Json(*value) : base::Json();
-}
-
-/// frame: since the gate opened.
+/// frame: since the gate opened. Null: not measured.
 base::Json account_json(std::int64_t frame, const study::FrameFacts& facts);
 
 /// null: a sound run.

@@ -173,7 +173,7 @@ base::Json run_frames(const FrameOptions& options) {
       {"temporal",
        {{"model", {{"a", options.fluid.temporal.model.a}, {"b", options.fluid.temporal.model.b}}},
         {"tau_given", options.rate.empty() ? options.tau : "rate:" + options.rate},
-        {"tau_fps", or_null(report.temporal.tau)},
+        {"tau_fps", report.temporal.tau},
         {"beta", report.temporal.beta},
         {"solved_share_mean", accounts.solved}}},
       {"guards",

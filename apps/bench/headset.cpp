@@ -72,12 +72,9 @@ class HeadsetBench {
 
   base::Json facts() const {
     const HeadsetRate rate = session_.rate();
-    return {{"headset", session_.description()},
-            {"refresh_hz", rate.measured_hz ? base::Json(*rate.measured_hz) : base::Json()},
-            {"fluid", fluid_->description()},
-            {"particles", fluid_->simulation().particle_count()},
-            {"drawn_by", sim::gl_description()},
-            {"dropped_slots", session_.meter().dropped()}};
+    return {{"headset", session_.description()}, {"refresh_hz", rate.measured_hz},
+            {"fluid", fluid_->description()},    {"particles", fluid_->simulation().particle_count()},
+            {"drawn_by", sim::gl_description()}, {"dropped_slots", session_.meter().dropped()}};
   }
 
  private:

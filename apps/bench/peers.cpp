@@ -170,17 +170,16 @@ std::string peers_note(const std::vector<PeerRow>& peers, const OurRow& ours) {
 
 base::Json to_json(const std::vector<PeerRow>& peers) {
   base::Json out = base::Json::array();
-  const auto or_none = [](const auto& value) { return value ? base::Json(*value) : base::Json(); };
   for (const auto& peer : peers) {
     out.push_back({{"program", peer.program},
                    {"solver", peer.solver},
                    {"particles", peer.particles},
                    {"dt_s", peer.dt_s},
-                   {"iterations", or_none(peer.iterations)},
+                   {"iterations", peer.iterations},
                    {"backend", peer.backend},
-                   {"threads", or_none(peer.threads)},
+                   {"threads", peer.threads},
                    {"ms_a_step", peer.ms_a_step},
-                   {"density_error_percent", or_none(peer.density_error_percent)},
+                   {"density_error_percent", peer.density_error_percent},
                    {"source", peer.source}});
   }
   return out;

@@ -50,8 +50,8 @@ namespace {
 
 /// What --version prints: which version this is, and what it was built with.
 std::string version_text(const std::string& program) {
-  return program + " " + base::version() + "\nbuilt " + base::built_utc().substr(0, 10) +
-         ": " VIP_BUILD_OPTIONS;
+  return program + " " + base::version() + "\nbuilt " + base::built_utc().substr(0, 10) + ": " +
+         base::build_options();
 }
 
 /// Runs what the command line asks for; whether all of it came to its end.
@@ -85,6 +85,10 @@ std::string error_text(const std::exception& error, const std::string& command) 
   return base::Error(command, std::string("unexpected: ") + error.what(),
                      "give the command again; if it ends like this again, report the whole command line")
       .what();
+}
+
+std::shared_ptr<CLI::App> new_program(const char* description, const char* name) {
+  return std::make_shared<CLI::App>(description, name);
 }
 
 int run_program(CLI::App& app, int argc, char** argv) {

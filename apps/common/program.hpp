@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace CLI {
@@ -11,6 +12,10 @@ class App;
 }
 
 namespace apps {
+
+/// A program without commands. For files that do not read CLI11 themselves: its classes take seconds to
+/// compile.
+std::shared_ptr<CLI::App> new_program(const char* description, const char* name);
 
 /// Parses the command line and runs the chosen command. 0 = done; 1 = an error, told on stderr, such as
 /// output that could not be written (a reader that left a pipe is told nothing); 2 = the command line was

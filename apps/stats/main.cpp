@@ -1,16 +1,14 @@
 /// vip-stats: from the database to figures, decisions and the solver's file.
 
-#include <CLI/CLI.hpp>
-
 #include "apps/common/program.hpp"
 #include "apps/stats/commands.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app("Statistics of ViP-Lab studies", "vip-stats");
-  apps::add_fit_ptpe_command(app);
-  apps::add_task_commands(app);
-  apps::add_report_command(app);
-  apps::add_preregister_command(app);
-  apps::add_power_command(app);
-  return apps::run_program(app, argc, argv);
+  const auto app = apps::new_program("Statistics of ViP-Lab studies", "vip-stats");
+  apps::add_fit_ptpe_command(*app);
+  apps::add_task_commands(*app);
+  apps::add_report_command(*app);
+  apps::add_preregister_command(*app);
+  apps::add_power_command(*app);
+  return apps::run_program(*app, argc, argv);
 }

@@ -1,21 +1,19 @@
-#include <CLI/CLI.hpp>
-
 #include "apps/common/program.hpp"
 #include "apps/study/commands.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app("Studies of people's perception of real-time fluid", "vip-study");
-  apps::add_check_command(app);
-  apps::add_headset_command(app);
-  apps::add_reference_command(app);
-  apps::add_bake_command(app);
-  apps::add_run_command(app);
-  apps::add_resume_command(app);
-  apps::add_status_command(app);
-  apps::add_export_command(app);
-  apps::add_consent_command(app);
-  apps::add_withdraw_command(app);
-  apps::add_merge_command(app);
-  apps::add_salvage_command(app);
-  return apps::run_program(app, argc, argv);
+  const auto app = apps::new_program("Studies of people's perception of real-time fluid", "vip-study");
+  apps::add_check_command(*app);
+  apps::add_headset_command(*app);
+  apps::add_reference_command(*app);
+  apps::add_bake_command(*app);
+  apps::add_run_command(*app);
+  apps::add_resume_command(*app);
+  apps::add_status_command(*app);
+  apps::add_export_command(*app);
+  apps::add_consent_command(*app);
+  apps::add_withdraw_command(*app);
+  apps::add_merge_command(*app);
+  apps::add_salvage_command(*app);
+  return apps::run_program(*app, argc, argv);
 }

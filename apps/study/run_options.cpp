@@ -13,10 +13,6 @@ namespace {
 
 constexpr int format_version = 2;
 
-base::Json number_or_null(const std::optional<double>& value) {
-  return value ? base::Json(*value) : base::Json();
-}
-
 std::optional<double> optional_number(const base::Json& json) {
   if (json.is_null()) return {};
   return json.get<double>();
@@ -71,8 +67,8 @@ std::string format_run_options(const RunOptions& options) {
                   {"gaze", options.gaze},
                   {"accept_slow", options.accept_slow},
                   {"station", options.station},
-                  {"screen_width_mm", number_or_null(options.screen_width_mm)},
-                  {"viewing_distance_mm", number_or_null(options.viewing_distance_mm)}};
+                  {"screen_width_mm", options.screen_width_mm},
+                  {"viewing_distance_mm", options.viewing_distance_mm}};
   for (const std::string& text : options.settings)
     json["settings"].push_back({{"sha256", base::sha256_hex(text)}, {"text", text}});
   return json.dump();

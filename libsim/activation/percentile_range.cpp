@@ -55,8 +55,8 @@ SIM_FN int bits_of(float value) {
   return bits;
 }
 
-constexpr int run_length = 16;
-int runs_of(int n) { return (n + run_length - 1) / run_length; }
+constexpr int values_of_run = 16;
+int value_runs(int n) { return (n + values_of_run - 1) / values_of_run; }
 
 struct Extremes {
   const float* values;
@@ -64,10 +64,10 @@ struct Extremes {
   int* largest;
   int n;
   SIM_FN void operator()(int run) const {
-    const int end = (run + 1) * run_length < n ? (run + 1) * run_length : n;
-    float low = values[run * run_length];
+    const int end = (run + 1) * values_of_run < n ? (run + 1) * values_of_run : n;
+    float low = values[run * values_of_run];
     float high = low;
-    for (int i = run * run_length; i < end; ++i) {
+    for (int i = run * values_of_run; i < end; ++i) {
       low = fminf(low, values[i]);
       high = fmaxf(high, values[i]);
     }
@@ -116,7 +116,7 @@ void PercentileRange::take_extremes(const Array<float>& values, int n) {
   int* least_negated = extremes_.data();
   int* largest = extremes_.data() + 1;
   for_each("extremes", 1, BeginExtremes{least_negated, largest});
-  for_each("extremes", runs_of(n), Extremes{values.data(), least_negated, largest, n});
+  for_each("extremes", value_runs(n), Extremes{values.data(), least_negated, largest, n});
   for_each("extremes", 1, TakeExtremes{least_negated, largest, range_.data()});
 }
 

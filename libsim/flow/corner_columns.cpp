@@ -6,14 +6,14 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-struct Mark {
+struct MarkCorners {
   const Vec4* position;
   Corners corners;
   int* inside;
   SIM_FN void operator()(int i) const { inside[i] = corners.hold(xyz(position[i])); }
 };
 
-struct List {
+struct ListCorners {
   const Vec4* position;
   const int* id;
   const int* inside;
@@ -41,14 +41,14 @@ int CornerColumns::find(Reads<Column::Position, Column::Id> particles, const Cor
   const int n = particles.size();
   if (n == 0) return 0;
   inside_.resize(static_cast<std::size_t>(n));
-  for_each("mark corners", n, Mark{particles.position(), corners, inside_.data()});
+  for_each("mark corners", n, MarkCorners{particles.position(), corners, inside_.data()});
   scanner_.inclusive_sum(inside_, rank_);
   const int found = last_of(rank_);
   keys_.resize(static_cast<std::size_t>(found));
   order_.resize(static_cast<std::size_t>(found));
-  for_each(
-      "list corners", n,
-      List{particles.position(), particles.id(), inside_.data(), rank_.data(), keys_.data(), order_.data()});
+  for_each("list corners", n,
+           ListCorners{particles.position(), particles.id(), inside_.data(), rank_.data(), keys_.data(),
+                       order_.data()});
   sorter_.sort(keys_, order_);
   return found;
 }

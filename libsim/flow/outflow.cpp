@@ -4,7 +4,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-struct Mark {
+struct MarkThrough {
   const Vec4* position;
   const std::uint8_t* level;
   Walls walls;
@@ -22,7 +22,7 @@ struct Mark {
   }
 };
 
-struct List {
+struct ListStaying {
   const int* stays;
   const int* sums;
   int* order;
@@ -46,19 +46,19 @@ Outflow::Amount Outflow::run(Particles& particles, OutflowView p, const Walls& w
   left_.zero();
   stays_.resize(static_cast<std::size_t>(n));
   for_each("mark through", n,
-           Mark{.position = p.position(),
-                .level = p.level(),
-                .walls = walls,
-                .stays = stays_.data(),
-                .left = left_.data(),
-                .temperature = p.temperature(),
-                .heat = heat});
+           MarkThrough{.position = p.position(),
+                       .level = p.level(),
+                       .walls = walls,
+                       .stays = stays_.data(),
+                       .left = left_.data(),
+                       .temperature = p.temperature(),
+                       .heat = heat});
   const Amount left = left_.to_host()[0];
   if (left.particles == 0) return left;
   const int after = n - left.particles;
   scanner_.inclusive_sum(stays_, sums_);
   order_.resize(static_cast<std::size_t>(after));
-  for_each("list staying", n, List{stays_.data(), sums_.data(), order_.data()});
+  for_each("list staying", n, ListStaying{stays_.data(), sums_.data(), order_.data()});
   density_.reserve(static_cast<std::size_t>(p.capacity()));
   density_.resize(static_cast<std::size_t>(after));
   for_each("keep densities", after, Keep{order_.data(), p.density(), density_.data()});

@@ -9,7 +9,6 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/program.hpp"
 
 namespace sim {
 
@@ -19,6 +18,10 @@ namespace {
 
 constexpr const char* suffix = ".settled";
 constexpr std::size_t digest_size = 64;
+/// SHA-256 of the libraries that settle a fluid; libsim/CMakeLists.txt writes it.
+constexpr const char* solver_digest =
+#include "solver_digest.inc"
+    ;
 // 4M particles of n_* x 8 at 32 bytes.
 constexpr std::size_t most_bytes = std::size_t{32} * 8 * (4u << 20) + digest_size;
 constexpr std::chrono::hours forgotten_after{30 * 24};
@@ -62,7 +65,7 @@ fs::path default_cache_folder() {
 
 std::string settled_key(const Scene& scene, const SimulationOptions& options) {
   std::ostringstream text;
-  text << std::hexfloat << base::program_digest() << ' ' << scene.sha256 << ' ' << method_name(options.method)
+  text << std::hexfloat << solver_digest << ' ' << scene.sha256 << ' ' << method_name(options.method)
        << ' ' << options.n_star << ' ' << backend_name(options.backend) << ' ' << options.iterations << ' '
        << options.substeps << ' ' << options.frame_dt_s << ' ' << options.relaxation << ' ' << options.tensile
        << ' ' << options.viscosity_m2_s << ' ' << options.momentum << ' ' << options.courant << ' '

@@ -31,7 +31,7 @@ constexpr std::array<KindName, 16> kind_names{{{BlockKind::Instructions, "instru
 
 constexpr std::size_t most_blocks = 200;
 
-BlockKind read_kind(const base::TomlTable& table) {
+BlockKind read_block_kind(const base::TomlTable& table) {
   std::vector<std::string> words;
   for (const auto& known : kind_names) words.emplace_back(known.name);
   const std::string word = table.choice("kind", words);
@@ -107,7 +107,7 @@ void read_validation(const base::TomlTable& table, Block& block) {
 
 Block read_block(const base::TomlTable& table, const Design& design, const std::string& language) {
   Block block;
-  block.kind = read_kind(table);
+  block.kind = read_block_kind(table);
   block.id = id_of(table, "id");
   read_page(table, block);
   if (any_of(block.kind, {BlockKind::Practice, BlockKind::Repeat, BlockKind::Catch})) {

@@ -35,7 +35,7 @@ std::vector<std::pair<int, std::string>> read_anchors(const base::TomlTable& que
   return out;
 }
 
-AnswerKind read_kind(const base::TomlTable& table) {
+AnswerKind read_answer_kind(const base::TomlTable& table) {
   const std::string word = table.choice("kind", {"scale", "choice", "number", "text"});
   if (word == "choice") return AnswerKind::Choice;
   if (word == "number") return AnswerKind::Number;
@@ -140,7 +140,7 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   question.id = read_question_id(table);
   question.text = text_of(table, "text");
   question.language = table.has("language") ? text_of(table, "language") : language;
-  question.kind = read_kind(table);
+  question.kind = read_answer_kind(table);
   question.personal = table.boolean_or("personal", false);
   if (question.personal && (block == BlockKind::Stimulus || block == BlockKind::Catch)) {
     table.fail("personal", "= true has no place in a block of kind " + block_kind_name(block),

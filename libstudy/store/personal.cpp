@@ -40,7 +40,7 @@ void make_private(const fs::path& path) {
   }
 }
 
-[[noreturn]] void refuse(const sqlite::Connection& file, const std::string& problem) {
+[[noreturn]] void refuse_personal(const sqlite::Connection& file, const std::string& problem) {
   throw base::Error(
       file.path().string(), problem,
       "restore a backup of it, or keep it elsewhere: nothing but personal answers stands in it");
@@ -53,7 +53,7 @@ void check_schema(sqlite::Connection& file) {
     Statement foreign(
         file, "SELECT name FROM sqlite_schema WHERE sql NOT IN ('CREATE TABLE ' || ?, 'CREATE TABLE ' || ?)");
     if (foreign.bind_all(tables[0], tables[1]).step())
-      refuse(file, "holds '" + printable(foreign.text(0)) + "', which vip-study did not make");
+      refuse_personal(file, "holds '" + printable(foreign.text(0)) + "', which vip-study did not make");
   }
   file.recognise();
 }
@@ -80,7 +80,7 @@ PersonalFile::PersonalFile(const fs::path& database) {
   file_->execute(opening);
   for (const char* table : tables) file_->execute(std::string("CREATE TABLE IF NOT EXISTS ") + table);
   if (const std::string found = file_->text("PRAGMA integrity_check(1)"); found != "ok")
-    refuse(*file_, "is damaged: " + found);
+    refuse_personal(*file_, "is damaged: " + found);
   file_->seal();
 }
 

@@ -46,7 +46,8 @@ std::string upper(std::string word) {
 
 using Key = std::pair<std::string, std::string>;
 
-[[noreturn]] void refuse(const Connection& database, const std::string& problem, const Key& extra = {}) {
+[[noreturn]] void refuse_schema(const Connection& database, const std::string& problem,
+                                const Key& extra = {}) {
   const std::string path = database.path().string();
   std::string mend =
       "keep it elsewhere and make one without it: vip-study salvage --db " + path + " --into NEW";
@@ -123,8 +124,8 @@ Schema schema_of(Connection& database) {
   while (row.step()) {
     const Key key{row.text(0), row.text(1)};
     const SchemaObject object{row.text(2), without_comments(row.text(3))};
-    if (!schema.emplace(key, object).second) refuse(database, "lists the " + named(key) + " twice");
-    if (schema.size() > most_objects) refuse(database, "lists thousands of tables");
+    if (!schema.emplace(key, object).second) refuse_schema(database, "lists the " + named(key) + " twice");
+    if (schema.size() > most_objects) refuse_schema(database, "lists thousands of tables");
   }
   return schema;
 }
@@ -135,13 +136,13 @@ void check_schema(Connection& database, const SchemaSteps& steps, std::int64_t v
   if (found == wanted) return;
   for (const auto& [key, object] : found) {
     if (!wanted.contains(key))
-      refuse(database, "has " + article(key) + named(key) + " that vip-study did not make", key);
+      refuse_schema(database, "has " + article(key) + named(key) + " that vip-study did not make", key);
   }
   for (const auto& [key, object] : wanted) {
     const auto there = found.find(key);
-    if (there == found.end()) refuse(database, "lacks the " + named(key) + " of its schema");
+    if (there == found.end()) refuse_schema(database, "lacks the " + named(key) + " of its schema");
     if (there->second != object)
-      refuse(database, "has the " + named(key) + " otherwise than vip-study made it");
+      refuse_schema(database, "has the " + named(key) + " otherwise than vip-study made it");
   }
 }
 
@@ -171,7 +172,7 @@ std::unique_ptr<Connection> without_foreign_parts(Connection& foreign, const Sch
     if (key.first != "table") continue;
     const auto there = found.find(key);
     if (there == found.end() || !upper(there->second.sql).starts_with("CREATE TABLE"))
-      refuse(foreign, "lacks the " + named(key) + " of its schema");
+      refuse_schema(foreign, "lacks the " + named(key) + " of its schema");
     if (there->second != object) left_out.push_back("changes of the " + named(key));
     const auto columns = columns_in(*own, key.second);
     std::string places;

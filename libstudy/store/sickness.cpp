@@ -12,7 +12,7 @@ using sqlite::Statement;
 
 namespace {
 
-constexpr const char* answers_sql =
+constexpr const char* sickness_answers_sql =
     "SELECT s.session_id, p.name, p.sha256, s.participant, s.visit, coalesce(s.observer, ''), "
     "s.test_data OR p.test_data, u.position, u.block, t.position, r.attempt, q.code, r.score, "
     "r.answered_utc, "
@@ -37,10 +37,10 @@ std::size_t item_of(const std::string& code, const std::string& shown) {
   return static_cast<std::size_t>(number - 1);
 }
 
-class Reader {
+class SicknessReader {
  public:
-  explicit Reader(sqlite::Connection& database)
-      : row_(database, answers_sql), shown_(database.path().string()) {}
+  explicit SicknessReader(sqlite::Connection& database)
+      : row_(database, sickness_answers_sql), shown_(database.path().string()) {}
 
   std::vector<SicknessSession> sessions() {
     while (row_.step()) {
@@ -125,7 +125,7 @@ const SsqPage* SicknessSession::ssq_after() const {
 }
 
 std::vector<SicknessSession> read_sickness(sqlite::Connection& database) {
-  return Reader(database).sessions();
+  return SicknessReader(database).sessions();
 }
 
 std::vector<SicknessSession> read_sickness(const StudyFile& study) {

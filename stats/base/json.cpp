@@ -11,7 +11,8 @@ using Library = nlohmann::ordered_json;
 
 std::vector<std::string> steps_of(std::string_view text) {
   if (text.empty()) return {};
-  if (text[0] != '/') throw JsonError("a JSON pointer begins with '/', not as \"" + std::string(text) + "\"");
+  if (text[0] != '/')
+    throw JsonError("\"" + std::string(text) + "\" is no JSON pointer: it does not begin with '/'");
   std::vector<std::string> steps;
   for (const char c : text) {
     if (c == '/')
@@ -44,12 +45,6 @@ std::string JsonPointer::text() const {
     for (const char c : step) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
   }
   return text;
-}
-
-JsonPointer JsonPointer::parent() const {
-  JsonPointer out = *this;
-  if (!out.steps_.empty()) out.steps_.pop_back();
-  return out;
 }
 
 Json::Json(bool value) : type_(Type::Boolean), boolean_(value) {}
@@ -168,6 +163,8 @@ struct JsonLibrary {
 };
 
 Json Json::parse(std::string_view text) {
+  if (nested_deeper_than(most_json_levels, text))
+    throw JsonError("the text is nested deeper than " + std::to_string(most_json_levels) + " levels");
   try {
     return JsonLibrary::from(Library::parse(text));
   } catch (const Library::exception& error) {
@@ -178,8 +175,6 @@ Json Json::parse(std::string_view text) {
 Json Json::parse(std::istream& text) {
   return parse(std::string(std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()));
 }
-
-bool Json::accept(std::string_view text) { return Library::accept(text); }
 
 std::string Json::dump(int indent) const {
   return JsonLibrary::to(*this).dump(indent, ' ', false, Library::error_handler_t::replace);

@@ -34,6 +34,8 @@ std::string utc_of_seconds(std::int64_t seconds) {
 
 std::string built_utc() { return VIP_BUILT_ON "T00:00:00Z"; }
 
+std::string build_options() { return VIP_BUILD_OPTIONS; }
+
 std::string utc_now() {
   const std::int64_t fixed = fixed_s;
   return utc_of_seconds(fixed == not_fixed ? std::time(nullptr) : fixed);

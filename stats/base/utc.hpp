@@ -13,6 +13,9 @@ inline constexpr const char* before_vip_lab_utc = "2024-01-01T00:00:00Z";
 /// The day on which this program was built, at its first second.
 std::string built_utc();
 
+/// The type, compiler and switches of this build, as --version prints them.
+std::string build_options();
+
 /// Seconds since 1970; none: not a time that utc_now() writes.
 std::optional<std::int64_t> seconds_of_utc(const std::string& utc);
 std::string utc_of_seconds(std::int64_t seconds);

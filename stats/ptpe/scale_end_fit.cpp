@@ -22,7 +22,7 @@ constexpr std::size_t parameters = 5;
 using Values = std::array<double, parameters>;
 
 /// The mean of a rating about x: whole scores within the scale.
-struct Scale {
+struct EndScale {
   ScaleEnds ends;
   double sd = 1;
   double x_of_level = 4;
@@ -83,14 +83,14 @@ std::vector<Group> groups_of(std::span<const PilotObservation> observations, con
 }
 
 /// log mu(delta) less its centre is alpha + beta e.
-struct Place {
+struct CurvePlace {
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
 
-  Place moved(const Values& step) const {
+  CurvePlace moved(const Values& step) const {
     return {alpha + step[0], beta + step[1], k + step[2], m + step[3], q + step[4]};
   }
   /// Predicted mean score of a group and its derivatives by the parameters.
-  double predict(const Group& group, const Scale& scale, Values* slopes = nullptr) const {
+  double predict(const Group& group, const EndScale& scale, Values* slopes = nullptr) const {
     const double root = 2 * std::exp((alpha + beta * group.e) / 2), u = group.root - root;
     const double x = scale.x_of_level + u * (k + m * group.e + q * u);
     if (slopes) {
@@ -106,7 +106,7 @@ struct Place {
 };
 
 /// Weighted squares of the means about the prediction; those within groups do not depend on the place.
-double squares(const std::vector<Group>& groups, const Scale& scale, const Place& at) {
+double squares(const std::vector<Group>& groups, const EndScale& scale, const CurvePlace& at) {
   double sum = 0;
   for (const Group& group : groups) {
     const double off = group.sum / group.n - at.predict(group, scale);
@@ -120,7 +120,7 @@ struct Normal {
   Values right{};
 };
 
-Normal normal_equations(const std::vector<Group>& groups, const Scale& scale, const Place& at) {
+Normal normal_equations(const std::vector<Group>& groups, const EndScale& scale, const CurvePlace& at) {
   Normal out;
   for (const Group& group : groups) {
     Values slopes;
@@ -135,7 +135,7 @@ Normal normal_equations(const std::vector<Group>& groups, const Scale& scale, co
 }
 
 /// Damped Gauss-Newton steps (Marquardt 1963) until they vanish; empty where they do not.
-std::optional<Place> descend(const std::vector<Group>& groups, const Scale& scale, Place at) {
+std::optional<CurvePlace> descend(const std::vector<Group>& groups, const EndScale& scale, CurvePlace at) {
   double value = squares(groups, scale, at), damping = 1e-3;
   for (int iteration = 0; iteration < 200; ++iteration) {
     const Normal normal = normal_equations(groups, scale, at);
@@ -145,7 +145,7 @@ std::optional<Place> descend(const std::vector<Group>& groups, const Scale& scal
       for (std::size_t i = 0; i < parameters; ++i) damped[i * (parameters + 1)] *= 1 + damping;
       const auto step = solve_positive<parameters>(damped, normal.right);
       if (!step) continue;
-      const Place next = at.moved(*step);
+      const CurvePlace next = at.moved(*step);
       double length = 0;
       for (const double part : *step) length = std::max(length, std::abs(part));
       if (length < 1e-9) return at;
@@ -189,7 +189,7 @@ Result<double> error_sd(std::span<const PilotObservation> observations, const Sc
   return std::sqrt(std::max(sum / df - rounding, least));
 }
 
-Result<Place> fit(const std::vector<Group>& groups, const Scale& scale, const Place& from) {
+Result<CurvePlace> fit(const std::vector<Group>& groups, const EndScale& scale, const CurvePlace& from) {
   const auto end = descend(groups, scale, from);
   if (!end || !end->finite()) return Refusal{"the search for the least squares did not end"};
   for (const Group& group : groups)
@@ -198,14 +198,14 @@ Result<Place> fit(const std::vector<Group>& groups, const Scale& scale, const Pl
   return *end;
 }
 
-Curve curve_of(const Place& at, const Centre& centre) {
+Curve curve_of(const CurvePlace& at, const Centre& centre) {
   Curve out;
   out.b = at.beta / delta_unit;
   out.log_a = at.alpha + centre.log_mu - out.b * centre.delta;
   return out;
 }
 
-Place start_of(const DirectFit& direct, const Centre& centre) {
+CurvePlace start_of(const DirectFit& direct, const Centre& centre) {
   return {direct.curve.log_a + direct.curve.b * centre.delta - centre.log_mu, direct.curve.b * delta_unit,
           direct.k + direct.m * centre.delta, direct.m * delta_unit, 0};
 }
@@ -228,7 +228,7 @@ Result<CurveSpread> scale_end_curve(std::span<const PilotObservation> observatio
                    " of them, not " + std::to_string(people)};
   const auto sd = error_sd(kept, ends);
   if (!sd) return Refusal{sd.reason()};
-  Scale scale{ends, *sd};
+  EndScale scale{ends, *sd};
   const double far = 1 + 10 * scale.sd;
   scale.x_of_level =
       find_root([&](double x) { return scale.mean(x) - level; }, ends.lowest - far, ends.highest + far);

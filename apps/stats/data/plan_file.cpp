@@ -33,8 +33,6 @@ std::string number_or_none(const std::optional<double>& value) {
   return value ? base::shortest(*value) : "\"none\"";
 }
 
-Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
-
 template <class List>
 std::size_t index_of_name(const List& names, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -216,9 +214,9 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
             {"margins", {{"realism", plan.margin_realism}, {"sickness", plan.margin_sickness}}},
             {"exclusions",
              {{"timing", timing_rule_name(rules.timing)},
-              {"min_catch_correct", number_or_null(rules.min_catch_correct)},
-              {"max_repeat_difference", number_or_null(rules.max_repeat_difference)},
-              {"min_repeat_agreement", number_or_null(rules.min_repeat_agreement)},
+              {"min_catch_correct", rules.min_catch_correct},
+              {"max_repeat_difference", rules.max_repeat_difference},
+              {"min_repeat_agreement", rules.min_repeat_agreement},
               {"straight_lining_answers", rules.straight_lining_answers},
               {"min_answered", rules.min_answered}}},
             {"more_than_one_trial", repeated_names[static_cast<std::size_t>(plan.repeated_pairs)]},

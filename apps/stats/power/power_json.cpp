@@ -10,8 +10,6 @@ namespace apps {
 
 namespace {
 
-Json json_n(const std::optional<int>& n) { return n ? Json(*n) : Json(); }
-
 void add_figure(Json& out, const std::string& name, const Estimated& figure) {
   out[name] = json_number(figure.value);
   out[name + "_se"] = json_number(figure.se);
@@ -90,7 +88,7 @@ Json test_power_json(const TestPower& test, const std::vector<int>& n) {
            {"truth", json_number(test.truth)},
            {"claim_true", test.claim_true},
            {"margin", json_number(test.margin)},
-           {"n_for_power", json_n(test.n_for_power)},
+           {"n_for_power", test.n_for_power},
            {"curve", Json::array()}};
   for (std::size_t i = 0; i < n.size(); ++i) {
     const auto& at = test.curve[i];
@@ -113,7 +111,7 @@ Json hypothesis_json(const HypothesisPower& hypothesis, const std::vector<int>& 
            {"rule", hypothesis.rule},
            {"paper_rule", hypothesis.paper_rule},
            {"claims_true", hypothesis.claims_true},
-           {"n_for_power", json_n(hypothesis.n_for_power)},
+           {"n_for_power", hypothesis.n_for_power},
            {"curve", Json::array()},
            {"tests", Json::array()}};
   for (std::size_t i = 0; i < n.size(); ++i) {
@@ -191,11 +189,11 @@ Json power_json(const PowerRequest& request, const PilotPower& pilot) {
   Json& precision = out["precision"];
   precision = {{"estimator", "direct estimate, jackknife-t interval over participants"},
                {"confidence", request.plan.plan.confidence},
-               {"n_for_a", json_n(pilot.n_for_a)},
-               {"n_for_b", json_n(pilot.n_for_b)},
-               {"n_for_both", json_n(pilot.n_for_both)},
-               {"n_for_a_median", json_n(pilot.n_for_a_median)},
-               {"n_for_b_median", json_n(pilot.n_for_b_median)},
+               {"n_for_a", pilot.n_for_a},
+               {"n_for_b", pilot.n_for_b},
+               {"n_for_both", pilot.n_for_both},
+               {"n_for_a_median", pilot.n_for_a_median},
+               {"n_for_b_median", pilot.n_for_b_median},
                {"curve", Json::array()}};
   for (std::size_t i = 0; i < request.n.size(); ++i) {
     const auto& at = pilot.curve[i];

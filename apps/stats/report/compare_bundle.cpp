@@ -40,8 +40,11 @@ constexpr int most_levels = 16;
 Json parsed(const std::string& bytes, const fs::path& file) {
   if (base::nested_deeper_than(most_levels, bytes))
     no_bundle(file, "is nested more than " + std::to_string(most_levels) + " levels deep");
-  if (!Json::accept(bytes)) no_bundle(file, "is no JSON");
-  return Json::parse(bytes);
+  try {
+    return Json::parse(bytes);
+  } catch (const base::JsonError&) {
+    no_bundle(file, "is no JSON");
+  }
 }
 
 bool has_texts(const Json& object, std::initializer_list<const char*> keys) {

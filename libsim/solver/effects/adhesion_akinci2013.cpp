@@ -128,8 +128,9 @@ struct Adhesion {
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Density, Column::Normal, Column::Velocity),
-                           columns(Column::Velocity)>;
+using AdhesionColumns =
+    ColumnView<columns(Column::Position, Column::Density, Column::Normal, Column::Velocity),
+               columns(Column::Velocity)>;
 
 struct PullingBodies {
   static constexpr bool there = true;
@@ -147,7 +148,7 @@ struct PullingBodies {
 };
 
 template <class Bodies>
-void launch(FluidState& state, Columns p, Bodies bodies) {
+void launch(FluidState& state, AdhesionColumns p, Bodies bodies) {
   // int_1/2^1 A and G in closed form: with B(x, y) Euler's beta function, A's moments about 3/4 are
   // B(1/2, 5/4) / (4 sqrt 2) and B(3/2, 5/4) / (64 sqrt 2); G = int A q^3 / 3.
   const double whole = std::beta(0.5, 1.25) / (4 * std::sqrt(2.0));
@@ -171,7 +172,7 @@ void launch(FluidState& state, Columns p, Bodies bodies) {
                             .widest = state.widest_support(EffectOption::CohesionCoarsest)});
 }
 
-void run(FluidState& state, Columns p) {
+void run_adhesion(FluidState& state, AdhesionColumns p) {
   if (!state.obstacles.there()) return launch(state, p, NoBodies{});
   launch(state, p, PullingBodies{state.solids(), state.effects_listener()});
 }
@@ -179,7 +180,7 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 std::vector<Stage> adhesion_stages() {
-  return {stage_of<run>({.name = "adhesion", .phase = Phase::SubstepEnd})};
+  return {stage_of<run_adhesion>({.name = "adhesion", .phase = Phase::SubstepEnd})};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -24,10 +24,10 @@ struct AirDrag {
   }
 };
 
-using Columns =
+using AirDragColumns =
     ColumnView<columns(Column::Level, Column::Density, Column::Velocity), columns(Column::Velocity)>;
 
-void run(FluidState& state, Columns p) {
+void run_air_drag(FluidState& state, AirDragColumns p) {
   const auto& k = state.parameters;
   for_each("air drag", p.size(),
            AirDrag{.density = p.density(),
@@ -41,7 +41,7 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 std::vector<Stage> air_drag_stages() {
-  return {stage_of<run>({.name = "air drag", .phase = Phase::SubstepEnd})};
+  return {stage_of<run_air_drag>({.name = "air drag", .phase = Phase::SubstepEnd})};
 }
 
 }  // namespace sim::SIM_BACKEND

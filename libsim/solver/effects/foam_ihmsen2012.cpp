@@ -43,12 +43,12 @@ void foam(FluidState& state, FoamView p, const Bounds& bounds) {
   ++pool.frame;
 }
 
-void run(FluidState& state, FoamView p) {
+void run_foam(FluidState& state, FoamView p) {
   state.obstacles.there() ? foam(state, p, state.solids()) : foam(state, p, state.walls);
 }
 
 }  // namespace
 
-std::vector<Stage> foam_stages() { return {stage_of<run>({.name = "foam", .phase = Phase::FrameEnd})}; }
+std::vector<Stage> foam_stages() { return {stage_of<run_foam>({.name = "foam", .phase = Phase::FrameEnd})}; }
 
 }  // namespace sim::SIM_BACKEND

@@ -74,10 +74,10 @@ struct Slide {
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity), columns(Column::Velocity)>;
+using FrictionColumns = ColumnView<columns(Column::Position, Column::Velocity), columns(Column::Velocity)>;
 
 template <class Boundary>
-void launch(FluidState& state, Columns p, Boundary boundary) {
+void launch(FluidState& state, FrictionColumns p, Boundary boundary) {
   const auto& k = state.parameters;
   for_each("friction", p.size(),
            Slide<Boundary>{.position = p.position(),
@@ -87,7 +87,7 @@ void launch(FluidState& state, Columns p, Boundary boundary) {
                            .widest = state.widest_support(EffectOption::FrictionCoarsest)});
 }
 
-void run(FluidState& state, Columns p) {
+void run_friction(FluidState& state, FrictionColumns p) {
   if (!state.obstacles.there()) return launch(state, p, state.walls);
   const auto& free = state.obstacles.free;
   launch(state, p,
@@ -97,7 +97,7 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 std::vector<Stage> friction_stages() {
-  return {stage_of<run>({.name = "friction", .phase = Phase::SubstepEnd})};
+  return {stage_of<run_friction>({.name = "friction", .phase = Phase::SubstepEnd})};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -231,13 +231,13 @@ struct Turn {
   }
 };
 
-using Columns =
+using ViscosityColumns =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Neighbours),
                columns(Column::PredictedNext, Column::VelocityNext, Column::Normal, Column::Velocity)>;
 
 template <bool First, bool OneLevel, class Selection, class Bodies>
-Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, Columns p, Selection select,
-                                                         Bodies bodies) {
+Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, ViscosityColumns p,
+                                                         Selection select, Bodies bodies) {
   const auto& k = state.parameters;
   return {.select = select,
           .position = p.position(),
@@ -253,7 +253,7 @@ Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, Colu
 }
 
 template <bool OneLevel, class Selection, class Bodies>
-void solve(FluidState& state, Columns p, Selection select, Bodies bodies) {
+void solve(FluidState& state, ViscosityColumns p, Selection select, Bodies bodies) {
   const int n = p.size();
   const float finest = state.finest_support;
   const float widest = state.widest_support(EffectOption::ViscosityCoarsest);
@@ -292,12 +292,12 @@ void solve(FluidState& state, Columns p, Selection select, Bodies bodies) {
 }
 
 template <class Selection, class Bodies>
-void solve_for(FluidState& state, Columns p, Selection select, Bodies bodies) {
+void solve_for(FluidState& state, ViscosityColumns p, Selection select, Bodies bodies) {
   state.one_level ? solve<true>(state, p, select, bodies) : solve<false>(state, p, select, bodies);
 }
 
 template <class Selection>
-void solve_for(FluidState& state, Columns p, Selection select) {
+void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
   const auto& k = state.parameters;
   const float stick = k.effects[EffectOption::ViscosityStick];
   if (!state.obstacles.there() || stick == 0) return solve_for(state, p, select, NoBodies{});
@@ -375,14 +375,14 @@ void run_loosen(FluidState& state, LoosenView p) {
   state.all_active ? loosen(state, p, AllParticles{}) : loosen(state, p, state.active());
 }
 
-void run(FluidState& state, Columns p) {
+void run_viscosity(FluidState& state, ViscosityColumns p) {
   state.all_active ? solve_for(state, p, AllParticles{}) : solve_for(state, p, state.active());
 }
 
 }  // namespace
 
 std::vector<Stage> viscosity_stages() {
-  return {stage_of<run>({.name = "viscosity", .phase = Phase::SubstepEnd}),
+  return {stage_of<run_viscosity>({.name = "viscosity", .phase = Phase::SubstepEnd}),
           stage_of<run_loosen>({.name = "loosening of the lattice", .phase = Phase::SubstepEnd})};
 }
 

@@ -74,12 +74,13 @@ struct Choose {
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-                           columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
-                           columns(Column::Saliency, Column::Age)>;
+using ActivationColumns =
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+               columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
+               columns(Column::Saliency, Column::Age)>;
 
 /// Eq. 12-14 and the range that they are normalised by.
-void measure(FluidState& state, Columns p) {
+void measure(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
   const float spacing = 0.5f * state.finest_support;
   const float speed_floor = fmaxf(a.rules.speed_floor * sqrtf(state.parameters.gravity * spacing), 1e-6f);
@@ -87,7 +88,7 @@ void measure(FluidState& state, Columns p) {
 }
 
 template <class Boundary>
-void choose(FluidState& state, Columns p, Boundary boundary) {
+void choose(FluidState& state, ActivationColumns p, Boundary boundary) {
   auto& a = state.activation;
   for_each(
       "choose active", p.size(),
@@ -115,7 +116,7 @@ void choose(FluidState& state, Columns p, Boundary boundary) {
           .seed = a.seed});
 }
 
-void run(FluidState& state, Columns p) {
+void run_activation(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
   const int n = p.size();
   a.grid.fit(state.domain, cell_spacings * 0.5f * state.finest_support);
@@ -139,11 +140,11 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 Stage activation_stage() {
-  return stage_of<run>({.name = "activation",
-                        .source = "ViP-Fluid, Algorithm 3 lines 8-9, Eq. 12-14",
-                        .phase = Phase::FrameStart,
-                        .called_for = if_activation,
-                        .part = Part::Activation});
+  return stage_of<run_activation>({.name = "activation",
+                                   .source = "ViP-Fluid, Algorithm 3 lines 8-9, Eq. 12-14",
+                                   .phase = Phase::FrameStart,
+                                   .called_for = if_activation,
+                                   .part = Part::Activation});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -198,7 +198,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
   balance_push(state, p);
 }
 
-void run(FluidState& state, CoarsePressureView p) { press(state, p); }
+void run_coarse_pressure(FluidState& state, CoarsePressureView p) { press(state, p); }
 
 }  // namespace
 
@@ -207,12 +207,13 @@ void press(FluidState& state, CoarsePressureView p) {
 }
 
 Stage coarse_pressure_stage() {
-  return stage_of<run>({.name = "coarse pressure",
-                        .source = "multigrid on the fluid's cells",
-                        .phase = Phase::Substep,
-                        .called_for = [](const Demand& demand) -> std::string {
-                          return demand.parameters.coarse_cycles > 0 ? "coarse cycles > 0" : "";
-                        }});
+  return stage_of<run_coarse_pressure>({.name = "coarse pressure",
+                                        .source = "multigrid on the fluid's cells",
+                                        .phase = Phase::Substep,
+                                        .called_for = [](const Demand& demand) -> std::string {
+                                          return demand.parameters.coarse_cycles > 0 ? "coarse cycles > 0"
+                                                                                     : "";
+                                        }});
 }
 
 }  // namespace sim::SIM_BACKEND

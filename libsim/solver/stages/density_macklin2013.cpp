@@ -132,7 +132,9 @@ void constrain(FluidState& state, DensityView p, const float* ease) {
 using EasedView = ColumnView<DensityView::reads, DensityView::writes, columns(Column::Ease)>;
 
 /// While the water settles at one level, nobody has written the shares.
-void run(FluidState& state, EasedView p) { constrain(state, p, state.one_level ? nullptr : p.ease()); }
+void run_density(FluidState& state, EasedView p) {
+  constrain(state, p, state.one_level ? nullptr : p.ease());
+}
 
 }  // namespace
 
@@ -150,10 +152,10 @@ void constrain_density(FluidState& state, DensityView p, Listed<ActiveParticles>
 }
 
 Stage density_stage() {
-  return stage_of<run>({.name = "density constraint",
-                        .source = "Macklin and Mueller 2013, Eq. 1-11, mass-weighted and unilateral",
-                        .phase = Phase::Iteration,
-                        .called_for = keeps_density});
+  return stage_of<run_density>({.name = "density constraint",
+                                .source = "Macklin and Mueller 2013, Eq. 1-11, mass-weighted and unilateral",
+                                .phase = Phase::Iteration,
+                                .called_for = keeps_density});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -148,7 +148,7 @@ void launch(FluidState& state, DisplacementView p, Selection select) {
   state.one_level ? launch<true>(state, p, select) : launch<false>(state, p, select);
 }
 
-void run(FluidState& state, DisplacementView p) { displace(state, p); }
+void run_displacement(FluidState& state, DisplacementView p) { displace(state, p); }
 
 }  // namespace
 
@@ -163,10 +163,10 @@ void displace(FluidState& state, DisplacementView p, Listed<ActiveParticles> few
 }
 
 Stage displacement_stage() {
-  return stage_of<run>({.name = "displacement",
-                        .source = "Macklin and Mueller 2013, Eq. 12-14, mass-weighted",
-                        .phase = Phase::Iteration,
-                        .called_for = keeps_density});
+  return stage_of<run_displacement>({.name = "displacement",
+                                     .source = "Macklin and Mueller 2013, Eq. 12-14, mass-weighted",
+                                     .phase = Phase::Iteration,
+                                     .called_for = keeps_density});
 }
 
 }  // namespace sim::SIM_BACKEND

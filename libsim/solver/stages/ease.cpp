@@ -39,11 +39,11 @@ struct Ease {
   }
 };
 
-using Columns =
+using EaseColumns =
     ColumnView<columns(Column::Predicted, Column::Age, Column::Neighbours), columns(Column::Ease)>;
 
 template <class Selection>
-void launch(FluidState& state, Columns p, Selection select) {
+void launch(FluidState& state, EaseColumns p, Selection select) {
   for_each_team("ease", p.size(),
                 Ease<Selection>{.select = select,
                                 .predicted = p.predicted(),
@@ -53,17 +53,17 @@ void launch(FluidState& state, Columns p, Selection select) {
                                 .rules = state.levels.rules});
 }
 
-void run(FluidState& state, Columns p) {
+void run_ease(FluidState& state, EaseColumns p) {
   state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
 }
 
 }  // namespace
 
 Stage ease_stage() {
-  return stage_of<run>({.name = "ease",
-                        .source = "blending of the constraint, after Orthmann and Kolb 2012",
-                        .phase = Phase::Substep,
-                        .called_for = if_levels});
+  return stage_of<run_ease>({.name = "ease",
+                             .source = "blending of the constraint, after Orthmann and Kolb 2012",
+                             .phase = Phase::Substep,
+                             .called_for = if_levels});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -17,9 +17,9 @@ struct Force {
   }
 };
 
-using Columns = ColumnView<columns(Column::Position), columns(Column::Target)>;
+using ForcedTargetsColumns = ColumnView<columns(Column::Position), columns(Column::Target)>;
 
-void run(FluidState& state, Columns p) {
+void run_forced_targets(FluidState& state, ForcedTargetsColumns p) {
   for_each("force targets", p.size(),
            Force{p.position(), p.target(), state.levels.forced, state.levels.rules.coarsest});
 }
@@ -27,13 +27,13 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 Stage forced_targets_stage() {
-  return stage_of<run>({.name = "forced targets",
-                        .source = "a test's levels",
-                        .phase = Phase::FrameStart,
-                        .called_for = [](const Demand& demand) -> std::string {
-                          return demand.forced_targets ? "a test gives them" : "";
-                        },
-                        .part = Part::Levels});
+  return stage_of<run_forced_targets>({.name = "forced targets",
+                                       .source = "a test's levels",
+                                       .phase = Phase::FrameStart,
+                                       .called_for = [](const Demand& demand) -> std::string {
+                                         return demand.forced_targets ? "a test gives them" : "";
+                                       },
+                                       .part = Part::Levels});
 }
 
 }  // namespace sim::SIM_BACKEND

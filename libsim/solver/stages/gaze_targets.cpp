@@ -13,9 +13,9 @@ SaliencyFluid fluid_of(FluidState& state, Reads<Column::Position> p, float* sali
           .guards = state.guard()};
 }
 
-using Columns = ColumnView<columns(Column::Position), columns(Column::Saliency, Column::Target)>;
+using GazeTargetsColumns = ColumnView<columns(Column::Position), columns(Column::Saliency, Column::Target)>;
 
-void run(FluidState& state, Columns p) {
+void run_gaze_targets(FluidState& state, GazeTargetsColumns p) {
   if (!state.levels.turns.due) return;
   evaluate_gaze(state.saliency, fluid_of(state, p, p.saliency(), p.target()));
 }
@@ -33,13 +33,13 @@ void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& sali
 }
 
 Stage gaze_targets_stage() {
-  return stage_of<run>({.name = "gaze targets",
-                        .source = "FovFluid-like: fovea, band, periphery",
-                        .phase = Phase::FrameStart,
-                        .called_for = [](const Demand& demand) -> std::string {
-                          return demand.gaze_targets ? "levels follow the gaze" : "";
-                        },
-                        .part = Part::Saliency});
+  return stage_of<run_gaze_targets>({.name = "gaze targets",
+                                     .source = "FovFluid-like: fovea, band, periphery",
+                                     .phase = Phase::FrameStart,
+                                     .called_for = [](const Demand& demand) -> std::string {
+                                       return demand.gaze_targets ? "levels follow the gaze" : "";
+                                     },
+                                     .part = Part::Saliency});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -50,10 +50,11 @@ struct Grade {
 /// A step of three levels needs three sweeps.
 constexpr int sweeps = 3;
 
-using Columns = ColumnView<columns(Column::Position, Column::Level, Column::Target, Column::Neighbours),
-                           columns(Column::Target), columns(Column::Saliency)>;
+using GradedTargetsColumns =
+    ColumnView<columns(Column::Position, Column::Level, Column::Target, Column::Neighbours),
+               columns(Column::Target), columns(Column::Saliency)>;
 
-void run(FluidState& state, Columns p) {
+void run_graded_targets(FluidState& state, GradedTargetsColumns p) {
   if (!state.levels.turns.due) return;
   auto& graded = state.levels.graded;
   const auto& rules = state.levels.rules;
@@ -78,11 +79,11 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 Stage graded_targets_stage() {
-  return stage_of<run>({.name = "graded targets",
-                        .source = "neighbours differ by one level at most",
-                        .phase = Phase::FrameStart,
-                        .called_for = if_levels,
-                        .part = Part::Levels});
+  return stage_of<run_graded_targets>({.name = "graded targets",
+                                       .source = "neighbours differ by one level at most",
+                                       .phase = Phase::FrameStart,
+                                       .called_for = if_levels,
+                                       .part = Part::Levels});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -8,9 +8,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-                           columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
-                           columns(Column::Target), columns(Column::Temperature)>;
+using NozzleColumns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                                 columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                                 columns(Column::Target), columns(Column::Temperature)>;
 
 /// Places particles in the layers whose turn comes within the frame. A layer that passes the mouth `lead`
 /// seconds after the frame's start begins it u lead - g lead^2 / 2 above the mouth at the speed u - g lead.
@@ -58,7 +58,7 @@ float warmth_of(const Nozzle& nozzle, const SolverParameters& parameters) {
   return nozzle.temperature_k > 0 ? static_cast<float>(nozzle.temperature_k) - reference : 0;
 }
 
-void pour(FluidState& state, Columns p, const Nozzle& nozzle, const LayersDue& due, std::int64_t number,
+void pour(FluidState& state, NozzleColumns p, const Nozzle& nozzle, const LayersDue& due, std::int64_t number,
           int sites, int layers, const int* which, int first) {
   const auto f = [](double value) { return static_cast<float>(value); };
   const double turns = static_cast<double>(number) / (2 * std::numbers::pi);
@@ -98,7 +98,7 @@ struct CountTargets {
 
 /// Median target, by mass, of the water within one diameter of the mouth; where there is none, the level of
 /// before.
-int median_target(FluidState& state, Columns p, const Nozzle& nozzle) {
+int median_target(FluidState& state, NozzleColumns p, const Nozzle& nozzle) {
   const auto f = [](double value) { return static_cast<float>(value); };
   Array<int>& mass = state.jets.mass_by_target;
   mass.resize(4);
@@ -119,7 +119,7 @@ int median_target(FluidState& state, Columns p, const Nozzle& nozzle) {
 }
 
 /// One nozzle's layers of this frame.
-void run_nozzle(FluidState& state, Columns p, const Nozzle& nozzle, Poured& before) {
+void pour_due_layers(FluidState& state, NozzleColumns p, const Nozzle& nozzle, Poured& before) {
   auto& jets = state.jets;
   const double frame_dt = jets.frame_dt_s;
   const auto spacing = [&] { return std::cbrt(1 << jets.level) * jets.finest_spacing_m; };
@@ -149,7 +149,7 @@ void run_nozzle(FluidState& state, Columns p, const Nozzle& nozzle, Poured& befo
   before.layers += due.count;
 }
 
-void run(FluidState& state, Columns p) {
+void run_nozzle(FluidState& state, NozzleColumns p) {
   auto& jets = state.jets;
   const std::int64_t made = jets.made;
   for (std::size_t k = 0; k < jets.nozzles.size(); ++k) {
@@ -157,7 +157,7 @@ void run(FluidState& state, Columns p) {
     if (!jets.by_target)
       jets.before[k] = poured_before(jets.nozzles[k], std::cbrt(1 << jets.level) * jets.finest_spacing_m,
                                      jets.frame, jets.frame_dt_s);
-    run_nozzle(state, p, jets.nozzles[k], jets.before[k]);
+    pour_due_layers(state, p, jets.nozzles[k], jets.before[k]);
   }
   jets.pouring = jets.made > made;
 }
@@ -165,13 +165,13 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 Stage nozzle_stage() {
-  return stage_of<run>({.name = "nozzle",
-                        .source = "scenes: Vogel layers of the lowest corner water",
-                        .phase = Phase::FrameStart,
-                        .called_for = [](const Demand& demand) -> std::string {
-                          return demand.nozzles && !demand.settling ? "the scene has a nozzle" : "";
-                        },
-                        .changes = Change::Flow});
+  return stage_of<run_nozzle>({.name = "nozzle",
+                               .source = "scenes: Vogel layers of the lowest corner water",
+                               .phase = Phase::FrameStart,
+                               .called_for = [](const Demand& demand) -> std::string {
+                                 return demand.nozzles && !demand.settling ? "the scene has a nozzle" : "";
+                               },
+                               .changes = Change::Flow});
 }
 
 }  // namespace sim::SIM_BACKEND

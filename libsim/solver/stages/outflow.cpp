@@ -4,7 +4,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-void run(FluidState& state, OutflowView p) {
+void run_outflow(FluidState& state, OutflowView p) {
   const Outflow::Amount left = state.outflow.run(state.particles, p, state.walls, state.heat.data());
   if (left.particles == 0) return;
   state.drained.particles += left.particles;
@@ -17,13 +17,13 @@ void run(FluidState& state, OutflowView p) {
 }  // namespace
 
 Stage outflow_stage() {
-  return stage_of<run>({.name = "outflow",
-                        .source = "scenes: what is through an outlet leaves",
-                        .phase = Phase::FrameEnd,
-                        .called_for = [](const Demand& demand) -> std::string {
-                          return demand.outlets && !demand.settling ? "the scene has an outlet" : "";
-                        },
-                        .changes = Change::Flow});
+  return stage_of<run_outflow>({.name = "outflow",
+                                .source = "scenes: what is through an outlet leaves",
+                                .phase = Phase::FrameEnd,
+                                .called_for = [](const Demand& demand) -> std::string {
+                                  return demand.outlets && !demand.settling ? "the scene has an outlet" : "";
+                                },
+                                .changes = Change::Flow});
 }
 
 }  // namespace sim::SIM_BACKEND

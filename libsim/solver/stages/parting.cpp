@@ -69,14 +69,14 @@ void go_on(FluidState& state, Places p) {
   clamp_and_listen(state, p, p.velocity_next(), 1, true);
 }
 
-using Columns = ColumnView<columns(Column::Predicted, Column::Ease, Column::Neighbours, Column::Id),
-                           columns(Column::Predicted, Column::PredictedNext, Column::Position,
-                                   Column::VelocityNext, Column::Lambda, Column::Density)>;
+using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Column::Neighbours, Column::Id),
+                                  columns(Column::Predicted, Column::PredictedNext, Column::Position,
+                                          Column::VelocityNext, Column::Lambda, Column::Density)>;
 
 /// Parts at the substep's beginning: what is dense there is overlap, while on its way water is compressed
 /// too.
 template <class Selection>
-void launch(FluidState& state, Columns p, Selection select) {
+void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
   levels.beside.resize(static_cast<std::size_t>(p.size()));
   levels.beside_count.resize(1);
@@ -94,7 +94,7 @@ void launch(FluidState& state, Columns p, Selection select) {
   go_on(state, p);
 }
 
-void run(FluidState& state, Columns p) {
+void run_parting(FluidState& state, PartingColumns p) {
   // The frame's first substep has the fresh particles; most frames of water at rest have none.
   if (!state.levels.changed || state.substep > 0) return;
   state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
@@ -134,7 +134,7 @@ Stage pre_stabilisation_stage() {
 }
 
 Stage parting_stage() {
-  return stage_of<run>(
+  return stage_of<run_parting>(
       {.name = "parting", .source = source, .phase = Phase::Substep, .called_for = if_levels});
 }
 

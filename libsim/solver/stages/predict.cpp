@@ -66,11 +66,11 @@ struct Predict {
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
-                           columns(Column::Predicted, Column::Position, Column::Velocity)>;
+using PredictColumns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
+                                  columns(Column::Predicted, Column::Position, Column::Velocity)>;
 
 template <class Selection, class Forces, class Boundary>
-void launch(FluidState& state, Columns p, Selection select, Forces forces, Boundary boundary) {
+void launch(FluidState& state, PredictColumns p, Selection select, Forces forces, Boundary boundary) {
   const auto& k = state.parameters;
   const Vec3 size = state.domain.high - state.domain.low;
   const float longest = at_least(size.x, at_least(size.y, size.z));
@@ -89,31 +89,31 @@ void launch(FluidState& state, Columns p, Selection select, Forces forces, Bound
 }
 
 template <class Selection, class Forces>
-void launch(FluidState& state, Columns p, Selection select, Forces forces) {
+void launch(FluidState& state, PredictColumns p, Selection select, Forces forces) {
   state.obstacles.there() ? launch(state, p, select, forces, state.solids())
                           : launch(state, p, select, forces, state.walls);
 }
 
 template <class Selection>
-void launch(FluidState& state, Columns p, Selection select) {
+void launch(FluidState& state, PredictColumns p, Selection select) {
   const auto& k = state.parameters;
   const Gravity down{k.gravity};
   k.pull.strength > 0 ? launch(state, p, select, GravityAndPull{down, k.pull})
                       : launch(state, p, select, down);
 }
 
-void run(FluidState& state, Columns p) {
+void run_predict(FluidState& state, PredictColumns p) {
   state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
 }
 
 }  // namespace
 
 Stage predict_stage() {
-  return stage_of<run>({.name = "predict",
-                        .source = "Macklin and Mueller 2013, Alg. 1 lines 1-4",
-                        .phase = Phase::Substep,
-                        .called_for = always_moves,
-                        .changes = Change::Forces});
+  return stage_of<run_predict>({.name = "predict",
+                                .source = "Macklin and Mueller 2013, Alg. 1 lines 1-4",
+                                .phase = Phase::Substep,
+                                .called_for = always_moves,
+                                .changes = Change::Forces});
 }
 
 }  // namespace sim::SIM_BACKEND

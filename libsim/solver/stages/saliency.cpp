@@ -40,12 +40,12 @@ void recall_surroundings(FluidState& state, SurroundingsView p, bool densities) 
   }
 }
 
-using Columns =
+using SaliencyColumns =
     ColumnView<SurroundingsView::reads,
                SurroundingsView::writes | columns(Column::Unrest, Column::Saliency, Column::Target),
                columns(Column::Swirl)>;
 
-void run(FluidState& state, Columns p) {
+void run_saliency(FluidState& state, SaliencyColumns p) {
   if (!state.levels.turns.due) {
     ++state.saliency.frames_since;
     return;
@@ -93,13 +93,13 @@ void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& 
 }
 
 Stage saliency_stage() {
-  return stage_of<run>({.name = "saliency",
-                        .source = "ViP-Fluid 3.2, Eq. 1-9",
-                        .phase = Phase::FrameStart,
-                        .called_for = [](const Demand& demand) -> std::string {
-                          return demand.saliency ? "levels follow what is seen" : "";
-                        },
-                        .part = Part::Saliency});
+  return stage_of<run_saliency>({.name = "saliency",
+                                 .source = "ViP-Fluid 3.2, Eq. 1-9",
+                                 .phase = Phase::FrameStart,
+                                 .called_for = [](const Demand& demand) -> std::string {
+                                   return demand.saliency ? "levels follow what is seen" : "";
+                                 },
+                                 .part = Part::Saliency});
 }
 
 Stage saliency_parts_stage() {

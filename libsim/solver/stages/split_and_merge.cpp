@@ -5,7 +5,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-void run(FluidState& state, LevelView p) {
+void run_split_and_merge(FluidState& state, LevelView p) {
   if (!state.levels.turns.due) return grow_older(state.levels, p);
   const LevelFluid fluid{.particles = p,
                          .neighbours = state.particle_neighbours(),
@@ -21,12 +21,12 @@ void run(FluidState& state, LevelView p) {
 }  // namespace
 
 Stage split_and_merge_stage() {
-  return stage_of<run>({.name = "split and merge",
-                        .source = "Algorithms 1 and 2",
-                        .phase = Phase::FrameStart,
-                        .called_for = if_levels,
-                        .part = Part::Levels,
-                        .changes = Change::Levels});
+  return stage_of<run_split_and_merge>({.name = "split and merge",
+                                        .source = "Algorithms 1 and 2",
+                                        .phase = Phase::FrameStart,
+                                        .called_for = if_levels,
+                                        .part = Part::Levels,
+                                        .changes = Change::Levels});
 }
 
 }  // namespace sim::SIM_BACKEND

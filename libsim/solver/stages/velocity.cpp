@@ -25,11 +25,11 @@ struct Advance {
   }
 };
 
-using Columns =
+using VelocityColumns =
     ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
-void run(FluidState& state, Columns p) {
+void run_velocity(FluidState& state, VelocityColumns p) {
   // The old places that PredictedNext holds are done with.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
@@ -44,11 +44,11 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 Stage velocity_stage() {
-  return stage_of<run>({.name = "velocity",
-                        .source = "Macklin and Mueller 2013, Alg. 1 lines 20-23",
-                        .phase = Phase::SubstepEnd,
-                        .called_for = always_moves,
-                        .changes = Change::Projections});
+  return stage_of<run_velocity>({.name = "velocity",
+                                 .source = "Macklin and Mueller 2013, Alg. 1 lines 20-23",
+                                 .phase = Phase::SubstepEnd,
+                                 .called_for = always_moves,
+                                 .changes = Change::Projections});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -91,12 +91,13 @@ struct MarkSparse {
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Level, Column::Density,
-                                   Column::Active, Column::Rest, Column::StartCell),
-                           columns(Column::Velocity, Column::Position, Column::Rest)>;
+using VelocityGridColumns =
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Level, Column::Density, Column::Active,
+                       Column::Rest, Column::StartCell),
+               columns(Column::Velocity, Column::Position, Column::Rest)>;
 
 /// V, what the resting inherit, and who is sparse: one launch over the particles, one over the cells' sums.
-void find_means(FluidState& state, Columns p) {
+void find_means(FluidState& state, VelocityGridColumns p) {
   auto& a = state.activation;
   const bool changes = !state.all_active && a.rules.inherit_change;
   const bool pressed = changes && a.rules.pressed;
@@ -125,7 +126,7 @@ void find_means(FluidState& state, Columns p) {
 }
 
 template <class Boundary>
-void inherit(FluidState& state, Columns p, Boundary boundary) {
+void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
   // As printed, the mean velocities are those of V.
@@ -150,7 +151,7 @@ void inherit(FluidState& state, Columns p, Boundary boundary) {
 }
 
 /// Algorithm 3, lines 4-5 and 13-17, in two passes: line 15 reads the grid that line 13 is still writing.
-void run(FluidState& state, Columns p) {
+void run_velocity_grid(FluidState& state, VelocityGridColumns p) {
   find_means(state, p);
   if (!state.all_active)
     state.obstacles.there() ? inherit(state, p, state.solids()) : inherit(state, p, state.walls);
@@ -161,12 +162,12 @@ void run(FluidState& state, Columns p) {
 }  // namespace
 
 Stage velocity_grid_stage() {
-  return stage_of<run>({.name = "velocity grid",
-                        .source = "ViP-Fluid, Algorithm 3 lines 4-5 and 13-17",
-                        .phase = Phase::FrameEnd,
-                        .called_for = if_activation,
-                        .part = Part::Activation,
-                        .changes = Change::Inherited});
+  return stage_of<run_velocity_grid>({.name = "velocity grid",
+                                      .source = "ViP-Fluid, Algorithm 3 lines 4-5 and 13-17",
+                                      .phase = Phase::FrameEnd,
+                                      .called_for = if_activation,
+                                      .part = Part::Activation,
+                                      .changes = Change::Inherited});
 }
 
 }  // namespace sim::SIM_BACKEND

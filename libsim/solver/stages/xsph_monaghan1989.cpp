@@ -121,11 +121,12 @@ struct Xsph {
   }
 };
 
-using Columns = ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
-                           columns(Column::VelocityNext, Column::Velocity)>;
+using XsphColumns =
+    ColumnView<columns(Column::Position, Column::Velocity, Column::Density, Column::Neighbours),
+               columns(Column::VelocityNext, Column::Velocity)>;
 
 template <bool OneLevel, class Filter, class Selection>
-void launch(FluidState& state, Columns p, Filter filter, Selection select) {
+void launch(FluidState& state, XsphColumns p, Filter filter, Selection select) {
   const auto& k = state.parameters;
   for_each_team("xsph", p.size(),
                 Xsph<OneLevel, Filter, Selection>{.select = select,
@@ -140,12 +141,12 @@ void launch(FluidState& state, Columns p, Filter filter, Selection select) {
 }
 
 template <bool OneLevel, class Filter>
-void launch(FluidState& state, Columns p, Filter filter) {
+void launch(FluidState& state, XsphColumns p, Filter filter) {
   state.all_active ? launch<OneLevel>(state, p, filter, AllParticles{})
                    : launch<OneLevel>(state, p, filter, state.active());
 }
 
-void run(FluidState& state, Columns p) {
+void run_xsph(FluidState& state, XsphColumns p) {
   state.one_level ? launch<true>(state, p, NoFilter{}) : launch<false>(state, p, NoFilter{});
 }
 
@@ -170,13 +171,14 @@ void run_levels(FluidState& state, LevelsView p) {
 }  // namespace
 
 Stage xsph_stage() {
-  return stage_of<run>({.name = "xsph",
-                        .source = "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
-                        .phase = Phase::SubstepEnd,
-                        .called_for = [](const Demand& demand) -> std::string {
-                          return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity > 0" : "";
-                        },
-                        .changes = Change::Viscosity});
+  return stage_of<run_xsph>({.name = "xsph",
+                             .source = "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
+                             .phase = Phase::SubstepEnd,
+                             .called_for = [](const Demand& demand) -> std::string {
+                               return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity > 0"
+                                                                                        : "";
+                             },
+                             .changes = Change::Viscosity});
 }
 
 Stage xsph_of_levels_stage() {
