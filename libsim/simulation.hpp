@@ -1,5 +1,5 @@
 #pragma once
-/// The fluid as programs see it: one scene, one method, one back end.
+/// The fluid's interface for programs: one scene, one method, one back end.
 
 #include <cstdint>
 #include <filesystem>
@@ -25,7 +25,7 @@
 
 namespace sim {
 
-/// Targets for tests, in place of the method's own: one level inside a sphere, another outside.
+/// Targets for tests that replace the method's own: one level inside a sphere, another outside.
 struct TargetRegion {
   Vec3d centre_m{};
   double radius_m = 0;
@@ -33,14 +33,14 @@ struct TargetRegion {
   int outside = 0;
 };
 
-/// What tau temporal acceleration goes by (ViP-Fluid, Algorithm 3); for methods that have it.
+/// Where temporal acceleration gets tau from (ViP-Fluid, Algorithm 3); for methods that have it.
 struct TemporalOptions {
-  /// frames/s; without it and fixed_rate tau is measured from Simulation::frame_time.
+  /// frames/s. If neither this nor fixed_rate is set, tau is measured from Simulation::frame_time.
   std::optional<double> fixed_tau;
-  std::optional<FrameRate> fixed_rate;  ///< mu and delta that tau follows from
-  stats::PtpeModel model;               ///< of tau and beta, Eq. 11
-  std::uint32_t seed = 1;               ///< of the choice of active particles
-  bool always = false;                  ///< also for methods without it, in tests and comparisons
+  std::optional<FrameRate> fixed_rate;  ///< mu and delta from which tau follows
+  stats::PtpeModel model;               ///< gives tau and beta, Eq. 11
+  std::uint32_t seed = 1;               ///< for the random choice of active particles
+  bool always = false;  ///< also for methods without temporal acceleration, in tests and comparisons
 };
 
 struct SimulationOptions {
@@ -48,37 +48,37 @@ struct SimulationOptions {
   std::int64_t n_star = 32 * 1024;
   Backend backend = Backend::Cpu;
   Readings readings = readings_of(Preset::Tuned);
-  /// Keep what saliency is made of, for read_saliency; a method without saliency has none to keep.
+  /// Store the parts of saliency for read_saliency; methods without saliency have none to store.
   bool saliency_parts = false;
-  std::optional<TargetRegion> forced_targets;  ///< methods that split and merge only
-  std::int64_t particle_capacity = 0;          ///< of these methods; 0 = 8 n_*
+  std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
+  std::int64_t particle_capacity = 0;          ///< for methods that split and merge; 0 = 8 n_*
   int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
-  int iterations = 0;        ///< constraint projections a substep; 0 = the scene's
-  int substeps = 0;          ///< in every frame; 0 = as many as the fastest particle asks for (scene.hpp)
-  int most_substeps = 0;  ///< a frame, where the fastest particle is followed; 0 = 32, or the scene's least
-  double frame_dt_s = 0;  ///< 0 = the scene's
+  int iterations = 0;        ///< constraint projections per substep; 0 = the scene's
+  int substeps = 0;          ///< per frame; 0 = as many as the fastest particle needs (scene.hpp)
+  int most_substeps = 0;     ///< limit per frame if substeps is 0; 0 = 32, or the scene's minimum if larger
+  double frame_dt_s = 0;     ///< 0 = the scene's
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
   /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
   std::optional<std::vector<ParticleState>> start;
-  /// Frames that lie behind the start: nozzles go on from there. >= 0.
+  /// Frames before the start: nozzles continue from this frame. >= 0.
   int start_frame = 0;
-  /// For starts in the middle of a run: at most so many density projections move the particles of `start`,
-  /// until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %; velocities stay. The velocity
-  /// grid of temporal acceleration is then made from the start as well. 0 = take the start as it is.
+  /// For starts in the middle of a run: maximum number of density projections that move the particles of
+  /// `start` until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %. Velocities stay. The
+  /// velocity grid of temporal acceleration is then built from the start as well. 0 = use the start
+  /// unchanged.
   int start_projections = 0;
-  /// Go on from a file that Simulation::save_state wrote, in a run with the same scene and options: from
-  /// there on the run is bit for bit the one that was saved. Excludes `start`; start_frame is the file's.
+  /// Resume from a file that Simulation::save_state wrote in a run with the same scene and options. The run
+  /// then continues bit for bit as the saved one. Excludes `start`; start_frame comes from the file.
   std::filesystem::path resume_from;
-  /// Folder that keeps settled states between runs (default_cache_folder()); empty = settle every time.
+  /// Folder that caches settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
-  bool wall_impulse = false;  ///< keep Simulation::momentum(); costs passes of its own
-  std::vector<Gauge> gauges;  ///< on the walls; not empty = wall_impulse
-  bool time_parts = false;    ///< see Simulation::part_times(); waits for the device between parts
+  bool wall_impulse = false;  ///< record Simulation::momentum(); costs extra passes
+  std::vector<Gauge> gauges;  ///< on the walls; if not empty, implies wall_impulse
+  bool time_parts = false;    ///< measure Simulation::part_times(); waits for the device between parts
   /// Called after each settling frame with (done, total).
   std::function<void(int, int)> settling;
-  // Numbers of the solver; a negative value keeps the measured default
-  // (libsim/solver/stages/fluid_state.hpp).
+  // Solver numbers; a negative value selects the measured default (libsim/solver/stages/fluid_state.hpp).
   double relaxation = -1;
   double tensile = -1;
   double viscosity_m2_s = -1;
@@ -88,47 +88,47 @@ struct SimulationOptions {
   double coarse_edge = -1;
 };
 
-/// What the guards met since the simulation was made. Nothing is hidden: each count says how often a rule
-/// stepped in.
+/// Counts of guard interventions since the simulation was made: each count says how often one rule stepped
+/// in.
 struct GuardCounts {
   std::uint64_t speed_limited = 0;       ///< particle-substeps whose speed was limited
   std::uint64_t coincident_pairs = 0;    ///< neighbour pairs at zero distance
   std::uint64_t not_finite = 0;          ///< particles quarantined: NaN, infinite or far outside the tank
-  std::uint64_t neighbours_dropped = 0;  ///< neighbours that found no room in a list
+  std::uint64_t neighbours_dropped = 0;  ///< neighbours for which a list had no room
   std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back by a wall or an obstacle
-  std::uint64_t nozzle_waited = 0;  ///< layers left out because the corner columns held too few particles
-  std::uint64_t saliency_not_finite = 0;  ///< particle-turns whose saliency was NaN or infinite: s = 0
+  std::uint64_t nozzle_waited = 0;  ///< layers not poured because the corner columns held too few particles
+  std::uint64_t saliency_not_finite = 0;  ///< particle-turns whose saliency was NaN or infinite; s is then 0
   std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)
 };
 
-/// Splits and merges since the simulation was made; particles and turns of the levels in which something was
-/// so are particle-turns. particles = particles at the start + born - merges + FrameReport::particles_in -
-/// particles_out.
+/// Splits and merges since the simulation was made. A turn is one update of the levels; particle-turns count
+/// the affected particles of each turn. particles = particles at the start + born - merges +
+/// FrameReport::particles_in - particles_out.
 struct LevelEvents {
   std::uint64_t splits = 0;
-  std::uint64_t born = 0;            ///< particles that splits added: 2^k - 1 each
-  std::uint64_t merges = 0;          ///< pairs that became one
-  std::uint64_t split_deferred = 0;  ///< particle-turns in which the throttle made a split wait
-  std::uint64_t split_at_wall = 0;   ///< particle-turns in which no children fitted between the walls
-  std::uint64_t split_no_room = 0;   ///< particle-turns in which the capacity refused a split
-  std::uint64_t merge_overlap = 0;  ///< particle-turns whose every partner would have overlapped a larger one
-  std::uint64_t merge_step = 0;     ///< particle-turns in which a finer neighbour forbade a merge
-  double energy_lost_j = 0;         ///< kinetic energy lost in merges
+  std::uint64_t born = 0;            ///< particles added by splits: 2^k - 1 each
+  std::uint64_t merges = 0;          ///< pairs merged into one particle
+  std::uint64_t split_deferred = 0;  ///< particle-turns in which the throttle delayed a split
+  std::uint64_t split_at_wall = 0;   ///< particle-turns in which the children did not fit between the walls
+  std::uint64_t split_no_room = 0;   ///< particle-turns in which a split exceeded the capacity
+  std::uint64_t merge_overlap = 0;   ///< particle-turns in which any merge would overlap a larger particle
+  std::uint64_t merge_step = 0;      ///< particle-turns in which a finer neighbour prevented a merge
+  double energy_lost_j = 0;          ///< kinetic energy lost in merges
 };
 
-/// What temporal acceleration went by in a frame, and did.
+/// Inputs and results of temporal acceleration in one frame.
 struct TemporalReport {
-  std::optional<double> tau;      ///< frames/s, Eq. 11; none = no frame's time was known yet
-  std::optional<FrameRate> rate;  ///< mu and delta behind it; none = tau was given, or as for tau
-  double beta = 1;                ///< lowest probability of being solved
-  std::int64_t active = 0;        ///< particles that were solved
+  std::optional<double> tau;      ///< frames/s, Eq. 11; none = no frame time known yet
+  std::optional<FrameRate> rate;  ///< mu and delta behind tau; none = tau was given, or no frame time yet
+  double beta = 1;                ///< lowest probability that a particle is solved
+  std::int64_t active = 0;        ///< number of solved particles
 };
 
-/// What a frame consisted of and how it was solved, as the solver had it. Costs a frame nothing to speak of.
+/// Particle counts of a frame and how the solver solved it. Costs almost no time.
 struct FrameAccount {
-  std::vector<std::int64_t> particles_by_level;  ///< one count for each radius of Simulation::radii_m
-  std::optional<TemporalReport> temporal;  ///< none = a method that solves every particle, or no frame yet
-  std::optional<GuardCounts> guards;       ///< of this frame alone; none = no frame yet
+  std::vector<std::int64_t> particles_by_level;  ///< one count per radius of Simulation::radii_m
+  std::optional<TemporalReport> temporal;        ///< none = the method solves every particle, or no frame yet
+  std::optional<GuardCounts> guards;             ///< of this frame only; none = no frame yet
 
   std::int64_t particles() const {
     return std::accumulate(particles_by_level.begin(), particles_by_level.end(), std::int64_t{0});
@@ -138,7 +138,7 @@ struct FrameAccount {
 /// Substeps of a frame.
 struct SubstepCount {
   int taken = 0;   ///< 0 = no frame yet
-  int wished = 0;  ///< that the fastest particle asked for: more than were taken where the most of them bound
+  int wished = 0;  ///< requested by the fastest particle; larger than `taken` if the limit applied
 };
 
 /// Milliseconds of the last frame's parts, as the paper's Table 2 splits them.
@@ -151,32 +151,32 @@ struct PartTimes {
 
 /// A pass of the compiled schedule.
 struct StageTime {
-  std::string name, phase;        ///< as --explain names them
-  EffectKind effect = no_effect;  ///< that alone calls for it
-  double ms = 0;  ///< that all its runs took in the last frame; 0 unless Simulation::time_passes
+  std::string name, phase;        ///< names as printed by --explain
+  EffectKind effect = no_effect;  ///< the effect that alone requires the pass
+  double ms = 0;                  ///< all its runs in the last frame; 0 unless Simulation::time_passes is on
 };
 
-/// What SimulationOptions::start_projections came to.
+/// Result of SimulationOptions::start_projections.
 struct RelaxedStart {
   int projections = 0;
-  double compression = 0;  ///< mass-weighted mean of max(rho / rho_0 - 1, 0) that was left
+  double compression = 0;  ///< remaining mass-weighted mean of max(rho / rho_0 - 1, 0)
 };
 
-/// Heat over the water's specific heat, in m_* K above the reference temperature, where the scene lists heat.
-/// held + taken + drained - poured - walls is constant.
+/// Heat divided by the water's specific heat, in m_* K above the reference temperature, if the scene lists
+/// heat. held + taken + drained - poured - from_walls is constant.
 struct HeatReport {
-  double held = 0;                                            ///< by the water
+  double held = 0;                                            ///< in the water
   double poured = 0, taken = 0, drained = 0, from_walls = 0;  ///< since the simulation was made
 };
 
 /// Diffuse particles of the effect foam since the simulation was made: emitted = spray + foam + bubbles +
 /// dissolved + dropped + left.
 struct FoamReport {
-  std::uint64_t emitted = 0;                       ///< that the water's motion asked for
-  std::uint64_t dissolved = 0;                     ///< at the end of their time on the water
-  std::uint64_t dropped = 0;                       ///< that found no room in the pool
-  std::uint64_t left = 0;                          ///< through an outlet, or no longer finite
-  std::uint64_t spray = 0, foam = 0, bubbles = 0;  ///< that are there: in the air, on the water, in it
+  std::uint64_t emitted = 0;                       ///< requested by the water's motion
+  std::uint64_t dissolved = 0;                     ///< reached the end of their lifetime on the water
+  std::uint64_t dropped = 0;                       ///< found no room in the pool
+  std::uint64_t left = 0;                          ///< left through an outlet, or became non-finite
+  std::uint64_t spray = 0, foam = 0, bubbles = 0;  ///< present now: in the air, on the surface, under water
 };
 
 /// State of the fluid after a frame.
@@ -185,34 +185,34 @@ struct FrameReport {
   SubstepCount substeps;  ///< of the last frame
   double time_s = 0;
   std::int64_t particles = 0;
-  std::vector<std::int64_t> particles_by_level;  ///< up to the coarsest level that is present
+  std::vector<std::int64_t> particles_by_level;  ///< up to the coarsest level present
   std::int64_t mass_units = 0;                   ///< total mass in m_*: the sum of 2^level, exact
   LevelEvents levels;
-  double jump_share = 0;          ///< share of the pairs within h whose levels differ by more than one
+  double jump_share = 0;          ///< share of pairs within h whose levels differ by more than one
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   double density_max = 0;         ///< max of rho / rho_0
-  double neighbours_mean = 0;     ///< without self, within h
-  double listed_mean = 0;         ///< length of a list of neighbours, which looks farther than h
+  double neighbours_mean = 0;     ///< excluding self, within h
+  double listed_mean = 0;         ///< mean length of the neighbour lists, which reach beyond h
   double speed_max_m_s = 0;
-  std::int64_t poured = 0;        ///< by nozzles since the simulation was made, in units of m_*
-  std::int64_t particles_in = 0;  ///< particles that nozzles made
-  /// Particles that nozzles took and outlets let out. A nozzle of one level moves as many as it makes.
+  std::int64_t poured = 0;        ///< mass poured by nozzles since the simulation was made, in m_*
+  std::int64_t particles_in = 0;  ///< particles made by nozzles
+  /// Particles taken by nozzles or released through outlets. A nozzle of one level takes as many as it makes.
   std::int64_t particles_out = 0;
-  std::int64_t drained = 0;    ///< left through outlets, in units of m_*
-  std::int64_t reservoir = 0;  ///< taken for nozzles and not yet poured, in units of m_*; mass_units +
-                               ///< reservoir + drained is constant
+  std::int64_t drained = 0;  ///< mass that left through outlets, in m_*
+  /// Mass taken for nozzles and not yet poured, in m_*; mass_units + reservoir + drained is constant.
+  std::int64_t reservoir = 0;
   HeatReport heat;
   GuardCounts guards;
   TemporalReport temporal;
-  SeenReport seen;  ///< the picture that saliency was given last
+  SeenReport seen;  ///< the last picture given to saliency
   RelaxedStart start;
   FoamReport foam;
 };
 
-/// What may change while the fluid runs.
+/// Numbers that may change while the fluid runs.
 struct LiveNumbers {
   double alpha = 0;    ///< Eq. 1: weight of the temporal feature, 0 .. 1
-  int iterations = 0;  ///< constraint projections a substep, 1 .. most_iterations
+  int iterations = 0;  ///< constraint projections per substep, 1 .. most_iterations
 
   static constexpr int most_iterations = 64;
 };
@@ -221,16 +221,16 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  /// Sets the eyes and the pictures that they saw last. They hold from the next frame on, until the next
-  /// call. Methods without gaze ignore them. Before the first call, the other methods use the scene's camera
-  /// and look along its axis. Returns false, and changes nothing, if a picture lies in GL buffers that this
-  /// back end cannot read (EyeLook::shared, on a CPU or with a context of another device): read it back and
-  /// call again. The simulation owns the shared buffers, of this call and of copy_to_gl, until copy_to_gl: GL
-  /// must not read or draw them meanwhile. If the next frame chooses no levels, only the gaze is used, and
+  /// Sets the eyes and the last pictures they saw. They apply from the next frame until the next call.
+  /// Methods without gaze ignore them. Before the first call, the other methods use the scene's camera and
+  /// look along its axis. Returns false, and changes nothing, if a picture lies in GL buffers that this back
+  /// end cannot read (EyeLook::shared, on a CPU or with a context of another device): read it back and call
+  /// again. The simulation owns the shared buffers, of this call and of copy_to_gl, until copy_to_gl: GL must
+  /// not read or draw them meanwhile. If the next frame does not update levels, only the gaze is used, and
   /// the call returns true. base::Error: no eye or more than two, a camera that is not finite, an incomplete
   /// G-buffer.
   virtual bool look(const Looks& looks) = 0;
-  /// Whether the method uses the picture of the last frame; otherwise it need not be read back.
+  /// True if the method uses the picture of the last frame; otherwise it need not be read back.
   virtual bool follows_picture() const = 0;
   /// Frames since the gate opened.
   virtual int frame() const = 0;
@@ -238,23 +238,24 @@ class Simulation {
   virtual double time_s() const { return 0; }
   /// Advances by one frame.
   virtual void step_frame() = 0;
-  /// Changes the forced targets from the next frame on; base::Error if the run was made without any.
+  /// Changes the forced targets from the next frame on; base::Error if the run was made without forced
+  /// targets.
   virtual void force_targets(const TargetRegion&) {}
   virtual LiveNumbers live_numbers() const { return {}; }
-  /// Changes these numbers from the next frame on, alpha when levels are next chosen; base::Error if one is
-  /// out of range.
+  /// Changes these numbers from the next frame on; alpha takes effect at the next level update. base::Error
+  /// if one is out of range.
   virtual void change(const LiveNumbers&) {}
   /// Replaces the list of effects from the next frame on. The schedule is compiled anew. Particles,
-  /// velocities, levels and guards stay. A new effect starts as in a new run: temperatures from the scene's
-  /// boxes, foam without particles. Effects that stay keep their state. The number of substeps follows the
-  /// new effects. From here on the run is bit for bit one that never had the removed effects, and their
-  /// columns are freed. base::Error, with nothing changed: whatever check_effects refuses, or more substeps
-  /// than the options or the program allow. base::Error, after which the simulation cannot be used: the
-  /// device has no memory left.
+  /// velocities, levels and guard counts stay. A new effect starts as in a new run: temperatures from the
+  /// scene's boxes, foam without particles. Effects that stay keep their state. The number of substeps
+  /// follows the new effects. The run is then bit for bit one that never had the removed effects, and their
+  /// columns are freed. base::Error, with nothing changed: check_effects refuses the list, or it needs more
+  /// substeps than the options or the program allow. base::Error, after which the simulation cannot be used:
+  /// the device is out of memory.
   virtual void set_effects(const std::vector<Effect>&) {}
-  /// Sets the time of the last whole frame, ms, for tau. Methods without temporal acceleration ignore it.
+  /// Sets the duration of the last whole frame, ms, for tau. Methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
-  /// Account of the last frame; before the first frame, the particles of the start.
+  /// Account of the last frame; before the first frame, the particle counts of the start.
   virtual const FrameAccount& account() const = 0;
   /// Changes of the water's momentum in the last frame, and the impulses on walls and gauges. All zero
   /// without SimulationOptions::wall_impulse or gauges.
@@ -263,17 +264,17 @@ class Simulation {
   virtual SubstepCount substeps() const { return {}; }
   /// The first sign of divergence since the simulation was made; none in a sound run. Costs almost no time.
   virtual std::optional<Divergence> divergence() const { return {}; }
-  /// Sets position and velocity of existing particles, by id, so that tests can break the water. Levels
-  /// stay. base::Error for an unknown id.
+  /// Sets position and velocity of existing particles, by id, so that tests can disturb the water. Levels do
+  /// not change. base::Error for an unknown id.
   virtual void put(const std::vector<ParticleState>&) {}
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;
-  /// Largest possible number of particles; buffers of this size never grow.
+  /// Maximum number of particles; buffers of this size never grow.
   virtual std::int64_t particle_capacity() const { return particle_count(); }
   /// Rest spacing d = 2 r of the finest particles that the method can hold, m.
   virtual double spacing_m() const = 0;
-  /// Every radius that read_particles may ever give, m, finest first.
+  /// Every radius that read_particles may return, m, finest first.
   virtual std::vector<float> radii_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
@@ -281,15 +282,15 @@ class Simulation {
   /// inherit their parents' value. Only s and target without SimulationOptions::saliency_parts. Empty for
   /// methods without saliency, and before the first frame.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
-  /// Saliency (Eq. 1-9) of the present state for the given eyes, whatever the method, as if this were the
-  /// first frame: for masks and figures, not part of step_frame. Sorts the particles; `out` is in the order
-  /// of a read_particles after it.
+  /// Saliency (Eq. 1-9) of the present state for the given eyes, for any method, as if this were the first
+  /// frame. For masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
+  /// later read_particles.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
-  /// s and target of a method that follows the gaze alone, in the order of read_particles; the rest is 0.
+  /// s and target by the gaze-only rule, in the order of read_particles; the other fields are 0.
   virtual void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// Ids in the order of read_particles.
   virtual std::vector<int> read_ids() const = 0;
-  /// One value a particle in the order of read_particles.
+  /// One value per particle in the order of read_particles.
   virtual void read_field(ParticleField field, std::vector<float>& out) const = 0;
   /// The state of every particle, ordered by id.
   virtual std::vector<ParticleState> read_state() const = 0;
@@ -297,40 +298,40 @@ class Simulation {
   /// is then renamed. The state includes the last look() and the frame times behind tau. It excludes
   /// part_times() and momentum(). base::Error if the file cannot be written.
   virtual void save_state(const std::filesystem::path& path) = 0;
-  /// Copies positions and radii into a GL buffer of this thread's context, on the device.
-  /// Returns false if this back end cannot (a CPU, or a context of another device) or the buffer is too
-  /// small: use read_particles and upload instead.
+  /// Copies positions and radii into a GL buffer of this thread's context, on the device. Returns false if
+  /// this back end cannot (a CPU, or a context of another device) or the buffer is too small: then use
+  /// read_particles and upload.
   virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
-  /// The scene's obstacles between two frames, in its order, copied to the host.
+  /// The scene's obstacles between two frames, in the scene's order, copied to the host.
   virtual std::vector<BodyMotion> read_obstacles() const { return {}; }
-  /// Largest possible number of foam particles; 0 without the effect foam.
+  /// Maximum number of foam particles; 0 without the effect foam.
   virtual std::int64_t foam_capacity() const { return 0; }
   /// Positions and radii of the foam particles, copied to the host.
   virtual void read_foam(std::vector<RenderParticle>& out) const { out.clear(); }
-  /// As copy_to_gl, with foam_capacity() entries; radius 0 marks an unused one. Returns false also without
-  /// foam.
+  /// Like copy_to_gl, with foam_capacity() entries; radius 0 marks an unused entry. Also returns false
+  /// without foam.
   virtual bool copy_foam_to_gl(const GlBufferRef&) { return false; }
   /// All zero unless SimulationOptions::time_parts.
   virtual PartTimes part_times() const = 0;
-  /// The passes that frames run, in the schedule's order.
+  /// The passes of a frame, in the schedule's order.
   virtual std::vector<StageTime> passes() const { return {}; }
-  /// Switches the clock round each pass on or off. While it is on, a frame waits for the device after each.
+  /// Switches the timer of each pass on or off. While on, a frame waits for the device after each pass.
   virtual void time_passes(bool) {}
-  /// Switches the clock round every launch of this back end on, forgetting what it had measured, or off. It
-  /// costs a few microseconds a launch.
+  /// Switches timing of every launch of this back end on (discarding earlier measurements) or off. Costs a
+  /// few microseconds per launch.
   virtual void profile_launches(bool) {}
-  /// What each pass took since then, longest first.
+  /// Time of each pass since then, longest first.
   virtual std::vector<LaunchTime> launch_times() const { return {}; }
   /// Waits for all launched work.
   virtual void synchronize() = 0;
-  /// Bytes of memory that particles and their choice for nozzles and outlets hold.
+  /// Bytes of memory held by the particles and by the selection for nozzles and outlets.
   virtual std::size_t particle_bytes() const = 0;
-  /// The schedule in words: each pass with why it is there, each known stage with why it is not.
+  /// The schedule as text: why each pass runs, and why each other known stage does not.
   virtual std::string explain() const = 0;
 };
 
-/// Substeps that every frame takes at least: the scene's rule or the options', and what its effects need.
-/// base::Error when the options' are too few for an effect, or the effect's too many.
+/// Minimum number of substeps per frame: from the scene or the options, and from its effects. base::Error if
+/// the options allow too few for an effect, or an effect needs too many.
 int least_substeps(const Scene& scene, const SimulationOptions& options);
 
 /// Fills, settles and returns the scene at frame 0. Errors are base::Error.

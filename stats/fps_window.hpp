@@ -1,6 +1,6 @@
 #pragma once
-/// Mean and standard deviation of the frame rate: the one definition that the pacer, the records and the
-/// solver's tau share.
+/// Mean and standard deviation of the frame rate. The pacer, the records and the solver's tau all use this
+/// definition.
 
 #include <cstddef>
 #include <deque>
@@ -8,7 +8,7 @@
 
 namespace stats {
 
-/// Which mean of the frame rate is meant by mu.
+/// The mean of the frame rate that defines mu.
 enum class FpsMean { Harmonic, Arithmetic };
 
 /// Moments of the instantaneous frame rate 1/dt over N frames, in frames per second.
@@ -23,18 +23,18 @@ struct FpsMoments {
 };
 
 /// Moments of frame intervals in seconds. Every interval must be positive and finite (std::invalid_argument);
-/// none gives zeros.
+/// an empty span gives zeros.
 FpsMoments fps_moments(std::span<const double> intervals_s);
 
-/// The last frames of a running program, at most `capacity` of them.
+/// Sliding window over the last frames of a running program, at most `capacity` of them.
 class FpsWindow {
  public:
   /// capacity >= 1 frames.
   explicit FpsWindow(std::size_t capacity = 30);
-  /// interval_s > 0; others throw std::invalid_argument.
+  /// interval_s > 0, otherwise std::invalid_argument.
   void push(double interval_s);
   FpsMoments moments() const;
-  /// The oldest first, s.
+  /// Oldest first, in seconds.
   const std::deque<double>& intervals_s() const { return intervals_s_; }
 
  private:

@@ -1,10 +1,10 @@
 #pragma once
-/// GSL's error handling, in one place. By default GSL aborts the process; every file that calls GSL says
-/// use_gsl_codes() first and reads the codes.
+/// GSL's error handling. By default GSL aborts the process on an error. Every file that calls GSL therefore
+/// calls use_gsl_codes() first and checks the return codes.
 
 namespace stats {
 
-/// Switches GSL's aborting handler off, once for the process.
+/// Turns GSL's aborting error handler off, once for the process.
 void use_gsl_codes();
 
 /// Version of GSL at run time, e.g. "2.7.1".

@@ -1,5 +1,5 @@
 #pragma once
-/// Means with their uncertainty, of values and of paired differences.
+/// Means with confidence intervals, of values and of paired differences.
 
 #include <cstddef>
 #include <span>
@@ -7,19 +7,19 @@
 
 namespace stats {
 
-/// A mean and the interval of Student's t about it.
+/// A mean with its Student's t interval.
 struct MeanInterval {
   double mean = 0;           ///< NaN without values
   double low = 0, high = 0;  ///< NaN with fewer than two values
   std::size_t n = 0;
 };
 
-/// mean -+ t(n - 1) s / sqrt(n) of independent values. All must be finite and confidence lie in (0, 1)
-/// (std::invalid_argument).
+/// Interval mean -+ t(n - 1) s / sqrt(n) of independent values. std::invalid_argument unless all values are
+/// finite and confidence lies in (0, 1).
 MeanInterval mean_interval(std::span<const double> values, double confidence = 0.95);
 
-/// Mean of each run of `size` values, in order: repeats of one condition are not independent and count as
-/// one. Values that are not finite are left out; a group without any is left out as a whole.
+/// Mean of each group of `size` consecutive values. Repeats of one condition are not independent and count as
+/// one value. Values that are not finite are left out; a group with no finite value is omitted.
 /// std::invalid_argument unless the values fill whole groups.
 std::vector<double> group_means(std::span<const double> values, std::size_t size);
 

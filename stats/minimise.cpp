@@ -39,13 +39,14 @@ class Descent {
     if (!std::isfinite(at_.value)) throw std::invalid_argument("the start lies outside the domain");
   }
 
-  /// Until a step promises less than `least`; false when no step lowers the value before.
+  /// Steps until the next step promises a decrease below `least`. False if no step lowers the value before
+  /// that.
   bool bfgs(Vector inverse, double least);
   const Point& at() const { return at_; }
   Minimum newton();
 
  private:
-  /// The first of the steps 1, 1/2, 1/4 ... along `direction` that lowers the value enough.
+  /// The first of the steps 1, 1/2, 1/4 ... along `direction` with a sufficient decrease.
   std::optional<Point> step(const Vector& direction, double slope, double decrease) const;
   Vector hessian() const;
   void update_inverse(Vector& inverse, const Vector& s, const Vector& y) const;
@@ -67,7 +68,7 @@ std::optional<Point> Descent::step(const Vector& direction, double slope, double
   return std::nullopt;
 }
 
-/// Eq. 6.17 of Nocedal and Wright, left out where the curvature is not positive.
+/// Eq. 6.17 of Nocedal and Wright, skipped if the curvature is not positive.
 void Descent::update_inverse(Vector& inverse, const Vector& s, const Vector& y) const {
   const double curvature = dot(s, y);
   if (!(curvature > 1e-10 * std::sqrt(dot(s, s) * dot(y, y)))) return;

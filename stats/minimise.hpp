@@ -1,5 +1,5 @@
 #pragma once
-/// Smooth functions of a few variables and their minima.
+/// Local minimisation of smooth functions of a few variables.
 
 #include <functional>
 #include <span>
@@ -7,26 +7,26 @@
 
 namespace stats {
 
-/// Value at x, its gradient written to the second span; infinite outside the domain (the gradient is then
-/// not read).
+/// Returns the value at x and writes the gradient to the second span. Infinite outside the domain; the
+/// gradient is then not read.
 using Objective = std::function<double(std::span<const double>, std::span<double>)>;
 
 struct Minimum {
   std::vector<double> x;
   double value = 0;
   std::vector<double> hessian;  ///< row-major; from central differences of the gradient
-  /// The Hessian is positive definite and Newton's last step was at most 1e-6; of minimise_near: another step
-  /// would lower the value by less than 1e-10.
+  /// minimise(): the Hessian is positive definite and the last Newton step was at most 1e-6. minimise_near():
+  /// another step would lower the value by less than 1e-10.
   bool converged = false;
 };
 
-/// A local minimum: BFGS (Nocedal and Wright 2006, algorithm 6.1) with a line search that asks for
-/// sufficient decrease, then Newton steps. Variables should be of the order 1; `start` lies in the domain
+/// Finds a local minimum: BFGS (Nocedal and Wright 2006, algorithm 6.1) with a line search for sufficient
+/// decrease, then Newton steps. Variables should be of order 1. `start` must lie in the domain
 /// (std::invalid_argument).
 Minimum minimise(const Objective& objective, std::vector<double> start);
 
-/// The same for one of many problems that are nearly alike: BFGS alone, begun with another's inverse Hessian
-/// (row-major). No Hessian comes back.
+/// The same for one of many similar problems: BFGS alone, started with the inverse Hessian of another problem
+/// (row-major). Returns no Hessian.
 Minimum minimise_near(const Objective& objective, std::vector<double> start,
                       std::vector<double> inverse_hessian);
 

@@ -12,7 +12,7 @@ double normal_quantile(double p);
 /// Standard normal distribution function.
 double normal_probability(double z);
 /// p quantile, 0 <= p <= 1, of values in ascending order, linear between order statistics (Hyndman and Fan
-/// 1996, type 7). std::invalid_argument when there are none.
+/// 1996, type 7). std::invalid_argument when there are no values.
 double sorted_quantile(std::span<const double> ascending, double p);
 
 }  // namespace stats

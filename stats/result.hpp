@@ -1,5 +1,5 @@
 #pragma once
-/// A number, or the reason why there is none: what the statistics return instead of NaN.
+/// A value, or the reason why it is undefined. The statistics return this instead of NaN.
 
 #include <stdexcept>
 #include <string>
@@ -20,7 +20,7 @@ class Result {
   Result(Refusal refusal) : state_(std::move(refusal)) {}
 
   explicit operator bool() const { return std::holds_alternative<T>(state_); }
-  /// std::logic_error when there is no value.
+  /// Throws std::logic_error when there is no value.
   const T& value() const {
     if (!*this) throw std::logic_error("no value: " + reason());
     return std::get<T>(state_);

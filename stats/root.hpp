@@ -1,5 +1,5 @@
 #pragma once
-/// Roots of functions of one variable.
+/// Root finding for functions of one variable.
 
 #include <functional>
 

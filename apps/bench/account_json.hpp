@@ -1,5 +1,5 @@
 #pragma once
-/// A frame's account in figures, under the names of the database's columns.
+/// A frame's account as JSON, with the names of the database's columns.
 
 #include <optional>
 
@@ -9,10 +9,10 @@
 
 namespace apps {
 
-/// frame: since the gate opened. Null: not measured.
+/// frame: counted from the opening of the gate. Null if not measured.
 base::Json account_json(std::int64_t frame, const study::FrameFacts& facts);
 
-/// null: a sound run.
+/// Null if the run did not diverge.
 base::Json divergence_json(const std::optional<sim::Divergence>& divergence);
 
 }  // namespace apps

@@ -21,7 +21,7 @@ constexpr double value_px = 80;
 constexpr const char* colours[] = {svg::colour::sky, svg::colour::grey, svg::colour::green,
                                    svg::colour::orange, svg::colour::blue};
 
-/// An interval across the bar whose top is at y: a line with an end stroke on either side.
+/// An interval across the bar whose top is at y: a line with a stroke at each end.
 std::string whisker(double low, double high, double y) {
   const double top = y + 3, bottom = y + bar_px - 6, middle = (top + bottom) / 2;
   return svg::path(move('M', {low, middle}) + move('L', {high, middle}) + move('M', {low, top}) +
@@ -38,7 +38,7 @@ double largest(const BarChart& chart) {
   return most > 0 ? most : 1;
 }
 
-/// One bar with its label, its interval and its value, whose top is at y.
+/// One bar, whose top is at y, with its label, interval and value.
 std::string drawn(const BarChart& chart, const BarChart::Bar& bar, const char* colour, double most,
                   double y) {
   const auto length = [&](double value) {

@@ -10,14 +10,14 @@ namespace apps {
 struct BarChart {
   struct Bar {
     std::string group, label;
-    double value = 0;  ///< at least 0; others are drawn as 0 and labelled as they are
-    /// Ends of an interval, drawn over the bar where both are finite.
+    double value = 0;  ///< negative and non-finite values are drawn as 0 and labelled as they are
+    /// Ends of an interval, drawn over the bar if both are finite.
     double low = std::numeric_limits<double>::quiet_NaN();
     double high = std::numeric_limits<double>::quiet_NaN();
   };
   std::string title, unit;
-  int digits = 2;         ///< of the values, behind the point
-  std::vector<Bar> bars;  ///< bars of a group stand together, in this order
+  int digits = 2;         ///< decimals of the values
+  std::vector<Bar> bars;  ///< bars of a group are consecutive
 };
 std::string to_svg(const BarChart& chart);
 

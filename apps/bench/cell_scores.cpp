@@ -25,7 +25,7 @@ std::vector<std::string> head() {
   return out;
 }
 
-/// The pictures of one method, in the order of Series::cells.
+/// Keys of one method's pictures, in the order of Series::cells.
 std::vector<CellKey> keys_of(const ScoreBlock& block, const MethodScores& scores) {
   std::vector<CellKey> out;
   const auto repeats = static_cast<int>(scores.of(still_metrics[0]).repeats);
@@ -48,7 +48,7 @@ std::string in_words(const CellKey& key) {
 }
 
 std::string exact(double value) {
-  if (std::isnan(value)) return "nan";  // NaN has a sign, which says nothing
+  if (std::isnan(value)) return "nan";  // the sign of a NaN means nothing
   return base::shortest(value);
 }
 
@@ -74,7 +74,7 @@ bool reads_row(const std::vector<std::string>& cells, CellKey& key, CellValues& 
   return good;
 }
 
-/// "3 pictures ..., the first of them ...", or nothing.
+/// "3 pictures ..., the first: ...", or empty.
 std::string told(const std::vector<CellKey>& keys, const std::string& what) {
   if (keys.empty()) return "";
   return std::to_string(keys.size()) + " " + what + ", the first: " + in_words(keys.front());

@@ -1,5 +1,5 @@
 #pragma once
-/// The scores of Table 1 picture by picture, and how they changed since another run.
+/// The scores of Table 1 per picture, and their change since another run.
 
 #include <array>
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace apps {
 
-/// Metrics of one picture, against HiRes'.
+/// Metrics of one picture against HiRes.
 inline constexpr std::array still_metrics{Metric::PsnrFov, Metric::PsnrSalient, Metric::PsnrOverall,
                                           Metric::PsnrFluid, Metric::SsimStatic};
 
@@ -20,7 +20,7 @@ inline constexpr std::array still_metrics{Metric::PsnrFov, Metric::PsnrSalient, 
 struct CellKey {
   std::string scene, n_star, preset, method;
   int checkpoint = 0;  ///< frame
-  std::string start;   ///< checkpoint_digest: pictures of other water are no pair
+  std::string start;   ///< checkpoint_digest: pictures from different starts are not compared
   int gaze = 0;        ///< from 1, in the order of gaze_points
   int repeat = 0;      ///< from 1
   friend bool operator<(const CellKey& a, const CellKey& b) {
@@ -30,22 +30,22 @@ struct CellKey {
     return order(a) < order(b);
   }
 };
-/// A value for each of still_metrics: infinite where the pictures are equal, NaN where the mask is too small.
+/// One value per metric of still_metrics: infinite if the pictures are equal, NaN if the mask is too small.
 using CellValues = std::array<double, still_metrics.size()>;
 using CellScores = std::map<CellKey, CellValues>;
 
-/// A row for each picture; its values read back to the same bits. A block without values gives none.
+/// One row per picture; its values read back to the same bits. A block without values gives no rows.
 TextTable cell_rows(const std::vector<ScoreBlock>& blocks);
 
-/// What cell_rows wrote as CSV. base::Error at the file and its line.
+/// Reads the CSV of cell_rows(). base::Error at the file and its line.
 CellScores read_cells(const std::filesystem::path& path);
 
-/// base::Error unless the pictures of the blocks, whose starts are known and whose values need not be, are
-/// those of `then`; `path` is the file's.
+/// base::Error unless the pictures of the blocks are exactly those of `then`. The starts of the blocks must
+/// be known; their values are not used. `path` is the file's.
 void check_paired(const std::vector<ScoreBlock>& blocks, const CellScores& then, const std::string& path);
 
 /// Mean of now - then with its 95 % interval (Student's t over pairs of checkpoint and gaze point, repeats
-/// averaged first): a row for each scene, method and metric. A picture counts where both values are finite.
+/// averaged first), one row per scene, method and metric. Uses only pictures with two finite values.
 TextTable change_rows(const std::vector<ScoreBlock>& now, const CellScores& then);
 
 }  // namespace apps

@@ -31,7 +31,7 @@ bool read_number(const std::string& text, double& value) {
   return error == std::errc() && rest == end && std::isfinite(value);
 }
 
-/// tau of the paper's Table 2 for a cell.
+/// tau of a cell in the paper's Table 2.
 double paper_tau(const std::string& scene, const std::string& n_star, sim::MethodKind method) {
   const auto path = base::resource("data/paper/table2_performance.csv");
   const auto lines = split(base::read_file(path, 1 << 16), '\n');

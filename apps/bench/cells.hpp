@@ -1,5 +1,5 @@
 #pragma once
-/// What the two tables share: which cells they hold and what runs in one.
+/// Options and cells that both tables share.
 
 #include <memory>
 #include <string>
@@ -16,10 +16,10 @@ class App;
 
 namespace apps {
 
-/// Options of both tables as they were typed.
+/// Options of both tables, as typed.
 struct TableOptions {
   std::string scene = "all";
-  std::string n_star = "32k";    ///< one or several, separated by commas
+  std::string n_star = "32k";    ///< one, or several separated by commas
   std::string preset = "tuned";  ///< tuned, paper or both
   std::string tau = "fixed:-6";  ///< live, fixed:X or table2
   std::string backend = "auto";
@@ -34,11 +34,11 @@ struct CellSize {
 std::vector<CellSize> sizes_of(const std::string& words);
 std::vector<sim::Preset> presets_of(const std::string& word);
 
-/// The tau that temporal acceleration goes by: nothing = measured live.
+/// The tau of temporal acceleration; none = measured live.
 std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
                              sim::MethodKind method);
 
-/// The model of a PTPE file, of which a line is printed; the paper's where `path` is empty.
+/// Reads the model of a PTPE file and prints a line about it; the paper's model if `path` is empty.
 stats::PtpeModel load_model(const std::string& path);
 inline constexpr const char* ptpe_help =
     "fitted.toml of vip-stats fit-ptpe, by which tau and beta go; without: the paper's model";

@@ -13,7 +13,7 @@ namespace apps {
 
 namespace {
 
-/// Bits that depend on nothing but their arguments (lowbias32 rounds, C. Wellons).
+/// Hashes its arguments (rounds of lowbias32, C. Wellons).
 std::uint32_t mixed(std::uint32_t a, std::uint32_t b) {
   std::uint32_t x = a * 0x9e3779b9u + b;
   for (int round = 0; round < 2; ++round) {

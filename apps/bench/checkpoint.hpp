@@ -1,6 +1,6 @@
 #pragma once
-/// Where the runs of Table 1 start: HiRes at a checkpoint, looked at from several gaze points, moved by an
-/// ulp, and coarsened as each method asks.
+/// Starts of Table 1's runs: HiRes at a checkpoint, seen from several gaze points, perturbed by an ulp, and
+/// coarsened to each method's targets.
 
 #include <cstdint>
 #include <vector>
@@ -17,15 +17,15 @@ struct Checkpoint {
   sim::GBuffer seen;                      ///< its picture
 };
 
-/// `count` different gaze points at a frame: the scene's own gaze there, then the points of its other keys,
-/// nearest in time first and the earlier of two first. base::Error when the scene names fewer.
+/// `count` different gaze points at a frame: the scene's own gaze at that frame, then the points of its other
+/// keys, nearest in time first, ties to the earlier one. base::Error if the scene names fewer.
 std::vector<sim::Vec3d> gaze_points(const sim::Scene& scene, int frame, int count);
 
-/// The state with each coordinate one ulp (2^-23 of its magnitude or less) up or down, by a bit that depends
-/// on id, axis and repeat alone. Repeat 0 is the state itself.
+/// Moves each coordinate one ulp (at most 2^-23 of its magnitude) up or down; the direction depends only on
+/// id, axis and repeat. Repeat 0 is the state itself.
 std::vector<sim::ParticleState> perturbed(const std::vector<sim::ParticleState>& state, int repeat);
 
-/// A target for each particle of a state ordered by id: values[i] belongs to ids[i]. base::Error when a
+/// The target of each particle of a state ordered by id: values[i] belongs to ids[i]. base::Error if a
 /// particle has none.
 std::vector<std::uint8_t> targets_by_id(const std::vector<sim::ParticleState>& state,
                                         const std::vector<int>& ids,

@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view magic = "ViP-Lab checkpoint 1\n";  // another layout has another number
+constexpr std::string_view magic = "ViP-Lab checkpoint 1\n";  // change the number with the layout
 constexpr std::size_t most_bytes = std::size_t{4} << 30;
 constexpr std::size_t shown_digits = 12;
-constexpr int packing = 1;  // pixels without water are most of a file: the quickest level takes them away
+constexpr int packing = 1;  // the fastest level is enough: most of a file is pixels without water
 static_assert(std::is_trivially_copyable_v<sim::ParticleState> && sizeof(sim::ParticleState) == 32);
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
@@ -50,7 +50,7 @@ std::string body_of(const Checkpoint& checkpoint, const std::string& place) {
   return out += sim::gbuffer_bytes(checkpoint.seen, place);
 }
 
-/// Takes a line "KEY VALUE" from the front and returns its value.
+/// Takes a line "KEY VALUE" from the front of `rest` and returns its value.
 std::string take_line(std::string_view& rest, const std::string& key, const fs::path& path) {
   const auto end = rest.find('\n');
   if (end == std::string_view::npos || !rest.starts_with(key + " ")) damaged(path);

@@ -1,7 +1,7 @@
 #pragma once
-/// A checkpoint of Table 1 as a file, so that runs of several trees start from the same water and picture: a
-/// head of lines of text that says what it belongs to, then particles and picture, packed, with their
-/// SHA-256.
+/// A checkpoint of Table 1 as a file, so that several versions of the program can start from the same water
+/// and picture: a text header that says what it belongs to, then the compressed particles and picture, with
+/// their SHA-256.
 
 #include <filesystem>
 #include <string>
@@ -12,26 +12,27 @@
 
 namespace apps {
 
-/// What a checkpoint belongs to.
+/// What identifies a checkpoint.
 struct CheckpointOf {
   std::string scene;         ///< as in the paper's tables
   std::string scene_sha256;  ///< of the scene's file
   std::int64_t n_star = 0;
   int frame = 0;
-  PictureSize size;  ///< of the picture that is seen
+  PictureSize size;  ///< of the checkpoint's picture
 };
 
 /// SingleDam_32768_f060.checkpoint
 std::string checkpoint_name(const CheckpointOf& of);
 
-/// Writes a file of that name in a folder that is there, by rename.
+/// Writes a file of that name into an existing folder, by rename.
 void write_checkpoint(const std::filesystem::path& folder, const CheckpointOf& of,
                       const Checkpoint& checkpoint);
 
-/// Digits of the SHA-256 of particles and picture: runs with the same ones start from the same water.
+/// First digits of the SHA-256 of particles and picture: runs with equal digests start from the same water.
 std::string checkpoint_digest(const Checkpoint& checkpoint);
 
-/// base::Error at the file: missing, no checkpoint, of something else (which is named), damaged.
+/// base::Error at the file if it is missing, damaged, not a checkpoint, or another checkpoint (which is
+/// named).
 Checkpoint read_checkpoint(const std::filesystem::path& folder, const CheckpointOf& of);
 
 }  // namespace apps

@@ -43,7 +43,7 @@ std::vector<Checkpoint> take_checkpoints(const CellScene& scene, const CellSize&
     }
     return out;
   }
-  // No reading of the method touches HiRes.
+  // The preset does not matter for HiRes.
   const auto hires = sim::make_simulation(
       scene.scene, run_options(options, scene, size, sim::Preset::Tuned, sim::MethodKind::HiRes));
   for (int frame = 1; !frames.empty() && frame <= frames.back(); ++frame) {

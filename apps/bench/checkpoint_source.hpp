@@ -1,5 +1,5 @@
 #pragma once
-/// Where Table 1 has its checkpoints from: a run of HiRes, or the files of an earlier run.
+/// Gets the checkpoints of Table 1 from a run of HiRes, or from the files of an earlier run.
 
 #include <string>
 #include <vector>
@@ -10,15 +10,16 @@
 
 namespace apps {
 
-/// The scene's checkpoints that the options ask for.
+/// Frames of the scene's checkpoints that the options ask for.
 std::vector<int> checkpoint_frames(const CellScene& scene, const Table1Options& options);
 
-/// Digests of those in --checkpoints-from; none where it is not given. base::Error unless it holds them all.
+/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error unless all are
+/// there.
 std::vector<std::string> stored_digests(const CellScene& scene, const CellSize& size,
                                         const Table1Options& options);
 
-/// From --checkpoints-from, or else from HiRes, which runs from its settled state and is drawn by `eye`; then
-/// also stored in --checkpoints-to.
+/// Reads the checkpoints from --checkpoints-from, or else runs HiRes from its settled state, drawn by `eye`,
+/// and also stores them in --checkpoints-to if given.
 std::vector<Checkpoint> take_checkpoints(const CellScene& scene, const CellSize& size,
                                          const Table1Options& options, Onlooker& eye);
 

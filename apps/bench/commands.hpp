@@ -6,22 +6,22 @@ class App;
 
 namespace apps {
 
-/// vip-bench accuracy: error and milliseconds of each setting, and what a knob buys.
+/// vip-bench accuracy: error and milliseconds of each setting, and the effect of each knob.
 void add_accuracy_command(CLI::App& app);
 
-/// vip-bench effects: what each of a scene's effects adds to a frame.
+/// vip-bench effects: the cost per frame of each of a scene's effects.
 void add_effects_command(CLI::App& app);
 
-/// vip-bench frame: milliseconds a frame of one scene and method, with the accuracy that they buy.
+/// vip-bench frame: milliseconds per frame of one scene and method, with the resulting accuracy.
 void add_frame_command(CLI::App& app);
 
-/// vip-bench growth: how the milliseconds of a substep grow with the particles.
+/// vip-bench growth: growth of a substep's milliseconds with the number of particles.
 void add_growth_command(CLI::App& app);
 
 /// vip-bench headset: milliseconds by stage of frames of live fluid in a headset.
 void add_headset_command(CLI::App& app);
 
-/// vip-bench stability: how far the hard cases are from failing.
+/// vip-bench stability: safety margin of the hard cases.
 void add_stability_command(CLI::App& app);
 
 /// vip-bench table1: pictures of the five methods against HiRes.

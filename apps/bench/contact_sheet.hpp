@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of the five methods beside each other, as in Fig. 7 and 8 of the paper.
+/// Pictures of the five methods side by side, as in Fig. 7 and 8 of the paper.
 
 #include <filesystem>
 #include <future>
@@ -9,16 +9,16 @@
 
 namespace apps {
 
-/// One column a method: its picture above the same painted by level.
+/// One column per method: its picture above the same picture painted by level.
 struct SheetColumn {
   sim::Image picture, levels;
 };
 
-/// Columns of equal pictures, left to right.
+/// Joins columns of equal size, left to right.
 sim::Image contact_sheet(const std::vector<SheetColumn>& columns);
 
-/// Writes PNG files on threads of its own, since packing takes longer than drawing. Errors are thrown by
-/// finish(), which must be called.
+/// Writes PNG files on its own threads, because compression takes longer than drawing. finish() throws the
+/// errors and must be called.
 class SheetWriter {
  public:
   void write(std::filesystem::path path, sim::Image image);

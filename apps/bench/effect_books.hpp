@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene's effects keep books of, after a run.
+/// The totals that a scene's effects keep over a run.
 
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace apps {
 
-/// {"foam": {...}, "heat": {...}} of those that the scene lists; an empty object without. Foam: numbers of
-/// diffuse particles, and the volume of all that the water has made, m3. Heat: kelvin above the effect's
-/// reference times m_*.
+/// {"foam": {...}, "heat": {...}} for the listed effects with a coefficient above 0; an empty object without
+/// any. Foam: numbers of diffuse particles, and the volume of all particles emitted, m3. Heat: kelvin above
+/// the effect's reference times m_*.
 base::Json effect_books(const sim::Scene& scene, const sim::FrameReport& report);
-/// A line each for people, as `vip-bench frame` prints them.
+/// One line per effect for readers, as `vip-bench frame` prints them.
 std::string in_words(const base::Json& books);
 
 }  // namespace apps

@@ -1,4 +1,4 @@
-/// vip-bench effects: what each of a scene's effects adds to a frame.
+/// vip-bench effects: the cost per frame of each of a scene's effects.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -41,7 +41,7 @@ sim::SimulationOptions choice_of(const EffectsOptions& options) {
   return out;
 }
 
-/// The variants' fluids, all there at once, so that their frames are timed in turn.
+/// A variant's fluid. All exist at once, so that their frames are timed in turn.
 struct Running {
   EffectCost cost;
   std::unique_ptr<sim::Simulation> fluid;
@@ -78,7 +78,7 @@ bool same(const std::vector<sim::ParticleState>& a, const std::vector<sim::Parti
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), equal);
 }
 
-/// Launches of one more frame, which nobody times.
+/// Counts the launches of one more frame, which is not timed.
 void count_launches(Running& running) {
   running.fluid->profile_launches(true);
   running.fluid->step_frame();
@@ -107,7 +107,7 @@ std::vector<EffectCost> costs_of(const sim::Scene& scene, const EffectsOptions& 
   return costs;
 }
 
-/// Writes what was measured wherever it is asked for.
+/// Writes the results to every requested output.
 template <class Costs>
 void tell(const EffectsOptions& options, const EffectsRun& run, const Costs& costs) {
   const TextTable table = to_table(run, costs);
@@ -121,7 +121,7 @@ void run_effects(const EffectsOptions& options) {
   check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   sim::SimulationOptions choice = choice_of(options);
-  // The same in every variant, so that an effect is not charged for its shorter substeps.
+  // The same in every variant, so that an effect does not pay for shorter substeps.
   choice.substeps = sim::least_substeps(scene, choice);
   const EffectsRun run{scene.name,
                        sim::method_name(choice.method),

@@ -33,7 +33,7 @@ std::vector<sim::Effect> with_needs(const std::vector<sim::Effect>& all, const s
   std::vector<sim::Effect> out{effect};
   for (auto needs = sim::traits_of(effect.kind).needs; needs != sim::no_effect;
        needs = sim::traits_of(needs).needs) {
-    // A scene is read only with what its effects need.
+    // The scene's reader guarantees that needed effects are listed.
     if (const sim::Effect* other = find(all, needs)) out.insert(out.begin(), *other);
   }
   return out;

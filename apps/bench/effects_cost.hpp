@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene's effects cost over the bare scene, as numbers, a table and a picture.
+/// Cost of a scene's effects compared with the scene without effects, as numbers, a table and a picture.
 
 #include <limits>
 #include <string>
@@ -12,36 +12,36 @@ namespace apps {
 
 /// A scene with some of its effects.
 struct EffectVariant {
-  std::string name;  ///< "none", an effect's word with what it needs, "all", "all at 0"
+  std::string name;  ///< "none", an effect's word with those it needs, "all", "all at 0"
   sim::Scene scene;
 };
-/// One of a scene's effects, the last, behind those of them that it needs.
+/// The effect and, before it, the scene's effects that it needs.
 std::vector<sim::Effect> with_needs(const std::vector<sim::Effect>& all, const sim::Effect& effect);
-/// The bare scene first, each effect alone, then all of them (unless one needs all others) and all at 0.
-/// base::Error where the scene lists none with a coefficient above 0.
+/// The scene without effects first, each effect alone, then all of them (unless one needs all others), and
+/// all at 0. base::Error if the scene lists none with a coefficient above 0.
 std::vector<EffectVariant> variants_of(const sim::Scene& scene);
 
-/// What a variant took. Means are over frames.
+/// Measurements of one variant. Means are over frames.
 struct EffectCost {
   std::string name;
   double particles = 0;
   double ms_frame = 0;
-  double launches = 0;  ///< a frame
-  /// Of all columns and what saliency, temporal acceleration, nozzles, outlets and foam keep.
+  double launches = 0;  ///< per frame
+  /// Of all particle columns, and of saliency, temporal acceleration, nozzles, outlets and foam.
   double column_bytes = 0;
-  /// Of the device's memory above what it held before this fluid was made; NaN on the CPU.
+  /// Device memory above that in use before this fluid was made; NaN on the CPU.
   double device_bytes = std::numeric_limits<double>::quiet_NaN();
-  bool same_state = false;  ///< places and velocities of all particles are the bare scene's, bit for bit
+  bool same_state = false;  ///< all particles equal those of the scene without effects, bit for bit
 };
 
-/// What ran, as it stands before each row and over the picture.
+/// Labels of the run, for the table's rows and the picture's title.
 struct EffectsRun {
   std::string scene, method, backend, n_star;
   int frames = 0, substeps = 0;
 };
-/// A row a variant; what is added is over the first row, the bare scene.
+/// One row per variant; added costs are relative to the first row, without effects.
 TextTable to_table(const EffectsRun& run, const std::vector<EffectCost>& costs);
-/// A bar a variant: ms a frame.
+/// One bar per variant: ms per frame.
 std::string to_svg(const EffectsRun& run, const std::vector<EffectCost>& costs);
 
 }  // namespace apps

@@ -46,7 +46,7 @@ Running start(const LevelVariant& variant, const std::vector<sim::ParticleState>
   return out;
 }
 
-/// One frame; `frames` it counts for a part of, or none.
+/// Runs one frame. counts: adds it to the means; keep: stores its picture.
 void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool counts, bool keep) {
   sim::Simulation& fluid = *running.fluid;
   const double dt_s = runs.choice.frame_dt_s > 0 ? runs.choice.frame_dt_s : scene.frame_dt_s;
@@ -67,7 +67,7 @@ void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool
     if (pass.effect == running.kind) running.ms_passes.back() += pass.ms;
 }
 
-/// Against the pictures of the effect at all levels.
+/// Compares with the pictures of the effect at all levels.
 void compare(Running& running, const Running& reference) {
   const double pixels_per_degree = std::numbers::pi / 180 / sim::pixel_rays(running.eye->view()).scale_y;
   const double count = static_cast<double>(running.pictures.size());

@@ -1,5 +1,5 @@
 #pragma once
-/// Runs each effect's levels of detail beside each other.
+/// Runs the variants of each effect's levels of detail side by side.
 
 #include "apps/bench/effects_levels.hpp"
 #include "apps/common/picture_size.hpp"
@@ -13,9 +13,9 @@ struct LevelRuns {
   PictureSize size;
 };
 
-/// All variants start from one settled water, look at the scene's gaze point, step in turn with the clock
-/// round each pass on, and are drawn at four instants that end with the last frame. base::Error for a method
-/// of one level.
+/// All variants start from one settled state, look at the scene's gaze point, step in turn with each pass
+/// timed, and are drawn at four instants, the last of which is the last frame. base::Error for a method with
+/// one level.
 std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, const LevelRuns& runs);
 
 }  // namespace apps

@@ -16,14 +16,14 @@ namespace {
 
 constexpr double periphery_deg = 20;
 
-/// One simulation with its own eye, frame by frame.
+/// One simulation with its own camera, frame by frame.
 class Reel {
  public:
   Reel(const CellScene& scene, const Table1Options& options, const sim::SimulationOptions& choice)
       : method_(choice.method),
         fluid_(sim::make_simulation(scene.scene, choice)),
         eye_(scene.scene, options.size) {
-    // Saliency sees the settled water before the first frame, as it would in a live run.
+    // Saliency sees the settled water before the first frame, as in a live run.
     eye_.draw(*fluid_);
   }
 
@@ -60,7 +60,7 @@ Mask beyond(Mask mask) {
   return mask;
 }
 
-/// One start of all methods; their sums over frames.
+/// One start of all methods, and their sums over frames.
 class Film {
  public:
   Film(const CellScene& scene, const CellSize& size, const Table1Options& options, const ScoreBlock& block,
@@ -72,7 +72,7 @@ class Film {
     const auto settled = reference_.fluid().read_state();
     for (const auto& scores : block.methods) {
       auto choice = choose_(scores.method);
-      // LoRes fills and settles for itself; the others begin with HiRes' particles.
+      // LoRes fills and settles by itself; the others start from HiRes' particles.
       if (scores.method == sim::MethodKind::LoRes) {
         if (start > 1)
           choice.start = perturbed(sim::make_simulation(scene.scene, choice)->read_state(), start);

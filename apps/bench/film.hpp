@@ -6,11 +6,11 @@
 
 namespace apps {
 
-/// Runs the methods in step, the gaze following the scene's keys, and adds Metric::SsimCumul (mean SSIM of
+/// Runs the methods in lockstep, with the gaze on the scene's keys, and adds Metric::SsimCumul (mean SSIM of
 /// frames 1 .. cumul_frames), Metric::Flicker and Metric::FlickerPeriphery (means over frames 2 ..
-/// cumul_frames) to the block's methods, a cell for each of film_starts. HiRes is compared with itself from a
-/// perturbed settled state; from the second start on all methods start from perturbed ones. Needs a current
-/// context.
+/// cumul_frames) to the block's methods, one cell for each of film_starts. HiRes is compared with itself from
+/// a perturbed settled state; from the second start on, all methods start from perturbed states. Needs a
+/// current context.
 void run_film(const CellScene& scene, const CellSize& size, const Table1Options& options, ScoreBlock& block);
 
 }  // namespace apps

@@ -36,14 +36,14 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   return make_settled(scene, std::move(out));
 }
 
-/// Support radius (4 r) over rest spacing of the first particle.
+/// Support radius (4 r) of the first particle over the rest spacing.
 double h_over_d(const sim::Simulation& fluid) {
   std::vector<sim::RenderParticle> particles;
   fluid.read_particles(particles);
   return particles.empty() ? 0 : 4 * static_cast<double>(particles.front().radius_m) / fluid.spacing_m();
 }
 
-/// The pictures beside the solver, or why there are none.
+/// Draws pictures besides the solver, or says why not.
 struct Pictures {
   std::unique_ptr<RenderTimer> timer;
   std::string left_out;
@@ -62,7 +62,7 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
   return {std::make_unique<RenderTimer>(std::move(*context), scene, size, options.views), ""};
 }
 
-/// What each frame's account says; over all of them, how many particles there were and the share solved.
+/// The accounts of all frames, with mean number of particles and mean fraction solved.
 struct Accounts {
   base::Json all = base::Json::array();
   double solved = 0, particles = 0;
@@ -76,7 +76,7 @@ struct Accounts {
   }
 };
 
-/// Measures a state without its launches among those of the frames.
+/// Measures a state without counting its launches among the frames' launches.
 void measure_apart(sim::Simulation& fluid, Accuracy& accuracy, LaunchSums* launches) {
   if (launches) {
     launches->add(fluid.launch_times());
@@ -86,7 +86,7 @@ void measure_apart(sim::Simulation& fluid, Accuracy& accuracy, LaunchSums* launc
   if (launches) fluid.profile_launches(true);
 }
 
-/// Launches and bandwidth for the result; nothing without --passes.
+/// Launches and bandwidth for the result; empty without --passes.
 struct Passes {
   base::Json launches = base::Json::array();
   base::Json bandwidth_gb_s;
@@ -96,7 +96,7 @@ Passes passes_of(sim::Simulation& fluid, const FrameOptions& options, LaunchSums
   if (!options.passes) return {};
   launches.add(fluid.launch_times());
   fluid.profile_launches(false);
-  // After the frames: what the copies leave in caches is not theirs.
+  // Measured after the frames, so that data that the copies leave in caches do not affect them.
   const double gb_s = sim::copy_bandwidth_gb_s(sim::choose_backend(options.backend));
   return {launches_json(launches.all(), options.frames, water, gb_s), gb_s};
 }

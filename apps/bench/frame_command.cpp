@@ -1,4 +1,4 @@
-/// vip-bench frame: milliseconds a frame of one scene and method, with the accuracy that they buy.
+/// vip-bench frame: milliseconds per frame of one scene and method, with the resulting accuracy.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -35,7 +35,7 @@ constexpr const char* floors_help =
     "take\n"
     "less than its floor. - stands where nothing is known.";
 
-/// Numbers of the solver that a scene gives otherwise.
+/// Options for solver numbers, instead of the scene's.
 void add_solver_numbers(CLI::App& command, sim::SimulationOptions& fluid) {
   auto* substeps = command
                        .add_option("--substeps", fluid.substeps,
@@ -114,7 +114,7 @@ constexpr const char* peers_method = "HiRes";
 constexpr const char* peers_n_star = "4k";
 constexpr double peers_dt_s = 0.005;
 
-/// --peers says all that makes the run; only what leaves the setting as it is may stand beside it.
+/// --peers fixes the whole run; only options that do not change it may be combined with it.
 void refuse_beside_peers(const CLI::App& command) {
   constexpr std::array allowed{"--peers",  "--backend", "--frames",     "--warm-up",      "--no-render",
                                "--passes", "--json",    "--save-state", "--measure-every"};
@@ -125,7 +125,7 @@ void refuse_beside_peers(const CLI::App& command) {
   }
 }
 
-/// Runs the peers' setting in place of the options' own.
+/// Runs the peers' setting instead of the options' own.
 base::Json run_peers(FrameOptions options) {
   const auto peers = read_peers(base::find_input("data/peers.csv"));
   options.scene = peers_scene;
@@ -135,7 +135,7 @@ base::Json run_peers(FrameOptions options) {
   options.no_render = true;
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   base::Json result = run_frames(options);
-  // Of a GPU the program knows no name.
+  // The program does not know the name of a GPU.
   const std::string machine = result["backend"] == "cpu" ? study::describe_machine() : "";
   const OurRow ours = our_row(result, peers_dt_s, scene.solver_iterations, machine);
   print_frame(result);
@@ -145,7 +145,7 @@ base::Json run_peers(FrameOptions options) {
   return result;
 }
 
-/// --setting says all that the solver goes by.
+/// --setting fixes all numbers of the solver.
 void refuse_beside_setting(const CLI::App& command) {
   constexpr std::array allowed{"scene",     "--setting",   "--backend", "--frames",
                                "--warm-up", "--no-render", "--passes",  "--look",
@@ -168,7 +168,7 @@ void take_setting(FrameOptions& options) {
   if (const auto tau = options.fluid.temporal.fixed_tau) options.tau = "fixed:" + base::shortest(*tau);
 }
 
-/// Runs and prints what was asked for.
+/// Runs and prints the requested frames.
 base::Json run(const FrameOptions& options) {
   if (options.peers) return run_peers(options);
   base::Json result = run_frames(options);

@@ -1,4 +1,4 @@
-/// vip-bench growth: how the time of a substep grows with the particles.
+/// vip-bench growth: growth of a substep's time with the number of particles.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -72,7 +72,7 @@ GrowthRow run_size(const sim::Scene& scene, const CellSize& size, const GrowthOp
   return out;
 }
 
-/// base::Error before the work, not after it.
+/// Checks the sizes before the work, not after it.
 void check_sizes(const std::string& words, const std::vector<CellSize>& sizes) {
   const auto other = [&](const CellSize& size) { return size.n_star != sizes.front().n_star; };
   if (std::any_of(sizes.begin(), sizes.end(), other)) return;

@@ -1,5 +1,5 @@
 #pragma once
-/// How the time of one fluid grows with its particles, as numbers, a table and a picture.
+/// Growth of one fluid's time with its number of particles, as numbers, a table and a picture.
 
 #include <limits>
 #include <string>
@@ -13,24 +13,24 @@ namespace apps {
 struct GrowthRow {
   std::string n_star;
   double particles = 0;        ///< mean over frames
-  double substeps_mean = 0;    ///< a frame
+  double substeps_mean = 0;    ///< per frame
   double ms_substep_mean = 0;  ///< ms of all frames over substeps of all frames
-  double ms_substep_p99 = 0;   ///< over frames, of a frame's ms over its substeps
+  double ms_substep_p99 = 0;   ///< over frames, of a frame's ms per substep
   double ms_frame_mean = 0;
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
-  /// Simulation::particle_bytes over the particles that are there last: columns of the particles and what
-  /// saliency, temporal acceleration, nozzles and outlets keep, at their capacity. Neighbour lists, cells and
-  /// the grids of the pressure are not in it.
+  /// Simulation::particle_bytes over the final number of particles: the particles' columns and the data of
+  /// saliency, temporal acceleration, nozzles and outlets, at their capacity. Excludes neighbour lists, cells
+  /// and the pressure's grids.
   double column_bytes = 0;
-  /// What the device's memory holds after the run above what it held before the fluid was made, over the same
+  /// Device memory after the run, above that in use before the fluid was made, over the same number of
   /// particles; NaN on the CPU.
   double device_bytes = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// ms a substep = factor particles^exponent, by least squares over the logarithms.
+/// ms per substep = factor particles^exponent, by least squares over the logarithms.
 struct Growth {
   double exponent = 0, factor = 0;
-  /// Of the exponent; NaN with two sizes, which lie on a line.
+  /// Of the exponent; NaN for two sizes, which always lie on a line.
   double standard_error = std::numeric_limits<double>::quiet_NaN();
 };
 /// base::Error unless two rows have different numbers of particles.
@@ -39,14 +39,14 @@ Growth growth_of(const std::vector<GrowthRow>& rows);
 /// "exponent 1.020, standard error 0.031, over 4 sizes"
 std::string in_words(const Growth& growth, std::size_t sizes);
 
-/// What ran, as it stands before each row and over the picture.
+/// Labels of the run, for the table's rows and the picture's title.
 struct GrowthRun {
   std::string scene, method, backend;
-  int frames = 0;  ///< a size
+  int frames = 0;  ///< per size
 };
-/// A row a size; the exponent and its error stand in each.
+/// One row per size; each repeats the exponent and its error.
 TextTable to_table(const GrowthRun& run, const std::vector<GrowthRow>& rows, const Growth& growth);
-/// ms a substep over particles, with the 99th percentile as a stroke.
+/// ms per substep over particles, with a stroke up to the 99th percentile.
 std::string to_svg(const GrowthRun& run, const std::vector<GrowthRow>& rows, const Growth& growth);
 
 }  // namespace apps

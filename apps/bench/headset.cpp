@@ -36,13 +36,13 @@ struct HeadsetBenchOptions {
   bool passes = false;
 };
 
-/// Milliseconds of each frame; every stage ends with the device idle.
+/// Milliseconds of each frame; every stage ends when the device is idle.
 struct Stages {
   std::vector<double> step, draw, hand_over, whole;
   PassTable passes = {};
 };
 
-/// A live fluid that is stepped and drawn for both eyes in every slot, one stage after another.
+/// Steps and draws a live fluid for both eyes in every slot, one stage after another.
 class HeadsetBench {
  public:
   explicit HeadsetBench(const HeadsetBenchOptions& options) : gl_(make_headset_context()), session_(gl_) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The solver's launches over many frames, each pass beside the least time that memory takes for it.
+/// The solver's launches over many frames, each pass compared with the least time its memory traffic takes.
 
 #include <map>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace apps {
 
-/// Launches of several stretches of a run, so that what is measured between them stays out.
+/// Sums the launches of several parts of a run, so that measurements between them are left out.
 class LaunchSums {
  public:
   void add(const std::vector<sim::LaunchTime>& stretch);
@@ -22,12 +22,12 @@ class LaunchSums {
   std::map<std::string, sim::LaunchTime> passes_;
 };
 
-/// An array with pass, launches_a_frame, ms_a_frame, bytes_a_frame, floor_ms_a_frame and times_floor of each;
-/// the last three are null where the table of pass_bytes.hpp has no row.
+/// An array with pass, launches_a_frame, ms_a_frame, bytes_a_frame, floor_ms_a_frame and times_floor of each
+/// pass; the last three are null if pass_bytes() has no row for it.
 base::Json launches_json(const std::vector<sim::LaunchTime>& passes, int frames, const PassWater& water,
                          double gb_s);
 
-/// The lines for it, and how fast memory is.
+/// The array as printable lines, with the memory's bandwidth.
 std::string launch_lines(const base::Json& launches, double gb_s);
 
 }  // namespace apps

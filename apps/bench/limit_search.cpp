@@ -9,7 +9,7 @@ Limit<double> largest_factor(const Trial<double>& trial, double most, double res
   if (out.failed.empty()) return out;
   out.reach = Reach::Found;
   out.passed = 1;
-  // A hair more, so that a resolution that divides the range is met by as many halvings as it says.
+  // The tolerance keeps rounding from adding a bisection if the resolution divides the range exactly.
   for (double fails = most; fails / out.passed > resolution * (1 + 1e-9);) {
     const double middle = std::sqrt(fails * out.passed);
     ++out.runs;

@@ -1,36 +1,36 @@
 #pragma once
-/// How far a number may be turned before something fails, by bisection.
+/// Finds by bisection how far a number can be changed before something fails.
 
 #include <functional>
 #include <string>
 
 namespace apps {
 
-/// Runs with a number turned; gives what failed, empty when nothing did.
+/// Runs with the changed number; returns what failed, empty if nothing did.
 template <class T>
 using Trial = std::function<std::string(T)>;
 
 enum class Reach {
   Found,      ///< between what passed and what failed
-  AllPass,    ///< also the farthest that was tried
-  UsualFails  ///< nothing was turned
+  AllPass,    ///< even the farthest value tried passes
+  UsualFails  ///< the usual value itself fails
 };
 
 template <class T>
 struct Limit {
   Reach reach = Reach::Found;
-  T passed{};          ///< the farthest that passed; the usual one where that fails
-  std::string failed;  ///< what failed at the nearest that did; empty when all pass
+  T passed{};          ///< the farthest value that passed; the usual one if that fails
+  std::string failed;  ///< what failed at the nearest failing value; empty if all pass
   int runs = 0;
 };
 
-/// The largest factor from 1 to `most` that passes, where 1 does: between it and the smallest that failed
-/// lies at most the factor `resolution`. What passes at a factor is taken to pass at all smaller ones;
-/// between the ends only the bisection's own points are tried. most > 1, resolution > 1.
+/// The largest factor from 1 to `most` that passes, if 1 does: the smallest failing factor is at most
+/// `resolution` times larger. Assumes that all factors below a passing one pass; only the bisection's points
+/// are tried. most > 1, resolution > 1.
 Limit<double> largest_factor(const Trial<double>& trial, double most, double resolution);
 
-/// The smallest whole number from 1 to `usual` that passes, where `usual` does. What passes with a number is
-/// taken to pass with all larger ones up to it.
+/// The smallest whole number from 1 to `usual` that passes, if `usual` does. Assumes that all numbers between
+/// a passing one and `usual` pass.
 Limit<int> fewest(const Trial<int>& trial, int usual);
 
 }  // namespace apps

@@ -9,7 +9,7 @@ namespace apps {
 struct LogChart {
   struct Point {
     double x = 0, y = 0;  ///< above 0
-    double high = 0;      ///< end of a stroke upwards from y; y or less: none
+    double high = 0;  ///< upper end of a stroke from y; y or less: none
   };
   std::string title, x_title, y_title;
   std::string note;           ///< beside the line

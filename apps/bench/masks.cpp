@@ -12,7 +12,7 @@ namespace {
 constexpr double salient_share = 0.2;
 constexpr int grown_px = 3;
 
-/// 1 where any of values[(i - 3) step .. (i + 3) step] is, along one line of `count` pixels.
+/// 1 if any of values[(i - 3) step .. (i + 3) step] is 1, along a line of `count` pixels.
 void grow_line(const std::uint8_t* in, std::uint8_t* out, int count, std::size_t step) {
   for (int i = 0; i < count; ++i) {
     std::uint8_t any = 0;

@@ -34,7 +34,7 @@ std::vector<std::uint8_t> Onlooker::fluid_mask() const {
   const auto height = static_cast<std::size_t>(target_.height());
   std::vector<std::uint8_t> out(depth.size());
   for (std::size_t y = 0; y < height; ++y) {
-    // A G-buffer begins with its lowest row.
+    // A G-buffer starts with its lowest row.
     for (std::size_t x = 0; x < width; ++x)
       out[y * width + x] = std::isfinite(depth[(height - 1 - y) * width + x]);
   }

@@ -10,31 +10,32 @@ namespace {
 constexpr double vec4 = 16, number = 4, byte = 1;  // float and int alike
 constexpr double entry = number;                   // of a neighbour list
 
-/// Held against the functors in libsim; < is read, > is written.
+/// Compared with the functors in libsim; < is read, > is written.
 constexpr std::array table{
-    // < predicted, count of its list, entries; > lambda, density. The others' places are the same column.
+    // < predicted, count of its list, entries; > lambda, density. The positions of neighbours are in the same
+    // column.
     PassBytes{"density", vec4 + number + 2 * number, entry, true},
-    // < predicted, lambda, count, entries; > the next places. Momentum would read those too.
+    // < predicted, lambda, count, entries; > the next positions. Momentum would also read those.
     PassBytes{"displacement", vec4 + number + number + vec4, entry, true},
     // < predicted; > count, entries.
     PassBytes{"list neighbours", vec4 + number, entry, true},
-    // < position, velocity, density, count, entries; > the next velocity. Levels read kicks and ease too.
+    // < position, velocity, density, count, entries; > the next velocity. Levels also read kicks and ease.
     PassBytes{"xsph", 2 * vec4 + number + number + vec4, entry, true},
-    // < age, count, entries; > ease. Places are read near fresh particles only.
+    // < age, count, entries; > ease. Positions are read only near fresh particles.
     PassBytes{"ease", byte + number + number, entry, true},
     // < position, velocity; > position, velocity, predicted.
     PassBytes{"predict", 5 * vec4, 0, false},
-    // < position, predicted, velocity; > position, velocity. Levels write kicks too.
+    // < position, predicted, velocity; > position, velocity. Levels also write kicks.
     PassBytes{"velocity", 5 * vec4, 0, false},
     // < predicted, density.
     PassBytes{"gather cells", vec4 + number, 0, false},
-    // < predicted; > the next places.
+    // < predicted; > the next positions.
     PassBytes{"shift", 2 * vec4, 0, true},
     // < predicted; > cell, arrival.
     PassBytes{"count cells", vec4 + 2 * number, 0, false},
-    // < cell, arrival; > who came there.
+    // < cell, arrival; > particle at that place.
     PassBytes{"place by cell", 3 * number, 0, false},
-    // < who came there, cell, id; > order.
+    // < particle at that place, cell, id; > order.
     PassBytes{"order within cells", 4 * number, 0, false},
     // < order; < and > position, predicted, velocity, id, level. Levels have more columns.
     PassBytes{"reorder", number + 2 * (3 * vec4 + number + byte), 0, false},

@@ -1,5 +1,5 @@
 #pragma once
-/// The renderer's passes over many pictures.
+/// Times of the renderer's passes over many pictures.
 
 #include <span>
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace apps {
 
-/// Milliseconds of each pass, picture by picture.
+/// Milliseconds of each pass per picture.
 class PassTable {
  public:
   void add(std::span<const sim::PassTime> picture);
   void clear() { passes_.clear(); }
   bool empty() const { return passes_.empty(); }
-  /// An object: the median of each pass.
+  /// A JSON object with the median of each pass.
   base::Json figures() const;
 
  private:
@@ -27,7 +27,7 @@ class PassTable {
   std::vector<Pass> passes_;
 };
 
-/// The lines of PassTable::figures(), the longest pass first, and their sum.
+/// Prints PassTable::figures(), the longest pass first, and their sum.
 void print_passes(const base::Json& figures);
 
 }  // namespace apps

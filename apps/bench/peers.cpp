@@ -22,12 +22,12 @@ constexpr std::size_t columns = 10;
 
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> out;
-  std::istringstream stream(line + ",");  // an empty last cell is one too
+  std::istringstream stream(line + ",");  // so that an empty last cell counts
   for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
   return out;
 }
 
-/// Reads the cells of one line; the first that is wrong ends with its name.
+/// Reads the cells of one line; stops with the name of the first wrong one.
 class Cells {
  public:
   Cells(std::string place, const std::string& line) : place_(std::move(place)), cells_(split(line)) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Renders the fluid of a bench beside its solver, and keeps both clocks apart.
+/// Renders the fluid of a benchmark and times it separately from the solver.
 
 #include <memory>
 #include <string>
@@ -12,28 +12,28 @@
 
 namespace apps {
 
-/// An off-screen picture of a scene, drawn and timed. The context stays current on this thread.
+/// Draws an off-screen picture of a scene and times it. The context stays current on this thread.
 class RenderTimer {
  public:
-  /// `views`: 1, or 2 side by side, 64 mm apart. Errors (base::Error): a size that the driver refuses.
+  /// `views`: 1, or 2 side by side, 64 mm apart. base::Error for a size that the driver refuses.
   RenderTimer(sim::GlContext context, const sim::Scene& scene, const PictureSize& size, int views);
   ~RenderTimer();
 
-  /// Milliseconds of one picture; each part ends with the device idle.
+  /// Milliseconds of one picture; each part ends when the device is idle.
   struct Times {
-    double transfer = 0;  ///< particles from the solver to the GL buffer
-    double render = 0;    ///< draw call to the finished picture
+    double transfer = 0;  ///< from the solver's particles to the GL buffer
+    double render = 0;    ///< from the draw call to the finished picture
   };
-  /// Untimed pictures first: the driver compiles at the first draw.
+  /// Draws untimed pictures first, because the driver compiles at the first draw.
   void warm_up(sim::Simulation& fluid);
-  /// Call with the solver idle.
+  /// Call it when the solver is idle.
   Times draw(sim::Simulation& fluid);
-  /// Before a frame, as a live session does: the eye is at the first view, looks at its middle and has seen
-  /// the picture that was drawn last.
+  /// Call it before a frame, as a live session does: passes the first view, a gaze at its middle and the last
+  /// picture to the fluid.
   void look(sim::Simulation& fluid);
 
-  /// Keys render_ms_median, _p95, _p99, the same of transfer_ms, passes, ... of all pictures since warm_up;
-  /// null before the first.
+  /// Keys render_ms_median, _p95, _p99, the same for transfer_ms, passes, ... over all pictures since
+  /// warm_up(); null before the first.
   base::Json figures() const;
 
  private:
@@ -41,7 +41,7 @@ class RenderTimer {
   std::unique_ptr<State> state_;
 };
 
-/// The lines of the table for RenderTimer::figures().
+/// Prints RenderTimer::figures() as lines of a table.
 void print_render_figures(const base::Json& figures);
 
 }  // namespace apps

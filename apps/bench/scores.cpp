@@ -37,7 +37,7 @@ Summary summary_of(const Series& series) {
   }
   if (out.finite + out.equal) out.pixels /= static_cast<double>(out.finite + out.equal);
   out.interval = stats::mean_interval(stats::group_means(values_of(series), series.repeats));
-  // Nothing but equal pictures: their mean is known.
+  // If all pictures are equal, the mean is infinite.
   if (out.finite == 0 && out.equal > 0) out.interval.mean = std::numeric_limits<double>::infinity();
   return out;
 }
@@ -56,7 +56,7 @@ constexpr Pair pairs[] = {{Method::Ours, Method::FovFluid},
                           {Method::OursTsp, Method::Ours},
                           {Method::Ours, Method::LoRes}};
 
-/// How far a mean difference may lie below zero; NaN where no order is claimed.
+/// Largest allowed mean difference below zero; NaN if no order is claimed.
 double allowed_loss(const Pair& pair, Metric metric) {
   if (pair.better == Method::OursTsp) return unknown;
   switch (metric) {

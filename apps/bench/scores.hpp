@@ -1,5 +1,5 @@
 #pragma once
-/// Table 1 as numbers: what was measured of each method, its means and the paired differences.
+/// Table 1 as numbers: the scores of each method, their means and the paired differences.
 
 #include <array>
 #include <string>
@@ -18,7 +18,7 @@ enum class Metric {
   SsimStatic,
   SsimCumul,
   Flicker,
-  FlickerPeriphery  ///< beyond 20 degrees from the gaze
+  FlickerPeriphery  ///< farther than 20 degrees from the gaze
 };
 inline constexpr std::size_t metric_count = 8;
 
@@ -26,15 +26,15 @@ struct MetricTraits {
   Metric metric{};
   const char* name = "";
   const char* title = "";  ///< with unit, for tables and figures
-  int digits = 2;          ///< behind the point
+  int digits = 2;          ///< decimals
 };
 const std::array<MetricTraits, metric_count>& all_metrics();
 
-/// One metric of one method: cells in the order checkpoint, gaze point, repeat. A value is infinite where the
-/// pictures were equal and NaN where the mask was too small.
+/// One metric of one method: cells ordered by checkpoint, gaze point, repeat. A value is infinite if the
+/// pictures were equal and NaN if the mask was too small.
 struct Series {
   std::vector<stats::ImageScore> cells;
-  std::size_t repeats = 1;  ///< cells that follow each other and are not independent
+  std::size_t repeats = 1;  ///< number of consecutive cells that are not independent
 };
 
 struct MethodScores {
@@ -50,23 +50,23 @@ struct ScoreBlock {
   sim::Preset preset{};
   std::vector<MethodScores> methods;
   std::vector<int> checkpoints = {};     ///< frames
-  std::vector<std::string> starts = {};  ///< what checkpoint_digest says of each, once they are known
-  int gazes = 0;                         ///< points at each
+  std::vector<std::string> starts = {};  ///< checkpoint_digest of each, once known
+  int gazes = 0;                         ///< gaze points per checkpoint
 };
 
-/// scene, n_star, method, preset, metric, mean, ci_low, ci_high (95 %, Student's t over groups), groups
-/// (checkpoint x gaze point, repeats averaged), cells (finite ones), equal (pictures, left out), skipped
-/// (masks that are too small), pixels (mean of a mask).
+/// Columns scene, n_star, method, preset, metric, mean, ci_low, ci_high (95 %, Student's t over groups),
+/// groups (checkpoint x gaze point, repeats averaged), cells (finite values), equal (equal pictures, left
+/// out), skipped (masks too small), pixels (mean of a mask).
 TextTable score_rows(const std::vector<ScoreBlock>& blocks);
 
-/// The same as the paper prints it: a row a method, a column a metric, mean +- half the interval.
+/// The paper's layout: one row per method, one column per metric, mean +- half the interval.
 TextTable score_table(const std::vector<ScoreBlock>& blocks);
 
-/// Paired differences with their intervals, and whether the paper's order holds: it is broken where a mean
-/// lies beyond 0.1 dB (0.005 SSIM) on the wrong side; in the fovea Ours may lie 0.75 dB below FovFluid.
+/// Paired differences with their intervals, and a check of the paper's order: it is broken if a mean is more
+/// than 0.1 dB (0.005 SSIM) on the wrong side; in the fovea Ours may be 0.75 dB below FovFluid.
 TextTable paired_rows(const std::vector<ScoreBlock>& blocks);
 
-/// Bars with intervals of one metric as SVG.
+/// SVG bars with intervals for one metric.
 std::string score_chart(const std::vector<ScoreBlock>& blocks, const MetricTraits& metric);
 
 }  // namespace apps

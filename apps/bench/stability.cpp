@@ -1,4 +1,4 @@
-/// vip-bench stability: how far the hard cases are from failing.
+/// vip-bench stability: safety margin of the hard cases.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -32,7 +32,7 @@ struct StabilityOptions {
   bool quick = false, full = false;
 };
 
-/// One case under one method: four bisections' worth of work.
+/// One case under one method: a run at its own numbers and a search per knob.
 struct Job {
   const HardCase* hard_case;
   Setting setting;
@@ -70,7 +70,7 @@ std::vector<sim::MethodKind> methods_of(const std::string& words) {
   return out;
 }
 
-/// What failed of a case; empty when nothing did.
+/// The failed findings of a case; empty if it passed.
 std::string failure(const Outcome& outcome) {
   if (outcome.passes()) return "";
   Outcome failed{.findings = {}, .stopped = outcome.stopped};
@@ -80,13 +80,13 @@ std::string failure(const Outcome& outcome) {
   return text.starts_with("; ") ? text.substr(2) : text;
 }
 
-/// With effects water comes to rest elsewhere and at other speeds: that is no failure then.
+/// With effects, water comes to rest elsewhere and at other speeds, so only stability counts.
 Outcome run(const HardCase& hard_case, const Setting& setting) {
   const Outcome outcome = hard_case.run(setting);
   return setting.effects.empty() ? outcome : of_stability(outcome);
 }
 
-/// A number that the program refuses has its limit there too.
+/// A number that the program refuses counts as a failure.
 std::string failure(const HardCase& hard_case, const Setting& setting) {
   try {
     return failure(run(hard_case, setting));
@@ -122,10 +122,10 @@ void turn(const Job& job, const StabilityOptions& options, MapCell& cell) {
   cell.failed = limit.failed;
 }
 
-/// `step` is called after each part of the work.
+/// Calls `step` after each part of the work.
 void measure(Job& job, const StabilityOptions& options, const std::function<void()>& step) {
   const HardCase& one = *job.hard_case;
-  // What is wrong with the back end shows here, and is an error.
+  // A failure of the back end throws here as an error.
   const std::string at_its_own = failure(run(one, job.setting));
   step();
   for (const Knob knob : all_knobs) {
@@ -146,7 +146,7 @@ void measure(Job& job, const StabilityOptions& options, const std::function<void
   }
 }
 
-/// On the CPU cases run beside each other, each on one thread: its bits are the same for any number.
+/// On the CPU, cases run in parallel, one thread each: results do not depend on the number of threads.
 void measure_all(std::vector<Job>& jobs, const StabilityOptions& options, sim::Backend backend) {
   Progress progress("cases", jobs.size() * steps_of_a_job);
   std::size_t done = 0;

@@ -83,7 +83,7 @@ std::string to_markdown(const StabilityMap& map) {
       for (const Knob knob : all_knobs) {
         const MapCell* cell = find(map, id, method, knob);
         row.push_back(cell ? in_markdown(*cell) : "");
-        // At its own numbers a case fails once.
+        // A failure at the usual numbers is listed once.
         if (!cell || (cell->reach == Reach::UsualFails && !failed.empty())) continue;
         failed += (failed.empty() ? "" : "; ") + (cell->failed.empty() ? "nothing" : cell->failed);
       }

@@ -13,8 +13,7 @@ using svg::Point;
 
 constexpr double left_px = 52, top_px = 88, cell_px = 66, row_px = 24, gap_px = 22, line_px = 14;
 
-/// Shades of one blue, the darker the farther from failing, told apart by their lightness with any colour
-/// vision.
+/// Shades of one blue, darker with a larger margin; their lightness differs enough for any colour vision.
 struct Shade {
   double from;  ///< margin
   const char* fill;

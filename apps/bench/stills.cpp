@@ -19,18 +19,18 @@ namespace {
 using Method = sim::MethodKind;
 using State = std::vector<sim::ParticleState>;
 
-/// What one run left: its picture and how it compares where the gaze does not matter.
+/// Result of one run: its picture, and the scores that do not depend on the gaze.
 struct Shot {
   Picture picture;
   stats::ImageScore overall, fluid, ssim;
   SheetColumn sheet;
 };
 
-/// HiRes a few frames after a checkpoint: what all others are compared with.
+/// HiRes a few frames after a checkpoint: the reference of all comparisons.
 struct Reference {
   Picture picture;
   Mask fluid;
-  std::vector<Mask> fovea, salient;  ///< one a gaze point
+  std::vector<Mask> fovea, salient;  ///< one per gaze point
 };
 
 stats::ImageScore masked_psnr(const Picture& a, const Picture& b, const Mask& mask) {
@@ -116,7 +116,7 @@ class Stills {
     return sim::make_simulation(scene_.scene, choice);
   }
 
-  /// Targets of the checkpoint's particles by gaze alone and by saliency.
+  /// Targets of the checkpoint's particles: by gaze alone, and by saliency.
   std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> targets(const Checkpoint& checkpoint,
                                                                           sim::Preset preset,
                                                                           const sim::Vec3d& gaze_m) const {
@@ -154,7 +154,7 @@ class Stills {
     return out;
   }
 
-  /// One start a repeat.
+  /// One start per repeat.
   std::vector<State> coarsened(const std::vector<State>& states,
                                const std::vector<std::uint8_t>& wishes) const {
     std::vector<State> out(states.size());
@@ -195,7 +195,8 @@ class Stills {
     return out;
   }
 
-  /// The worst of a method's starts, of the first repeat, which the others equal to an ulp.
+  /// Notes the quality of a method's start. Only the first repeat is noted, because the others differ by an
+  /// ulp.
   void note_start(sim::Simulation& fluid, Method method, sim::Preset preset) {
     auto& starts = result_.starts;
     auto found = std::find_if(starts.begin(), starts.end(), [&](const auto& start) {

@@ -22,7 +22,7 @@ namespace apps {
 
 namespace {
 
-/// As it was typed.
+/// Options as typed.
 struct Table1Words : Table1Options {
   std::string checkpoints_word = "all";
 };
@@ -50,8 +50,8 @@ std::string started(const std::vector<StartQuality>& starts, const std::string& 
 struct Table1 {
   std::vector<ScoreBlock> blocks;
   std::string notes;
-  std::string then_path;                ///< of an earlier run; empty = none
-  std::optional<CellScores> then = {};  ///< its pictures
+  std::string then_path;                ///< file of an earlier run; empty = none
+  std::optional<CellScores> then = {};  ///< scores of its pictures
 
   std::string text() const {
     const std::string change =
@@ -86,12 +86,12 @@ void write_outputs(const Table1Options& options, const Table1& table) {
   }
 }
 
-/// The scenes at the sizes, known to fit the options before the first of them is run.
+/// The scenes and sizes, checked against the options before the first run.
 struct Plan {
   std::vector<CellScene> scenes;
   std::vector<CellSize> sizes;
   std::vector<sim::Preset> presets;
-  std::vector<ScoreBlock> blocks;  ///< still without values
+  std::vector<ScoreBlock> blocks;  ///< without values
   std::size_t runs = 0;
 };
 
@@ -112,8 +112,8 @@ Plan plan_of(const Table1Options& options) {
   return out;
 }
 
-/// Files are written anew after each scene and size, and before its film: a run that is cut short leaves what
-/// it has.
+/// Writes the files after each scene and size, and before its film, so that an interrupted run leaves its
+/// results.
 void run_table1(const Table1Options& options) {
   check_apart("", {{"--csv", options.csv},
                    {"--markdown", options.markdown},

@@ -1,5 +1,5 @@
 #pragma once
-/// The numbers of Table 1's protocol; the defaults are those of the paper and of the scenes.
+/// Parameters of Table 1's protocol; the defaults are those of the paper and of the scenes.
 
 #include <string>
 
@@ -10,22 +10,22 @@
 namespace apps {
 
 struct Table1Options : TableOptions {
-  int checkpoints = 0;       ///< the scene's first so many; 0 = all
-  int gazes = 3;             ///< points at each
-  int repeats = 5;           ///< perturbed starts of each
-  int frames_after = 5;      ///< from a checkpoint to the picture that is compared
-  int cumul_frames = 200;    ///< of the film; 0 = no film
-  int film_starts = 1;       ///< of the film, an ulp apart
-  int projections = 50;      ///< of a start, at most
-  bool unperturbed = false;  ///< starts are not moved: HiRes must then equal itself
+  int checkpoints = 0;       ///< number of the scene's checkpoints to use; 0 = all
+  int gazes = 3;             ///< gaze points per checkpoint
+  int repeats = 5;           ///< perturbed starts per gaze point
+  int frames_after = 5;      ///< from a checkpoint to the compared picture
+  int cumul_frames = 200;    ///< length of the film; 0 = no film
+  int film_starts = 1;       ///< starts of the film, an ulp apart
+  int projections = 50;      ///< largest number of projections of a start
+  bool unperturbed = false;  ///< starts are not perturbed: HiRes must then equal itself
   PictureSize size{1280, 720};
-  std::string pictures;                          ///< folder for side by side pictures; empty = none
-  std::string checkpoints_to, checkpoints_from;  ///< folders of checkpoint_file.hpp; empty = none
+  std::string pictures;                          ///< folder for side-by-side pictures; empty = none
+  std::string checkpoints_to, checkpoints_from;  ///< folders for checkpoint_file.hpp; empty = none
   std::string cells;                             ///< file for cell_scores.hpp; empty = none
-  std::string paired_with;                       ///< such a file of another run; empty = none
+  std::string paired_with;                       ///< file of that kind from another run; empty = none
 };
 
-/// What all runs of a method have in common.
+/// Options that all runs of a method share.
 inline sim::SimulationOptions run_options(const Table1Options& options, const CellScene& scene,
                                           const CellSize& size, sim::Preset preset, sim::MethodKind method) {
   sim::SimulationOptions out;

@@ -40,12 +40,12 @@ struct Table2Options : TableOptions {
   stats::PtpeModel model;
 };
 
-/// One value a frame of one cell, warm-up left out. Parts come from another run of the same frames.
+/// One value per frame of one cell, without warm-up. Parts come from another run of the same frames.
 struct CellRun {
   std::vector<double> particles, step_ms, render_ms, frame_ms;
   std::vector<double> saliency_ms, levels_ms, activation_ms, solve_ms;
-  double seen_ms = 0;           ///< mean of handing the picture to saliency: in step_ms, not in frame_ms
-  std::vector<double> told_ms;  ///< frame times that tau followed, of every frame
+  double seen_ms = 0;           ///< mean time to pass the picture to saliency: in step_ms, not in frame_ms
+  std::vector<double> told_ms;  ///< frame times that tau followed, including warm-up
   sim::PictureWay seen_way = sim::PictureWay::None;
 };
 
@@ -61,7 +61,7 @@ Moments moments_of(const std::vector<double>& values) {
   return out;
 }
 
-/// A fluid and who looks at it, as the scene's gaze goes.
+/// A fluid and its viewer, whose gaze follows the scene's keys.
 class Stage {
  public:
   Stage(const sim::Scene& scene, const sim::SimulationOptions& choice)
@@ -81,7 +81,7 @@ class Stage {
   sim::View view_ = sim::make_view(scene_.view, width_px, height_px);
 };
 
-/// Wall times. Within a step nothing waits for the device but what the method itself waits for.
+/// Measures wall times. Within a step, only the method itself waits for the device.
 CellRun time_frames(const CellScene& scene, const sim::SimulationOptions& choice,
                     const Table2Options& options) {
   Stage stage(scene.scene, choice);
@@ -111,8 +111,8 @@ CellRun time_frames(const CellScene& scene, const sim::SimulationOptions& choice
   return run;
 }
 
-/// The same frames again, with the clock that waits between parts. A tau that is measured follows the frame
-/// times of the first run, so that the clock does not change what is solved.
+/// Runs the same frames again, with a clock that waits between parts. A measured tau follows the frame times
+/// of the first run, so that the clock does not change what is solved.
 void time_parts(const CellScene& scene, sim::SimulationOptions choice, const Table2Options& options,
                 CellRun& run) {
   choice.time_parts = true;
@@ -121,7 +121,7 @@ void time_parts(const CellScene& scene, sim::SimulationOptions choice, const Tab
   for (int frame = 1; frame <= options.frames; ++frame) {
     stage.look(frame);
     fluid.step_frame();
-    // What GL still draws would count as the next frame's saliency.
+    // Otherwise GL's pending drawing would count as saliency of the next frame.
     if (fluid.follows_picture()) stage.draw();
     glFinish();
     fluid.frame_time(run.told_ms[static_cast<std::size_t>(frame - 1)]);
@@ -166,7 +166,7 @@ std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, si
           number(hires_ms / step_ms, 3)};
 }
 
-/// HiRes is what the others are compared with.
+/// HiRes always runs, because the others are compared with it.
 bool wanted(sim::MethodKind method, const std::string& words) {
   if (words == "all" || method == sim::MethodKind::HiRes) return true;
   bool found = false;
@@ -189,12 +189,12 @@ constexpr const char* columns_help =
     "of a second run of the same frames under a clock that waits for the device between them: they may add\n"
     "up to more than a step.";
 
-/// A row: a method, and what its tau goes by.
+/// A row: a method and the source of its tau.
 struct RowPlan {
   sim::MethodKind method;
   std::string tau;
 };
-/// Where tau is given, a second row of each accelerated method shows what the frame rate alone would do.
+/// If tau is given, each accelerated method gets a second row that follows the measured frame rate.
 std::vector<RowPlan> rows_of(const Table2Options& options) {
   std::vector<RowPlan> out;
   for (const auto& traits : sim::all_methods()) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What the commands that time one fluid share.
+/// Helpers of the commands that time one fluid.
 
 #include <algorithm>
 #include <memory>
@@ -10,13 +10,14 @@
 
 namespace apps {
 
-/// The scene at frame 0, from the kept state where there is one; a progress line shows the settling.
+/// Makes the scene at frame 0, from the stored settled state if there is one; shows the settling as a
+/// progress line.
 std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::SimulationOptions options);
 
-/// Processor and cores; the operating system has no say in the numbers.
+/// Processor and cores; the operating system does not affect the numbers.
 std::string processor();
 
-/// Density error averaged over states spread over the run, so that one calm or wild moment does not decide.
+/// Density error averaged over states spread over the run, so that no single calm or wild moment decides.
 struct Accuracy {
   double error_mean = 0;
   double density_max = 0;
@@ -32,8 +33,9 @@ struct Accuracy {
   }
 };
 
-/// Every so many frames, some ten states of a run are measured. Water is denser in the frame of a turn of the
-/// levels than before the next one, so states meet each of the frames between two turns nearly as often.
+/// Number of frames between measurements: about ten per run. Water is denser in the frame in which levels
+/// change than before the next change, so the interval is chosen to sample all frames of that period nearly
+/// equally.
 inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& readings) {
   const int turn = sim::traits_of(method).adaptive() ? std::max(1, readings.levels_period_frames) : 1;
   int out = std::max(1, frames / 10);
@@ -44,7 +46,7 @@ inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& rea
 /// Substeps over all frames.
 struct Substeps {
   int taken = 0, most = 0;
-  int bound = 0;  ///< frames whose fastest particle asked for more than were allowed
+  int bound = 0;  ///< frames whose fastest particle asked for more substeps than allowed
   void add(sim::SubstepCount count) {
     taken += count.taken;
     most = std::max(most, count.taken);

@@ -13,7 +13,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// Questions that the trials of the design ask.
+/// Questions that the design's trials ask.
 std::vector<study::Question> asked_questions(const study::Protocol& protocol) {
   std::vector<study::Question> out;
   for (const auto& block : protocol.blocks) {
@@ -34,7 +34,7 @@ bool asks_scale(const std::vector<study::Question>& asked, const std::string& id
   });
 }
 
-/// Why none of H1 to H6 is about this protocol; empty: some may be.
+/// Why none of H1 to H6 applies to this protocol; empty if some may.
 std::string why_none(const study::Protocol& protocol) {
   if (!protocol.design.effects.empty())
     return "effects are a factor, and H1 to H6 are about methods alone; what each level is worth is "

@@ -1,5 +1,5 @@
 #pragma once
-/// Water that broke is never taken for a result.
+/// Rejects the results of a simulation that became unstable.
 
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace apps {
 
-/// base::Error naming `place` when a particle was not finite or far outside the tank since the run began,
-/// or a figure is not finite now.
+/// Throws base::Error naming `place` if a particle was not finite or far outside the tank at any time in the
+/// run, or if a figure of the report is not finite now.
 void check_finite(sim::Simulation& fluid, const std::string& place);
 
 }  // namespace apps

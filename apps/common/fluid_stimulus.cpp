@@ -14,7 +14,7 @@ namespace {
 
 std::string or_none(const std::string& words) { return words.empty() ? "none" : words; }
 
-/// Where the bake's header tells them.
+/// The effects as text, if the bake's header has them.
 std::string baked_effects(const sim::BakeHeader& header) {
   if (!header.effects && !header.picture_effects) return "";
   const sim::Scene scene = sim::baked_scene(header);
@@ -32,7 +32,7 @@ std::string describe(const sim::BakeReader& bake, const char* what) {
          baked_effects(h);
 }
 
-/// What is painted of a scene, if anything is.
+/// The temperature scale, if painting is asked for and the scene has heat.
 std::optional<TemperatureScale> painted(const sim::Scene& scene, bool paint) {
   const TemperatureScale scale(scene);
   if (!paint || !scale.heat()) return {};
@@ -43,7 +43,7 @@ std::string painted_words(const std::optional<TemperatureScale>& scale) {
   return scale ? ", painted " + scale->words() : "";
 }
 
-/// Where the axis of an eye meets its picture, px from the lower left: a headset's frusta are off-centre.
+/// Where an eye's axis meets its picture, px from the lower left: a headset's frusta are off-centre.
 std::pair<double, double> straight_ahead(const sim::View& view) {
   const sim::PixelRays rays = sim::pixel_rays(view);
   return {static_cast<double>(-rays.offset_x / rays.scale_x),
@@ -201,7 +201,7 @@ void LiveFluid::advance() {
   simulation_->step_frame();
 }
 
-/// Before the first picture a method looks along the scene's own axis.
+/// Before the first picture a method looks along the axis of the scene's camera.
 void LiveFluid::look() {
   if (!picture_ || !view_) return;
   const int width = view_->viewport.width, height = view_->viewport.height;

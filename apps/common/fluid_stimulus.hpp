@@ -1,6 +1,5 @@
 #pragma once
-/// The fluid as a study shows it: baked pictures, baked particles or a running simulation behind
-/// study::Stimulus.
+/// Fluids as implementations of study::Stimulus: baked pictures, baked particles or a running simulation.
 ///
 /// All draw in the GL context that is current at the first draw() and hold GL objects of it afterwards:
 /// destroy them before the display. A content step is one frame of the scene.
@@ -25,8 +24,8 @@
 
 namespace apps {
 
-/// The pictures of a bake, decoded ahead. draw() uploads one and copies it; a framebuffer of another size
-/// gets it scaled, whole, between black bars.
+/// Plays the pictures of a bake, decoded ahead. draw() uploads and copies one; a framebuffer of another size
+/// gets the whole picture, scaled, between black bars.
 class BakedPictures final : public study::Stimulus {
  public:
   explicit BakedPictures(std::unique_ptr<sim::BakeReader> bake);
@@ -34,7 +33,7 @@ class BakedPictures final : public study::Stimulus {
 
   std::string description() const override;
   std::int64_t length() const override { return bake_->header().frame_count; }
-  /// Returns when pictures are decoded ahead; at once when this is where they loop to.
+  /// Waits until pictures are decoded ahead; returns at once if the loop continues at start_step anyway.
   void start(std::int64_t start_step) override;
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(const study::Canvas& canvas) override;
@@ -45,11 +44,11 @@ class BakedPictures final : public study::Stimulus {
   std::unique_ptr<sim::BakeReader> bake_;
   sim::PictureRing ring_;
   const sim::BakePicture* picture_ = nullptr;
-  unsigned texture_ = 0, source_ = 0;  ///< the picture, and a framebuffer to copy it from
+  unsigned texture_ = 0, source_ = 0;  ///< the picture, and the framebuffer it is copied from
 };
 
-/// The particle frames of a bake with their foam, drawn by the renderer. Temperatures are painted over them
-/// where that is asked for and the bake holds them.
+/// Renders the particle frames of a bake with their foam. Paints temperatures over them if asked to and the
+/// bake holds them.
 class BakedParticles final : public study::Stimulus {
  public:
   explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing = {},
@@ -72,30 +71,30 @@ class BakedParticles final : public study::Stimulus {
   sim::ParticleBuffer particles_, foam_;
 };
 
-/// A simulation that advances one frame a content step, and sees what its viewer saw in the picture before.
+/// A simulation that advances one frame per content step and gets the picture that its viewer saw last.
 class LiveFluid final : public study::Stimulus {
  public:
   /// Makes the simulation at frame 0; called again for each rewind.
   using MakeSimulation = std::function<std::unique_ptr<sim::Simulation>()>;
 
-  /// paint_temperature: over the water, where the scene has heat.
+  /// paint_temperature: paints temperatures over the water if the scene has heat.
   LiveFluid(const sim::Scene& scene, double frame_dt_s, std::string description, MakeSimulation make,
             Viewing viewing = {}, const sim::RenderOptions& options = {}, bool paint_temperature = false);
 
   std::string description() const override { return description_; }
   std::int64_t length() const override { return 0; }
-  /// Nothing is computed when it stands there already: a session makes it ready before it plays it.
+  /// Does nothing if the fluid was already started at this step: a session starts it before it plays it.
   void start(std::int64_t start_step) override;
-  /// A step before the present one begins anew.
+  /// A step before the current one restarts the simulation.
   study::FrameFacts prepare(std::int64_t step) override;
   void draw(const study::Canvas& canvas) override;
-  /// The simulation at the prepared step; there is one from the first start() or prepare() on.
+  /// The simulation at the prepared step; exists from the first start() or prepare() on.
   sim::Simulation& simulation() { return *simulation_; }
-  /// Whether the method looks at the picture of the last frame, so that every one must be drawn.
+  /// True if the method uses the picture of the last frame, so that every frame must be drawn.
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
   std::vector<float> read_depth() const { return picture_->renderer().read_depth(); }
-  /// Of the last picture; empty unless its options said so (FluidRenderer::times).
+  /// Pass times of the last picture; empty unless the render options ask for them (FluidRenderer::times).
   std::vector<sim::PassTime> pass_times() const {
     return picture_ ? picture_->renderer().times() : std::vector<sim::PassTime>();
   }
@@ -113,51 +112,51 @@ class LiveFluid final : public study::Stimulus {
   sim::RenderOptions options_;
   std::unique_ptr<sim::Simulation> simulation_;
   std::int64_t step_ = 0;
-  bool started_ = false;  ///< and no step was prepared since
+  bool started_ = false;  ///< start() was called, and no step was prepared since
   std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::unique_ptr<FluidPicture> picture_;
-  std::optional<sim::View> view_;  ///< of the last picture; of two eyes the left one's
-  bool stereo_ = false;            ///< likewise
+  std::optional<sim::View> view_;  ///< of the last picture; in stereo, of the left eye
+  bool stereo_ = false;            ///< the last picture has two eyes
   std::optional<TemperatureScale> painted_;
-  std::vector<float> temperature_k_;  ///< of the present picture, above the reference
-  double visual_scale_ = 1;           ///< likewise, sim::EyeLook's
+  std::vector<float> temperature_k_;  ///< temperatures above the reference in the current picture
+  double visual_scale_ = 1;           ///< of the last picture, as sim::EyeLook::visual_scale
 };
 
-/// What `vip-study run` shows: a bake when one is named, otherwise a live simulation.
+/// What `vip-study run` shows: a bake if one is named, otherwise a live simulation.
 struct StimulusChoice {
   std::filesystem::path bake;
   std::filesystem::path scene;
   std::string method = "HiRes";
   std::string n_star = "32k";
   std::string backend = "auto";
-  double content_step_s = 0;  ///< fluid time of a content step; 0 = the scene's or the bake's
-  /// Of temporal acceleration, live fluid only: what tau follows from, none = as measured.
+  double content_step_s = 0;  ///< fluid time per content step; 0 = that of the scene or the bake
+  /// Live fluid only: frame rate from which temporal acceleration computes tau. None = the measured rate.
   std::optional<sim::FrameRate> fixed_rate;
-  /// Live fluid only: all knobs of the solver, of this method and n_*; tau then follows from its beta and no
-  /// frame rate. None = the usual ones.
+  /// Live fluid only: all knobs of the solver, for this method and n_*; tau then follows from its beta and
+  /// not from a frame rate. None = the default knobs.
   std::optional<SolverSetting> setting = {};
   stats::PtpeModel model;
-  /// Live fluid only: instead of the scene's own. None = those of its file.
+  /// Live fluid only: effects that replace those of the scene's file. None = the file's.
   std::optional<std::vector<sim::Effect>> effects = {};
   std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< likewise
-  bool paint_temperature = false;  ///< over the water, where it has temperatures; not of a bake with pictures
-  Viewing viewing;                 ///< of a bake with pictures: nothing
-  bool overview = false;           ///< live fluid is watched by the scene's camera for figures
-  sim::RenderOptions render = {};  ///< of live fluid
+  bool paint_temperature = false;  ///< paints temperatures over the water; not in a bake with pictures
+  Viewing viewing;                 ///< ignored for a bake with pictures
+  bool overview = false;           ///< live fluid only: uses the scene's camera for figures
+  sim::RenderOptions render = {};  ///< live fluid only
 };
 
-/// Errors (base::Error): files that cannot be read, words that are not known, a bake whose frames lie another
-/// time apart than content_step_s.
+/// base::Error for files that cannot be read, unknown words, and a bake whose frame interval differs from
+/// content_step_s.
 std::unique_ptr<study::Stimulus> make_stimulus(const StimulusChoice& choice);
 
-/// The same without a bake. settling: as SimulationOptions::settling.
+/// As make_stimulus(), always live. settling: see SimulationOptions::settling.
 std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
                                            const std::function<void(int, int)>& settling = {});
 
-/// True when the choice is a bake with pictures, which HeadlessDisplay's only_copies suits.
+/// True if the choice is a bake with pictures; HeadlessDisplay's only_copies is then enough.
 bool shows_pictures(const StimulusChoice& choice);
 
-/// A frame's facts as its record keeps them, from the solver's account of it.
+/// Converts the solver's account of a frame into the facts that the frame's record stores.
 study::FrameFacts to_facts(double simulation_time_s, const sim::FrameAccount& account);
 
 }  // namespace apps

@@ -44,7 +44,7 @@ sim::View framed_view(sim::Camera camera, const Viewing& viewing, int width_px, 
 
 namespace {
 
-/// From the scene to the space in which a headset's eyes are placed.
+/// From the scene to the space in which a headset's eyes are positioned.
 sim::Mat4 to_room(const sim::Camera& camera) {
   return sim::look_at(camera.eye_m, {camera.target_m[0], camera.eye_m[1], camera.target_m[2]});
 }
@@ -114,7 +114,7 @@ std::vector<std::string> cut_off(const sim::Scene& scene, const sim::View& view)
   std::vector<std::string> out;
   for (const auto& box : scene.visible) {
     const auto corners = corners_of(box);
-    // The box and the view are convex: its corners speak for it.
+    // The box and the view are convex, so testing the corners is enough.
     if (!std::all_of(corners.begin(), corners.end(),
                      [&](const auto& corner) { return sees_point(view, corner); }))
       out.push_back(box.name);

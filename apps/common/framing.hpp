@@ -1,5 +1,5 @@
 #pragma once
-/// Which part of a scene a picture shows, and how large the eye sees it.
+/// Which part of a scene a picture shows, and how large it appears to the eye.
 
 #include <array>
 #include <functional>
@@ -14,71 +14,73 @@
 
 namespace apps {
 
-/// A ray in the space that eye_view() places eyes in: where somebody in a headset looks.
+/// A ray in the space in which eye_view() places the eyes: the gaze of a person in a headset.
 struct RoomRay {
   std::array<double, 3> place_m{};    ///< metres of the scene
-  std::array<double, 3> direction{};  ///< of any length but 0
+  std::array<double, 3> direction{};  ///< any length but 0
 };
 
-/// How a fluid is watched. Empty functions: the gaze rests on the middle of the picture, and the angle that
-/// it fills of the eye's view is not known.
+/// How a fluid is watched. With empty functions, the gaze rests on the middle of the picture and the visual
+/// angle of the picture is unknown.
 struct Viewing {
-  /// Where one looks in a picture of this width and height, px from its lower left corner; none: not known.
+  /// Gaze point in a picture of this width and height, px from its lower left corner; none if unknown.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
-  /// Where two eyes look; none: not known. Empty: straight ahead of the left one.
+  /// Gaze ray of the two eyes; none if unknown. Empty function: straight ahead of the left eye.
   std::function<std::optional<RoomRay>()> ray{};
-  /// Vertical angle that a picture of this width and height, px, fills of the eye's view, degrees.
+  /// Vertical visual angle, in degrees, of a picture of this width and height in px.
   std::function<double(int, int)> visual_angle_deg;
-  /// The camera takes that angle, where it is known, instead of the scene's: the picture is a window onto the
-  /// scene.
+  /// Uses that visual angle, if known, as the camera's angle instead of the scene's: the picture is then a
+  /// window onto the scene.
   bool true_angle = false;
 };
 
 /// Vertical angles of a picture, degrees in (0, 180).
 struct Framing {
   double camera_deg = 0;
-  std::optional<double> visual_deg;  ///< none: not known
+  std::optional<double> visual_deg;  ///< none: unknown
 
-  /// visual_deg / camera_deg; none: not known.
+  /// visual_deg / camera_deg; none if unknown.
   std::optional<double> ratio() const;
-  /// sim::EyeLook::visual_scale; 1 where the visual angle is not known.
+  /// As sim::EyeLook::visual_scale; 1 if the visual angle is unknown.
   double visual_scale() const;
 };
 
-/// Bakes keep angles as text: what differs by less was written otherwise, or computed from other roundings.
+/// Angles that differ by less are equal: bakes store angles as text, and rounding differs.
 inline constexpr double same_angle_deg = 0.01;
 
 Framing frame_picture(const sim::Camera& camera, const Viewing& viewing, int width_px, int height_px);
 
-/// The view of that camera with the angle of frame_picture().
+/// The camera's view with the angle of frame_picture().
 sim::View framed_view(sim::Camera camera, const Viewing& viewing, int width_px, int height_px);
 
-/// The view of one eye. Its anchor stands at the camera's eye and has its heading, never its pitch: the
-/// horizon is where the person's own is. Angles are the headset's, not the camera's. base::Error for angles
-/// or a rectangle that make no picture, and a camera that looks straight up or down.
+/// The view of one eye. The anchor of the headset's space is the camera's eye with the camera's heading,
+/// without its pitch, so that the scene's horizon is the person's own. Angles are the headset's, not the
+/// camera's. base::Error if the angles or the rectangle make no picture, or if the camera looks straight up
+/// or down.
 sim::View eye_view(const sim::Camera& camera, const study::EyeView& eye);
 
-/// The same ray in the scene.
+/// Converts a ray to the scene's coordinates.
 sim::Gaze gaze_along(const sim::Camera& camera, const RoomRay& ray);
 
-/// What is drawn on a canvas: framed_view() of the whole, or eye_view() of each eye.
+/// The views to draw on a canvas: framed_view() of the whole, or eye_view() of each eye.
 std::vector<sim::View> views_on(const sim::Camera& camera, const Viewing& viewing,
                                 const study::Canvas& canvas);
 
-/// Where a point lies in a view's picture, px from its lower left corner; none: not before the near plane.
+/// Position of a point in a view's picture, px from its lower left corner; none if it is not beyond the near
+/// plane.
 std::optional<std::pair<double, double>> place_in(const sim::View& view, const sim::Vec3d& point_m);
 
-/// The eight corners of a box; bit k of the index: at its far end along axis k.
+/// The eight corners of a box; bit k of the index selects the far end along axis k.
 std::array<sim::Vec3d, 8> corners_of(const sim::VisibleBox& box);
 
-/// Names of what a scene declares visible and a view cuts, were it only in part.
+/// Names of the boxes that the scene declares visible and that the view cuts off, even partly.
 std::vector<std::string> cut_off(const sim::Scene& scene, const sim::View& view);
 
 /// A part of a framebuffer, px.
 struct Rectangle {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
-/// The largest rectangle of a picture's shape in the middle of a framebuffer.
+/// The largest centred rectangle of a framebuffer with the picture's aspect ratio.
 Rectangle fit_picture(int width, int height, int into_width, int into_height);
 
 }  // namespace apps

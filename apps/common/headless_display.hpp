@@ -1,5 +1,5 @@
 #pragma once
-/// A display without a screen: frames are really drawn, into framebuffers of a headless GL context.
+/// A display without a screen: draws real frames into framebuffers of a headless GL context.
 
 #include <array>
 
@@ -9,12 +9,12 @@
 
 namespace apps {
 
-/// Double buffered like a screen. Use it on the thread that made it; destroy stimuli that drew on it first.
+/// Double buffered. Use it on the thread that made it; first destroy stimuli that drew on it.
 class HeadlessDisplay final : public study::Display {
  public:
-  /// With only_copies, software GL draws on the calling thread alone: enough for baked pictures, and no frame
-  /// waits for a helper thread to be woken. ($LP_NUM_THREADS of Mesa, when set, decides instead.) Errors
-  /// (base::Error): no OpenGL 4.5, a size out of range.
+  /// With only_copies, software GL draws on the calling thread alone: this is enough for baked pictures, and
+  /// no frame waits until a helper thread wakes up. Mesa's $LP_NUM_THREADS, when set, has priority.
+  /// base::Error for no OpenGL 4.5 or a size out of range.
   HeadlessDisplay(int width_px, int height_px, bool only_copies = false);
 
   std::string description() const override;
@@ -22,11 +22,10 @@ class HeadlessDisplay final : public study::Display {
   double refresh_hz() const override { return 0; }
   /// Draws into the back buffer and waits until the device has finished.
   void render(study::Stimulus& stimulus) override;
-  /// Makes the back buffer the front buffer. Nothing is left to draw, so submitted and done are one instant
-  /// but for the check.
+  /// Swaps the buffers. No drawing is pending, so submitted and done times differ only by the check.
   study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override;
 
-  /// The picture on show.
+  /// The picture in the front buffer.
   sim::Image read() const { return buffers_[front_].read(); }
   int width_px() const { return buffers_[0].width(); }
   int height_px() const { return buffers_[0].height(); }

@@ -24,7 +24,7 @@ std::unique_ptr<study::Stimulus> from_bake(const StimulusChoice& choice) {
                                           choice.paint_temperature);
 }
 
-/// Where there are any, or the choice says that there are none.
+/// The effects as text, if there are any or the choice overrides them.
 std::string live_effects(const StimulusChoice& choice, const sim::Scene& scene) {
   const std::string water = sim::effects_in_words(scene.effects);
   const std::string picture = sim::picture_effects_in_words(scene.picture_effects);

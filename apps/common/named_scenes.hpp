@@ -1,5 +1,5 @@
 #pragma once
-/// The scenes of the paper's tables by their names.
+/// Looks up the scenes of the paper's tables by name.
 
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@ struct CellScene {
   std::string name;  ///< as in the paper's tables
   sim::Scene scene;
 };
-/// base::Error naming the known scenes.
+/// One scene by name, or "all". base::Error, naming the known scenes, for any other word.
 std::vector<CellScene> scenes_of(const std::string& word);
 
 }  // namespace apps

@@ -22,7 +22,7 @@ bool reads_whole(std::string_view text, Number& value) {
   return problem == std::errc() && end == text.data() + text.size();
 }
 
-/// Digits as they count, "10" for "010".
+/// Rewrites the digits without leading zeros, "10" for "010".
 template <class Whole>
 std::string check_whole(std::string& text) {
   Whole value{};

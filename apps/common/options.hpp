@@ -1,6 +1,6 @@
 #pragma once
-/// Options that several commands have, and what an option may be: nothing is clamped, cut or written on that
-/// a file or a screen cannot hold.
+/// Options that several commands share, and checks of options: values that a file or a screen cannot hold are
+/// errors and are never clamped, cut or passed on.
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -14,27 +14,27 @@
 
 namespace apps {
 
-/// --db DATABASE of vip-study, which must be given.
+/// Adds the required --db DATABASE of vip-study.
 CLI::Option* add_database(CLI::App& command, std::string& database);
 
-/// The database of vip-stats, by its place or as --db; whoever runs the command calls check_given.
+/// Adds the database of vip-stats, as a positional argument or as --db; the command must call check_given().
 void add_database_argument(CLI::App& command, std::string& database);
-/// --incomplete of all commands that read a study (study::StudyFile).
+/// Adds --incomplete, which all commands that read a study have (study::StudyFile).
 void add_incomplete(CLI::App& command, bool& incomplete);
-/// CLI::RequiredError where add_database_argument was given none.
+/// Throws CLI::RequiredError if add_database_argument() got no database.
 void check_given(const std::string& database);
 
-/// --plan FILE of vip-stats, with all that a plan holds.
+/// Adds --plan FILE of vip-stats; its help lists the content of a plan.
 CLI::Option* add_plan(CLI::App& command, std::string& plan);
 
-/// --method NAME, --n-star NUMBER and --backend NAME of what runs one fluid, each with its default.
+/// --method NAME, --n-star NUMBER and --backend NAME of commands that run one fluid, each with its default.
 CLI::Option* add_method(CLI::App& command, std::string& method);
 CLI::Option* add_n_star(CLI::App& command, std::string& n_star);
 CLI::Option* add_backend(CLI::App& command, std::string& backend);
-/// --backend as vip-study has it, which takes no other name.
+/// --backend of vip-study, which checks the name.
 CLI::Option* add_backend(CLI::App& command, std::string& backend, const char* what);
 
-/// --size WIDTHxHEIGHT (parse_picture_size) with its default, or left empty without one.
+/// --size WIDTHxHEIGHT (parse_picture_size) with its default, or empty by default.
 CLI::Option* add_size(CLI::App& command, PictureSize& size, const char* what);
 CLI::Option* add_size(CLI::App& command, std::optional<PictureSize>& size, const char* what);
 
@@ -49,26 +49,27 @@ CLI::Option* add_count(CLI::App& command, const char* name, int& value, int low,
 /// Accepts finite numbers from low to high (CLI::Range lets NaN through).
 CLI::Validator number_in(double low, double high);
 
-/// Accepts texts of at most so many bytes.
+/// Accepts texts of at most this many bytes.
 CLI::Validator text_up_to(std::size_t most_bytes);
 
-/// Throws base::Error unless a file can be written there (base::check_output): before an hour of work, not
-/// after it.
+/// Throws base::Error if the file cannot be written (base::check_output): before an hour of work, not after
+/// it.
 CLI::Validator output_file();
 
-/// The same of files in a folder (base::check_output_folder).
+/// The same for files in a folder (base::check_output_folder).
 CLI::Validator output_folder();
 
-/// Outputs by option, empty: not asked for. base::Error where one would overwrite the database or another.
+/// `outputs`: path by option; an empty path is skipped. base::Error if one would overwrite the database or
+/// another output.
 void check_apart(const std::filesystem::path& database, const std::map<std::string, std::string>& outputs);
 
-/// Throws CLI::ValidationError, which names the first argument that is not a plain line of UTF-8
-/// (base::is_plain_line): arguments come to stand in databases, JSON and messages.
+/// Throws CLI::ValidationError naming the first argument that is not one plain line of UTF-8
+/// (base::is_plain_line), because arguments are copied into databases, JSON and messages.
 void check_arguments(int argc, const char* const* argv);
 
-/// Gives each option of `app` and of its commands that is bound to a number a check before all others: digits
-/// of a whole number that 64 bits hold, or a finite number. CLI11 itself takes the nearest number instead,
-/// and reads 010 as eight.
+/// Adds a check, before all others, to each numeric option of `app` and its commands: a whole number must be
+/// digits that fit in 64 bits, any other number must be finite. CLI11 itself clamps to the nearest number and
+/// reads 010 as eight.
 void check_numbers(CLI::App& app);
 
 }  // namespace apps

@@ -43,7 +43,7 @@ std::size_t index_of(const MeasuredPicture& picture, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
 }
 
-/// Luminance less its mean over the fluid in the window around; 0 outside the fluid.
+/// Luminance minus its mean over the fluid in the surrounding window; 0 outside the fluid.
 std::vector<double> residual(const MeasuredPicture& picture) {
   const auto is_fluid = [&](int x, int y) { return picture.fluid[index_of(picture, x, y)]; };
   const SumTable count(picture.width, picture.height,
@@ -67,7 +67,7 @@ std::vector<double> residual(const MeasuredPicture& picture) {
   return out;
 }
 
-/// The quarter of the fluid's pixels that is nearest to (x, y): 1, else 0.
+/// Mask of the quarter of the fluid's pixels nearest to (x, y).
 std::vector<std::uint8_t> near_gaze(const MeasuredPicture& picture, double gaze_x, double gaze_y) {
   std::vector<std::pair<double, std::size_t>> distances;
   for (int y = 0; y < picture.height; ++y) {

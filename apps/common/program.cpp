@@ -24,9 +24,9 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// OpenMP threads that spin while they wait starve the other threads of a small machine, and with them the
-/// pacing. The runtime reads its settings once, before main(), so the program starts over with them set. A
-/// choice of the user's stays.
+/// OpenMP threads that spin while they wait starve the other threads of a small machine, including the
+/// pacing. The runtime reads its settings once, before main(), so the program restarts with them set.
+/// Settings of the user are not changed.
 void wait_passively(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   std::error_code ignored;
@@ -48,13 +48,13 @@ void make_folder(const std::filesystem::path& folder) {
 
 namespace {
 
-/// What --version prints: which version this is, and what it was built with.
+/// Text of --version: the version and the build options.
 std::string version_text(const std::string& program) {
   return program + " " + base::version() + "\nbuilt " + base::built_utc().substr(0, 10) + ": " +
          base::build_options();
 }
 
-/// Runs what the command line asks for; whether all of it came to its end.
+/// Runs the command line; returns the exit status.
 int run_commands(CLI::App& app, int argc, char** argv) {
   try {
     check_arguments(argc, argv);
@@ -101,8 +101,8 @@ int run_program(CLI::App& app, int argc, char** argv) {
     return for_terminal(CLI::FailureMessage::simple(failed, error)) + "\n";
   });
   check_numbers(app);
-  // A file-size limit or a pipe without a reader is then an error of the write, and not the end of the
-  // process.
+  // With these ignored, a file-size limit or a pipe without a reader is an error of the write and does not
+  // end the process.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {

@@ -1,5 +1,5 @@
 #pragma once
-/// What every program does alike: parse, run, report errors, show progress.
+/// Tasks of every program: parse the command line, run, report errors, show progress.
 
 #include <cstddef>
 #include <exception>
@@ -13,26 +13,26 @@ class App;
 
 namespace apps {
 
-/// A program without commands. For files that do not read CLI11 themselves: its classes take seconds to
+/// Makes a program without commands, for files that do not include CLI11: its classes take seconds to
 /// compile.
 std::shared_ptr<CLI::App> new_program(const char* description, const char* name);
 
-/// Parses the command line and runs the chosen command. 0 = done; 1 = an error, told on stderr, such as
-/// output that could not be written (a reader that left a pipe is told nothing); 2 = the command line was
-/// wrong (a missing command shows the help); else what a command throws as CLI::RuntimeError. Call it first
-/// in main(): it opens /dev/null where a standard stream is closed, and unless OMP_WAIT_POLICY or
-/// GOMP_SPINCOUNT is set, it starts the program over, once, with OMP_WAIT_POLICY=passive.
+/// Parses the command line and runs the chosen command. Returns 0 if done; 1 after an error, which is printed
+/// on stderr, such as output that could not be written (no message if the reader of a pipe left); 2 if the
+/// command line was wrong (a missing command shows the help); otherwise the code that a command throws as
+/// CLI::RuntimeError. Call it first in main(): it opens /dev/null for closed standard streams and, unless
+/// OMP_WAIT_POLICY or GOMP_SPINCOUNT is set, restarts the program once with OMP_WAIT_POLICY=passive.
 int run_program(CLI::App& app, int argc, char** argv);
 
-/// What an error says on stderr, with place and mend also where it comes from another library, which tells
-/// neither. command: as typed, "vip-stats report".
+/// The message for an error on stderr. Adds place and remedy to errors of other libraries, which lack them.
+/// command: as typed, "vip-stats report".
 std::string error_text(const std::exception& error, const std::string& command);
 
-/// Makes a folder and its parents unless it is there; base::Error when that fails.
+/// Makes a folder and its parents if missing; base::Error on failure.
 void make_folder(const std::filesystem::path& folder);
 
-/// A line on stderr that shows how far a long step is. Drawn at most ten times a second; a plain line a tenth
-/// when stderr is not a terminal. Nothing is shown for steps that end within two seconds.
+/// Shows the progress of a long step on stderr: a line redrawn at most ten times a second, or one plain line
+/// per tenth if stderr is not a terminal. Shows nothing for steps that end within two seconds.
 class Progress {
  public:
   Progress(std::string label, std::size_t total);

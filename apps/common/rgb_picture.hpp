@@ -1,5 +1,5 @@
 #pragma once
-/// A picture as the image metrics take it.
+/// A picture in the format of the image metrics.
 
 #include <cstdint>
 #include <vector>

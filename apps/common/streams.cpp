@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t line_bytes = 1000;
 constexpr int most_lines = 200;
 
-/// A pipe or socket without a reader.
+/// True if the reader of the pipe or socket has left.
 bool reader_left() {
   pollfd out{STDOUT_FILENO, 0, 0};
   return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
@@ -82,7 +82,7 @@ void print_coloured(const std::string& text) {
   write_out(out + plain.rest());
 }
 
-// The lowest free number is given first, and what is opened here stays open over exec.
+// open() returns the lowest free number. The descriptors stay open over exec.
 bool open_standard_streams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != fd) return false;
@@ -92,7 +92,7 @@ bool open_standard_streams() {
 
 bool finish_output() {
   errno = 0;
-  std::cout.flush();  // which writes past PlainOutput
+  std::cout.flush();  // cout bypasses PlainOutput
   const bool flushed = std::fflush(stdout) == 0 && std::cout.good();
   const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
   if (flushed && !std::ferror(stdout)) return true;

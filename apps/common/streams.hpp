@@ -1,6 +1,6 @@
 #pragma once
-/// Standard input, output and error of a program: there from the start, and heard when they fail. What others
-/// wrote, in a database or a protocol, moves no cursor there (base/outgoing.hpp).
+/// Standard input, output and error of a program: always open, and with write errors reported. Text from a
+/// database or a protocol cannot move the terminal's cursor (base/outgoing.hpp).
 
 #include <cstdio>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace apps {
 
-/// Gives /dev/null to each of the descriptors 0, 1 and 2 that is closed, so that no data file gets its number
-/// and is written to by a message. False when that fails.
+/// Opens /dev/null on each of the descriptors 0, 1 and 2 that is closed; otherwise a data file could get that
+/// number and messages would be written into it. Returns false on failure.
 bool open_standard_streams();
 
-/// While it lives, all that is printed to stdout passes base::TerminalText: no control character comes
-/// through, whatever text it was in. What is to be coloured goes by print_coloured().
+/// While it lives, everything printed to stdout passes through base::TerminalText, which lets no control
+/// characters through. Use print_coloured() for coloured text.
 class PlainOutput {
  public:
   PlainOutput();
@@ -27,15 +27,15 @@ class PlainOutput {
   std::FILE *before_, *plain_ = nullptr;
 };
 
-/// Prints text with its colours (ECMA-48 "ESC [ digits m"), and no other control character.
+/// Prints text with its colours (ECMA-48 "ESC [ digits m") and no other control characters.
 void print_coloured(const std::string& text);
 
-/// Writes out what is printed so far; base::Error when not all of it could be written, now or earlier.
-/// Returns false when that is because the reader of a pipe has left (`| head -1`), which needs no word.
+/// Flushes stdout; base::Error if any of its output could not be written, now or earlier. Returns false,
+/// without an error, if the reader of a pipe has left (`| head -1`).
 bool finish_output();
 
-/// A message as stderr gets it: long lines without their middle, no control characters, no more than a
-/// screen or two.
+/// Prepares a message for stderr: cuts the middle of long lines, removes control characters, and limits the
+/// length to a screen or two.
 std::string for_terminal(const std::string& message);
 
 }  // namespace apps

@@ -1,5 +1,5 @@
 #pragma once
-/// The colours of temperatures over the water: one scale a scene, whatever its water has come to.
+/// The colour scale of temperatures over the water: one per scene, independent of the current temperatures.
 
 #include <span>
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace apps {
 
-/// From the coldest to the hottest that a scene with heat names (sim::temperatures_of).
+/// From the coldest to the hottest temperature that a scene with heat names (sim::temperatures_of).
 class TemperatureScale {
  public:
-  /// Without heat it is never asked for an overlay.
+  /// Do not call overlay() for a scene without heat.
   explicit TemperatureScale(const sim::Scene& scene);
 
-  /// Does the scene list heat with a diffusivity above 0, so that its water has temperatures?
+  /// True if the scene lists heat with a diffusivity above 0, so that its water has temperatures.
   bool heat() const { return heat_; }
-  /// above_k: K above the scene's reference, one a particle; must outlive the overlay.
+  /// above_k: K above the scene's reference, one value per particle; must outlive the overlay.
   sim::Overlay overlay(std::span<const float> above_k) const;
   /// "temperature 293.15 to 353.15 K".
   std::string words() const;
 
-  /// Does the other one give every temperature the same colour?
+  /// True if both scales give every temperature the same colour.
   bool same_colours(const TemperatureScale& other) const {
     return least_k_ == other.least_k_ && most_k_ == other.most_k_;
   }

@@ -6,16 +6,16 @@
 
 namespace apps {
 
-/// For a cell of a table; "-" for NaN, "inf" for either infinity.
+/// A number for a cell of a table; "-" for NaN, "inf" for either infinity.
 std::string number(double value, int digits);
 
-/// With as many digits as tell it from others, at most four: "0.01667", "4".
+/// At most four significant digits, without trailing zeros: "0.01667", "4".
 std::string shortest(double value);
 
-/// Free text as one cell of either kind of table.
+/// Free text as one cell of a CSV or Markdown table.
 std::string in_a_cell(std::string text);
 
-/// Rows of text cells as CSV and as a Markdown table; numbers were formatted by the caller.
+/// Rows of text cells as CSV and as a Markdown table; the caller formats numbers.
 struct TextTable {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;

@@ -1,5 +1,5 @@
 #pragma once
-/// Which protocols and questions a command analyses, and at which level: the same options everywhere.
+/// Options shared by all commands: which protocols and questions to analyse, and at which level.
 
 #include <CLI/CLI.hpp>
 
@@ -11,20 +11,20 @@
 namespace apps {
 
 struct ChoiceOptions {
-  std::string protocol;         ///< leading digits of the SHA-256; empty: all
-  std::string question;         ///< its id; empty: all
-  std::optional<double> level;  ///< none: that of level_of()
+  std::string protocol;  ///< name, with or without version, or leading digits of the SHA-256; empty: all
+  std::string question;  ///< its id; empty: all
+  std::optional<double> level;  ///< empty: see level_of()
 
   TaskSelection selection(TaskKind task, const stats::AnalysisPlan& plan) const {
     return {task, protocol, plan, question, level};
   }
 };
 
-/// --protocol DIGITS.
+/// Adds --protocol.
 CLI::Option* add_protocol_choice(CLI::App& command, ChoiceOptions& options);
-/// --level SCORE.
+/// Adds --level SCORE.
 CLI::Option* add_level_choice(CLI::App& command, ChoiceOptions& options);
-/// All three.
+/// Adds --protocol, --question and --level.
 void add_choice(CLI::App& command, ChoiceOptions& options);
 
 }  // namespace apps

@@ -1,5 +1,5 @@
 #pragma once
-/// The commands of vip-stats: each in a file of its own, each adds itself to the program.
+/// The commands of vip-stats. Each has its own file and adds itself to the program.
 
 namespace CLI {
 class App;
@@ -8,7 +8,7 @@ class App;
 namespace apps {
 
 void add_fit_ptpe_command(CLI::App& app);
-/// task1 and task2.
+/// Adds task1 and task2.
 void add_task_commands(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_preregister_command(CLI::App& app);

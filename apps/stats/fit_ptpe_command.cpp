@@ -38,13 +38,13 @@ struct FitCommand {
   bool force = false;
   bool accept_form = false;
   bool incomplete = false;
-  std::string lacking;  ///< of the database, where it is incomplete
+  std::string lacking;  ///< what an incomplete database lacks
   ChoiceOptions choice;
   stats::AnalysisPlan rules;  ///< the plan in force
   stats::BootstrapOptions bootstrap;
 
   bool too_wide(const PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
-  /// Doubts about the ratings, which --force overrules; not that about the form.
+  /// True if there are doubts that --force overrules, that is, all except that about the form.
   bool doubted(const PilotFit& fit) const {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code != stats::form_rejected; });
@@ -53,7 +53,7 @@ struct FitCommand {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code == stats::form_rejected; });
   }
-  /// What bars the solver's file and was not overruled.
+  /// True if something prevents the solver's file and was not overruled.
   bool barred(const PilotFit& fit) const {
     return (!force && (too_wide(fit) || doubted(fit))) || (!accept_form && other_form(fit));
   }
@@ -68,7 +68,7 @@ void write_json(const FitCommand& command, base::Json json) {
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
 }
 
-/// `what`: "own pilot 1.0, question "smooth""; empty: none was chosen.
+/// `what`: as "own pilot 1.0, question "smooth""; empty if none was chosen.
 [[noreturn]] void no_fit(const FitCommand& command, const std::string& what, const std::string& reason,
                          const std::string& mend) {
   throw base::Error(command.database,
@@ -81,7 +81,7 @@ std::string fitted_name(const ChosenTask& chosen) {
   return chosen.protocol.name + " " + chosen.protocol.version + ", question \"" + chosen.question.id + "\"";
 }
 
-/// fit.json, and the same for people; with a truth also whether it was recovered.
+/// Writes fit.json and prints the fit; with a truth also whether it was recovered.
 void report(const FitCommand& command, const PilotFit& fit, const std::optional<stats::PtpeModel>& truth) {
   auto json = fit_json(fit);
   auto refused = base::Json::array();
@@ -99,7 +99,7 @@ void report(const FitCommand& command, const PilotFit& fit, const std::optional<
   if (recovery) std::printf("%s", format_recovery(fit, *recovery).c_str());
 }
 
-/// A curve that the ratings do not bear, or that the participants leave too open, would only pretend to be a
+/// Refuses a curve that the ratings do not support or that is too uncertain, since it would not be a real
 /// calibration.
 void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
   if (!command.barred(fit)) return;
@@ -124,8 +124,8 @@ void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
   throw base::Error(command.database, reasons, mend + "; no configuration and no figure were written");
 }
 
-/// The record first: a calibration that is in force is always in it. Locked, so that of two fits neither
-/// loses the other's line, and the file in force is the record's last.
+/// Writes the record before the file, so that a calibration in force is always in the record. Locked, so that
+/// of two fits neither loses the other's line, and the file in force is the last in the record.
 void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
   const base::FileLock lock(command.out);
   const auto text = sim::format_ptpe_file(ptpe_file(fit));
@@ -153,7 +153,7 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
   base::write_file_atomically(command.out, text);
 }
 
-/// Of what people should do about a fit that is none.
+/// Advice for a fit that failed.
 std::string mend_of(const PilotFit& fit) {
   if (!fit.level_within_scale()) return mend_of_level(fit.data.question);
   return "collect more answers, or choose another --level";
@@ -178,7 +178,7 @@ void fit_one(const FitCommand& command, const study::TaskStudy& study, const Cho
   if (!command.out.empty()) hand_to_solver(command, fit);
 }
 
-/// Files are of one fit. Without them every protocol and question is fitted by itself.
+/// With output files only one fit is allowed. Without them every protocol and question is fitted separately.
 stats::Result<std::vector<ChosenTask>> chosen_pilots(const FitCommand& command,
                                                      const study::TaskStudy& study) {
   const auto selection = command.choice.selection(TaskKind::Pilot, command.rules);
@@ -209,7 +209,7 @@ void fit_ptpe(FitCommand& command) {
     no_fit(command, "", chosen.reason(),
            mend_of_choice(study, command.choice.selection(TaskKind::Pilot, command.rules)));
   }
-  std::optional<base::Error> failure;  // of one, after which the others are fitted all the same
+  std::optional<base::Error> failure;  // of one fit; the others are still made
   for (const ChosenTask& one : *chosen) {
     if (chosen->size() > 1) std::printf("%s:\n", fitted_name(one).c_str());
     try {

@@ -1,4 +1,4 @@
-/// vip-stats power: what a study of n participants can tell, by simulation on its protocol's own plan.
+/// vip-stats power: the power of a study of n participants, by simulation on its protocol's own plan.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -39,7 +39,7 @@ void refuse(const std::string& option, const std::string& problem, const std::st
   throw base::Error(option, problem, mend);
 }
 
-/// Options that another kind of protocol asks for would be left without effect.
+/// Refuses options that have no effect for this kind of protocol.
 void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& options) {
   const auto only = [&](const char* option, bool fits, const char* where) {
     if (options.count(option) > 0 && !fits)
@@ -80,7 +80,7 @@ void complete(PowerCommand& command, const CLI::App& options) {
   request.level = command.choice.level;
   check_kind(request, kind, options);
   request.n = command.n.empty() ? std::vector{request.protocol.participants} : parse_participants(command.n);
-  // Half a minute or so on two cores, however many numbers of participants there are.
+  // Numbers of studies that take about half a minute on two cores, for any count of numbers of participants.
   const bool many = request.n.size() > 12;
   const int usual_studies = many ? 1000 : 2000, usual_pilots = many ? 200 : 400;
   request.studies = command.studies > 0        ? command.studies
@@ -96,21 +96,21 @@ void complete(PowerCommand& command, const CLI::App& options) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
     if (kind == PowerKind::Task2) std::erase(request.worlds, "margin");                 // the same as null
-    if (!request.protocol.design.effects.empty()) std::erase(request.worlds, "paper");  // it varied none
+    if (!request.protocol.design.effects.empty()) std::erase(request.worlds, "paper");  // has no effects
     return;
   }
   std::vector<std::string> unique;
   for (const auto& one : request.worlds) {
     if (std::find(unique.begin(), unique.end(), one) == unique.end()) unique.push_back(one);
   }
-  // An effect that was given is wanted.
+  // If an effect was given, its world is added.
   if ((request.effect || request.difference) &&
       std::find(unique.begin(), unique.end(), "effect") == unique.end())
     unique.insert(unique.begin(), "effect");
   request.worlds = unique;
 }
 
-/// All files or none: every one is made before the first is written.
+/// Writes all files or none: every text is made before the first is written.
 void write_files(const PowerCommand& command, const Json& json) {
   const std::string text = command.json.empty() ? "" : json.dump(2) + "\n";
   const std::string table = command.csv.empty() ? "" : power_csv(json);
@@ -171,7 +171,7 @@ void merge(PowerCommand& command, const CLI::App& options) {
   write_and_print(command, join_shards(command.request, command.shards));
 }
 
-/// Of the calculation and of its files, which `merge` has too.
+/// Options of the calculation and its files, shared with `merge`.
 void add_request_options(CLI::App& sub, PowerCommand& command) {
   PowerRequest& request = command.request;
   sub.add_option("protocol", command.protocol,

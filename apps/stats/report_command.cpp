@@ -44,7 +44,7 @@ void add_preregistration(Json& json, const report::Bundle& bundle,
     one["preregistration"] = report::compare_with_bundle(bundle, protocols, one);
 }
 
-/// A level that no curve can be fitted at is refused, as by fit-ptpe.
+/// Refuses a level at which no curve can be fitted, as fit-ptpe does.
 void check_level(const ReportCommand& command, const study::TaskStudy& study,
                  const stats::AnalysisPlan& plan) {
   const auto pilots = choose_tasks(study, command.choice.selection(TaskKind::Pilot, plan));

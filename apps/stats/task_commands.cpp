@@ -54,7 +54,7 @@ std::string interval_head(const Json& json) {
   return fmt::format("{:g} % interval", 100 * json.at("plan").at("confidence").get<double>());
 }
 
-/// As wide as the longest name, or as `least`: a method may carry a level of effects.
+/// The length of the longest name, at least `least`; a method's name may include a level of effects.
 template <class Name>
 int width_of(const Json& list, int least, const Name& name) {
   for (const auto& one : list) least = std::max(least, static_cast<int>(name(one).size()));
@@ -78,12 +78,12 @@ void print_cells(const Json& task, const std::string& interval) {
 
 std::string pair_name(const Json& pair) { return word(pair.at("a")) + " over " + word(pair.at("b")); }
 
-/// The test that a pair got, in a word: the rules below name it in full.
+/// A pair's test in one word; the rules below name it in full.
 const char* test_word(const Json& pair) {
   return pair.contains("by_person") ? "shares" : pair.at("test").is_null() ? "-" : "binomial";
 }
 
-/// What the intervals of the pairs are, by name where they are not all alike.
+/// Prints the kinds of the pairs' intervals, with the pairs' names if the kinds differ.
 void print_interval_names(const Json& pairs) {
   std::vector<std::pair<std::string, std::string>> names;  // of intervals, of their pairs
   for (const auto& pair : pairs) {
@@ -152,7 +152,8 @@ void print_hypotheses(const Json& json) {
   }
 }
 
-/// A database may hold several protocols of a task; each is analysed by itself.
+/// Prints the protocol's name, since a database may hold several protocols of a task, each analysed by
+/// itself.
 void print_name(const Json& json) {
   const Json& protocol = json.at("study").at("protocols").at(0);
   std::printf("protocol %s %s, SHA-256 %.12s\n", word(protocol.at("name")).c_str(),
@@ -201,7 +202,7 @@ void run(const TaskCommand& command) {
   request.level = command.choice.level;
   request.incomplete = command.incomplete;
   if (!command.plan.empty()) request.plan = read_plan(command.plan);
-  // Before the data are read; without a file nothing is to be registered.
+  // Opened before the data are read; without an output file nothing is registered.
   std::optional<study::RegisteredFiles> files;
   if (!command.json.empty() || !command.csv.empty())
     files.emplace(study::StudyFile(command.database, command.incomplete));

@@ -42,7 +42,7 @@ std::vector<sim::Effect> turned_on(const std::vector<EffectSwitch>& switches) {
     const auto needs = sim::traits_of(effect.kind).needs;
     return needs != sim::no_effect && !find(out, needs);
   };
-  // What falls may be needed itself.
+  // Others may need the effects that are turned off.
   for (auto at = out.begin(); (at = std::find_if(out.begin(), out.end(), lacks)) != out.end();) out.erase(at);
   return out;
 }
@@ -55,7 +55,7 @@ void drop_what_cannot_run(std::vector<EffectSwitch>& switches) {
 std::vector<sim::Effect> left_on(const std::vector<sim::Effect>& listed, const std::string& off) {
   if (off.empty()) return listed;
   auto switches = switches_of(listed, listed);
-  // A comma too many leaves an empty word, which nobody lists.
+  // A trailing comma gives an empty word, which no effect has.
   std::istringstream words(off + ",");
   for (std::string word; std::getline(words, word, ',');) {
     const auto is_it = [&](const auto& one) { return word == sim::traits_of(one.effect.kind).word; };

@@ -24,7 +24,7 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// frame_0040.png; of several overlays, those that paint have their name in it: frame_0040_level.png.
+/// frame_0040.png; with several overlays, a painted one has its name in it: frame_0040_level.png.
 std::filesystem::path picture_path(const std::string& folder, int frame, OverlayKind overlay, bool several) {
   std::string name = fmt::format("frame_{:04}", frame);
   if (several && overlay != OverlayKind::None)
@@ -32,7 +32,7 @@ std::filesystem::path picture_path(const std::string& folder, int frame, Overlay
   return std::filesystem::path(folder) / (name + ".png");
 }
 
-/// The pictures of a frame, one an overlay, on their way to the disk.
+/// Writes the pictures of a frame, one per overlay.
 class PictureFolder {
  public:
   explicit PictureFolder(const ViewOptions& options)
@@ -40,7 +40,7 @@ class PictureFolder {
     if (!folder_.empty()) make_folder(folder_);
   }
 
-  /// Of the frame that `picture` has just drawn.
+  /// Writes the pictures of the frame that `picture` has just drawn.
   void write(int frame, const PreparedFluid& prepared, FluidPicture& picture, const sim::View& view,
              const sim::Offscreen& target) {
     sim::Simulation& fluid = *prepared.fluid;
@@ -66,10 +66,10 @@ class PictureFolder {
   int written_ = 0;
 };
 
-/// Whose rate is the rate that --ptpe speaks of.
+/// Number of frames over which --ptpe takes the frame rate.
 constexpr int last_frames = 30;
 
-/// Frame intervals without the time that pictures take on their way to the disk.
+/// Frame times without the time for writing pictures.
 struct Timing {
   stats::FpsWindow window{last_frames};
   double step_s = 0, draw_s = 0;
@@ -87,7 +87,7 @@ void print_timing(const Timing& timing, int frames, const PreparedFluid& prepare
               measured.c_str());
 }
 
-/// Does anything need the frame drawn? tau speaks of frames that are shown. Saliency reads each picture.
+/// True if the frame must be drawn: saliency reads each picture, and tau refers to frames that are shown.
 bool is_drawn(int frame, int frames, bool kept, const ViewOptions& options, const PreparedFluid& prepared) {
   if (kept || options.png_folder.empty() || prepared.follows_picture) return true;
   return prepared.ptpe && (prepared.follows_rate || frame >= frames - last_frames);

@@ -21,7 +21,7 @@ namespace {
 
 std::sig_atomic_t volatile interrupted = 0;
 
-/// While it lives, Ctrl-C ends the view in order: the runtime sees the session end.
+/// While it lives, Ctrl-C ends the view cleanly, so that the runtime sees the session end.
 class Interrupt {
  public:
   Interrupt() : before_(std::signal(SIGINT, [](int) { interrupted = 1; })) { interrupted = 0; }
@@ -33,14 +33,14 @@ class Interrupt {
   void (*before_)(int);
 };
 
-/// What was shown.
+/// Statistics of what was shown.
 struct Shown {
   int frames = 0;
   stats::FpsWindow fps{30};
   std::string ended;
 };
 
-/// The scene around the person, as fast as its own time goes, or slower where the fluid takes longer.
+/// Shows the scene around the person in real time, or slower if the fluid takes longer.
 class HeadsetViewer {
  public:
   HeadsetViewer(HeadsetDisplay& display, const ViewOptions& options)
@@ -49,7 +49,7 @@ class HeadsetViewer {
         clock_(display),
         recorder_(display,
                   display.session().eye_gaze ? study::GazeOrigin::Tracker : study::GazeOrigin::Head) {
-    recorder_.start();  // nothing of it is kept
+    recorder_.start();  // its samples are not stored
     fmt::print("shown in    {}\n", display.description());
     fmt::print("levels      follow {}\n",
                display.session().eye_gaze ? "the eye tracker" : "the head's direction");
@@ -58,7 +58,7 @@ class HeadsetViewer {
     frame_ns_ = std::llround(1e9 * prepared.frame_dt_s);
     Viewing viewing;
     viewing.ray = [this] { return recorder_.ray(); };
-    // It begins once: no step is behind another.
+    // The fluid starts once, because steps never go back.
     const auto fluid = std::make_shared<std::unique_ptr<sim::Simulation>>(std::move(prepared.fluid));
     const auto make = [fluid] { return std::move(*fluid); };
     fluid_.emplace(prepared.scene, prepared.frame_dt_s, prepared.scene.name, make, viewing);
@@ -79,25 +79,25 @@ class HeadsetViewer {
   void play(Shown& shown) {
     std::int64_t due_ns = 0, on_ns = 0;
     while (!interrupted && (!frames_ || shown.frames < *frames_)) {
-      if (!seen()) {  // the fluid waits for who watches it
+      if (!seen()) {  // the fluid waits until the headset is worn
         on_ns = 0;
         display_.turn();
         continue;
       }
-      display_.take_spoilt();  // the next picture is drawn anew in any case
+      display_.take_spoilt();  // the next picture is drawn again anyway
       const std::int64_t before_ns = display_.now_ns();
       fluid_->prepare(shown.frames);
       recorder_.take();
       recorder_.take_slots();
       display_.render(*fluid_);
       const std::int64_t computed_ns = display_.now_ns() - before_ns;
-      // The slot that is the nearest to when the frame is due, or the first one that can be met.
+      // The slot nearest to the frame's due time, or the first one that can be met.
       const auto period_ns = std::llround(1e9 / display_.refresh_hz());
       const auto times = display_.present(display_.first_onset(due_ns - period_ns / 2), clock_);
       if (on_ns > 0 && times.predicted_display_ns > on_ns)
         shown.fps.push(1e-9 * static_cast<double>(times.predicted_display_ns - on_ns));
       on_ns = times.predicted_display_ns;
-      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // what is behind is not made up
+      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // lost time is not caught up
       due_ns += frame_ns_;
       ++shown.frames;
       display_.hold(due_ns - computed_ns, clock_);
@@ -125,17 +125,17 @@ void print(const Shown& shown) {
   fmt::print("ended       {}\n", shown.ended);
 }
 
-/// None where there is no headset; says why.
+/// Null if there is no headset; prints why.
 std::unique_ptr<HeadsetDisplay> connect(const std::string& clock) {
   const bool stands_still = clock == "virtual";
   study::HeadsetRules rules;
   rules.hold = study::Hold::State;
-  ::setenv("XR_LOADER_DEBUG", "none", 0);  // one line says what is missing: ours
+  ::setenv("XR_LOADER_DEBUG", "none", 0);  // the program prints one line of its own instead
   try {
     return std::make_unique<HeadsetDisplay>(stands_still ? SlotDrive::Caller : SlotDrive::Thread,
                                             HeadsetChoice{.eye_gaze = true}, rules);
   } catch (const base::Error& error) {
-    if (stands_still) throw;  // nobody is there to watch
+    if (stands_still) throw;  // no person watches
     const std::string told = error.what();
     fmt::print(stderr, "no headset: {}; shown on the desktop\n", told.substr(0, told.find('\n')));
     return nullptr;

@@ -34,14 +34,14 @@ const std::vector<std::string>& overlay_names();
 /// The same with the paper's symbols: "acuity f_a".
 const std::vector<std::string>& overlay_titles();
 
-/// Takes the values of a simulation and paints them over the picture that was just drawn of it.
+/// Reads values of a simulation and paints them over the picture of it that was just drawn.
 class OverlayPainter {
  public:
-  /// `finest_spacing_m` is 2 r_*. The scene says which temperatures there are.
+  /// `finest_spacing_m` is 2 r_*. The scene gives the range of temperatures.
   OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
       : finest_spacing_m_(finest_spacing_m), temperatures_(scene) {}
   void paint(OverlayKind kind, sim::Simulation& fluid, FluidPicture& picture, unsigned framebuffer);
-  /// What the colours of the last paint stand for, e.g. "speed 0 to 10 m/s".
+  /// Meaning of the last paint's colours, e.g. "speed 0 to 10 m/s".
   const std::string& legend() const { return legend_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// What each pass of the schedule takes, as the window's panel shows it. No window, no GL.
+/// Mean times of the schedule's passes for the window's panel. No window, no GL.
 
 #include <deque>
 #include <string>
@@ -12,9 +12,9 @@ namespace apps {
 /// A row of the panel.
 struct PassRow {
   std::string name, phase;
-  std::string effect;  ///< its word; empty where every scene may have the pass
-  double ms = 0;       ///< a frame, mean over the last second
-  double share = 0;    ///< of all passes, 0 to 1; 0 where they took no time
+  std::string effect;  ///< word of the effect that the pass belongs to; empty if it belongs to none
+  double ms = 0;       ///< per frame, mean over the last second
+  double share = 0;    ///< of all passes, 0 to 1; 0 if they took no time
 };
 
 /// Times of the frames of the last second.
@@ -22,12 +22,12 @@ class PassMeans {
  public:
   static constexpr double span_s = 1;
 
-  /// Takes the last frame's times, and how long the whole frame was, s. A new schedule forgets the old one.
+  /// Adds the last frame's pass times and its total duration, s. A new schedule discards the old times.
   void push(const std::vector<sim::StageTime>& passes, double frame_s);
   void clear() { *this = {}; }
   /// In the schedule's order; none before the first frame.
   std::vector<PassRow> rows() const;
-  /// All passes of a frame together, mean over the last second.
+  /// Sum over all passes of a frame, mean over the last second.
   double total_ms() const;
 
  private:
@@ -37,7 +37,7 @@ class PassMeans {
   };
   std::vector<sim::StageTime> passes_;
   std::deque<Frame> frames_;
-  double seconds_ = 0;  ///< of all frames that are kept
+  double seconds_ = 0;  ///< of all stored frames
 };
 
 }  // namespace apps

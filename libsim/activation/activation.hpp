@@ -1,6 +1,6 @@
 #pragma once
 /// Temporal acceleration (ViP-Fluid section 4.3, Algorithm 3, Eq. 12-14): in a frame whose tau is negative
-/// some particles are left out of the solve and inherit what the velocity grid says.
+/// some particles are not solved; they inherit velocities from the velocity grid.
 
 #include "libsim/activation/percentile_range.hpp"
 #include "libsim/activation/velocity_grid.hpp"
@@ -10,7 +10,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// The readings of Algorithm 3 as kernels take them; sim::Readings explains each.
+/// Settings of Algorithm 3 in the form that kernels use; sim::Readings explains each.
 struct ActivationRules {
   explicit ActivationRules(const Readings& readings = {})
       : relative_level_change(readings.dimensionless_levels),
@@ -26,16 +26,16 @@ struct ActivationRules {
         speed_floor(static_cast<float>(readings.speed_floor)) {}
 
   bool relative_level_change;
-  /// F_pim from its 1st to its 99th percentile, followed at 0.1 a frame; false: from the least to the
-  /// largest.
+  /// Normalise F_pim between its 1st and 99th percentile, smoothed by 0.1 per frame; false: between its
+  /// minimum and maximum.
   bool robust_range;
   bool inherit_change;
   bool pressed;  ///< only with inherit_change
   float near_spacings;
   float damping;
   bool others_yield;
-  /// Never left out: particles just made by a split or a merge, spray (less than a fifth of the neighbours at
-  /// rest), those within h of a wall and those faster than half an h a substep.
+  /// Always solve: particles just made by a split or a merge, spray (less than a fifth of the neighbours at
+  /// rest), particles within h of a wall, and particles faster than h / 2 per substep.
   bool keep_fragile_active;
   int longest_rest;
   int least_work;
@@ -44,58 +44,58 @@ struct ActivationRules {
 
 /// Fields of Column::Rest.
 constexpr std::uint8_t rest_count_mask = 0x0f;  ///< see Choose::count_after; at most 15
-constexpr std::uint8_t rest_nowhere = 0x40;     ///< the grid knows no velocity here
+constexpr std::uint8_t rest_nowhere = 0x40;     ///< the grid has no velocity here
 constexpr std::uint8_t rest_sparse = 0x80;      ///< had few neighbours when last solved
 
-/// rho / rho_0 of a particle with a fifth of the neighbours at rest: its own share, 0.194, and a fifth of the
-/// others'.
+/// rho / rho_0 of a particle with a fifth of the neighbours at rest: its own share, 0.194, plus a fifth of
+/// the neighbours' share.
 constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 
-/// Where the scene lists tension, water below this rho / rho_0 counts as spray too: the surface pulls with
-/// accelerations that no mean over a cell gives.
+/// If the scene lists tension, water below this rho / rho_0 also counts as spray: surface accelerations do
+/// not show in the mean over a cell.
 constexpr float surface_density = 0.98f;
 
-/// Value of Active: solved, and no example for those that rest. Means over cells leave it out.
+/// Value of Active: solved, but excluded from the cell means that resting particles inherit.
 constexpr std::uint8_t solved_apart = 2;
 
 using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
                                   columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Sums of Activation::before and after, by the cell that the particles started in.
+/// Indices of the sums in Activation::before and after, grouped by the cell in which the particles started.
 constexpr int sum_of_solved = 0;
 constexpr int sum_of_resting = 1;  ///< only with ActivationRules::pressed
-/// Those of `after` alone, of the solved by position: on the cells of `grid` (in full frames of all) and of
-/// `near`.
+/// Only in `after`: sums of the solved particles by position, on the cells of `grid` (in full frames: of all
+/// particles) and of `near`.
 constexpr int sum_of_grid = 2;
 constexpr int sum_of_near = 3;
 
-/// State of temporal acceleration. V, E, the range and the frame counter last; the rest is rebuilt each
+/// State of temporal acceleration. V, E, the range and the frame counter persist; the rest is rebuilt each
 /// frame.
 struct Activation {
   ActivationRules rules;
-  float beta = 1;  ///< lowest probability of being solved; 1 = everyone is, whatever F_pim
+  float beta = 1;  ///< lowest probability of being solved; 1 = all particles are solved, whatever F_pim
   std::uint32_t seed = 1;
-  std::uint32_t frame = 0;  ///< number of the coming frame, part of the random numbers' key
+  std::uint32_t frame = 0;  ///< number of the coming frame, part of the random number key
 
   VelocityGrid grid;  ///< V^n and E^n
-  /// Mean velocities on the cells of which the others inherit; finer than those of V and E.
+  /// Mean velocities on the cells from which unsolved particles inherit; finer than the cells of V and E.
   VelocityGrid near;
   PercentileRange range;
   Array<float> importance;   ///< F_pim, Eq. 12
   Array<float> probability;  ///< p_i, Algorithm 3 line 8
-  bool columns_set = false;  ///< Active and Rest hold something
-  bool all_marked = false;   ///< Active says 1 for everyone
+  bool columns_set = false;  ///< Active and Rest have been written
+  bool all_marked = false;   ///< Active is 1 for all particles
 
-  // Means over cells that Eq. 13 and 14 sample: dV/dx, dV/dy, dV/dz a cell, dV/dl, sum over levels, dE.
+  // Means over cells that Eq. 13 and 14 sample: dV/dx, dV/dy, dV/dz per cell, dV/dl, sum over levels, dE.
   Array<Vec4> slope_x, slope_y, slope_z, across_levels, total, energy_slope;
-  CellMomentum before, after;  ///< the solve; see sum_of_solved
-  Array<Vec4> change;          ///< what the others miss
+  CellMomentum before, after;  ///< sums before and after the solve; see sum_of_solved
+  Array<Vec4> change;          ///< velocity change that unsolved particles inherit
 
   Array<int> ranks, slots, slot_of;
   Scanner scanner;
 
-  /// Lists the active particles for the passes of a substep and puts what the passes read of the others in
-  /// place: lambda 0, the rest density, the predicted position in both buffers. slot_of is slots' inverse.
+  /// Lists the active particles for the passes of a substep, and sets what the passes read of the others:
+  /// lambda 0, the rest density, the predicted position in both buffers. slot_of is the inverse of slots.
   void list_active(ActiveListView particles);
   std::size_t bytes() const;
 };

@@ -4,11 +4,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-constexpr float range_share = 0.1f;  ///< a frame, of the way to the new percentiles
+constexpr float range_share = 0.1f;  ///< per frame, share of the step to the new percentiles
 
 SIM_FN Vec3 difference(Vec4 high, Vec4 low, float steps) { return (1 / steps) * (xyz(high) - xyz(low)); }
 
-/// What Eq. 13 and 14 need of V in one cell and level: differences from cell to cell and from level to level.
+/// Inputs of Eq. 13 and 14 from V in one cell and level: differences between cells and between levels.
 struct VelocitySlopes {
   const Vec4* velocity;
   CellBlock block;
@@ -29,7 +29,7 @@ struct VelocitySlopes {
     across_levels[i] = with_w(by_level(level, cell), known);
   }
 
-  /// Central difference in cells, one-sided beside the border and beside cells without a value.
+  /// Central difference per cell, one-sided next to the border and to cells without a value.
   SIM_FN Vec3 along(int level, int cell, int stride, int at, int size) const {
     const Vec4 none{0, 0, 0, value_unknown};
     const Vec4* here = velocity + level * block.size() + cell;
@@ -70,7 +70,7 @@ struct VelocitySlopes {
   }
 };
 
-/// Sum of V over the levels that have particles, and differences of E from cell to cell.
+/// Sum of V over the levels that have particles, and differences of E between cells.
 struct CellSums {
   const Vec4* velocity;
   const float* energy;
@@ -125,7 +125,7 @@ struct Importance {
     counter.add(i, f);
   }
 
-  /// Eq. 12; 0 where the grid knows no velocity, which is noted.
+  /// Eq. 12; 0 and a flag if the grid has no velocity.
   SIM_FN float of(int i) const {
     const CellCorners corners = grid.corners(xyz(position[i]));
     const int offset = level[i] * grid.cells();

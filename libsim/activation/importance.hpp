@@ -7,8 +7,8 @@ namespace sim::SIM_BACKEND {
 
 using ImportanceView = ColumnView<columns(Column::Position, Column::Level), columns(Column::Rest)>;
 
-/// Writes activation.importance from V^n and E^n, and Rest's rest_nowhere; moves activation.range. saliency:
-/// s in [0, 1] of each particle; nullptr counts as 0. speed_floor: epsilon_v, m/s.
+/// Writes activation.importance from V^n and E^n, and the flag rest_nowhere in Rest; updates
+/// activation.range. saliency: s in [0, 1] per particle; nullptr counts as 0. speed_floor: epsilon_v, m/s.
 void measure_importance(Activation& activation, ImportanceView particles, const float* saliency,
                         float speed_floor);
 

@@ -6,7 +6,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Sets a percentile where the count passes it.
+/// Sets a percentile at the bin where the count passes it.
 struct Place {
   BinCounts counts;
   ValueRange* now;
@@ -48,7 +48,7 @@ struct FollowPercentiles {
   }
 };
 
-/// Floats of one sign are ordered as their bits are.
+/// Floats of equal sign are ordered like their bits.
 SIM_FN int bits_of(float value) {
   int bits;
   memcpy(&bits, &value, sizeof bits);

@@ -1,6 +1,5 @@
 #pragma once
-/// The span of a positive quantity over all particles, found without sorting and followed from frame to
-/// frame.
+/// The range of a positive quantity over all particles, found without sorting and smoothed over frames.
 
 #include <cmath>
 
@@ -9,18 +8,18 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Ends of a normalisation; low > high before the first update.
+/// Bounds of a normalisation; low > high before the first update.
 struct ValueRange {
   float low, high;
 
-  /// 0 at low, 1 at high, clamped; 1 everywhere when the range has no width.
+  /// 0 at low, 1 at high, clamped; 1 everywhere if the range has zero width.
   SIM_FN float normalised(float value) const {
     if (!(high > low)) return 1;
     return at_most(at_least((value - low) / (high - low), 0.0f), 1.0f);
   }
 };
 
-/// Counts values where a kernel makes them; by itself it counts nothing.
+/// Counts values inside a kernel; without a histogram it counts nothing.
 struct ValueCounter {
   Histogram histogram{nullptr, 0};
 
@@ -38,26 +37,26 @@ struct ValueCounter {
     const int bin = static_cast<int>(above * bins_an_octave);
     return bin < 0 ? 0 : bin < bins ? bin : bins - 1;
   }
-  /// The value at `at` bins, whole or not, from the first one on.
+  /// The value `at` bins from the first bin; `at` may be fractional.
   SIM_FN static float value_at(float at) { return exp2f(at / bins_an_octave - octaves / 2); }
 };
 
-/// Stays on the device. Values below 2^-16 count as 2^-16, above 2^16 as 2^16.
+/// Data stays on the device. Values below 2^-16 count as 2^-16, above 2^16 as 2^16.
 class PercentileRange {
  public:
-  /// For the pass before follow_percentiles(), which takes what it counts.
+  /// For the pass before follow_percentiles(), which consumes the counts.
   ValueCounter counter() { return {histogram_.view(ValueCounter::bins)}; }
-  /// Moves both ends by `share` of the way to the 1st and 99th percentile of the n values that counter() has
-  /// counted; all the way the first time. Percentiles are exact to an eighth of an octave (9 %). n = 0
-  /// changes nothing.
+  /// Moves both bounds by `share` towards the 1st and 99th percentile of the n values counted by counter();
+  /// sets them directly the first time. Percentiles are exact to an eighth of an octave (9 %). n = 0 changes
+  /// nothing.
   void follow_percentiles(int n, float share);
-  /// Sets the ends to the least and the largest value.
+  /// Sets the bounds to the minimum and maximum value.
   void take_extremes(const Array<float>& values, int n);
 
   const ValueRange* range() const { return range_.data(); }
-  /// Copied to the host (a synchronisation).
+  /// Copies the range to the host (a synchronisation).
   ValueRange read() const { return range_.to_host()[0]; }
-  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(range_);

@@ -6,11 +6,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Particles that a team adds up before it goes to memory: neighbours in memory share a cell.
+/// Number of particles that a team sums before it writes to memory: adjacent particles share a cell.
 constexpr int run_length = 16;
 SIM_FN int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
-/// Beyond this speed, m/s, a particle counts with this speed: sums of 2^63 stay out of reach.
+/// Higher speeds, m/s, count as this speed, so that sums stay below 2^63.
 constexpr float fastest = 1000;
 
 SIM_FN std::uint64_t fixed(float value) {
@@ -35,21 +35,21 @@ SIM_FN void add_at_once(MomentumSum& to, const MomentumSum& sum) {
   atomic_add(&to.z, sum.z);
 }
 
-/// What a lane has summed up for one place; -1 while there is none.
+/// A lane's sum for one entry; -1 while there is none.
 template <class Sum>
 struct PlaceSum {
   Sum* sums;
   int place = -1;
   Sum sum{};
 
-  /// What follows is for `here`.
+  /// Directs the next values to entry `here`.
   SIM_FN void move_to(int here) {
     if (here == place) return;
     if (place >= 0) add_at_once(sums[place], sum);
     place = here;
     sum = {};
   }
-  /// Ends the run; the lanes' sums for one place go to memory together.
+  /// Ends the run; the lanes' sums for one entry are written together.
   template <class Team>
   SIM_FN void finish(Team team) {
     constexpr int none = 2147483647;
@@ -125,7 +125,7 @@ struct AddEnergy {
   }
 };
 
-/// Leaves the sums at zero.
+/// Resets the sums to zero.
 struct FinishEnergy {
   std::uint64_t* sums;
   float* energy;
@@ -169,7 +169,7 @@ void VelocityGrid::fit(const Domain& domain, float edge) {
                       static_cast<double>(size.z) / std::pow(static_cast<double>(edge), 3.0);
   constexpr double most = 1 << 22;
   if (wish > most) edge *= static_cast<float>(std::cbrt(wish / most));
-  // A tank of ten edges has ten cells, whatever its size has lost to rounding.
+  // A tank of ten edges gets ten cells, despite rounding errors of its size.
   const auto count = [&](float length) {
     return std::max(1, static_cast<int>(std::ceil(length / edge - 1e-4f)));
   };

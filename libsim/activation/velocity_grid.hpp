@@ -1,6 +1,6 @@
 #pragma once
-/// Mean velocity of each level and kinetic energy of all, on cells of edge 10 d_* (ViP-Fluid section 4.3:
-/// 1000 finest particles a cell). V and E are state: they last from frame to frame.
+/// Mean velocity of each level and kinetic energy of all levels, on cells of edge 10 d_* (ViP-Fluid section
+/// 4.3: 1000 finest particles per cell). V and E persist from frame to frame.
 
 #include <cstdint>
 
@@ -12,13 +12,13 @@ namespace sim::SIM_BACKEND {
 
 constexpr int grid_levels = 4;
 
-/// Sums over the particles of one cell and level in fixed point, so that the order of adding does not matter:
-/// mass in m_*, momentum in m_* m/s times 2^20.
+/// Sums over the particles of one cell and level in fixed point, so that the order of addition does not
+/// matter: mass in m_*, momentum in m_* m/s times 2^20.
 struct MomentumSum {
   std::uint64_t mass, x, y, z;
 };
 
-/// momentum / mass of a sum that is not empty.
+/// momentum / mass of a non-empty sum.
 SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {
   const auto part = [&](std::uint64_t momentum) {
     return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(momentum)) /
@@ -27,18 +27,18 @@ SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {
   return {part(sum.x), part(sum.y), part(sum.z)};
 }
 
-/// How a cell and level came to its value; stored in w.
+/// Origin of the value of a cell and level; stored in w.
 constexpr float value_unknown = 0;
-constexpr float value_borrowed = 1;  ///< of the frame before, or of other levels
-constexpr float value_measured = 2;  ///< particles of this level were there
+constexpr float value_borrowed = 1;  ///< from the previous frame, or from other levels
+constexpr float value_measured = 2;  ///< from particles of this level
 
-/// Eight cell centres round a place, clamped at the grid's borders, and their weights.
+/// The eight cell centres around a position, clamped at the grid's borders, and their weights.
 struct CellCorners {
   int cell[8];
   float weight[8];
 };
 
-/// The cells as kernels see them. Index of (level, cell): level x cells + cell.
+/// The cells in the form that kernels use. Index of (level, cell): level x cells + cell.
 struct GridFrame {
   CellFrame frame;
   CellBlock block;
@@ -47,7 +47,7 @@ struct GridFrame {
   SIM_FN int clamped(float at, int n) const {
     return static_cast<int>(at_most(at_least(floorf(at), 0.0f), static_cast<float>(n - 1)));
   }
-  /// The cell that holds x, or the nearest one.
+  /// The cell that contains x, or the nearest one.
   SIM_FN int cell_of(Vec3 x) const {
     const Vec3 at = (1 / frame.edge) * (x - frame.low);
     return block.index(clamped(at.x, block.nx), clamped(at.y, block.ny), clamped(at.z, block.nz));
@@ -76,7 +76,7 @@ struct GridFrame {
   }
 };
 
-/// Weighted mean over the corners that have a value; w of the result is 0 when none has.
+/// Weighted mean over the corners that have a value; w of the result is 0 if none has.
 SIM_FN Vec4 sample(const Vec4* values, int offset, const CellCorners& corners) {
   Vec3 sum{0, 0, 0};
   float weights = 0;
@@ -90,34 +90,34 @@ SIM_FN Vec4 sample(const Vec4* values, int offset, const CellCorners& corners) {
   return with_w((1 / weights) * sum, value_measured);
 }
 
-/// The particles that the grids are sums over.
+/// Columns of the particles that the grids sum over.
 using MovingView = Reads<Column::Position, Column::Velocity, Column::Level>;
 
-/// Whose momentum a sum holds. Resting and Solved are values of Active; All asks nobody for theirs.
+/// The particles in a sum. Resting and Solved are values of Active; All does not read Active.
 enum class Whose : std::uint8_t { Resting = 0, Solved = 1, All = 254, Nobody = 255 };
 
-/// One sum: whose, over which cells.
+/// One sum: which particles, over which cells.
 struct MomentumOf {
   Whose whose = Whose::Nobody;
   GridFrame grid{};
-  const int* cell_of = nullptr;  ///< cell of each particle; nullptr: by position
+  const int* cell_of = nullptr;  ///< cell of each particle; nullptr: from its position
 };
 
-/// Mass and momentum by cell and level, several sums at a time.
+/// Mass and momentum by cell and level, several sums in one launch.
 class CellMomentum {
  public:
   static constexpr int most = 4;
 
-  /// Makes these sums, and forgets those before, in one launch. active: may be nullptr where no sum asks.
+  /// Computes these sums in one launch, replacing earlier ones. active: may be nullptr if no sum needs it.
   template <int n>
   void measure(MovingView particles, const std::uint8_t* active, const MomentumOf (&sums)[n]) {
     static_assert(n <= most);
     measure(particles, active, sums, n);
   }
-  /// The k-th sum: [level x cells + cell]; nullptr when it is Nobody's. It lasts until the next measure() or
+  /// The k-th sum: [level x cells + cell]; nullptr if it is Nobody's. Valid until the next measure() or
   /// reserve().
   const MomentumSum* of(int k) const { return of_[k]; }
-  /// Makes room for sums over `cells` in all.
+  /// Allocates sums over a total of `cells`.
   void reserve(int cells) {
     for (auto& sum : of_) sum = nullptr;
     sums_.reserve(grid_levels * static_cast<std::size_t>(cells));
@@ -131,7 +131,7 @@ class CellMomentum {
   MomentumSum* of_[most] = {};
 };
 
-/// Turns sums into means and fills what is empty.
+/// Converts sums to means and fills empty entries.
 struct FinishVelocity {
   const MomentumSum* sums;
   Vec4* velocity;
@@ -157,25 +157,25 @@ struct FinishVelocity {
 
 class VelocityGrid {
  public:
-  /// Lays cells of `edge` over the domain: ceil(extent / edge), at least one each way. Forgets all values
-  /// when the cells change.
+  /// Places cells of `edge` over the domain: ceil(extent / edge), at least one per axis. Discards all values
+  /// if the cells change.
   void fit(const Domain& domain, float edge);
   GridFrame frame() const { return {frame_, block_}; }
   int cells() const { return block_.size(); }
 
-  /// The pass that makes V of a sum over frame(): mass-weighted mean velocity of a cell and level, m/s. What
-  /// is empty keeps the measured value of the frame before, once, or takes the mean of the other levels.
-  /// Without a sum (nullptr) V stays.
+  /// The pass that computes V from a sum over frame(): mass-weighted mean velocity per cell and level, m/s.
+  /// An empty entry keeps the measured value of the previous frame, once, or takes the mean of the other
+  /// levels. Without a sum (nullptr) V does not change.
   Pass<FinishVelocity> finish_velocity(const MomentumSum* sums) {
     return {sums ? grid_levels * cells() : 0, {sums, velocity_.data(), cells()}};
   }
-  /// E: kinetic energy of a cell, all particles, in m_* m2/s2 (J per kg of m_*).
+  /// Updates E: kinetic energy per cell, all particles, in m_* m2/s2 (J per kg of m_*).
   void update_energy(MovingView particles);
 
   const Array<Vec4>& velocity() const { return velocity_; }
   const Array<float>& energy() const { return energy_; }
   std::size_t bytes() const;
-  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(frame_, block_, velocity_, energy_);
@@ -187,7 +187,7 @@ class VelocityGrid {
 
   CellFrame frame_;
   CellBlock block_;
-  Array<std::uint64_t> energy_sums_;  ///< zero whenever nobody adds
+  Array<std::uint64_t> energy_sums_;  ///< zero outside update_energy
   Array<Vec4> velocity_;
   Array<float> energy_;
 };

@@ -13,7 +13,7 @@ namespace sim {
 
 namespace {
 
-/// Bytes at an offset of a file or of memory.
+/// Reads bytes at an offset of a file or of memory.
 class Source {
  public:
   Source(const std::filesystem::path& path) : name_(path.string()) {
@@ -39,7 +39,7 @@ class Source {
   std::uint64_t size() const { return size_; }
   const std::string& name() const { return name_; }
 
-  /// The caller has checked offset + size against size().
+  /// The caller must have checked offset + size against size().
   void read(std::uint64_t offset, std::size_t size, Bytes& out) const {
     if (fd_ < 0) {
       const ByteSpan part = memory_.subspan(offset, size);
@@ -144,7 +144,7 @@ struct BakeReader::State {
     sort_index(bytes, chunks, offset);
   }
 
-  /// Of the chunk that follows those so far.
+  /// Kind of the next chunk.
   bake::ChunkKind next_kind() const {
     if (header.max_foam > 0 && foam.size() < particles.size()) return bake::ChunkKind::Foam;
     if (!header.has_pictures() || pictures.size() == particles.size()) return bake::ChunkKind::Particles;
@@ -152,7 +152,7 @@ struct BakeReader::State {
     return key ? bake::ChunkKind::KeyPicture : bake::ChunkKind::Picture;
   }
 
-  /// Chunks lie one after the other from the header to the index, frame by frame.
+  /// Chunks are contiguous from the header to the index, ordered by frame.
   void sort_index(ByteSpan bytes, std::uint64_t chunks, std::uint64_t end) {
     ByteReader in(bytes, source.name());
     std::uint64_t next = body_begin;

@@ -10,7 +10,8 @@ namespace sim {
 
 namespace fs = std::filesystem;
 
-// Particles change little in size between levels 1 and 6, and 1 writes fastest (measured on SingleDam).
+// The size of particle chunks hardly differs between levels 1 and 6, and 1 is fastest (measured on
+// SingleDam).
 constexpr int particle_zstd_level = 1;
 constexpr int picture_zstd_level = 3;
 
@@ -28,7 +29,7 @@ struct BakeWriter::State {
 
   ~State() { XXH3_freeState(content); }
 
-  /// Whether every frame so far has all that goes with it.
+  /// True if every frame so far has all its parts.
   bool complete() const {
     return (header.max_foam == 0 || foams == frames) && (!header.has_pictures() || pictures == frames);
   }

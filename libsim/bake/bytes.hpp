@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "bake files are read a
 using Bytes = std::vector<std::uint8_t>;
 using ByteSpan = std::span<const std::uint8_t>;
 
-/// Appends to a buffer that the caller owns.
+/// Appends to the caller's buffer.
 class ByteWriter {
  public:
   explicit ByteWriter(Bytes& out) : out_(out) {}
@@ -30,7 +30,7 @@ class ByteWriter {
     bytes({reinterpret_cast<const std::uint8_t*>(&value), sizeof value});
   }
   void bytes(ByteSpan data) { out_.insert(out_.end(), data.begin(), data.end()); }
-  /// Length in 32 bit, then the characters.
+  /// 32-bit length, then the characters.
   void string(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
     bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -40,7 +40,7 @@ class ByteWriter {
   Bytes& out_;
 };
 
-/// Reads from the front of a span. base::Error naming `place` when it holds less than asked for.
+/// Reads from the front of a span. base::Error naming `place` if it has fewer bytes than requested.
 class ByteReader {
  public:
   ByteReader(ByteSpan data, std::string place) : data_(data), place_(std::move(place)) {}

@@ -6,7 +6,7 @@ namespace sim {
 
 namespace {
 
-/// What stands behind the counts.
+/// Flags after the counts.
 enum FactBits : std::uint8_t { has_temporal = 1, has_tau = 2, has_rate = 4, has_guards = 8, all_bits = 15 };
 
 /// Every guard in the order of the file.

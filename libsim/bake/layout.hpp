@@ -17,7 +17,7 @@ inline constexpr std::size_t entry_bytes = 4 + 8 + 8 + 8;
 inline constexpr std::size_t max_scene_bytes = 1 << 20;
 inline constexpr std::size_t max_header_bytes = max_scene_bytes + (64 << 10);
 inline constexpr std::int64_t max_frames = 1 << 20;
-/// Every 30th picture builds on none before, so that a jump costs at most 30 pictures.
+/// Every 30th picture is encoded independently, so that a jump decodes at most 30 pictures.
 inline constexpr std::int64_t key_interval = 30;
 
 enum class ChunkKind : std::uint32_t { Particles = 1, KeyPicture = 2, Picture = 3, Foam = 4 };

@@ -47,7 +47,7 @@ void check_error(const Box& box, const std::vector<float>& radii, const std::str
   }
 }
 
-/// Indices of the particles by level, within a level as they came.
+/// Indices of the particles by level, in input order within a level.
 std::vector<std::uint32_t> order_by_level(const std::vector<RenderParticle>& particles,
                                           const std::vector<float>& radii, const std::string& place,
                                           std::vector<std::int64_t>& counts) {

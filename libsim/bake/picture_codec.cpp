@@ -7,7 +7,7 @@ namespace sim {
 
 namespace {
 
-/// What a row of a plane is predicted from.
+/// The basis of a row's prediction.
 enum Predictor : std::uint8_t { None, Left, Above, Gradient, Previous, predictors };
 
 using Row = std::uint8_t*;
@@ -46,7 +46,7 @@ void residual_row(Predictor predictor, ConstRow row, ConstRow above, ConstRow be
   }
 }
 
-/// Sum of the residuals' sizes as signed bytes: what zstd will roughly pay.
+/// Sum of the residuals' sizes as signed bytes: estimates the compressed size.
 long cost(ConstRow residual, std::size_t width) {
   long sum = 0;
   for (std::size_t x = 0; x < width; ++x) sum += std::abs(static_cast<std::int8_t>(residual[x]));
@@ -62,7 +62,7 @@ void add_row(Row row, ConstRow other, std::size_t width) {
   for (std::size_t x = 0; x < width; ++x) row[x] = static_cast<std::uint8_t>(row[x] + other[x]);
 }
 
-/// Turns a row of residuals into the row.
+/// Converts a row of residuals back into the row.
 void restore_row(Predictor predictor, Row row, ConstRow above, ConstRow before, std::size_t width) {
   if (predictor == Left || predictor == Gradient) sum_left(row, width);
   if ((predictor == Above || predictor == Gradient) && above) add_row(row, above, width);
@@ -80,7 +80,7 @@ void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, in
   split_planes(rgba, pixels, planes.data());
   if (!previous.empty()) split_planes(previous, pixels, old_planes.data());
 
-  // First the predictors of all rows, then all residuals: like bytes stand together.
+  // First the predictors of all rows, then all residuals: similar bytes are adjacent.
   Bytes data(rows + 3 * pixels), trial(width);
   for (std::size_t y = 0; y < rows; ++y) {
     ConstRow row = planes.data() + y * width;

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of a bake, decoded ahead by a thread of its own, so that showing one costs no decoding.
+/// Pictures of a bake, decoded ahead in a separate thread, so that showing one needs no decoding.
 
 #include <atomic>
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace sim {
 
-/// One consumer. The BakeReader must have pictures and outlive the ring. Taking a picture that is ready takes
-/// no lock: a decoding thread that was preempted can never hold the consumer up.
+/// For one consumer. The BakeReader must have pictures and outlive the ring. Taking a ready picture takes no
+/// lock: a preempted decoding thread never blocks the consumer.
 class PictureRing {
  public:
   /// 24 pictures are 0.2 s at the shortest interval of the pilot (8 ms), and 22 MB at 640x360.
@@ -22,13 +22,13 @@ class PictureRing {
   PictureRing(const PictureRing&) = delete;
   PictureRing& operator=(const PictureRing&) = delete;
 
-  /// Decodes from `frame` on; after the last picture it goes on at `frame` again. Returns when the ring is
+  /// Decodes from `frame` on; after the last picture it continues at `frame` again. Returns when the ring is
   /// full.
   void start(std::int64_t frame);
-  /// The picture of `frame`; valid until the next call. Waits for it when it is not decoded yet; a frame that
-  /// is not ahead restarts the decoding there. Errors of the file are thrown here, at their frame.
+  /// The picture of `frame`; valid until the next call. Waits if it is not decoded yet; a frame that is not
+  /// ahead restarts the decoding there. Errors of the file are thrown here, at their frame.
   const BakePicture& take(std::int64_t frame);
-  /// How often take() had to wait since start().
+  /// Number of times that take() had to wait since start().
   std::int64_t waits() const { return waits_; }
 
  private:
@@ -39,14 +39,14 @@ class PictureRing {
     std::exception_ptr error;
   };
 
-  // The decoding thread's side.
+  // Used by the decoding thread.
   void decode_loop();
   void decode_into(Slot& into, std::uint64_t round, std::int64_t frame);
 
-  // The consumer's side.
+  // Used by the consumer.
   void restart_at(std::int64_t frame);
   void drop_front();
-  /// Waits until more than `seen` slots were ever filled.
+  /// Waits until more than `seen` slots have been filled in total.
   void wait_beyond(std::uint64_t seen);
   bool comes_later(std::int64_t frame) const;
   std::int64_t after(std::int64_t frame) const;
@@ -57,20 +57,21 @@ class PictureRing {
   PictureReader reader_;
   std::vector<Slot> slots_;
 
-  // Slots ever filled and ever given back: filled_ - freed_ of them are ready. Each is written by one side
+  // Total slots filled and released: filled_ - freed_ of them are ready. Each counter is written by one side
   // only.
   std::atomic<std::uint64_t> filled_ = 0;
   std::atomic<std::uint64_t> freed_ = 0;
-  // What the consumer wants: a round begins at first_ and loops to loop_to_. Slots of older rounds are
+  // The consumer's request: a round begins at first_ and loops to loop_to_. Slots of older rounds are
   // dropped.
   std::atomic<std::uint64_t> round_ = 0;
   std::atomic<std::int64_t> first_ = 0;
   std::atomic<std::int64_t> loop_to_ = 0;
-  std::atomic<std::uint64_t> calls_ = 0;  ///< grows with everything the decoding thread must look at
+  /// Incremented for every change that the decoding thread must check.
+  std::atomic<std::uint64_t> calls_ = 0;
   std::atomic<bool> stop_ = false;
 
-  std::optional<std::int64_t> held_;  ///< frame in the consumer's hands: the slot at freed_
-  std::int64_t expected_ = 0;         ///< next frame of this round that the consumer has not seen
+  std::optional<std::int64_t> held_;  ///< frame that the consumer holds: the slot at freed_
+  std::int64_t expected_ = 0;         ///< next frame of this round that the consumer has not received
   std::int64_t waits_ = 0;
   std::thread thread_;
 };

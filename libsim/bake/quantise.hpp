@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers as 16 bit over their own range: an axis of extent e is off by at most e / 131070.
+/// Numbers as 16 bit over their range: an axis of extent e has an error of at most e / 131070.
 
 #include <algorithm>
 #include <array>
@@ -12,17 +12,17 @@ namespace sim::bake {
 
 inline constexpr float axis_steps = 65535;
 
-/// The range of one number.
+/// The range of a quantity.
 struct Axis {
   float min = 0, max = 0;
 };
 
-/// That a number of this range is off by at most.
+/// Upper bound on the error of a number in this range.
 inline double error_of(const Axis& range) {
   return (double(range.max) - double(range.min)) / (2 * double(axis_steps));
 }
 
-/// Small differences of either sign become small numbers.
+/// Maps small differences of either sign to small numbers.
 inline std::uint16_t zigzag(std::uint16_t difference) {
   return static_cast<std::uint16_t>((difference << 1) ^ ((difference & 0x8000) ? 0xffff : 0));
 }
@@ -30,7 +30,7 @@ inline std::uint16_t unzigzag(std::uint16_t value) {
   return static_cast<std::uint16_t>((value >> 1) ^ ((value & 1) ? 0xffff : 0));
 }
 
-/// Planes of n values: n high bytes, then n low bytes, of the differences along the order.
+/// Encodes n values as planes: n high bytes, then n low bytes, of the differences between consecutive values.
 template <typename Value>
 void encode_axis(std::size_t n, Value value, const Axis& range, std::uint8_t* planes) {
   const double scale = range.max > range.min ? 65535.0 / (double(range.max) - double(range.min)) : 0;
@@ -45,7 +45,7 @@ void encode_axis(std::size_t n, Value value, const Axis& range, std::uint8_t* pl
   }
 }
 
-/// Adds up the differences and hands each value to `set`.
+/// Accumulates the differences and passes each value to `set`.
 template <typename Set>
 void decode_axis(const std::uint8_t* planes, std::size_t n, const Axis& range, Set set) {
   const float scale = (range.max - range.min) / axis_steps;

@@ -1,6 +1,6 @@
 #pragma once
-/// Hard cases of the fluid, S1 to S24: one definition of each, for tests and for the stability map.
-/// docs/stability.md says what each asks and what was measured.
+/// Hard cases of the fluid, S1 to S24: one definition each, for tests and for the stability map.
+/// docs/stability.md describes each case and the measured results.
 
 #include <limits>
 #include <optional>
@@ -11,19 +11,19 @@
 
 namespace sim::cases {
 
-/// Small: seconds on one core. Full: what the case asks for.
+/// Small: seconds on one core. Full: as the catalogue of cases specifies.
 enum class Size { Small, Full };
 
-/// What a case may be run with. 0 = the case's own.
+/// Parameters of a case. 0 = the case's own value.
 struct Setting {
   MethodKind method = MethodKind::HiRes;
   Backend backend = Backend::Cpu;
-  double frame_dt_s = 0;  ///< content time of a frame
-  int substeps = 0;       ///< in every frame
-  int iterations = 0;     ///< constraint projections a substep, 1 .. LiveNumbers::most_iterations
-  double scale = 1;       ///< of HardCase::scaled, > 0
+  double frame_dt_s = 0;  ///< simulated time of a frame
+  int substeps = 0;       ///< per frame
+  int iterations = 0;     ///< constraint projections per substep, 1 .. LiveNumbers::most_iterations
+  double scale = 1;       ///< factor for HardCase::scaled, > 0
   Size size = Size::Small;
-  std::vector<Effect> effects = {};  ///< that the water has besides; what has settled before has none
+  std::vector<Effect> effects = {};  ///< additional effects of the water; settled states have none
 };
 
 /// One measured quantity with its gate.
@@ -34,57 +34,57 @@ struct Finding {
   double value = 0;
   Gate gate = Gate::Reported;
   double limit = 0;
-  /// What the catalogue of cases asks for where a gate may be looser (docs/stability.md has the reason).
+  /// The limit from the catalogue of cases, if the gate is looser (docs/stability.md has the reason).
   std::optional<double> asked;
   std::string unit;  ///< empty = a ratio or a count
 
-  /// False for a value that is not a number.
+  /// False for NaN.
   bool passes() const;
-  /// What is left to the limit, as a share of it: 0 at the limit, below 0 beyond it. Infinite where there is
-  /// nothing to be near to: what is only reported, and a limit of nobody that is kept.
+  /// Distance to the limit, as a share of the limit: 0 at the limit, below 0 beyond it. Infinite for a value
+  /// that is only reported, and for a limit of 0 that is met.
   double margin() const;
 };
 
-/// Why a run ended before its time.
+/// Why a run stopped early.
 struct Stop {
   int frame = 0;  ///< frames since the start
   std::string cause;
 };
 
-/// What a case came to.
+/// The result of a case.
 struct Outcome {
   std::vector<Finding> findings;
-  std::optional<Stop> stopped;  ///< a run that has failed already goes no further
+  std::optional<Stop> stopped;  ///< a failed run stops early
 
   bool passes() const;
-  /// The smallest of the findings'; -1 at most for a run that was stopped.
+  /// The smallest margin of the findings; at most -1 for a stopped run.
   double margin() const;
-  /// One line: each finding with its gate, and what stopped the run.
+  /// One line: each finding with its gate, and the reason of a stop.
   std::string text() const;
 };
 
-/// Whether it says that the water is lost, braked or pressed together: what no effect may change. The others
-/// say where and how fast water comes to rest and the like, which effects are there to change.
+/// True if the finding shows that water was lost, braked or compressed, which no effect may cause. Other
+/// findings, such as where and how fast water comes to rest, may change with effects.
 bool is_of_stability(const Finding& finding);
-/// The outcome by these findings alone.
+/// The outcome with only these findings.
 Outcome of_stability(Outcome outcome);
 
 struct HardCase {
   const char* id;     ///< "S2"; a second case of the same row has a letter: "S8b"
-  const char* suite;  ///< of its tests: "S02TallColumn"
+  const char* suite;  ///< of its test suite: "S02TallColumn"
   const char* title;
-  const char* asked;  ///< in words
+  const char* asked;  ///< requirement in words
   std::vector<MethodKind> methods;
-  const char* scaled;  ///< what Setting::scale multiplies: "30 m/s of the jet"; empty = nothing
+  const char* scaled;  ///< the quantity that Setting::scale multiplies: "30 m/s of the jet"; empty = nothing
   double frame_dt_s;   ///< the case's own, s
   int iterations;      ///< the case's own
-  /// base::Error for a back end that is not there; what the water does is never an error.
+  /// base::Error for a missing back end; results of the simulation are never an error.
   Outcome (*run)(const Setting&);
 };
 
-/// In the order of their ids.
+/// In order of their ids.
 const std::vector<HardCase>& hard_cases();
-/// base::Error that names the known ones.
+/// base::Error that names the known cases.
 const HardCase& hard_case(std::string_view id);
 
 }  // namespace sim::cases

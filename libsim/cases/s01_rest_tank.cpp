@@ -1,4 +1,4 @@
-/// S1: a tank of 20 layers, of the spacing that the method starts with, at rest.
+/// S1: a tank at rest with 20 layers of the method's start spacing.
 
 #include <algorithm>
 #include <cmath>

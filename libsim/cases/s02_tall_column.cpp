@@ -1,4 +1,4 @@
-/// S2: a column of 80 finest layers at eight solves a frame, from a lattice that has not settled.
+/// S2: a column of 80 finest layers at eight solves per frame, starting from an unsettled lattice.
 
 #include <cmath>
 
@@ -15,9 +15,9 @@ Outcome run(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = std::lround(10 * 10 * height / d / 8);
   if (setting.substeps == 0) options.substeps = 2;
-  // Under levels the water goes on splitting and merging, and 40 layers of LoRes fall as far as 80.
+  // With levels the water keeps splitting and merging, and 40 layers of LoRes fall as far as 80.
   const bool fine = setting.method == MethodKind::HiRes;
-  // Under temporal acceleration the densest is chaotic: 1.13 to 1.19 in eight seeds of its choice.
+  // With temporal acceleration the largest density is chaotic: 1.13 to 1.19 for eight seeds of its choice.
   const bool temporal = traits_of(setting.method).temporal;
   Watch watch(with_effects(scene, setting), options, {.density = fine ? 1.15 : temporal ? 1.25 : 1.2});
   const double filled = centre_height(watch.state());
@@ -36,8 +36,8 @@ Outcome run(const Setting& setting) {
       at_most("rise of 99.9 % of the water", (top - height) / start_spacing(setting.method), 5, "d");
   rise.asked = 2;
   return watch.outcome({lost, densest, rise,
-                        // Before compression was taken away at the frame's beginning the lattice shot up at
-                        // 7 m/s, and its centre rose by 41 %.
+                        // Before the pre-stabilisation at the frame's beginning existed, the lattice shot up
+                        // at 7 m/s, and its centre rose by 41 %.
                         at_most("v_rms", fastest_rms, 2.5, "m/s"),
                         reported("v_rms at last", rms_speed(watch.state()), "m/s")});
 }

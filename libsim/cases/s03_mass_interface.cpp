@@ -1,4 +1,4 @@
-/// S3: level 3 below, level 0 above, at rest; nobody splits or merges.
+/// S3: level 3 below, level 0 above, at rest, without splits and merges.
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
-/// S7: water that is pulled apart without gravity: a rotating square (pressure below zero in all of it) and a
-/// sphere in a straining flow.
+/// S7: water under tension without gravity: a rotating square (negative pressure everywhere) and a sphere in
+/// a straining flow.
 
 #include <algorithm>
 #include <cmath>
@@ -23,14 +23,14 @@ void stir(State& state, const Vec3d& centre, Flow flow) {
   }
 }
 
-/// What both must keep: nobody clumps, no energy comes in. A constraint that only pushes holds no negative
-/// pressure, so voids open; they are only told.
+/// Requirements for both: no clumps, and no energy gain. A unilateral constraint cannot hold negative
+/// pressure, so voids open; they are only reported.
 void follow(Outcome& out, const std::string& what, const Setting& setting, Scene& scene, const State& start,
             double seconds, double least) {
   scene.gravity_m_s2 = 0;
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.5, .outside_m = 0.1 * d});
-  // A pair of a thousand that meets by chance is no clump: one in a hundred is.
+  // One close pair in a thousand is chance; one in a hundred is a clump.
   double close = 2, closest = 2, energy = 1;
   const double began = kinetic_energy(start);
   for (int frame = 0; frame < frames_of(setting, seconds) && watch.step(); ++frame) {
@@ -66,7 +66,7 @@ Outcome run(const Setting& setting) {
     follow(out, "square", setting, scene, start, 1 / spin, levels || setting.size == Size::Full ? 0.07 : 0.5);
   }
   {
-    // Its thickness falls to 0.67 of what it was.
+    // Its thickness decreases to 0.67 of the initial value.
     const double radius = 5 * size, room = 48 * size, middle = room / 2;
     Scene scene = tank({room, room, room}, {1, 1, 1});
     State cube = block(setting.method, {middle - radius, middle - radius, middle - radius},
@@ -83,7 +83,7 @@ Outcome run(const Setting& setting) {
     stir(start, {middle, middle, middle}, [&](const Vec3d& x) {
       return Vec3d{strain * x[0], strain * x[1], -2 * strain * x[2]};
     });
-    // Children of a split may lie on others, and thin water does not part them.
+    // Children of a split may overlap others, and thin water does not separate them.
     const double least = levels ? 0.05 : setting.size == Size::Full ? 0.12 : 0.3;
     follow(out, "sphere", setting, scene, start, 0.2 / strain, least);
   }

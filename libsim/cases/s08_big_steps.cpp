@@ -1,4 +1,4 @@
-/// S8: large steps in a tank, and a dam whose steps are as large as the solver's lists allow.
+/// S8: large steps in a tank, and a dam with the largest steps that the solver's lists allow.
 
 #include <cmath>
 
@@ -45,8 +45,8 @@ Outcome dam(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = setting.size == Size::Small ? 1024 : 128 * 1024;
   const double seconds = setting.size == Size::Small ? 100.0 / 120 : 2;
-  // Under levels single particles are squeezed among coarser ones: 1.08 to 1.35 in runs that differ by their
-  // size alone. So all frames have a looser gate there, and most frames that which is asked.
+  // With levels, single particles are compressed among coarser ones: 1.08 to 1.35 in runs that differ only in
+  // size. So the gate for all frames is looser, and the requirement applies to most frames.
   const auto& traits = traits_of(setting.method);
   const bool levels = traits.adaptive();
   Watch watch(with_effects(scene, setting), options, {.density = levels ? 1.5 : 1.2, .outside_m = 0.1 * d});
@@ -62,12 +62,12 @@ Outcome dam(const Setting& setting) {
   Finding braked = nobody("braked", met.speed_limited);
   if (levels) {
     density.asked = 1.2;
-    // Who was not solved overlaps those who were.
+    // Unsolved particles overlap solved ones.
     if (traits.temporal) {
       mostly.limit = 1.3;
       mostly.asked = 1.2;
     }
-    // Particle-substeps of some 1e9: FovFluid had 1 on an H200.
+    // Particle-substeps out of some 1e9: FovFluid had 1 on an H200.
     braked.limit = 20;
     braked.asked = 0;
   }

@@ -27,8 +27,8 @@ Outcome run(const Setting& setting) {
       block(setting.method, low, {low[0] + length, low[1] + width, low[2] + width}, {speed, 0, 0});
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.5, .outside_m = 1e-6});
-  // The wall takes rho A v^2 while the middle of the bar arrives: of the bar's momentum, v^2 / length a
-  // second.
+  // The wall receives rho A v^2 while the middle of the bar arrives: v^2 / length per second of the bar's
+  // momentum.
   const double dt = frame_dt_of(setting);
   const int first = static_cast<int>(std::ceil(2 * gap / speed / dt - 1e-9));
   const int last = static_cast<int>(std::floor((gap + 0.75 * length) / speed / dt + 1e-9));

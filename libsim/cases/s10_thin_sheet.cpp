@@ -1,4 +1,4 @@
-/// S10: a sheet of one and of two layers that falls towards a pool, away from the gaze, against HiRes.
+/// S10: sheets of one and of two layers that fall towards a pool, away from the gaze, compared with HiRes.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace sim::cases {
 
 namespace {
 
-/// Area, m2, that the particles above this height cover as they are drawn, 1.5 radii wide, seen from above.
+/// Area, m2, covered by the particles above this height as drawn, 1.5 radii wide, seen from above.
 double covered_m2(const State& state, double above_m) {
   constexpr double cell = d / 4;
   constexpr int side = 128;

@@ -1,5 +1,5 @@
-/// S11: water that sloshes from corner to corner of a tank, driven by kicks; S11b: with a slab in it that
-/// makes a wedge with the floor.
+/// S11: water that sloshes from corner to corner of a tank, driven by kicks; S11b: with a slab that forms a
+/// wedge with the floor.
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +17,14 @@ double distance_to(const Obstacle& slab, double x, double y, double z) {
   return signed_distance(slab, slab.start, {x, y, z});
 }
 
-/// A slab that rises from the floor at 30 degrees, through both side walls; water under it lies in the wedge.
+/// A slab that rises from the floor at 30 degrees, through both side walls; the water under it is in the
+/// wedge.
 Obstacle slab_over(double side) {
   constexpr double rise = std::numbers::pi / 6, length = 8 * d, thick = 4 * d;
   Obstacle out;
   out.shape = ObstacleShape::Box;
   out.size_m = {length, thick, 2 * side};
-  // The edge of its lower face lies on the floor.
+  // The edge of its lower face is on the floor.
   const double along = length / 2, up = thick / 2;
   out.start.centre_m = {side / 4 + along * std::cos(rise) - up * std::sin(rise),
                         along * std::sin(rise) + up * std::cos(rise), side / 2};
@@ -43,7 +44,7 @@ int inside(const State& state, const std::vector<Obstacle>& obstacles, double to
   return out;
 }
 
-/// Largest rho / rho_0 within a support of two walls or three, as the last projection met it. An obstacle is
+/// Largest rho / rho_0 within a support of two or three walls, in the last projection. An obstacle counts as
 /// a wall.
 double densest_in_corners(const Simulation& fluid, const Scene& scene) {
   std::vector<RenderParticle> places;
@@ -65,8 +66,8 @@ double densest_in_corners(const Simulation& fluid, const Scene& scene) {
   return out;
 }
 
-/// Tells who hangs in the air: two frames without moving, and nobody near. What flies moves by g dt^2 more in
-/// a frame than in the one before.
+/// Finds particles that hang in the air: two frames without motion, and without neighbours. A flying particle
+/// moves by g dt^2 more in each frame than in the previous one.
 class Hanging {
  public:
   explicit Hanging(double frame_dt_s) : still_m_(gravity * frame_dt_s * frame_dt_s / 3) {}

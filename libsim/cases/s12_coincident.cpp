@@ -1,4 +1,4 @@
-/// S12: 2, 64 and 1,000 particles at one point, also where cells of the grid meet.
+/// S12: 2, 64 and 1,000 particles at one point, also at a corner of grid cells.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ Outcome run(const Setting& setting) {
   constexpr double corner = 3 * 1.1 * 2 * d;
   for (const double place : {1.0, corner}) {
     for (const int n : {2, 64, 1000}) {
-      if (place == corner && n == 1000) continue;  // a thousand at once are slow, and no other there
+      if (place == corner && n == 1000) continue;  // a thousand are slow, and behave the same there
       Scene scene = tank({2, 2, 2}, {2, 2, 2});
       State start;
       const auto at = static_cast<float>(place);
@@ -31,7 +31,7 @@ Outcome run(const Setting& setting) {
       }
       const std::string what = fmt::format("{} at {:.2f} m: ", n, place);
       const double fall = std::sqrt(2 * gravity * 1);
-      // A thousand set free meet the guard on speed, which no gate would tell from a defect.
+      // A released thousand triggers the speed limit, which a gate could not distinguish from a defect.
       Finding fastest = n < 1000 ? at_most(what + "fastest", watch.fastest_m_s(), 1.3 * fall, "m/s")
                                  : reported(what + "fastest", watch.fastest_m_s(), "m/s");
       fastest.asked = fall;

@@ -1,4 +1,4 @@
-/// S23: a closed dam that nothing drives gains no energy.
+/// S23: a closed dam without forcing gains no energy.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace sim::cases {
 
 namespace {
 
-/// Over m_*, m2/s2.
+/// Divided by m_*, m2/s2.
 double energy(const State& state) {
   return gravity * centre_height(state) * mass(state) + kinetic_energy(state);
 }
@@ -22,7 +22,7 @@ Outcome run(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = setting.size == Size::Small ? 512 : setting.backend == Backend::Cpu ? 4096 : 32 * 1024;
   Watch watch(with_effects(scene, setting), options, {.density = 1.5, .outside_m = 0.1 * d});
-  // The first two frames lift the lattice to its rest density, by half a per cent at 512 particles.
+  // The first two frames raise the lattice to its rest density, by half a per cent at 512 particles.
   for (int frame = 0; frame < 2; ++frame) watch.step();
   const double start = energy(watch.state());
   double most = 0, last = 0;

@@ -1,4 +1,4 @@
-/// S24: a random gaze over a tank whose nozzle pours what lies in its corners.
+/// S24: a random gaze over a tank whose nozzle pours water taken from its corners.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace sim::cases {
 
 namespace {
 
-/// Memory that the process holds, MiB; 0 where it is not known.
+/// Memory of the process, MiB; 0 if unknown.
 double resident_mib() {
   std::ifstream in("/proc/self/statm");
   double size = 0, resident = 0;
@@ -31,7 +31,7 @@ Outcome run(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = small ? 64 : 2048;
   Watch watch(with_effects(scene, setting), options, {.density = 2, .outside_m = 0.1 * d});
-  // The GPU takes the long run: three cores took seven minutes for it.
+  // The long run is for the GPU: three cores took seven minutes for it.
   const double seconds = small ? 20 : setting.backend == Backend::Cuda ? 300 : 120;
   const int frames = frames_of(setting, seconds, scene.frame_dt_s);
   const auto began = watch.fluid().particle_count();
@@ -66,10 +66,11 @@ Outcome run(const Setting& setting) {
                         at_most("frames whose count does not balance", static_cast<double>(unbalanced), 0),
                         at_most("frames whose mass is off", static_cast<double>(mass_off), 0),
                         at_most("growth of the particles' memory", grown, 0.01),
-                        // Of all that the process does meanwhile; a test that runs it alone has a gate.
+                        // Includes all other memory of the process; a test that runs this case alone has a
+                        // gate.
                         reported("growth of the process", resident_mib() - memory, "MiB"),
                         watch.outside_finding(),
-                        // 64 coarsest particles leave the corners empty at times.
+                        // 64 coarsest particles sometimes leave the corners empty.
                         reported("layers left out", static_cast<double>(watch.report().guards.nozzle_waited)),
                         reported("largest rho / rho_0", watch.densest()),
                         at_least("poured", static_cast<double>(watch.report().poured), 1, "m_*")});

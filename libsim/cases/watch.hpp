@@ -1,5 +1,5 @@
 #pragma once
-/// A run of a hard case that is looked at after each frame.
+/// A run of a hard case that is measured after each frame.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace sim::cases {
 
-/// Beyond these a run has failed and goes no further.
+/// Limits beyond which a run has failed and stops.
 struct Bounds {
   double density = std::numeric_limits<double>::infinity();  ///< rho / rho_0
   double speed_m_s = std::numeric_limits<double>::infinity();
@@ -20,7 +20,7 @@ class Watch {
  public:
   Watch(const Scene& scene, const SimulationOptions& options, const Bounds& bounds);
 
-  /// Computes a frame and measures it. False once the run has ended: something was not finite or beyond the
+  /// Computes a frame and measures it. False once the run has stopped: a value was not finite or beyond the
   /// bounds.
   bool step();
 
@@ -28,18 +28,19 @@ class Watch {
   const State& state() const { return state_; }  ///< after the last frame
   const FrameReport& report() const { return report_; }
   int frame() const { return frame_; }
-  double densest() const { return densest_; }  ///< of all frames
-  /// The largest rho / rho_0 that this share of the frames keeps to. 0 < share <= 1; 0 without a frame.
+  double densest() const { return densest_; }  ///< over all frames
+  /// The largest rho / rho_0 that is not exceeded in this share of the frames. 0 < share <= 1; 0 without a
+  /// frame.
   double densest_in(double share) const;
   double fastest_m_s() const { return fastest_; }
   int out() const { return out_; }                    ///< particles outside, in the worst frame
-  int short_frames() const { return short_frames_; }  ///< that asked for more substeps than they got
+  int short_frames() const { return short_frames_; }  ///< frames that requested more substeps than they got
 
-  /// The findings that most cases share. Each has its gate from the bounds.
+  /// Findings shared by most cases. Each gets its gate from the bounds.
   Finding density_finding() const;
   Finding speed_finding() const;
   Finding outside_finding() const;
-  /// Ends the case: the findings, and what stopped the run.
+  /// Ends the case: the findings, and the reason of a stop.
   Outcome outcome(std::vector<Finding> findings) const;
 
  private:
@@ -51,7 +52,7 @@ class Watch {
   State state_;
   FrameReport report_;
   int frame_ = 0;
-  std::vector<double> densities_;  ///< the largest of each frame
+  std::vector<double> densities_;  ///< the maximum of each frame
   double densest_ = 0, fastest_ = 0;
   int out_ = 0, short_frames_ = 0;
   std::optional<Stop> stopped_;
@@ -59,11 +60,11 @@ class Watch {
 
 /// The scene with the setting's effects.
 Scene with_effects(Scene scene, const Setting& setting);
-/// Method, back end and numbers of the setting. Ours-TSp runs at tau = -10: beta = 0.67.
+/// Method, back end and parameters of the setting. Ours-TSp runs at tau = -10: beta = 0.67.
 SimulationOptions options_of(const Setting& setting);
-/// The same for a run that begins with these particles, whose finest lie d apart.
+/// The same for a run that starts with these particles, whose finest spacing is d.
 SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start);
-/// Content time of a frame, s: the setting's or `usual`.
+/// Simulated time of a frame, s: the setting's or `usual`.
 double frame_dt_of(const Setting& setting, double usual = 1.0 / 60);
 /// At least one.
 int frames_of(const Setting& setting, double seconds, double usual_dt_s = 1.0 / 60);

@@ -96,7 +96,7 @@ std::vector<double> nearest_distances(const State& state) {
   constexpr double most = 2;
   double widest = 0;
   for (const auto& p : state) widest = std::max(widest, d * std::cbrt(mass(p)));
-  // Cells as wide as what is looked for; at most 2^20 of them a side.
+  // Cells as wide as the search radius; at most 2^20 of them per side.
   const double edge = most * widest;
   const auto cell = [&](float x) {
     return static_cast<std::int64_t>(std::floor(static_cast<double>(x) / edge));

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes of the hard cases, and what is measured on their particles, on the host and independent of the
+/// Scenes of the hard cases, and measures of their particles, computed on the host and independent of the
 /// solver's own measures.
 
 #include <optional>
@@ -14,17 +14,18 @@ inline constexpr double gravity = 9.81;
 
 using State = std::vector<ParticleState>;
 
-/// A tank with a block of water in its corner, without a file. The participant stands before it.
+/// A tank with a block of water in its corner, without a file. The participant's view is from the front.
 Scene tank(const Vec3d& size, const Vec3d& water, int settle_frames = 0);
 
-/// Height of about so many layers of spacing d, m; an even number, which LoRes halves, and two at least.
+/// Height of about this many layers of spacing d, m; the number is even, because LoRes halves it, and at
+/// least two.
 double even_layers(double layers);
 
-/// Level and spacing, m, of the particles that a method starts with where the finest lie d apart.
+/// Level and spacing, m, of the particles with which a method starts if the finest spacing is d.
 int start_level(MethodKind method);
 double start_spacing(MethodKind method);
 
-/// The lattice of particles that a method starts with in the box, at one velocity; ids from `first_id`.
+/// The lattice of particles with which a method starts in the box, at one velocity; ids from `first_id`.
 State block(MethodKind method, const Vec3d& low, const Vec3d& high, const Vec3d& velocity = {},
             int first_id = 0);
 
@@ -32,27 +33,28 @@ State block(MethodKind method, const Vec3d& low, const Vec3d& high, const Vec3d&
 double mass(const ParticleState& p);
 double mass(const State& state);
 double speed(const ParticleState& p);
-double centre_height(const State& state);   ///< of mass, m
-double rms_speed(const State& state);       ///< by mass, m/s
-double kinetic_energy(const State& state);  ///< over m_*, m2/s2
-/// Height below which this share of the mass lies, m.
+double centre_height(const State& state);   ///< of the centre of mass, m
+double rms_speed(const State& state);       ///< weighted by mass, m/s
+double kinetic_energy(const State& state);  ///< divided by m_*, m2/s2
+/// Height below which this share of the mass is, m.
 double height_of_share(const State& state, double share);
 /// Particles outside [0, size] in x and z or below the floor by more than `tolerance_m`, or not finite.
 int outside(const State& state, const Vec3d& size, double tolerance_m);
 
-/// Distance of each particle's nearest over the mean of their spacings, in rising order; 2 at most.
+/// Distance from each particle to its nearest neighbour divided by the mean of their spacings, in ascending
+/// order; at most 2.
 std::vector<double> nearest_distances(const State& state);
 
-/// A pool of 8 finest layers that has settled, 4,096 particles of HiRes, seen from in front of it.
+/// A settled pool of 8 finest layers, 4,096 particles of HiRes, seen from the front.
 struct Pool {
   static constexpr std::int64_t n_star = 512;
   Scene scene;
   State state;
 };
-/// Settles once for each back end; from any thread.
+/// Settles once per back end; thread-safe.
 const Pool& settled_pool(Backend backend);
 
-/// One eye at the view's place that looks at `point`. `valid`: the tracker's word.
+/// One eye at the view's position that looks at `point`. `valid`: the tracker's flag.
 Looks look_at(const Scene& scene, const Vec3d& point, bool valid = true);
 
 }  // namespace sim::cases

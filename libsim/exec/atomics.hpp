@@ -1,5 +1,5 @@
 #pragma once
-/// Additions and maxima that threads make to one place at once.
+/// Atomic additions and maxima on one memory location.
 
 #include <cstdint>
 
@@ -26,7 +26,7 @@ SIM_FN void atomic_add(std::uint64_t* target, std::uint64_t value) {
 #endif
 }
 
-/// *target += amount; gives what it was.
+/// *target += amount; returns the old value.
 SIM_FN std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
 #ifdef __CUDA_ARCH__
   return atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(amount));
@@ -47,7 +47,7 @@ SIM_FN int atomic_take(int* target, int amount) {
 #endif
 }
 
-/// A number that nobody else gets: how many had asked before. Threads of a warp ask together.
+/// A unique number: the count of earlier calls. The threads of a warp share one atomic operation.
 SIM_FN int atomic_next(int* target) {
 #ifdef __CUDA_ARCH__
   const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(target));
@@ -77,7 +77,7 @@ SIM_FN void atomic_max(std::uint64_t* target, std::uint64_t value) {
 #endif
 }
 
-/// Raises a flag that others may raise too.
+/// Sets a flag that other threads may set too.
 SIM_FN void atomic_raise(int* flag) {
 #ifdef __CUDA_ARCH__
   volatile int* const seen = flag;
@@ -95,7 +95,7 @@ void atomic_add(T* target, T value) {
   *target += value;
 }
 
-/// *target += amount; gives what it was.
+/// *target += amount; returns the old value.
 template <class T>
 T atomic_take(T* target, T amount) {
   T was;
@@ -107,7 +107,7 @@ T atomic_take(T* target, T amount) {
   return was;
 }
 
-/// A number that nobody else gets: how many had asked before.
+/// A unique number: the count of earlier calls.
 inline int atomic_next(int* target) { return atomic_take(target, 1); }
 
 template <class T>
@@ -116,7 +116,7 @@ void atomic_max(T* target, T value) {
   if (value > *target) *target = value;
 }
 
-/// Raises a flag that others may raise too.
+/// Sets a flag that other threads may set too.
 inline void atomic_raise(int* flag) {
 #pragma omp atomic write
   *flag = 1;

@@ -6,7 +6,7 @@ namespace sim {
 
 #ifdef SIM_HAS_CUDA
 namespace cuda {
-/// Empty when a device answers, otherwise why none does.
+/// Empty if a device responds, otherwise the reason.
 std::string device_problem();
 std::int64_t device_bytes_taken();
 std::string device_name();

@@ -12,13 +12,13 @@ enum class Backend { Cpu, Cuda };
 
 inline std::string backend_name(Backend backend) { return backend == Backend::Cpu ? "cpu" : "cuda"; }
 
-/// "cpu", "cuda" or "auto" (CUDA when a device answers, otherwise the CPU). "cuda" without a device is a
+/// "cpu", "cuda" or "auto" (CUDA if a device responds, otherwise the CPU). "cuda" without a device is a
 /// base::Error.
 Backend choose_backend(std::string_view name);
 
-/// Bytes of the device's memory that are taken, by this program or another; none on the CPU.
+/// Bytes of the device's memory in use, by this program or others; none on the CPU.
 std::optional<std::int64_t> device_bytes_taken(Backend backend);
-/// What the device calls itself, such as "NVIDIA H200"; empty on the CPU.
+/// Name of the device, such as "NVIDIA H200"; empty on the CPU.
 std::string device_name(Backend backend);
 
 }  // namespace sim

@@ -2,7 +2,7 @@
 
 namespace sim {
 
-// Each back end is a namespace of its own, compiled from one text (libsim/exec/space.hpp).
+// Each back end is a separate namespace, compiled from the same source (libsim/exec/space.hpp).
 namespace cpu {
 double copy_bandwidth_gb_s();
 }

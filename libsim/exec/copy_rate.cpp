@@ -9,12 +9,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Twice this is more than most caches hold.
+/// Twice this exceeds most caches.
 constexpr std::size_t bytes = std::size_t{256} << 20;
 constexpr std::size_t repeats = 5;
 #ifdef SIM_CUDA
-/// Copies between two looks at the clock: one takes a fraction of a millisecond, and waiting for it some
-/// microseconds.
+/// Copies per timing: one takes a fraction of a millisecond, and waiting for it some microseconds.
 constexpr int in_a_row = 8;
 #else
 constexpr int in_a_row = 1;

@@ -1,5 +1,5 @@
 #pragma once
-/// What stands before a function that kernels call; APART: one that few need, which stays a call.
+/// Prefix of functions that kernels call; APART: for rarely used ones, which are not inlined.
 
 #ifdef SIM_CUDA
 #include <cuda_runtime.h>

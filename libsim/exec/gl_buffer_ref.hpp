@@ -1,5 +1,5 @@
 #pragma once
-/// A GL buffer by name, for those who call no GL.
+/// A GL buffer by name, for code that calls no GL.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace sim {
 
 struct GlBufferRef {
   unsigned name = 0;         ///< 0: none
-  std::uint64_t serial = 0;  ///< tells it from a deleted buffer whose name GL gave away again
+  std::uint64_t serial = 0;  ///< distinguishes it from a deleted buffer whose name GL reused
   std::size_t bytes = 0;
 
   friend bool operator==(const GlBufferRef&, const GlBufferRef&) = default;

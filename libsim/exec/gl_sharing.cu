@@ -10,7 +10,7 @@ namespace {
 
 cudaGraphicsResource_t resource_of(void* pointer) { return static_cast<cudaGraphicsResource_t>(pointer); }
 
-/// cudaGraphicsMapResources takes an array of the driver's own pointers.
+/// cudaGraphicsMapResources takes an array of driver handles.
 std::vector<cudaGraphicsResource_t> resources_of(const std::vector<void*>& pointers) {
   std::vector<cudaGraphicsResource_t> out;
   for (void* pointer : pointers) out.push_back(resource_of(pointer));
@@ -21,8 +21,8 @@ std::vector<cudaGraphicsResource_t> resources_of(const std::vector<void*>& point
 
 GlSharing::~GlSharing() { forget(); }
 
-/// The context or the buffers may be gone already; then there is nothing left to give back, and CUDA's word
-/// on it must not be taken for an error of the next launch.
+/// The context or the buffers may already be destroyed; then nothing needs unmapping, and the CUDA error is
+/// cleared so that the next launch does not report it.
 void GlSharing::forget() {
   auto resources = resources_of(resources_);
   if (!memory_.empty() &&
@@ -44,7 +44,7 @@ bool GlSharing::accept(const std::vector<GlBufferRef>& buffers) {
   for (const GlBufferRef& buffer : buffers) {
     cudaGraphicsResource_t resource = nullptr;
     if (cudaGraphicsGLRegisterBuffer(&resource, buffer.name, flags) != cudaSuccess) {
-      cudaGetLastError();  // said by the return value; not an error of the next launch
+      cudaGetLastError();  // reported by the return value; must not fail the next launch
       forget();
       return false;
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// GL buffers seen as memory of the back end, where the back end can.
+/// GL buffers mapped into the back end's memory, if the back end supports it.
 
 #include <utility>
 #include <vector>
@@ -23,17 +23,17 @@ class GlSharing {
     return *this;
   }
 
-  /// Registers buffers of the current context in place of those before, unless they are the same. False when
+  /// Registers buffers of the current context and releases earlier ones, unless they are the same. False if
   /// one cannot be shared: the back end is the CPU, or GL runs on another device.
   bool accept(const std::vector<GlBufferRef>& buffers);
-  /// What was accepted as memory, in the same order, until unmap(); mapped twice is mapped once. What GL was
-  /// told before comes first, and GL waits for what is launched meanwhile. Each change between GL and the
-  /// back end takes the device a while (docs/performance.md): map once a frame, and unmap where GL goes on
-  /// anyway.
+  /// The accepted buffers as memory, in the same order, until unmap(); mapping twice has no further effect.
+  /// Earlier GL commands finish first, and GL waits for work launched meanwhile. Each switch between GL and
+  /// the back end takes time on the device (docs/performance.md): map once per frame, and unmap where GL
+  /// continues anyway.
   const std::vector<void*>& map();
-  /// Gives them back to GL; nothing when they are not mapped.
+  /// Returns the buffers to GL; does nothing if they are not mapped.
   void unmap();
-  /// Maps again what was accepted before, if anything was.
+  /// Maps the accepted buffers again, if any.
   void map_again() {
     if (!resources_.empty()) map();
   }
@@ -43,8 +43,8 @@ class GlSharing {
 
   Access access_;
   std::vector<GlBufferRef> buffers_;
-  std::vector<void*> resources_;  ///< one a buffer; none when they were refused
-  std::vector<void*> memory_;     ///< of each while they are mapped
+  std::vector<void*> resources_;  ///< one per buffer; empty if they were refused
+  std::vector<void*> memory_;     ///< of each buffer while mapped
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -1,24 +1,24 @@
 #pragma once
-/// Counts in bins, and the bin that holds a rank: percentiles without a sort, the same for any order of the
-/// values.
+/// Counts in bins, and the bin that contains a rank: percentiles without a sort, independent of the order of
+/// the values.
 
 #include "libsim/exec/one_block.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Counters as kernels add to them; several sets side by side, so that few threads meet at one counter.
+/// Counters in the form that kernels use; several sets, so that fewer threads contend for one counter.
 struct Histogram {
   static constexpr int copies = 8;
   int* counts;
   int bins;
 
-  /// `i`: of the value, to choose a set.
+  /// `i`: index of the value, which selects a set.
   SIM_FN void add(int i, int bin, int amount) const {
     atomic_add(&counts[i / 32 % copies * bins + bin], amount);
   }
 };
 
-/// A histogram's counts in a block's room: of bins, of runs of 16 and of 256 bins.
+/// A histogram's counts in a block's scratch memory: of bins, of runs of 16 and of 256 bins.
 class BinCounts {
  public:
   static constexpr int run = 16;
@@ -34,7 +34,7 @@ class BinCounts {
 
   SIM_FN int runs() const { return bins_ / run; }
 
-  /// Adds the sets up and leaves them at zero.
+  /// Adds up the sets and resets them to zero.
   template <class Block>
   SIM_FN void take(Block block, const Histogram& from) const {
     block.each(bins_, AddCopies{from, count_});
@@ -50,8 +50,8 @@ class BinCounts {
     return sum;
   }
 
-  /// found(bin, count before it, its count) if the bin that holds this rank, counted from run `from` on, lies
-  /// in run `at`.
+  /// Calls found(bin, count before it, its count) if the bin with this rank, counted from run `from`, is in
+  /// run `at`.
   template <class Found>
   SIM_FN void find(int at, int from, int rank, Found found) const {
     int below = before(at) - before(from);
@@ -91,7 +91,7 @@ class BinCounts {
   int* in_long_run_;
 };
 
-/// f(block, counts) over what a histogram has counted.
+/// Calls f(block, counts) with a histogram's counts.
 template <class F>
 struct TakeCounts {
   Histogram histogram;
@@ -104,7 +104,7 @@ struct TakeCounts {
   }
 };
 
-/// The counters' memory. They are zero whenever nobody counts.
+/// The counters' memory. All zero except while counting.
 class HistogramStore {
  public:
   Histogram view(int bins) {
@@ -115,7 +115,7 @@ class HistogramStore {
     }
     return {counts_.data(), bins};
   }
-  /// f(block, BinCounts) once: the counts in order, taken from the store, which is empty then.
+  /// Calls f(block, BinCounts) once, with the counts moved out of the store, which is then zero.
   template <class F>
   void take(const char* label, int bins, F f) {
     in_one_block(label, bins, BinCounts::bytes(bins), room_, TakeCounts<F>{view(bins), f});

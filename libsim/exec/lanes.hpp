@@ -8,8 +8,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// A functor of for_each_team is given the lanes that share its index: lane k takes a loop's steps k, k +
-/// size, ... and the parts are summed. Here it is one, and everything folds away.
+/// A functor of for_each_team gets the lanes that share its index: lane k processes a loop's steps k, k +
+/// size, ... and the partial results are summed. Here there is one lane, and everything is optimised away.
 struct OneLane {
   static constexpr int size = 1;
   SIM_FN int rank() const { return 0; }
@@ -22,22 +22,22 @@ struct OneLane {
     return value;
   }
   SIM_FN bool any(bool mine) const { return mine; }
-  /// The lanes' value that comes before all others by T::before, which tells all but equal values apart.
+  /// The smallest of the lanes' values by T::before, which must order all unequal values.
   template <class T>
   SIM_FN T first(T value) const {
     return value;
   }
-  /// The sum over the lanes before this one, and over all.
+  /// The sum over the lanes before this one; `all` gets the sum over all lanes.
   SIM_FN int offset(int mine, int& all) const {
     all = mine;
     return 0;
   }
-  /// What any lane has written is there for all.
+  /// Makes writes of any lane visible to all.
   SIM_FN void wait() const {}
 };
 
 #ifdef SIM_CUDA
-/// Lanes of a warp; the size is a power of two above one. The host only names the type.
+/// Lanes of a warp; the size is a power of two above one. On the host only the type is used.
 #ifdef __CUDA_ARCH__
 template <int Size>
 struct Lanes {
@@ -81,7 +81,7 @@ struct Lanes {
   __device__ void wait() const { __syncwarp(mask()); }
 
  private:
-  /// The value of the lane whose rank differs in the bit `step`, word by word.
+  /// The value of the lane whose rank differs in the bit `step`, copied word by word.
   template <class T>
   __device__ T across(T value, int step) const {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(unsigned) == 0);

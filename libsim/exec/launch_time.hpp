@@ -1,5 +1,5 @@
 #pragma once
-/// Where a frame's time goes, launch by launch; for benches.
+/// Durations of a frame's launches, for benches.
 
 #include <algorithm>
 #include <map>
@@ -8,14 +8,14 @@
 
 namespace sim {
 
-/// What the launches of one label took since the profile was switched on.
+/// Total of the launches with one label since the profile was switched on.
 struct LaunchTime {
   std::string label;
   int launches = 0;
-  double ms = 0;  ///< from handing over to end, on the device's own clock where it has one
+  double ms = 0;  ///< from launch to end, on the device's clock if it has one
 };
 
-/// The entries by falling time, each with its label.
+/// The entries in descending order of time, each with its label.
 inline std::vector<LaunchTime> longest_first(const std::map<std::string, LaunchTime>& passes) {
   std::vector<LaunchTime> out;
   for (const auto& [label, pass] : passes) out.push_back({label, pass.launches, pass.ms});

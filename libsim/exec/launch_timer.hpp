@@ -1,13 +1,13 @@
 #pragma once
-/// The clock that stands round each launch; off unless a bench asks. Included by space.hpp.
+/// Timer around each launch; off unless a bench switches it on. Included by space.hpp.
 
 #include "libsim/exec/launch_time.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Switches the profile of this back end on (and forgets what was measured) or off.
+/// Switches the profile of this back end on (discarding earlier measurements) or off.
 void profile_launches(bool on);
-/// One entry a label, longest first; waits for all launched work.
+/// One entry per label, longest first; waits for all launched work.
 std::vector<LaunchTime> launch_times();
 
 class LaunchTimer {

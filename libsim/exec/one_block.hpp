@@ -1,11 +1,11 @@
 #pragma once
-/// Many small steps in one launch: a block of threads that wait for each other between them.
+/// Many small steps in one launch: a block of threads that synchronise between the steps.
 
 #include "libsim/exec/space.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// The indices from `first` below `end` that one thread walks.
+/// The indices from `first` below `end` processed by one thread.
 struct Walk {
   int first, stride, end;
 
@@ -13,14 +13,14 @@ struct Walk {
   SIM_FN void each(F f) const {
     for (int i = first; i < end; i += stride) f(i);
   }
-  /// Of f(i), in one order.
+  /// Sum of f(i), in a fixed order.
   template <class F>
   SIM_FN float sum(F f) const {
     float out = 0;
     for (int i = first; i < end; i += stride) out += f(i);
     return out;
   }
-  /// The least f(i) below `most`, and where it first is; else `most` and `end`.
+  /// The smallest f(i) below `most`, and its first index; otherwise `most` and `end`.
   template <class F>
   SIM_FN float least(float most, int& where, F f) const {
     where = end;
@@ -37,7 +37,7 @@ struct Walk {
 
 #ifdef SIM_CUDA
 
-/// The first warp of a block; the host only names the type.
+/// The first warp of a block; on the host only the type is used.
 struct OneWarp {
   template <class F>
   SIM_FN void each(int n, F f) const {
@@ -46,8 +46,8 @@ struct OneWarp {
     __syncwarp();
 #endif
   }
-  /// f(0) + ... + f(n-1), the same bits for all lanes and in each run. All lanes call it together, with one
-  /// n; f reads what their each() before wrote.
+  /// f(0) + ... + f(n-1), bit-identical for all lanes and in each run. All lanes must call it together, with
+  /// the same n; f may read what their previous each() wrote.
   template <class F>
   SIM_FN float sum(int n, F f) const {
     float out = walk(n).sum(f);
@@ -56,8 +56,8 @@ struct OneWarp {
 #endif
     return out;
   }
-  /// The least f(i) below `most`, and where it first is, the same for all lanes; else `most` and n. Called as
-  /// sum() is, with one `most`.
+  /// The smallest f(i) below `most`, and its first index, the same for all lanes; otherwise `most` and n.
+  /// Call it like sum(), with the same `most`.
   template <class F>
   SIM_FN float least(int n, float most, int& where, F f) const {
     float out = walk(n).least(most, where, f);
@@ -83,16 +83,16 @@ struct OneWarp {
   }
 };
 
-/// The threads of one block, which can wait for each other.
+/// The threads of one block, which can synchronise.
 struct OneBlock {
   static constexpr int most = 1024;
-  /// f(i) for i = 0 ... n-1; all are done when it returns.
+  /// Calls f(i) for i = 0 ... n-1; all calls have finished on return.
   template <class F>
   SIM_FN void each(int n, F f) const {
     spread(n, f);
     wait();
   }
-  /// The same, but they are done after the next wait.
+  /// The same, but the calls have finished only after the next wait.
   template <class F>
   SIM_FN void spread(int n, F f) const {
 #ifdef __CUDA_ARCH__
@@ -106,8 +106,8 @@ struct OneBlock {
     __syncthreads();
 #endif
   }
-  /// f(warp), whose each() waits for a warp alone: for steps over so few indices that most threads would only
-  /// wait.
+  /// Calls f(warp), whose each() synchronises only one warp: for steps over few indices, where most threads
+  /// would only wait.
   template <class F>
   SIM_FN void by_one_warp(F f) const {
 #ifdef __CUDA_ARCH__
@@ -119,7 +119,7 @@ struct OneBlock {
   }
 };
 
-/// Bytes of memory beside its threads that a block can have.
+/// Bytes of shared memory that a block can have.
 std::size_t most_block_memory();
 
 template <bool Beside, class F>
@@ -130,9 +130,9 @@ __global__ void __launch_bounds__(OneBlock::most)
   f(OneBlock{}, Beside ? reinterpret_cast<unsigned char*>(beside) : spare);
 }
 
-/// f(block, room) once, for passes over so few cells that launching each would cost more than running it.
-/// `width`: indices of its widest steps. `room` is `bytes` of scratch memory, beside the threads where there
-/// is so much, else in `spare`.
+/// Calls f(block, room) once, for passes over so few cells that launching each would cost more than running
+/// it. `width`: number of indices of its widest steps. `room`: `bytes` of scratch memory, in shared memory if
+/// that is large enough, otherwise in `spare`.
 template <class F>
 void in_one_block(const char* label, int width, std::size_t bytes, Array<unsigned char>& spare, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
@@ -148,49 +148,49 @@ void in_one_block(const char* label, int width, std::size_t bytes, Array<unsigne
     launch(label, run_block_kernel<false, F>, 1, static_cast<unsigned>(threads), 0, f, spare.data());
   }
 }
-/// Passes over at most so many cells belong in one block.
+/// Passes over at most this many cells should run in one block.
 constexpr int one_block_cells = 8192;
 
 #else
 
 struct OneBlock {
-  /// f(i) for i = 0 ... n-1; all are done when it returns.
+  /// Calls f(i) for i = 0 ... n-1; all calls have finished on return.
   template <class F>
   void each(int n, F f) const {
     for (int i = 0; i < n; ++i) f(i);
   }
-  /// The same, but they are done after the next wait.
+  /// The same, but the calls have finished only after the next wait.
   template <class F>
   void spread(int n, F f) const {
     each(n, f);
   }
   void wait() const {}
-  /// f(0) + ... + f(n-1), in one order.
+  /// f(0) + ... + f(n-1), in a fixed order.
   template <class F>
   float sum(int n, F f) const {
     return Walk{0, 1, n}.sum(f);
   }
-  /// The least f(i) below `most`, and where it first is; else `most` and n.
+  /// The smallest f(i) below `most`, and its first index; otherwise `most` and n.
   template <class F>
   float least(int n, float most, int& where, F f) const {
     return Walk{0, 1, n}.least(most, where, f);
   }
-  /// f(warp), whose each() may wait for fewer threads: for steps over few indices.
+  /// Calls f(warp), whose each() may synchronise fewer threads: for steps over few indices.
   template <class F>
   void by_one_warp(F f) const {
     f(*this);
   }
 };
 
-/// f(block, room) once, for passes over so few cells that launching each would cost more than running it.
-/// `width`: indices of its widest steps. `room` is `bytes` of scratch memory.
+/// Calls f(block, room) once, for passes over so few cells that launching each would cost more than running
+/// it. `width`: number of indices of its widest steps. `room`: `bytes` of scratch memory.
 template <class F>
 void in_one_block(const char* label, int /*width*/, std::size_t bytes, Array<unsigned char>& spare, F f) {
   const LaunchTimer timer(label);
   spare.resize(bytes);
   f(OneBlock{}, spare.data());
 }
-/// Passes over at most so many cells belong in one block.
+/// Passes over at most this many cells should run in one block.
 constexpr int one_block_cells = 512;
 
 #endif

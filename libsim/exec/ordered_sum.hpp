@@ -1,5 +1,5 @@
 #pragma once
-/// Sums that stay in the back end's memory, added up in the same order in every run.
+/// Sums that stay in the back end's memory, added in the same order in every run.
 
 #include "libsim/exec/one_block.hpp"
 
@@ -7,9 +7,9 @@ namespace sim::SIM_BACKEND {
 
 namespace ordered_sum_detail {
 
-/// Terms that a team adds up.
+/// Terms added by a team.
 constexpr int run_length = 64;
-/// Sums of runs that a block adds up side by side.
+/// Sums of runs that a block adds in parallel.
 constexpr int rows = 128;
 
 template <class F>
@@ -64,11 +64,11 @@ struct AddRuns {
 
 }  // namespace ordered_sum_detail
 
-/// The memory of such sums; none before the first.
+/// The memory of such sums; not allocated before the first sum.
 class OrderedSum {
  public:
-  /// take(f(0) + ... + f(n-1)) once, on the device. f may also write what is i's own. `most`: that n may get
-  /// to without more memory.
+  /// Calls take(f(0) + ... + f(n-1)) once, on the device. f may also write data of index i. `most`: largest n
+  /// without a new allocation.
   template <class F, class Take>
   void operator()(const char* label, int n, int most, F f, Take take) {
     using namespace ordered_sum_detail;

@@ -1,11 +1,11 @@
 #pragma once
-/// Several small passes in one launch, for those of which none reads or writes what another one writes.
+/// Several small passes in one launch; none of them may read or write what another one writes.
 
 #include "libsim/exec/space.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// f(0) ... f(n-1); n may be 0, not negative.
+/// Calls f(0) ... f(n-1); n may be 0, not negative.
 template <class F>
 struct Pass {
   int n;

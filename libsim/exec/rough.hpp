@@ -1,5 +1,5 @@
 #pragma once
-/// Quotients and roots that a loop over neighbours can afford: on the GPU to some units in the last place.
+/// Fast quotients and roots for loops over neighbours: on the GPU accurate to some units in the last place.
 
 #include <cmath>
 
@@ -17,7 +17,7 @@ SIM_FN float quotient(float a, float b) {
 }
 SIM_FN float reciprocal(float x) { return quotient(1, x); }
 
-/// sqrt(x), the same.
+/// sqrt(x), with the same accuracy.
 SIM_FN float rough_root(float x) {
 #ifdef __CUDA_ARCH__
   float root;
@@ -28,7 +28,7 @@ SIM_FN float rough_root(float x) {
 #endif
 }
 
-/// A distance r > 0 from its square, and quotients by it: on the GPU both come from one reciprocal root.
+/// A distance r > 0 from its square, and divisions by it: on the GPU both use one reciprocal root.
 struct Root {
 #ifdef __CUDA_ARCH__
   float r, inverse;

@@ -1,8 +1,8 @@
 #pragma once
-/// The execution layer: the only place that knows a back end. This header and every kernel that includes it
-/// are compiled by g++ into sim::cpu (SIM_BACKEND=cpu, OpenMP) and by nvcc into sim::cuda (SIM_BACKEND=cuda),
-/// from one text. Kernels are trivially copyable functors `void operator()(int i) const`; all work is in
-/// order on one stream.
+/// The execution layer: the only code that depends on a back end. This header and every kernel that includes
+/// it are compiled by g++ into sim::cpu (SIM_BACKEND=cpu, OpenMP) and by nvcc into sim::cuda
+/// (SIM_BACKEND=cuda), from the same source. Kernels are trivially copyable functors `void operator()(int i)
+/// const`; all work runs in order on one stream.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ void copy_to_host(void* host, const void* device, std::size_t bytes);
 void copy_from_host(void* device, const void* host, std::size_t bytes);
 void copy_within(void* to, const void* from, std::size_t bytes);
 void fill_zero(void* device, std::size_t bytes);
-/// Returns when all launched work is done; throws what it failed with.
+/// Waits until all launched work is done; throws its errors.
 void synchronize();
 
 /// A column of trivially copyable values in the back end's memory. Movable only.
@@ -43,7 +43,7 @@ class Array {
   }
   ~Array() { release(data_); }
 
-  /// Sets the size; contents are undefined when it grows beyond the capacity.
+  /// Sets the size; contents are undefined if it grows beyond the capacity.
   void resize(std::size_t size) {
     if (size > capacity_) {
       release(data_);
@@ -54,7 +54,7 @@ class Array {
     }
     size_ = size;
   }
-  /// Makes room for later sizes; contents are undefined when it grows.
+  /// Allocates for later sizes; contents are undefined if it grows.
   void reserve(std::size_t capacity) {
     const std::size_t size = size_;
     if (capacity > capacity_) resize(capacity);
@@ -87,7 +87,7 @@ class Array {
   std::size_t capacity_ = 0;
 };
 
-/// The last value, read back from the back end; 0 when there is none.
+/// The last value, read back from the back end; 0 if empty.
 template <class T>
 T last_of(const Array<T>& values) {
   T out = 0;
@@ -110,7 +110,7 @@ class Scanner {
  public:
   /// sums[i] = values[0] + ... + values[i]; both may be the same array.
   void inclusive_sum(const Array<int>& values, Array<int>& sums);
-  /// counts[i] = how many of flags[0] ... flags[i] are not 0; of n.
+  /// counts[i] = number of flags[0] ... flags[i] that are not 0; n entries.
   void inclusive_count(const std::uint8_t* flags, int n, Array<int>& counts);
 
  private:
@@ -120,13 +120,14 @@ class Scanner {
 #ifdef SIM_CUDA
 
 void check(cudaError_t status, const char* what);
-/// Do launches take their places before the one before them has ended?
+/// True if the blocks of a launch can start before the previous launch has ended.
 bool launches_overlap();
-/// Lanes that should share each of n indices, measured on an H200 with the solver's passes over neighbours.
+/// Number of lanes that should share each of n indices, measured on an H200 with the solver's passes over
+/// neighbours.
 int team_wish(int n);
 
-/// Launches `kernel` behind what was launched before. Where the device can, its blocks take their places
-/// while the last ones before it end, and wait there: begin_kernel() is the first that each kernel does.
+/// Launches `kernel` after the previous launch. If the device supports it, its blocks start while the last
+/// blocks of the previous launch end, and wait there: each kernel must call begin_kernel() first.
 template <class... Parameters, class... Arguments>
 void launch(const char* label, void (*kernel)(Parameters...), unsigned blocks, unsigned threads,
             std::size_t shared_bytes, Arguments... arguments) {
@@ -148,7 +149,7 @@ __device__ __forceinline__ void begin_kernel() {
 #endif
 }
 
-/// Threads of a block, but for those of one_block.hpp.
+/// Threads per block, except in one_block.hpp.
 constexpr int block_threads = 256;
 
 template <class F>
@@ -158,7 +159,7 @@ __global__ void __launch_bounds__(block_threads) run_kernel(int n, const __grid_
   if (i < n) f(i);
 }
 
-/// f(0) ... f(n-1) in any order; nothing when n is 0. `label` names the pass in errors and profiles.
+/// Calls f(0) ... f(n-1) in any order; does nothing if n is 0. `label` names the pass in errors and profiles.
 template <class F>
 void for_each(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
@@ -168,8 +169,8 @@ void for_each(const char* label, int n, F f) {
          0, n, f);
 }
 
-/// Lanes for each of n indices: a functor of for_each_team may have measured its own, `int lanes(int n)
-/// const`.
+/// Lanes for each of n indices: a functor of for_each_team may define its own measured number, `int lanes(int
+/// n) const`.
 template <class F>
 int lanes_for(const F& f, int n) {
   if constexpr (requires { f.lanes(n); }) {
@@ -179,9 +180,9 @@ int lanes_for(const F& f, int n) {
   }
 }
 
-/// Blocks that a multiprocessor must be able to hold. Left alone, the compiler gives a thread so few
-/// registers that it waits for each load by itself; passes over neighbours gain more by loads that they wait
-/// for together than by more blocks.
+/// Minimum number of blocks that a multiprocessor must be able to hold. By default the compiler gives a
+/// thread so few registers that it waits for each load separately; passes over neighbours gain more from
+/// overlapping loads than from more blocks.
 constexpr int least_team_blocks = 4;
 
 template <int Size, class F>
@@ -203,8 +204,8 @@ void launch_teams(const char* label, int n, F f) {
   launch(label, run_team_kernel<Size, F>, static_cast<unsigned>(blocks), block_threads, 0, n, f);
 }
 
-/// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a loop inside: the fewer indices there are,
-/// the more lanes share each, so that the device stays full.
+/// Calls f(i, lanes) for i = 0 ... n-1 in any order, for functors with an inner loop: the fewer indices, the
+/// more lanes share each, so that the device stays fully used.
 template <class F>
 void for_each_team(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
@@ -224,11 +225,11 @@ void for_each_team(const char* label, int n, F f) {
 
 #else
 
-/// Indices that a thread takes at once: enough to hide what taking costs, and several turns for each thread,
-/// so that none waits long for the others.
+/// Number of indices that a thread takes at once: enough to hide the cost of taking them, and several turns
+/// per thread, so that the load is balanced.
 int grain_of(int n);
 
-/// f(0) ... f(n-1) in any order; nothing when n is 0. `label` names the pass in errors and profiles.
+/// Calls f(0) ... f(n-1) in any order; does nothing if n is 0. `label` names the pass in errors and profiles.
 template <class F>
 void for_each(const char* label, int n, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
@@ -249,8 +250,8 @@ struct OnOneLane {
   void operator()(int i) const { f(i, OneLane{}); }
 };
 
-/// f(i, lanes) for i = 0 ... n-1 in any order, for functors with a long loop inside, which a device may share
-/// between lanes.
+/// Calls f(i, lanes) for i = 0 ... n-1 in any order, for functors with a long inner loop, which a device may
+/// divide among lanes.
 template <class F>
 void for_each_team(const char* label, int n, F f) {
   for_each(label, n, OnOneLane<F>{f});
@@ -261,7 +262,7 @@ void for_each_team(const char* label, int n, F f) {
 /// Sums values[0..n-1] in double over fixed chunks, so that the result does not depend on the number of
 /// threads.
 double fixed_order_sum(const Array<float>& values, int n);
-/// Largest value; 0 when n is 0.
+/// Largest value; 0 if n is 0.
 float maximum(const Array<float>& values, int n);
 
 }  // namespace sim::SIM_BACKEND

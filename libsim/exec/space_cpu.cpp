@@ -69,8 +69,8 @@ void LaunchTimer::end() {
 
 namespace {
 
-// Least-significant-digit radix sort over fixed chunks: stable, hence equal for any number of threads. Digits
-// that all keys share are skipped, which leaves about one pass for each axis of a room-sized grid.
+// Least-significant-digit radix sort over fixed chunks: stable, and so independent of the number of threads.
+// Digits shared by all keys are skipped, which leaves about one pass per axis of a room-sized grid.
 constexpr int digit_bits = 11;
 constexpr int buckets = 1 << digit_bits;
 constexpr int chunks = 8;
@@ -87,7 +87,7 @@ void count_digits(const std::uint64_t* keys, int n, int shift, Histogram& counts
   }
 }
 
-/// Turns counts into first places; true when one bucket holds everything.
+/// Converts counts to start indices; true if one bucket contains everything.
 bool place_digits(Histogram& counts, int n) {
   int sum = 0;
   for (int b = 0; b < buckets; ++b) {
@@ -162,7 +162,7 @@ float maximum(const Array<float>& values, int n) {
   return most;
 }
 
-// The CPU's particles reach GL by an upload, and pictures the CPU by a read-back.
+// On the CPU, particles reach GL by upload, and pictures reach the back end by read-back.
 GlSharing::~GlSharing() = default;
 bool GlSharing::accept(const std::vector<GlBufferRef>&) { return false; }
 const std::vector<void*>& GlSharing::map() { return memory_; }

@@ -1,4 +1,4 @@
-// CUB's headers cost seconds to compile: sort, scan and sums stand in this one file.
+// CUB's headers take seconds to compile: only this file includes them, for sort, scan and sums.
 #include <cub/cub.cuh>
 #include <thrust/iterator/transform_iterator.h>
 
@@ -175,7 +175,7 @@ void Scanner::inclusive_count(const std::uint8_t* flags, int n, Array<int>& coun
 
 namespace {
 
-// One block a chunk, a fixed tree within it, the chunks added in order on the host: the same sum every time.
+// One block per chunk, a fixed tree within it, the chunks added in order on the host: a reproducible sum.
 constexpr int chunk = 4096;
 
 __global__ void chunk_sums(const float* values, int n, double* sums) {

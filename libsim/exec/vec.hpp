@@ -1,6 +1,5 @@
 #pragma once
-/// Small vectors for kernels. They live in the back end's namespace: two compilers must not share one weak
-/// symbol.
+/// Small vectors for kernels, in the back end's namespace: two compilers must not share one weak symbol.
 
 #include <cmath>
 
@@ -12,13 +11,13 @@ struct Vec3 {
   float x, y, z;
 };
 
-/// A particle's place in memory: one aligned 16-byte load.
+/// Memory layout of a particle's position: one aligned 16-byte load.
 struct alignas(16) Vec4 {
   float x, y, z, w;
 };
 
-/// max(a, b) and min(a, b) for a bound b that is a number: an a that is none gives way to it, as in fmaxf and
-/// fminf. Those are a call on the CPU, and a call in a loop over lanes leaves one lane.
+/// max(a, b) and min(a, b) for a bound b that is not NaN: if a is NaN, the result is b, as in fmaxf and
+/// fminf. Those are function calls on the CPU, and a call in a loop prevents vectorisation.
 SIM_FN float at_least(float a, float b) {
 #ifdef __CUDA_ARCH__
   return fmaxf(a, b);
@@ -33,7 +32,7 @@ SIM_FN float at_most(float a, float b) {
   return a < b ? a : b;
 #endif
 }
-/// The whole number at or below x, or the nearer of two bounds.
+/// floor(x), clamped to the two bounds.
 SIM_FN int floor_within(float x, int low, int high) {
 #ifdef __CUDA_ARCH__
   return min(max(__float2int_rd(x), low), high);
@@ -50,7 +49,7 @@ SIM_FN Vec3& operator+=(Vec3& a, Vec3 b) {
   return a;
 }
 SIM_FN float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-/// a + s b with one rounding, the same in every kernel that computes it.
+/// a + s b with one rounding, identical in every kernel that computes it.
 SIM_FN Vec3 fused(Vec3 a, float s, Vec3 b) {
   return {fmaf(s, b.x, a.x), fmaf(s, b.y, a.y), fmaf(s, b.z, a.z)};
 }

@@ -27,7 +27,7 @@ struct ListCorners {
     keys[place] = std::uint64_t{ordered(position[i].y)} << 32 | static_cast<std::uint32_t>(id[i]);
     order[place] = i;
   }
-  /// Bits that compare as the numbers do.
+  /// Bits that are ordered like the numbers.
   SIM_FN static std::uint32_t ordered(float y) {
     std::uint32_t bits = 0;
     memcpy(&bits, &y, sizeof bits);

@@ -1,5 +1,5 @@
 #pragma once
-/// Where a nozzle's water comes from: the lowest particles in the four corner columns of the tank.
+/// The source of a nozzle's water: the lowest particles in the four corner columns of the tank.
 
 #include "libsim/particles/particles.hpp"
 
@@ -19,10 +19,10 @@ struct Corners {
 
 class CornerColumns {
  public:
-  /// Orders the particles in the corners, lowest y first, ties by id: the choice does not depend on the
+  /// Orders the particles in the corners, lowest y first, ties by id: the result does not depend on the
   /// particles' order in memory. Returns their number, which is read back from the device.
   int find(Reads<Column::Position, Column::Id> particles, const Corners& corners);
-  /// Indices of the particles that `find` found.
+  /// Indices of the particles found by `find`.
   const int* lowest_first() const { return order_.data(); }
   std::size_t bytes() const;
 

@@ -13,7 +13,7 @@ struct Weigh {
   SIM_FN void operator()(int k) const { mass[k] = 1 << level[taken[k]]; }
 };
 
-/// Writes where the sum first reaches `need` > 0: at one k only.
+/// Stores the index where the sum first reaches `need` > 0: true for one k only.
 struct FindCut {
   const int* mass;
   const int* sum;
@@ -30,7 +30,7 @@ struct SetAll {
   SIM_FN void operator()(int i) const { values[i] = value; }
 };
 
-/// Taken particles leave; their ids come first in the list of the new ones.
+/// Removes taken particles; their ids come first in the list of the new ones.
 struct Leave {
   const int* taken;
   const int* id;
@@ -39,7 +39,7 @@ struct Leave {
   int made;
   const std::uint8_t* level;
   const float* temperature;
-  HeatLedger* heat;  ///< nullptr where there is no temperature
+  HeatLedger* heat;  ///< nullptr if particles have no temperature
   SIM_FN void operator()(int k) const {
     const int i = taken[k];
     kept[i] = 0;
@@ -57,15 +57,15 @@ struct Stay {
   }
 };
 
-/// The others get the lowest ids that are free.
+/// Further new particles get the lowest free ids.
 struct TakeFree {
   const int* free_ids;
   int* ids;
   SIM_FN void operator()(int k) const { ids[k] = free_ids[k]; }
 };
 
-/// The new ones, as settled members of their level. No saliency was measured of them yet: 0, as of those of
-/// whom nothing is known.
+/// Initialises the new particles as steady members of their level. Their saliency is not measured yet: 0, as
+/// for unknown ones.
 struct Make {
   const int* ids;
   Vec4* position;
@@ -129,7 +129,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   }
   if (layers <= 0) return 0;
 
-  // Those who stay, then room for the new ones: copies of somebody, to be overwritten.
+  // Remaining particles, then copies as space for the new ones, to be overwritten.
   kept_.resize(static_cast<std::size_t>(n));
   id_.resize(static_cast<std::size_t>(made));
   for_each("keep", n, SetAll{kept_.data(), 1});
@@ -143,7 +143,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                  .temperature = p.temperature(),
                  .heat = heat});
   if (made > cut.taken) {
-    // Those just taken still count: the ids that they leave are in use again.
+    // Particles just taken still count: their ids are already in use again.
     list_free_ids(p, nullptr, scanner_, free_, free_sum_, free_ids_);
     for_each("take ids", made - cut.taken, TakeFree{free_ids_.data(), id_.data() + cut.taken});
   }

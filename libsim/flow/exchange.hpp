@@ -1,5 +1,5 @@
 #pragma once
-/// Particles of any levels for particles of one level, at equal mass in units of m_*.
+/// Exchanges particles of any levels for particles of one level, with equal mass in units of m_*.
 
 #include "libsim/flow/heat_ledger.hpp"
 #include "libsim/particles/free_ids.hpp"
@@ -13,19 +13,19 @@ using ExchangeView =
 
 class Exchange {
  public:
-  /// Where the taken end.
+  /// End of the taken particles in the list.
   struct Cut {
     int taken;
-    int mass;  ///< of the taken, m_*
+    int mass;  ///< of the taken particles, m_*
   };
 
-  /// Takes the first particles of `lowest_first` (`found` of them) until they and the reservoir outweigh a
-  /// whole number of layers, at most `layers` of `sites` particles of `level`; removes them, appends the
-  /// layers' particles and keeps the rest of their mass, less than the heaviest particle's, in the reservoir.
-  /// New particles take over the ids that were freed, then the lowest that are free below the capacity; their
-  /// places and velocities are the caller's to fill, and their temperatures where there are any: then what is
-  /// taken is told to `heat`. Returns the layers made: fewer than asked for where the mass or the capacity
-  /// does not suffice.
+  /// Takes the first particles of `lowest_first` (`found` of them) until they and the reservoir suffice for a
+  /// whole number of layers, at most `layers` of `sites` particles of `level`. Removes them, appends the
+  /// layers' particles and stores the remaining mass, less than the heaviest particle's, in the reservoir.
+  /// New particles get the freed ids, then the lowest free ids below the capacity. The caller sets their
+  /// positions and velocities, and their temperatures if they have any; the heat of the taken particles is
+  /// then added to `heat`. Returns the number of layers made: fewer than requested if the mass or the
+  /// capacity does not suffice.
   int run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found, int sites,
           int layers, int level, std::int64_t& reservoir, HeatLedger* heat);
   std::size_t bytes() const;

@@ -1,5 +1,5 @@
 #pragma once
-/// Heat that came and went.
+/// Heat that entered and left the water.
 
 #include <cmath>
 #include <cstdint>
@@ -8,13 +8,14 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Since the run began, over the water's specific heat: mass in m_* times kelvin above the reference, in
-/// whole numbers of `unit`, so that the order of the threads does not matter. Below 0 in two's complement.
+/// Since the run began, divided by the water's specific heat: mass in m_* times kelvin above the reference,
+/// as integer multiples of `unit`, so that the order of the threads does not matter. Negative values in two's
+/// complement.
 struct HeatLedger {
   std::uint64_t poured;   ///< by nozzles
   std::uint64_t taken;    ///< for nozzles
   std::uint64_t drained;  ///< through outlets
-  std::uint64_t walls;    ///< from walls of a temperature of their own
+  std::uint64_t walls;    ///< from walls with a given temperature
 
   static constexpr int unit_bits = 24;
   static constexpr double unit = 1.0 / (1 << unit_bits);

@@ -11,7 +11,7 @@ struct MarkThrough {
   int* stays;
   Outflow::Amount* left;
   const float* temperature;
-  HeatLedger* heat;  ///< nullptr where there is no temperature
+  HeatLedger* heat;  ///< nullptr if particles have no temperature
   SIM_FN void operator()(int i) const {
     const bool gone = walls.through(xyz(position[i]));
     stays[i] = !gone;

@@ -1,5 +1,5 @@
 #pragma once
-/// What leaves through outlets: particles on the far side of a plane that has an opening.
+/// Removes what leaves through outlets: particles on the far side of a plane that has an opening.
 
 #include "libsim/flow/heat_ledger.hpp"
 #include "libsim/particles/particles.hpp"
@@ -19,9 +19,9 @@ class Outflow {
     int particles, mass;
   };
 
-  /// Removes those that are through and keeps the others in their order, with their densities of the last
-  /// projection. The ids that leave are free. What heat leaves is told to `heat`, where there is any. Waits
-  /// for a read-back.
+  /// Removes the particles that passed an opening; the others keep their order and their densities of the
+  /// last projection. The removed ids become free. The heat that leaves is added to `heat`, if not null.
+  /// Waits for a read-back.
   Amount run(Particles& particles, OutflowView view, const Walls& walls, HeatLedger* heat);
   std::size_t bytes() const;
 
@@ -32,7 +32,7 @@ class Outflow {
   Array<Amount> left_;
 };
 
-/// Of a whole run.
+/// Totals of a whole run.
 struct Drained {
   std::int64_t particles = 0;
   std::int64_t mass = 0;  ///< in m_*

@@ -6,7 +6,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Uniform in [0, 1) for one of a few numbers that a diffuse particle draws.
+/// Uniform in [0, 1); `which` numbers the draws of one diffuse particle.
 SIM_FN float draw(std::uint32_t seed, std::uint32_t which) { return uniform_of(random_bits(seed, which)); }
 
 SIM_FN float specific_energy(Vec3 v) { return 0.5f * dot(v, v); }
@@ -29,7 +29,7 @@ struct SumSurface {
   }
 };
 
-/// n_i = -h_i sum_j V_j grad W_ij, and how water meets here.
+/// n_i = -h_i sum_j V_j grad W_ij, and the closing speed of the water.
 template <class Bounds>
 struct Surface {
   const Vec4* position;
@@ -47,7 +47,7 @@ struct Surface {
   SIM_FN void operator()(int i) const {
     normal[i] = {0, 0, 0, 0};
     approach[i] = 0;
-    // Too coarse to emit, and to stand beside what does.
+    // Too coarse to emit, and to be next to emitting water.
     if (level[i] > coarsest_seen) return;
     if (!(energy(specific_energy(xyz(velocity[i]))) > 0)) return;
     const Vec4 self = position[i];
@@ -60,13 +60,13 @@ struct Surface {
   }
 };
 
-/// |n| from which a particle counts as a part of the surface, and the cosine between its velocity and n from
-/// which it pushes the surface on (Eq. 6).
+/// Minimum |n| of surface particles, and minimum cosine between velocity and n for a particle that moves the
+/// surface outwards (Eq. 6).
 constexpr float least_normal = 0.3f;
 constexpr float least_push = 0.6f;
 
-/// Mean of (1 - n_i n_j) / r_ij over neighbours in the surface that lie below its tangent plane: convex
-/// crests count, troughs do not (Eq. 4 and 5, over the distance).
+/// Mean of (1 - n_i n_j) / r_ij over surface neighbours below the tangent plane: convex crests count, troughs
+/// do not (Eq. 4 and 5, divided by the distance).
 struct SumCurvature {
   Vec4 self;
   Vec3 out;
@@ -88,7 +88,8 @@ struct SumCurvature {
   }
 };
 
-/// Births of each particle: its foam's volume over that of a diffuse particle, rounded by chance.
+/// Number of births of each particle: its foam's volume divided by that of a diffuse particle, randomly
+/// rounded.
 struct CountBirths {
   const Vec4* position;
   const Vec4* velocity;
@@ -111,8 +112,8 @@ struct CountBirths {
     births[i] = static_cast<int>(volume / rules.volume + uniform_of(chance));
   }
 
-  /// Potential of a convex surface that is pushed on, times its area over the particle's volume, 1/m; 0
-  /// elsewhere. Curvature grows with what is resolved, and so does no area of crests.
+  /// Potential of a convex surface that moves outwards, times its area divided by the particle's volume, 1/m;
+  /// 0 elsewhere. Curvature grows with what is resolved, and so does no area of crests.
   SIM_FN float crest(int i) const {
     const Vec3 n = xyz(normal[i]);
     const float size = length(n);
@@ -133,7 +134,7 @@ struct MarkFree {
   SIM_FN void operator()(int slot) const { free[slot] = !(place[slot].w > 0); }
 };
 
-/// Fills the free places in their order.
+/// Fills the free slots in order.
 template <class Bounds>
 struct Emit {
   const Vec4* position;
@@ -142,7 +143,7 @@ struct Emit {
   const float* approach;
   const int* births;
   const int* sums;
-  int water;  ///< particles
+  int water;  ///< number of water particles
   const int* free;
   const int* free_of;
   int capacity;
@@ -158,13 +159,13 @@ struct Emit {
     const int asked = sums[water - 1];
     const int room = free_of[capacity - 1];
     if (rank >= asked) return;
-    // Where more are asked for than fit, those that do are spread evenly over all.
+    // If more are requested than fit, those that fit are spread evenly over all.
     const int k = asked <= room ? rank : static_cast<int>(static_cast<std::int64_t>(rank) * asked / room);
     const int i = parent_of(k);
     put(slot, i, k - (sums[i] - births[i]));
   }
 
-  /// The first whose sum is above k.
+  /// The first index whose sum exceeds k.
   SIM_FN int parent_of(int k) const {
     int low = 0;
     int high = water - 1;
@@ -179,8 +180,8 @@ struct Emit {
     return low;
   }
 
-  /// The c-th birth of particle i: in the cylinder that the particle went through in this frame (Fig. 4),
-  /// with the speed that meeting water has off the axis.
+  /// The c-th birth of particle i: in the cylinder that the particle swept in this frame (Fig. 4), with the
+  /// closing speed of the water as the speed off the axis.
   SIM_FN void put(int slot, int i, int c) const {
     const std::uint32_t seed =
         random_bits(static_cast<std::uint32_t>(id[i]), frame, static_cast<std::uint32_t>(c));
@@ -188,7 +189,7 @@ struct Emit {
     const Vec3 v = xyz(velocity[i]);
     const float speed = length(v);
     const Vec3 axis = speed > 0 ? (1 / speed) * v : Vec3{0, 1, 0};
-    // Two directions across the axis (Duff et al. 2017).
+    // Two directions perpendicular to the axis (Duff et al. 2017).
     const float sign = axis.z < 0 ? -1.0f : 1.0f;
     const float a = -1 / (sign + axis.z);
     const float b = axis.x * axis.y * a;

@@ -1,6 +1,6 @@
 #pragma once
-/// Where water takes in air, and how much (Ihmsen et al. 2012, section 3), by volume: fine and coarse water
-/// make the same amount.
+/// Emission of diffuse particles, where water entrains air (Ihmsen et al. 2012, section 3). Counted by
+/// volume: fine and coarse water emit the same amount.
 
 #include "libsim/foam/foam_pool.hpp"
 #include "libsim/neighbors/grid.hpp"
@@ -15,21 +15,22 @@ struct Potential {
   SIM_FN float operator()(float value) const { return at_most(at_least((value - from) / span, 0.0f), 1.0f); }
 };
 
-/// The effect's numbers as kernels take them.
+/// The effect's parameters in the form that kernels use.
 struct FoamRules {
-  float dt = 0;           ///< of the frame, s
-  float gravity = 0;      ///< along -y, m/s2
-  float rate = 0;         ///< volume of foam per second and volume of water at full potential, 1/s
-  Potential approach{};   ///< tau_ta, 1/s: speeds at which water meets water, over its distance
-  Potential crest{};      ///< tau_wc, 1/m: curvature of crests that are pushed on
-  float crest_depth = 1;  ///< of full trapped air that makes as much as a full crest's surface, m
+  float dt = 0;          ///< of the frame, s
+  float gravity = 0;     ///< along -y, m/s2
+  float rate = 0;        ///< volume of foam per second and volume of water at full potential, 1/s
+  Potential approach{};  ///< tau_ta, 1/s: closing speed of water divided by its distance
+  Potential crest{};     ///< tau_wc, 1/m: curvature of moving crests
+  /// Depth of water at full trapped air that emits as much as a full crest's surface, m.
+  float crest_depth = 1;
   Potential energy{};     ///< tau_k, J/kg: v^2 / 2
-  int coarsest = 3;       ///< level that still emits
-  int coarsest_seen = 3;  ///< of levels that may stand beside such water
+  int coarsest = 3;       ///< coarsest level that still emits
+  int coarsest_seen = 3;  ///< coarsest level that may be next to such water
   float lifetime = 1;     ///< mean time on the water, s
   float volume = 1;       ///< of a diffuse particle, m3
   float air_drag = 0;     ///< of spray, 1/s
-  float rise = 0;         ///< speed of bubbles against the water in Earth's gravity, m/s
+  float rise = 0;         ///< speed of bubbles relative to the water in Earth's gravity, m/s
 };
 
 using FoamView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
@@ -37,15 +38,15 @@ using FoamView = ColumnView<columns(Column::Position, Column::Velocity, Column::
 
 // Bounds: Walls, or Solids in scenes with obstacles.
 
-/// Fills Normal (outwards, without unit: about 1 at a surface; 0 for water that is too slow to foam) and
+/// Fills Normal (outwards, dimensionless: about 1 at a surface; 0 for water that is too slow to foam) and
 /// FoamPool::approach, from the cells that find_meeting() filled.
 template <class Bounds>
 void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Bounds& bounds,
                        const FoamRules& rules);
 /// Fills FoamPool::births from both.
 void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules);
-/// Puts what was counted in free places, as many as there are, and enters it in the ledger. Of more than fit
-/// an even choice is dropped.
+/// Places the counted births in free slots of the pool, as many as there are, and updates the ledger. If too
+/// few slots are free, the dropped births are spread evenly.
 template <class Bounds>
 void emit_foam(FoamPool& pool, FoamView water, const Bounds& bounds, const FoamRules& rules);
 

@@ -7,7 +7,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Cells of `edge` along a length.
+/// Number of cells of `edge` along a length.
 float count_along(float length, float edge) { return std::max(1.0f, std::ceil(length / edge - 1e-4f)); }
 
 }  // namespace
@@ -20,7 +20,7 @@ float MeetingCells::edge_of(const Domain& domain, float wish) {
                          static_cast<double>(count_along(size.y, edge)) *
                          static_cast<double>(count_along(size.z, edge));
     if (cells <= most_cells) return edge;
-    // In flat tanks cells are saved along two axes or one, and the cube root falls short.
+    // In flat tanks only one or two axes save cells, and the cube root is too small.
     edge *= static_cast<float>(std::max(1.01, std::cbrt(cells / most_cells)));
   }
 }
@@ -29,7 +29,7 @@ void MeetingCells::lay(const Domain& domain, float edge, float finest_support) {
   const auto count = [&](float length) { return static_cast<int>(count_along(length, edge)); };
   const Vec3 size = domain.high - domain.low;
   grid = {{domain.low, edge}, {count(size.x), count(size.y), count(size.z)}};
-  // What a length has lost to rounding cuts no cell.
+  // Rounding errors of a length must not cut a cell.
   const auto rest = [&](float length, int n) {
     const float left = length / edge - static_cast<float>(n - 1);
     return left > 0.9999f ? 1 : left;

@@ -1,6 +1,6 @@
 #pragma once
-/// Diffuse particles - spray, foam and bubbles - in a pool of their own (Ihmsen et al. 2012). Water moves
-/// them; they do not move the water.
+/// Diffuse particles - spray, foam and bubbles - in a separate pool (Ihmsen et al. 2012). Water moves them;
+/// they do not move the water.
 
 #include <cstdint>
 
@@ -10,36 +10,36 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What became of all that was emitted since the run began: emitted = alive + dissolved + dropped + left.
+/// The fate of all emitted particles since the run began: emitted = alive + dissolved + dropped + left.
 struct FoamLedger {
-  std::uint64_t emitted;    ///< that the potentials asked for
-  std::uint64_t dissolved;  ///< at the end of their time on the water
-  std::uint64_t dropped;    ///< that found no room in the pool
-  std::uint64_t left;       ///< through an outlet, or no longer finite
+  std::uint64_t emitted;    ///< requested by the potentials
+  std::uint64_t dissolved;  ///< reached the end of their lifetime on the water
+  std::uint64_t dropped;    ///< found no room in the pool
+  std::uint64_t left;       ///< left through an outlet, or became non-finite
 };
 
-/// Diffuse particles as programs count them. They are told apart by the water round them: its density there
-/// over rho_0, as if water stood behind the walls. A count of neighbours would depend on the levels.
+/// Kinds of diffuse particles. The kind follows from the surrounding water: its density divided by rho_0, as
+/// if water continued behind the walls. A count of neighbours would depend on the levels.
 struct FoamKinds {
-  static constexpr float spray = 0.2f;    ///< with less it flies
-  static constexpr float bubble = 0.75f;  ///< with more it rises
+  static constexpr float spray = 0.2f;    ///< below this: spray
+  static constexpr float bubble = 0.75f;  ///< above this: bubble
 };
 
 struct FoamPool {
-  /// x, y, z in m; w: seconds that it has left on the water, 0 or less where the place is free.
+  /// x, y, z in m; w: remaining lifetime on the water in s, 0 or less if the slot is free.
   Array<Vec4> place;
-  Array<Vec4> velocity;  ///< m/s; w: water round it, as in FoamKinds
+  Array<Vec4> velocity;  ///< m/s; w: surrounding water, as in FoamKinds
   Array<FoamLedger> ledger;
-  std::uint32_t frame = 0;  ///< a counter of the random numbers
+  std::uint32_t frame = 0;  ///< counter for the random numbers
 
-  // Scratch of one frame; lives on to keep its memory.
+  // Scratch of one frame; kept to reuse its memory.
   MeetingCells cells;
-  Array<float> approach;     ///< of each water particle, 1/s
-  Array<int> births, sums;   ///< of each water particle, and inclusive sums
-  Array<int> free, free_of;  ///< 1 = the place is free, and inclusive sums
+  Array<float> approach;     ///< per water particle, 1/s
+  Array<int> births, sums;   ///< per water particle, and inclusive sums
+  Array<int> free, free_of;  ///< 1 = the slot is free, and inclusive sums
   Scanner scanner;
 
-  /// Room for `most` diffuse particles beside `water` of water; nobody is there.
+  /// Allocates `most` empty slots for diffuse particles, and buffers for `water` particles of water.
   void begin(int most, int water);
   /// 0 without foam.
   int capacity() const { return static_cast<int>(place.size()); }
@@ -47,7 +47,7 @@ struct FoamPool {
     return place.bytes() + velocity.bytes() + ledger.bytes() + approach.bytes() + births.bytes() +
            sums.bytes() + free.bytes() + free_of.bytes() + cells.bytes();
   }
-  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     const std::size_t most = place.size();

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float earth_gravity = 9.81f;
 
-/// rho / rho_0 at a place, with the water's velocity and support weighted alike.
+/// rho / rho_0 at a position, and the weighted means of the water's velocity and support.
 struct SumWater {
   Vec3 x;
   const Vec4* velocity;
@@ -57,7 +57,7 @@ struct Move {
     velocity[slot] = with_w(v, share);
   }
 
-  /// The share with what walls and obstacles hide.
+  /// The share including the space hidden by walls and obstacles.
   SIM_FN float filled(const SumWater& round) const {
     if (!(round.share > 0)) return 0;
     Vec3 unused;
@@ -67,14 +67,14 @@ struct Move {
 
   SIM_FN Vec3 moved(Vec3 v, float share, const SumWater& round) const {
     if (share < FoamKinds::spray) {
-      // Exact for a drag that goes as the speed.
+      // Exact for a drag proportional to the speed.
       const float kept = expf(-rules.air_drag * rules.dt);
       const float fall = rules.air_drag * rules.dt > 1e-4f ? (1 - kept) / rules.air_drag : rules.dt;
       return kept * v - Vec3{0, rules.gravity * fall, 0};
     }
     const Vec3 carried = (1 / round.share) * round.momentum;
     if (share <= FoamKinds::bubble) return carried;
-    // Buoyancy of 2 g with the mass that moves along, and the drag that makes the speed of rise of it.
+    // Buoyancy of 2 g, including the added mass, and the drag that gives this speed of rise.
     const float follows = 1 - expf(-2 * earth_gravity / rules.rise * rules.dt);
     const Vec3 wish = carried + Vec3{0, rules.rise * rules.gravity / earth_gravity, 0};
     return v + follows * (wish - v);

@@ -1,5 +1,5 @@
 #pragma once
-/// How spray, foam and bubbles move (Ihmsen et al. 2012, section 4).
+/// Motion of spray, foam and bubbles (Ihmsen et al. 2012, section 4).
 
 #include "libsim/foam/emission.hpp"
 
@@ -7,9 +7,9 @@ namespace sim::SIM_BACKEND {
 
 using FoamWaterView = Reads<Column::Position, Column::Velocity>;
 
-/// Moves the diffuse particles over a frame by the water round them, lets foam age, and enters in the ledger
-/// who dissolved or left. What lies behind the walls' openings has left. Walls and obstacles hold back what
-/// comes to them; a moving one takes it along.
+/// Moves the diffuse particles over a frame with the surrounding water, ages foam, and records in the ledger
+/// which dissolved or left. Particles beyond the walls' openings have left. Walls and obstacles stop
+/// particles; a moving obstacle carries them along.
 template <class Bounds>
 void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Bounds& bounds,
                const FoamRules& rules);

@@ -1,6 +1,6 @@
 #pragma once
-/// The water round a place, found in the grid of the last substep: what is at work in a frame's end has no
-/// lists of neighbours for all, and diffuse particles never have any.
+/// The water around a point, found in the grid of the last substep: at a frame's end not all particles have
+/// neighbour lists, and diffuse particles never have them.
 
 #include "libsim/neighbors/grid.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
@@ -12,13 +12,13 @@ struct WaterRound {
   CellTable cells;
   const Vec4* position;
 
-  /// visit(j, position of j) for the water within the reach of pairs of one level with a particle of support
-  /// h at x: all that is nearer than (h + h_j) / 2, and some more.
+  /// Calls visit(j, position of j) for all water within pair reach of a particle of support h at x, that is,
+  /// closer than (h + h_j) / 2, and for some more.
   template <class Visit>
   SIM_FN void with_pairs(Vec4 x, Visit& visit) const {
     for (int l = 0; l < cells.levels; ++l) in_level(x, cells.level[l], visit);
   }
-  /// The same for all that x lies within the support of: nearer than h_j.
+  /// The same for all water whose support contains x: closer than h_j.
   template <class Visit>
   SIM_FN void that_reaches(Vec3 x, Visit& visit) const {
     for (int l = 0; l < cells.levels; ++l) in_level(with_w(x, cells.level[l].support), cells.level[l], visit);

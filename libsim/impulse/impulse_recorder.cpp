@@ -6,7 +6,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Each index adds up every `stride`th particle, so that few meet at one sum.
+/// Each index adds every `stride`th particle, to reduce contention for one sum.
 struct AddMomentum {
   const Vec4* velocity;
   const std::uint8_t* level;
@@ -29,7 +29,7 @@ struct BeginSums {
   }
 };
 
-/// What guards took since the last mark is no part of the change.
+/// Excludes momentum that guards removed since the last mark.
 struct Count {
   int change;
   const Guards* guards;

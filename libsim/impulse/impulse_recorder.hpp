@@ -1,6 +1,6 @@
 #pragma once
-/// Keeps the account of the water's momentum (sim::MomentumAccount) while a frame runs. All sums are in fixed
-/// point, so that they do not depend on the order of adding.
+/// Records the momentum account of the water (sim::MomentumAccount) while a frame runs. All sums are in fixed
+/// point, so that they do not depend on the order of addition.
 
 #include "libsim/impulse/momentum_account.hpp"
 #include "libsim/particles/particles.hpp"
@@ -8,16 +8,16 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What a change of the water's momentum is counted as.
+/// Causes to which a change of the water's momentum is booked.
 enum class Change { None, Forces, Flow, Levels, Viscosity, Effects, Inherited, Projections, Braked, count };
 enum class WallPart { MissingDensity, CoarsePressure, Clamp, count };
 
-/// A gauge in the solver's numbers: the wall's plane, and a box without end across the wall and where the
-/// gauge reaches an edge.
+/// A gauge in solver coordinates: the wall's plane, and a box that is infinite across the wall and beyond
+/// each edge that the gauge reaches.
 struct GaugeBox {
   int wall;
   Vec3 low, high;
-  /// Share of a box about `at` that lies inside.
+  /// Share of a box about `at` that lies inside the gauge.
   SIM_FN float share(Vec3 at, Vec3 half) const {
     return overlap(at.x, half.x, low.x, high.x) * overlap(at.y, half.y, low.y, high.y) *
            overlap(at.z, half.z, low.z, high.z);
@@ -27,29 +27,29 @@ struct GaugeBox {
   }
 };
 
-/// Sums of one place, a wall or a gauge: mass in m_* times way in m.
+/// Sums for a wall or a gauge: mass in m_* times displacement in m.
 struct WallSum {
   std::uint64_t parts[static_cast<int>(WallPart::count)];
   static constexpr float unit = 1.0f / (1ull << 36);
 };
 
-/// What kernels write to: the walls' sums, then the gauges'.
+/// Output of kernels: the walls' sums, then the gauges'.
 struct WallListener {
   WallSum* sums;
   const GaugeBox* gauges;
   int gauge_count;
   float finest_support;
-  /// Of a push that the projections after it take again, how often it counts in all.
+  /// Weight of a push, including its repeats in later momentum steps.
   float times;
 
-  /// `push` in m_* m along the normal, spread over a box about `at`.
+  /// Adds `push`, in m_* m along the normal, spread over a box about `at`.
   SIM_FN void add(int wall, WallPart part, Vec3 at, Vec3 half, float push) const {
     add(sums[wall], part, push);
     for (int k = 0; k < gauge_count; ++k) {
       if (gauges[k].wall == wall) add(sums[wall_count + k], part, push * gauges[k].share(at, half));
     }
   }
-  /// Of a particle of support h, as a cube of its spacing.
+  /// The same for a particle of support h, as a cube of its spacing.
   SIM_FN void add(int wall, WallPart part, Vec3 at, float h, float push) const {
     add(wall, part, at, Vec3{h / 4, h / 4, h / 4}, push);
   }
@@ -63,7 +63,8 @@ struct WallListener {
   }
 };
 
-/// A particle that a wall holds back or moves back, as Walls::hold_back and Walls::project tell it.
+/// Records a particle that a wall holds back or moves back, as reported by Walls::hold_back and
+/// Walls::project.
 struct HeardClamp {
   WallListener to;
   Vec4 particle;
@@ -74,26 +75,27 @@ struct HeardClamp {
   }
 };
 
-/// Momentum over m_*, m/s, as sums and by what changed it.
+/// Momentum divided by m_*, m/s: totals, and changes by cause.
 struct MomentumSums {
-  Momentum now, last, first;  ///< this moment, the last mark, the frame's beginning
-  Momentum taken;             ///< by guards up to the last mark
+  Momentum now, last, first;  ///< the present, the last mark, the frame's beginning
+  Momentum taken;             ///< removed by guards up to the last mark
   Momentum changed[static_cast<int>(Change::count)];
 };
 
 class ImpulseRecorder {
  public:
-  /// From now on frames are recorded.
+  /// Records all later frames.
   void begin(const std::vector<Gauge>& gauges, const Vec3d& tank_size_m, float finest_support);
   bool on() const { return on_; }
-  /// Is what walls do to places an impulse now? Not while places are mended that become no velocity.
+  /// True if position changes by walls count as impulses now. False during position corrections that do not
+  /// change velocity.
   bool listens() const { return on_ && !deaf_; }
   void listen(bool yes) { deaf_ = !yes; }
   bool deaf() const { return deaf_; }
   WallListener listener(float times = 1);
 
   void begin_frame(const Particles& particles, const Guards* guards);
-  /// Counts what has changed since the last mark; nothing for Change::None and while off.
+  /// Books the change since the last mark; does nothing for Change::None or while off.
   void mark(Change as, const Particles& particles, const Guards* guards);
   /// `rest_density` in kg/m3, `dt` of a substep.
   MomentumAccount end_frame(float rest_density, float dt);

@@ -41,7 +41,7 @@ class Coarsening {
         return;
       }
     }
-    // Above the leaves the median moves to a multiple of eight.
+    // Above the leaves the median is moved to a multiple of eight.
     const std::size_t unit = node.size() > 8 ? 8 : 1;
     const std::size_t half = (node.size() / unit + 1) / 2 * unit;
     split(node, half);
@@ -49,7 +49,7 @@ class Coarsening {
     visit(node.subspan(half));
   }
 
-  /// Brings the `half` lowest along the longest axis to the front.
+  /// Moves the `half` lowest along the longest axis to the front.
   void split(Node node, std::size_t half) const {
     const std::size_t axis = longest_axis(node);
     std::nth_element(node.begin(), node.begin() + static_cast<std::ptrdiff_t>(half), node.end(),
@@ -77,7 +77,7 @@ class Coarsening {
     return longest;
   }
 
-  /// Masses are equal, so that the mass-weighted mean is the mean. Members are added in the order of their
+  /// Masses are equal, so the mass-weighted mean is the plain mean. Members are added in the order of their
   /// ids.
   ParticleState merged(Node node, int level) const {
     std::sort(node.begin(), node.end(),

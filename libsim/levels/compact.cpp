@@ -9,11 +9,11 @@ struct CountBirths {
   const std::uint8_t* gone;
   int* births;
   SIM_FN void operator()(int i) const {
-    births[i] = gone[i] ? 0 : 1 << SplitCode::unpacked(split_code[i]).k;  // k = 0: stays
+    births[i] = gone[i] ? 0 : 1 << SplitCode::unpacked(split_code[i]).k;  // k = 0: no split
   }
 };
 
-/// sums holds the inclusive sum of births.
+/// sums contains the inclusive sum of births.
 struct ListSources {
   const int* births;
   const int* sums;
@@ -34,7 +34,7 @@ struct MarkNew {
   SIM_FN void operator()(int i) const { fresh[i] = child[i] > 0; }
 };
 
-/// Turns copies of the parent into children. The first keeps the parent's id, the others take free ones in
+/// Converts copies of the parent into children. The first keeps the parent's id, the others take free ids in
 /// order.
 struct PlaceChildren {
   const int* order;
@@ -78,7 +78,7 @@ struct GrowOlder {
   SIM_FN void operator()(int i) const { age[i] = static_cast<std::uint8_t>(age[i] < 255 ? age[i] + 1 : 255); }
 };
 
-/// Room for this frame's scratch; nothing moves once it is there.
+/// Allocates this frame's scratch; later calls do not reallocate.
 void fit_scratch(LevelState& l, LevelView p) {
   const auto room = static_cast<std::size_t>(p.capacity());
   const auto size = static_cast<std::size_t>(p.size());

@@ -1,19 +1,20 @@
 #pragma once
-/// What merging a pair and merging through a relay have in common.
+/// Code shared by merging a pair and merging through a relay.
 
 #include "libsim/levels/split_merge.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Does a particle at `other` keep `share` of the sum of radii from one of support h at `centre`?
+/// True if the distance of a particle at `other` from one of support h at `centre` is at least `share` of the
+/// sum of radii.
 SIM_FN bool clear_of(Vec4 other, Vec3 centre, float h, float share) {
   const Vec3 offset = xyz(other) - centre;
   const float least = share * (other.w + h) / 4;
   return dot(offset, offset) >= least * least;
 }
 
-/// Would a merged particle of support h at `centre` overlap a coarser one among the neighbours of particle i?
-/// (Fig. 5 d2) `level`: of its members.
+/// True if a merged particle of support h at `centre` would overlap a coarser one among the neighbours of
+/// particle i (Fig. 5 d2). `level`: level of its members.
 template <class Team>
 SIM_FN bool overlaps_coarser(const Vec4* position, const std::uint8_t* levels,
                              const ParticleNeighbours& neighbours, int i, int level, Vec3 centre, float h,
@@ -28,7 +29,7 @@ SIM_FN bool overlaps_coarser(const Vec4* position, const std::uint8_t* levels,
   return team.any(overlaps);
 }
 
-/// Makes particles of two: mass, momentum and centre of mass stay, kinetic energy can only fall.
+/// Merges two particles: mass, momentum and centre of mass are conserved, kinetic energy can only decrease.
 struct Joining {
   Vec4* position;
   Vec4* velocity;
@@ -43,7 +44,7 @@ struct Joining {
   SIM_FN Vec3 mean(const Vec4* values, int a, int b) const {
     return 0.5f * (xyz(values[a]) + xyz(values[b]));
   }
-  /// Kinetic energy that is lost when i meets an equal mass of j, J.
+  /// Kinetic energy lost when i merges with an equal mass of j, J.
   SIM_FN float loss(int j, int i) const {
     const Vec3 difference = xyz(velocity[j]) - xyz(velocity[i]);
     return 0.25f * mass_of(position[i].w, rest_density) * dot(difference, difference);
@@ -54,13 +55,13 @@ struct Joining {
     level[i] = static_cast<std::uint8_t>(now);
     history[i] = steady_history(now);
   }
-  /// One particle fewer, for so much energy.
+  /// Removes a particle and books the lost energy.
   SIM_FN void leave(int i, float lost) const {
     gone[i] = 1;
     atomic_add(&counts->merges, std::uint64_t{1});
     atomic_add(&counts->energy_lost_uj, static_cast<std::uint64_t>(1e6f * fminf(lost, 1e9f)));
   }
-  /// Two of one level meet in the middle.
+  /// Merges two particles of one level at their midpoint.
   SIM_FN void join(int kept, int left) const {
     const float lost = loss(left, kept);
     const int coarser = level[kept] + 1;

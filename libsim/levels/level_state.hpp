@@ -1,5 +1,5 @@
 #pragma once
-/// What splitting and merging keep between frames, and their rules as kernels see them (paper 3.3).
+/// State of splitting and merging between frames, and their rules in the form that kernels use (paper 3.3).
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Rules of Algorithms 1 and 2 as kernels take them; sim::Readings explains those that it gives.
+/// Rules of Algorithms 1 and 2 in the form that kernels use; sim::Readings explains the ones it defines.
 struct LevelRules {
   explicit LevelRules(const Readings& readings = {}, int levels = most_levels)
       : coarsest(levels - 1),
@@ -37,44 +37,44 @@ struct LevelRules {
   float merge_reach;
   float merge_overlap;
   bool merge_keeps_steps;
-  /// A particle wants to be coarser only when Eq. 9, without its floor, lies this far beyond its level.
+  /// A particle wants to be coarser only if Eq. 9, without its floor, exceeds its level by this much.
   float dead_band;
   float kick_filter;
   float calm_viscosity;
 
-  // What no reading of the paper decides.
-  /// Frames after which a particle without a partner looks farther, and after which finer laggards no longer
-  /// hold their neighbours back: when most have merged, a few are left without a partner in reach.
+  // Rules that the paper leaves open.
+  /// Frames after which a particle without a partner searches farther, and after which finer laggards no
+  /// longer block their neighbours: when most have merged, a few have no partner in reach.
   int looks_farther = 6, lags = 32;
-  /// Neighbours in the list, beside a wall fewer, from which a particle counts as inside the fluid. Water has
-  /// 40, its surface 29, a sheet of two layers 26: sheets and drops never merge from afar.
+  /// Number of listed neighbours, reduced beside a wall, from which a particle counts as inside the fluid.
+  /// Water has 40, its surface 29, a sheet of two layers 26: sheets and drops never merge over a distance.
   float inside_count = 30;
-  bool relays = true;  ///< the stranded may merge through a coarser particle between them
-  /// What two stranded particles become keeps this share of the sum of radii from coarser ones: they have
-  /// been refused for long, and what is left of a level among much coarser water is worth an overlap.
+  bool relays = true;  ///< particles without partner may merge through a coarser particle between them
+  /// A merged pair of such particles must keep this share of the sum of radii from coarser ones: they were
+  /// refused for long, and removing the last particles of a level among coarser water justifies some overlap.
   float stranded_overlap = 0.5f;
-  /// Share of its constraint that a particle enforces in a projection while the youngest within its support
-  /// is 0, 1, ... frames old; what overlaps after a split or a merge parts slowly, not at once.
+  /// Share of its constraint that a particle enforces in a projection while the youngest particle within its
+  /// support is 0, 1, ... frames old; overlaps after a split or a merge separate gradually.
   static constexpr int ease_frames = 5;
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
-  /// Projections of positions alone round what has just split or merged.
+  /// Number of position-only projections near particles that just split or merged.
   int partings = 3;
 };
 
-/// What happened, counted on the device since the simulation was made.
+/// Event counts on the device since the simulation was made.
 struct LevelCounts {
   std::uint64_t splits;          ///< particles that split
-  std::uint64_t born;            ///< particles that this added: 2^k - 1 each
-  std::uint64_t merges;          ///< pairs that became one particle: as many are gone
-  std::uint64_t split_deferred;  ///< particle-turns in which the throttle made a split wait
-  std::uint64_t split_at_wall;   ///< particle-turns in which no children fitted between the walls
-  std::uint64_t split_no_room;   ///< particle-turns in which the capacity refused a split
-  std::uint64_t merge_overlap;   ///< particle-turns whose every partner would have overlapped a larger one
-  std::uint64_t merge_step;      ///< particle-turns in which a finer neighbour forbade a merge
+  std::uint64_t born;            ///< particles added by splits: 2^k - 1 each
+  std::uint64_t merges;          ///< pairs merged into one particle, each removing one
+  std::uint64_t split_deferred;  ///< particle-turns in which the throttle delayed a split
+  std::uint64_t split_at_wall;   ///< particle-turns in which the children did not fit between the walls
+  std::uint64_t split_no_room;   ///< particle-turns in which a split exceeded the capacity
+  std::uint64_t merge_overlap;   ///< particle-turns in which any merge would overlap a larger particle
+  std::uint64_t merge_step;      ///< particle-turns in which a finer neighbour prevented a merge
   std::uint64_t energy_lost_uj;  ///< kinetic energy lost in merges, 1e-6 J
 };
 
-/// A sphere in which particles want one level and outside which they want another: targets for tests.
+/// A sphere with one target level inside and another outside: targets for tests.
 struct TargetSphere {
   Vec3 centre{};
   float radius = 0;
@@ -87,40 +87,40 @@ using NewLevelsView = ColumnView<columns(Column::Level),
 struct LevelState {
   LevelRules rules;
   TargetSphere forced;
-  std::uint32_t frame = 0;  ///< a counter of the random numbers
+  std::uint32_t frame = 0;  ///< counter for the random numbers
   LevelTurns turns;         ///< of saliency, splits and merges
-  bool changed = false;     ///< something split or merged this frame
+  bool changed = false;     ///< a particle split or merged in this frame
   Array<LevelCounts> counts;
-  /// Target, History, Age and Waiting of fresh particles; called once when a run begins.
+  /// Initialises Target, History, Age and Waiting; called once when a run begins.
   void begin(NewLevelsView particles);
 
-  // Scratch of one frame; lives on to keep its memory.
+  // Scratch of one frame; kept to reuse its memory.
   Scanner scanner;
   Sorter sorter;
-  Array<std::uint8_t> status, status_next;  ///< of splits, while they are chosen
-  Array<std::uint8_t> split_code;           ///< SplitCode, packed; 0 = stays
+  Array<std::uint8_t> status, status_next;  ///< of splits, during their selection
+  Array<std::uint8_t> split_code;           ///< packed SplitCode; 0 = no split
   Array<std::uint8_t> wish;                 ///< 1 = wants to merge
   Array<std::uint8_t> gone;                 ///< 1 = merged into another
   Array<std::uint8_t> graded;               ///< targets of the next sweep
-  Array<int> partner;                       ///< of a merge, as proposed
-  Array<int> births;                        ///< particles that one becomes
-  Array<int> places;          ///< of these after the frame, as inclusive sums; before that partners that hold
-  Array<int> order, child;    ///< a new particle's source, and which of its children it is
-  Array<int> flags, sums;     ///< who splits, and how many up to there
-  Array<std::uint64_t> keys;  ///< of splits by priority
-  Array<int> free_ids;        ///< ascending
-  Array<int> beside, beside_count;  ///< slots of those near fresh particles, and how many there are
-  // The two whom a relay bids for stand where counts of births come later in the frame, and what the best bid
-  // is worth where the frame's splits were.
+  Array<int> partner;                       ///< proposed merge partner
+  Array<int> births;                        ///< number of particles that replace each one
+  Array<int> places;                ///< inclusive sums of births; before that the mutual merge partners
+  Array<int> order, child;          ///< source of each new particle, and its child index
+  Array<int> flags, sums;           ///< flags of particles that split, and their prefix sums
+  Array<std::uint64_t> keys;        ///< keys of splits for sorting by priority
+  Array<int> free_ids;              ///< ascending
+  Array<int> beside, beside_count;  ///< slots near fresh particles, and their number
+  // The two particles for which a relay bids share memory with the birth counts, which are written later in
+  // the frame; the best bids share memory with the split keys, which are no longer needed.
   Array<int>& first_bid() { return births; }
   Array<int>& second_bid() { return places; }
   Array<std::uint64_t>& taken_bids() { return keys; }
 };
 
-/// Two bits a frame, the newest lowest: a particle that has wanted `level` for four frames.
+/// Two bits per frame, the newest lowest: the history of a particle whose target was `level` for four frames.
 SIM_FN std::uint8_t steady_history(int level) { return static_cast<std::uint8_t>(0x55 * level); }
 
-/// The least target of the last four frames.
+/// The smallest target of the last four frames.
 SIM_FN int least_of_history(std::uint8_t history) {
   int least = 3;
   for (int back = 0; back < 4; ++back) {

@@ -6,13 +6,13 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Steps ages and histories, and finds who wants to be coarser and has wanted it for four frames; a
-/// target counts for all frames since the turn before.
+/// Updates ages and histories, and finds the particles that want to be coarser and have wanted it for four
+/// frames; a target counts for all frames since the previous turn.
 struct Remember {
   const std::uint8_t* level;
   const std::uint8_t* target;
   const std::uint8_t* split_code;
-  const std::uint8_t* active;  ///< nullptr when everyone was solved
+  const std::uint8_t* active;  ///< nullptr if all were solved
   std::uint8_t* history;
   std::uint8_t* age;
   std::uint8_t* waiting;
@@ -33,7 +33,7 @@ struct Remember {
   }
 };
 
-/// Drops the wish where a merge would leave a neighbour two levels finer, now or soon.
+/// Withdraws the wish if a merge would leave a neighbour two levels finer, now or soon.
 struct KeepSteps {
   const Vec4* position;
   const std::uint8_t* level;
@@ -52,7 +52,7 @@ struct KeepSteps {
     out[i] = held ? 0 : wish[i];
     if (held) atomic_add(&counts->merge_step, std::uint64_t{1});
   }
-  /// Among this lane's neighbours.
+  /// Checks this lane's neighbours.
   template <class Team>
   SIM_FN bool finer_beside(int i, Team team) const {
     const Vec4 self = position[i];
@@ -64,7 +64,7 @@ struct KeepSteps {
       if (!finer && target[j] >= level[i]) continue;
       const Vec4 other = position[j];
       const Vec3 offset = xyz(self) - xyz(other);
-      // As wide as it will see once it is coarser.
+      // The support it will have once it is coarser.
       const float h = 0.5f * (supports.h[level[i] + 1] + other.w);
       if (dot(offset, offset) < h * h) return true;
     }
@@ -72,7 +72,7 @@ struct KeepSteps {
   }
 };
 
-/// A pair in the order in which pairs are preferred: the nearer, then by chance; the same from both sides.
+/// Order of preference of pairs: the nearer first, then random; the same from both sides.
 struct PairKey {
   float distance2;
   std::uint32_t chance;
@@ -88,7 +88,7 @@ SIM_FN PairKey pair_key(Vec4 a, Vec4 b, int id_a, int id_b) {
 }
 SIM_FN Vec3 middle(Vec4 a, Vec4 b) { return 0.5f * (xyz(a) + xyz(b)); }
 
-/// A neighbour as a partner: by the pair's key, then by its place in the list.
+/// A neighbour as a partner: ordered by the pair's key, then by its index in the list.
 struct Candidate {
   PairKey key;
   int place;  ///< -1: none
@@ -98,7 +98,7 @@ struct Candidate {
   }
 };
 
-/// Each wishing particle names the nearest partner of its level with which it may merge.
+/// Each wishing particle proposes the nearest partner of its level with which it may merge.
 template <class Boundary>
 struct Propose {
   const Vec4* position;
@@ -120,7 +120,7 @@ struct Propose {
     if (team.rank() == 0) partner[i] = found;
   }
 
-  /// Tries one after the other, the nearest first.
+  /// Tries candidates one by one, the nearest first.
   template <class Team>
   SIM_FN int nearest(int i, Team team) const {
     const float reach = 2 * rules.merge_reach * supports.h[level[i] + 1] / 4;
@@ -141,8 +141,8 @@ struct Propose {
     return -1;
   }
 
-  /// Members lie at most merge_reach radii of the new particle from its centre, but for those who look
-  /// farther.
+  /// Members are at most merge_reach radii of the new particle from its centre, except for particles that
+  /// search farther.
   template <class Team>
   SIM_FN Candidate first_after(const Candidate& tried, int i, float reach2, Team team) const {
     const Vec4 self = position[i];
@@ -175,7 +175,7 @@ struct Propose {
   }
 };
 
-/// Of mutual proposals whose new particles would overlap each other, the first is kept.
+/// Of mutual proposals whose new particles would overlap each other, the first in order is kept.
 struct KeepApart {
   const Vec4* position;
   const std::uint8_t* level;
@@ -196,7 +196,7 @@ struct KeepApart {
     }
     if (team.rank() == 0) out[i] = kept;
   }
-  /// Does a pair that comes first, with one of a member's neighbours that are this lane's, need the room?
+  /// True if an earlier pair, with one of a member's neighbours in this lane, needs the space.
   template <class Team>
   SIM_FN bool early_beside(int i, int j, int member, Team team) const {
     const PairKey own = pair_key(position[i], position[j], id[i], id[j]);

@@ -4,14 +4,15 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// What a relay's bid is worth to a stranded particle, which takes the largest: by chance, drawn anew each
-/// frame. Never 0.
+/// Worth of a relay's bid to a stranded particle, which takes the largest: random, drawn anew each frame.
+/// Never 0.
 SIM_FN std::uint64_t worth_of(int relay_id, std::uint32_t frame) {
   const auto id = static_cast<std::uint32_t>(relay_id);
   return ~(static_cast<std::uint64_t>(random_bits(id, frame, 0x3e1u)) << 32 | id);
 }
 
-/// A stranded neighbour of a relay: the coarsest, then the nearest, then by its place in the list.
+/// A stranded neighbour of a relay, ordered by the coarsest level, then distance, then index in the list.
+/// Stranded: waited for long without a merge partner.
 struct Stranded {
   int level;
   float distance2;
@@ -22,10 +23,10 @@ struct Stranded {
   }
 };
 
-/// Two members of a merge that find each other through a coarser particle between them, so that the last few
-/// of a level, which are too far apart for pairs, need not stay behind. One of twice their mass gives each of
-/// them a half: three particles of masses 1, 2, 1 become two of mass 2, and no step is longer than a merge's.
-/// A heavier one only makes them known to each other.
+/// Two stranded particles merge through a coarser particle between them, the relay, so that the last few of a
+/// level, which are too far apart for pairs, are not left behind. A relay of twice their mass gives each of
+/// them a half: three particles of masses 1, 2, 1 become two of mass 2, and no displacement is longer than in
+/// a merge. A heavier relay only pairs them.
 template <class Boundary>
 struct Bid {
   const Vec4* position;
@@ -46,11 +47,11 @@ struct Bid {
   LevelSupports supports;
   std::uint32_t frame;
 
-  /// A particle that has waited without a partner and is still there.
+  /// True for a particle that waited without a partner and still exists.
   SIM_FN bool stranded(int i) const {
     return wish[i] && !gone[i] && age[i] > 0 && waiting[i] >= rules.looks_farther;
   }
-  /// The relay names its nearest two stranded neighbours of one level that may join.
+  /// The relay selects its nearest two stranded neighbours of one level that may join.
   template <class Team>
   SIM_FN void operator()(int j, Team team) const {
     int a = -1;
@@ -68,13 +69,13 @@ struct Bid {
     atomic_max(&taken[a], worth);
     atomic_max(&taken[b], worth);
   }
-  /// The nearest of the coarsest level that has any; -1: none.
+  /// The nearest one of the coarsest level that has any; -1: none.
   template <class Team>
   SIM_FN int nearest(int j, Team team) const {
     const Stranded found = first_after({most_levels, 0, -1}, j, -1, team);
     return found.place < 0 ? -1 : neighbours(j, found.place);
   }
-  /// The nearest that may join `other`, which is of its level; -1: none.
+  /// The nearest one that may join `other` and has its level; -1: none.
   template <class Team>
   SIM_FN int second_beside(int j, int other, Team team) const {
     for (Stranded tried{most_levels, 0, -1};;) {
@@ -102,9 +103,10 @@ struct Bid {
     }
     return team.first(best);
   }
-  /// Does the relay give each of such members a half of itself?
+  /// True if the relay gives each of such members a half of itself.
   SIM_FN bool halves(int j, int member) const { return level[member] + 1 == level[j]; }
-  /// A merged particle between them keeps from the relay and from its neighbours what a merge keeps.
+  /// True if a merged particle between them keeps the distance from the relay and its neighbours that a merge
+  /// requires.
   template <class Team>
   SIM_FN bool free_between(int j, int a, int b, Team team) const {
     const Vec3 centre = 0.5f * (xyz(position[a]) + xyz(position[b]));
@@ -113,7 +115,7 @@ struct Bid {
            !overlaps_coarser(position, level, neighbours, j, level[a], centre, h, rules.stranded_overlap,
                              team);
   }
-  /// The two new particles lie half the distance of the stranded ones from each other.
+  /// True if the two new particles, at half the distance of the stranded ones, are far enough apart.
   SIM_FN bool apart(int a, int b, float h) const {
     const Vec3 offset = xyz(position[a]) - xyz(position[b]);
     const float least = 2 * rules.merge_overlap * 2 * h / 4;
@@ -135,18 +137,18 @@ struct JoinHalves {
     if (a < 0) return;
     const std::uint64_t worth = worth_of(id[j], frame);
     if (taken[a] != worth || taken[b] != worth) return;
-    // A relay that has taken a bid itself may be changed by it at this moment.
+    // A relay that accepted a bid itself may be modified by it at this moment.
     if (taken[j]) return;
     const int kept = id[a] < id[b] ? a : b;
     const int left = kept == a ? b : a;
     const std::uint8_t* level = joining.level;
     if (level[a] + 1 < level[j]) {
-      joining.join(kept, left);  // the relay only made them known to each other
+      joining.join(kept, left);  // the relay only pairs them
     } else {
       share(j, kept, left);
     }
   }
-  /// Each takes a half of the relay, which goes on as one of the two.
+  /// Each takes a half of the relay; the relay's index stores one of the two results.
   SIM_FN void share(int j, int kept, int left) const {
     const Vec4* x = joining.position;
     const Vec4* v = joining.velocity;

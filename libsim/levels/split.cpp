@@ -6,11 +6,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Those that the last frame did not solve are paused (Alg. 3 line 16).
+/// Particles that the last frame did not solve are paused (Alg. 3 line 16).
 enum Status : std::uint8_t { keeps, paused, wants, splits };
 
-/// Who splits first: those with the most levels to go, which the most salient ones have; then by chance,
-/// newly drawn each frame.
+/// Priority of splits: first the particles with the most levels to go, which are the most salient; then
+/// random, drawn anew each frame.
 SIM_FN std::uint64_t priority(int k, int id, std::uint32_t frame) {
   const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id), frame, 0x5b1u);
   return static_cast<std::uint64_t>(k) << 62 | static_cast<std::uint64_t>(chance >> 2) << 32 |
@@ -28,8 +28,8 @@ struct MarkSplits {
   }
 };
 
-/// One round of choosing particles so that no two within one spacing split: those that come before all others
-/// within it. What a round leaves undecided the next may choose.
+/// One round of choosing particles so that no two within one spacing split: it chooses those with the highest
+/// priority within one spacing. Undecided ones may be chosen in the next round.
 struct ChooseApart {
   const Vec4* position;
   const std::uint8_t* level;
@@ -69,7 +69,8 @@ struct ChooseApart {
 
 constexpr int rounds = 3;
 
-/// Finds a rotation that keeps all children inside the walls, for k as wished or, failing that, smaller.
+/// Finds a rotation that keeps all children inside the walls, for the wanted k or, failing that, a smaller
+/// one.
 template <class Boundary>
 struct FitChildren {
   const Vec4* position;
@@ -141,7 +142,7 @@ struct CountChildren {
   }
 };
 
-/// Refuses those beyond the frame's share, and those whose children would find no room.
+/// Refuses splits beyond the frame's share, and splits whose children exceed the capacity.
 struct Refuse {
   const int* order;
   const int* extra_sums;
@@ -156,7 +157,7 @@ struct Refuse {
   }
 };
 
-/// Keeps the first `most` by priority, as far as there is room.
+/// Keeps the first `most` by priority, within the capacity.
 void limit(LevelState& l, LevelView p, int chosen, int most, int room) {
   l.keys.resize(static_cast<std::size_t>(chosen));
   l.order.resize(static_cast<std::size_t>(chosen));

@@ -13,19 +13,20 @@ using LevelView =
                columns(Column::Position, Column::Velocity, Column::Id, Column::Level, Column::History,
                        Column::Age, Column::Waiting)>;
 
-/// The fluid as splitting and merging see it.
+/// The fluid as input of splitting and merging.
 struct LevelFluid {
   LevelView particles;
   ParticleNeighbours neighbours;
-  const std::uint8_t* last_active;  ///< who was solved in the last frame; nullptr when everyone was
-  Solids solids;                    ///< walls, and obstacles where there are any
+  const std::uint8_t* last_active;  ///< flags of the particles solved in the last frame; nullptr if all were
+  Solids solids;                    ///< walls, and obstacles if there are any
   LevelSupports supports;
   float rest_density;  ///< kg/m3
-  float wall_gap;      ///< nearest distance to a wall, as a share of d
+  float wall_gap;      ///< minimum distance to a wall, as a share of d
 };
 
-/// Is the particle surrounded by water, or by water and walls? Counts its neighbours as if all were of its
-/// level: one that is seen from farther away because it is coarser fills more room and counts for less mass.
+/// True if the particle is surrounded by water, or by water and walls. Counts its neighbours as if all were
+/// of its level: a coarser one is listed at a larger distance, and so counts as more than one, but less than
+/// its mass ratio.
 template <class Boundary, class Team>
 SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const ParticleNeighbours& neighbours,
                          int i, float least, Team team) {
@@ -42,22 +43,23 @@ SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const Part
   return team.sum(count) >= least * (1 - walls.missing(xyz(self), self.w, gradient));
 }
 
-/// Is this place free of obstacles? Between two particles no wall can be.
+/// True if this position is outside all obstacles. No wall can be between two particles.
 SIM_FN bool free_of_bodies(const Walls&, Vec3) { return true; }
 SIM_FN bool free_of_bodies(const Solids& solids, Vec3 x) { return solids.nearest_body(x) > 0; }
 
-/// Fills split_code (0 = stays). False when nobody splits.
+/// Fills split_code (0 = no split). Returns false if no particle splits.
 bool choose_splits(LevelState& levels, const LevelFluid& fluid);
-/// Merges pairs in place: the particle with the lower id becomes the pair, the other is marked in `gone`.
+/// Merges pairs in place: the particle with the lower id becomes the merged one, the other is marked in
+/// `gone`.
 void merge_pairs(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
-/// Merges what has waited without a partner through a coarser particle between two such.
+/// Merges particles that waited without a partner, through a coarser particle between two of them.
 void relay_stranded(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
-/// Makes the children and closes the gaps: the number of particles changes. `particles` are the fluid's.
+/// Creates the children and closes the gaps: the number of particles changes. `particles` are the fluid's.
 void compact(LevelState& levels, const LevelFluid& fluid, Particles& particles, bool any_split);
 
-/// A frame in which nothing splits or merges.
+/// Updates ages in a frame without splits and merges.
 void grow_older(LevelState& levels, const LevelView& particles);
-/// A whole frame's splits and merges; levels.changed says whether there were any.
+/// All splits and merges of a frame; levels.changed is true if there were any.
 void split_and_merge(LevelState& levels, const LevelFluid& fluid, Particles& particles);
 
 }  // namespace sim::SIM_BACKEND

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the children of a split lie (Algorithm 1): on 2^(k-1) diagonals of a randomly turned cube.
+/// Positions of the children of a split (Algorithm 1): on 2^(k-1) diagonals of a randomly rotated cube.
 
 #include "libsim/levels/level_state.hpp"
 #include "libsim/particles/kernels.hpp"
@@ -7,7 +7,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// How a particle splits: into 2^k children, turned by the `attempt`-th random rotation.
+/// Describes a split: into 2^k children, rotated by the `attempt`-th random rotation.
 struct SplitCode {
   int k, attempt;
   static constexpr int attempts = 4;
@@ -40,8 +40,8 @@ SIM_FN Turn random_turn(int id, std::uint32_t frame, int attempt) {
           {2 * (qx * qz - qy * qw), 2 * (qy * qz + qx * qw), 1 - 2 * (qx * qx + qy * qy)}};
 }
 
-/// Offset of child c, 0 <= c < 2^k, from a parent of radius r. Children 2 n and 2 n + 1 lie opposite each
-/// other, so that the centre of mass and, with equal velocities, the angular momentum stay.
+/// Offset of child c, 0 <= c < 2^k, from a parent of radius r. Children 2 n and 2 n + 1 are opposite each
+/// other, so that the centre of mass and, with equal velocities, the angular momentum are conserved.
 SIM_FN Vec3 child_offset(const Turn& turn, const LevelRules& rules, SplitCode code, float radius, int c) {
   const int diagonal = c / 2;
   const float sign = c % 2 ? -1.0f : 1.0f;

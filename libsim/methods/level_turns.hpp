@@ -1,18 +1,18 @@
 #pragma once
-/// In which frames levels are chosen: the turns of saliency, splits and merges.
+/// Selects the frames that update levels: the turns of saliency, splits and merges.
 
 #include "libsim/methods/preset.hpp"
 
 namespace sim {
 
-/// Splits and merges stir water, and are seen: a turn in each frame costs time and makes worse pictures than
-/// one in every fourth (docs/solver_notes.md).
+/// Splits and merges stir the water, visibly: a turn in each frame costs time and gives worse pictures than
+/// one in every fourth frame (docs/solver_notes.md).
 struct LevelTurns {
-  bool due = true;       ///< the frame that runs has one; stays so where a test gives targets
-  int frames_since = 0;  ///< the last one; 0: there was none
-  int in_a_row = 0;      ///< frames to come that have one, whatever the period is
+  bool due = true;       ///< the present frame is a turn; always true if a test gives targets
+  int frames_since = 0;  ///< frames since the last turn; 0: there was none
+  int in_a_row = 0;      ///< number of coming frames that are turns, whatever the period
 
-  /// Would the coming frame have one, when a gaze has turned so far since the last?
+  /// True if the coming frame is a turn, given the angle by which a gaze has turned since the last one.
   bool would_be(const Readings& r, double turned_deg) const {
     return frames_since == 0 || in_a_row > 0 || frames_since >= r.levels_period_frames ||
            turned_deg > r.saccade_deg;

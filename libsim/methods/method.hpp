@@ -13,14 +13,14 @@ enum class MethodKind { LoRes, HiRes, FovFluid, Ours, OursTsp };
 /// Levels that a particle's mass can have: 2^0 .. 2^3 times m_*.
 inline constexpr int most_levels = 4;
 
-/// What sets the level that a particle should have.
+/// Source of the level that a particle should have.
 enum class TargetSource {
   None,     ///< all particles keep one level
   Gaze,     ///< finest in the fovea, coarsest outside, a band between (FovFluid-like, after [42])
   Saliency  ///< Eq. 1-9
 };
 
-/// A method as a choice of what runs; no method has code of its own.
+/// A method as a selection of stages; no method has code of its own.
 struct MethodTraits {
   MethodKind kind{};
   const char* name = "";
@@ -43,11 +43,11 @@ std::string method_name(MethodKind method);
 /// "LoRes, HiRes, FovFluid, Ours or Ours-TSp", for help texts and errors.
 std::string method_names();
 
-/// "16k" = 16,384; "4096" = 4,096. The paper's n_*: particles when all are coarsest. 64 .. 4M, else
+/// "16k" = 16,384; "4096" = 4,096. The paper's n_*: number of particles if all are coarsest. 64 .. 4M, else
 /// base::Error.
 std::int64_t parse_n_star(std::string_view text);
 
-/// Particles at frame 0: n_* for LoRes, 8 n_* for the others. LoRes and HiRes hold them at every step.
+/// Particles at frame 0: n_* for LoRes, 8 n_* for the others. LoRes and HiRes keep this number in all frames.
 std::int64_t particle_count(MethodKind method, std::int64_t n_star);
 
 }  // namespace sim

@@ -1,5 +1,6 @@
 #pragma once
-/// Whom the particles of one cell look through, gathered once for all of them; the CPU's way to lists.
+/// Neighbour candidates of the particles of one cell, gathered once for all of them; used to build lists on
+/// the CPU.
 
 #ifndef SIM_CUDA
 
@@ -10,7 +11,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// 1 << k, read as a row: not every processor has lanes that shift by their own number.
+/// 1 << k as a table: not every processor has per-lane variable shifts.
 struct BitRow {
   std::uint32_t of[32];
   constexpr BitRow() : of{} {
@@ -19,11 +20,12 @@ struct BitRow {
 };
 inline constexpr BitRow bit_row{};
 
-/// The particles of a window of one grid, a row for each coordinate, so that distances are taken in lanes.
+/// The particles of a window of one grid, one row per coordinate, so that distances are computed in SIMD
+/// lanes.
 class Candidates {
  public:
-  /// Those that can be near `self`, in ascending order. What the last call gathered is kept where it is the
-  /// same: particles follow each other by cells. `build`: differs where cells or places do.
+  /// Gathers the particles that can be near `self`, in ascending order. Reuses the last result for the same
+  /// window: consecutive particles share cells. `build`: changes whenever cells or positions change.
   void gather(const CellTable& cells, int l, Vec4 self, float margin, const Vec4* predicted,
               std::uint64_t build) {
     const LevelCells& grid = cells.level[l];
@@ -60,7 +62,7 @@ class Candidates {
     rows_ = static_cast<int>(rows);
   }
 
-  /// hear(j) for all within the root of `square`, m2, of a place.
+  /// Calls hear(j) for all particles closer than sqrt(square) to `at`; square in m2.
   template <class Hear>
   void each_near(Vec4 at, float square, Hear hear) const {
     for (int first = 0; first < rows_; first += at_once) {

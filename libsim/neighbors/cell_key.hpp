@@ -7,8 +7,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Key fields from the lowest: x 22 bits, z 22, y 18, level 2. Cells +-2^21 (x, z) and +-2^17 (y) round the
-/// origin.
+/// Key fields from the lowest bits: x 22 bits, z 22, y 18, level 2. Cells within +-2^21 (x, z) and +-2^17 (y)
+/// of the origin.
 struct CellCoordinates {
   int level, x, y, z;
 };
@@ -28,7 +28,7 @@ SIM_FN CellCoordinates cell_of_key(std::uint64_t key) {
           static_cast<int>(key >> 22 & mask22) - cell_limit_xz};
 }
 
-/// The first of keys[0 .. count) that is not less than `key`.
+/// The first index in keys[0 .. count) whose key is not less than `key`.
 SIM_FN int lower_bound(const std::uint64_t* keys, int count, std::uint64_t key) {
   int first = 0;
   while (count > 0) {

@@ -1,7 +1,7 @@
 #pragma once
-/// Cells over the tank in which particles look for neighbours: one grid for each mass level, all in one table
-/// that says where each cell's particles begin. The outermost cells of a grid hold everything beyond them, so
-/// that a place far outside costs no memory and loses no pair.
+/// Cells over the tank for the neighbour search: one grid per mass level, all in one table that holds the
+/// first particle of each cell. The outermost cells of a grid hold everything beyond them, so that far
+/// positions cost no memory and no pair is lost.
 
 #include "libsim/particles/cells.hpp"
 #include "libsim/particles/particles.hpp"
@@ -13,61 +13,61 @@ struct IndexRange {
   int begin, end;
 };
 
-/// The grid of one level. Lines of cells along x lie one after another, then along z, then along y.
+/// The grid of one level. Cells lie in lines along x; lines are ordered along z, then along y.
 struct LevelCells {
   float support;    ///< h of its particles, m
   float edge;       ///< along y and z, m
   float inverse;    ///< 1 / edge
   float inverse_x;  ///< the same along x, where cells may be shorter
   int nx, ny, nz;
-  int first;  ///< of its cells in the table
+  int first;  ///< index of its first cell in the table
 
   SIM_FN int size() const { return nx * ny * nz; }
-  /// The cell of a place, from the low corner, among the grid's own.
+  /// The cell of a position relative to the low corner, as an index within this grid.
   SIM_FN int of(Vec3 at) const { return (along(at.y, ny) * nz + along(at.z, nz)) * nx + along_x(at.x); }
-  /// The cell along y or z of a place `x` from the low corner: 1 .. count - 2 inside the domain.
+  /// The cell along y or z at distance `x` from the low corner: 1 .. count - 2 inside the domain.
   SIM_FN int along(float x, int count) const { return floor_within(x * inverse, -1, count - 2) + 1; }
   SIM_FN int along_x(float x) const { return floor_within(x * inverse_x, -1, nx - 2) + 1; }
-  /// x, or the nearest place to it that is not beyond the outermost cells' nominal sides.
+  /// x clamped to the nominal outer sides of the outermost cells.
   SIM_FN float nominal(float x, int count) const {
     return at_most(at_least(x, -edge), static_cast<float>(count - 1) * edge);
   }
-  /// At most how far x, a nominal place, lies outside the slab of a cell along y or z.
+  /// Upper bound on the distance of x, a nominal position, from the slab of a cell along y or z.
   SIM_FN float gap(float x, int cell) const {
     const float low = static_cast<float>(cell - 1) * edge - x;
     return at_least(at_least(low, -(low + edge)), 0.0f);
   }
 };
 
-/// As kernels see it.
+/// The table in the form that kernels use.
 struct CellTable {
   LevelCells level[LevelSupports::most];
   int levels;        ///< in use
   Vec3 low;          ///< corner of the domain
-  const int* begin;  ///< of each cell's particles, and after the last cell the number of particles
-  /// Blocks as wide as any pair reaches, and the levels that particles of a block can meet, a bit each: most
-  /// of the water has one or two. nullptr where they are not known (Grid::finds_met).
+  const int* begin;  ///< index of each cell's first particle; one more entry with the number of particles
+  /// Blocks as wide as the reach of any pair, and a bit mask of the levels that particles of a block can
+  /// meet: most of the water has one or two. nullptr if unknown (Grid::finds_met).
   LevelCells blocks;
   const std::uint8_t* met;
 
   SIM_FN int cell(int l, Vec4 p) const { return level[l].first + level[l].of(xyz(p) - low); }
-  /// Can a particle have neighbours of this level?
+  /// True if a particle can have neighbours of this level.
   SIM_FN bool meets(Vec4 p, int l) const {
     if (met) return met[blocks.of(xyz(p) - low)] >> l & 1;
     return begin[level[l].first] < begin[level[l].first + level[l].size()];
   }
 
-  /// Where a particle looks in the grid of one level: at the lines of cells from (first_y, first_z) to
-  /// (last_y, last_z). `at`: from the low corner.
+  /// The search window of a particle in the grid of one level: lines of cells from (first_y, first_z) to
+  /// (last_y, last_z). `at`: relative to the low corner.
   struct Window {
     Vec3 at;  ///< y and z are nominal
     float reach;
     int first_y, last_y, first_z, last_z;
   };
-  /// What holds all within margin x (h + h_other) / 2.
+  /// The window that contains all particles within margin x (h + h_other) / 2.
   SIM_FN Window window(const LevelCells& grid, Vec4 self, float margin) const {
     const Vec3 at = xyz(self) - low;
-    // Beyond what rounding of places, distances and cells can hide.
+    // Larger than the rounding errors of positions, distances and cells.
     const float reach = 1.0001f * (0.5f * margin * (self.w + grid.support)) +
                         1e-6f * (fabsf(at.x) + fabsf(at.y) + fabsf(at.z));
     return {{at.x, grid.nominal(at.y, grid.ny), grid.nominal(at.z, grid.nz)},
@@ -88,8 +88,8 @@ struct CellTable {
     return {begin[cell + grid.along_x(look.at.x - half)], begin[cell + grid.along_x(look.at.x + half) + 1]};
   }
 
-  /// visit(begin, end) of runs of particles, in ascending order, that hold all within margin x (h + h_other)
-  /// / 2 of a particle, and itself.
+  /// Calls visit(begin, end) for runs of particles, in ascending order, that contain the particle itself and
+  /// all within margin x (h + h_other) / 2 of it.
   template <class Visit>
   SIM_FN void around(Vec4 self, float margin, Visit visit) const {
     for (int l = 0; l < levels; ++l) {

@@ -9,7 +9,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Counts the particles of each cell, one place later than the cell, and notes who came as which.
+/// Counts the particles of each cell, in the entry after the cell's, and stores each particle's arrival
+/// number.
 struct CountCells {
   const Vec4* predicted;
   const std::uint8_t* level;  ///< nullptr: one level
@@ -35,7 +36,7 @@ struct MarkPresent {
   }
 };
 
-/// Particles of a block meet what is in it and in the blocks beside it.
+/// Particles of a block can meet the levels in it and in the adjacent blocks.
 struct Meet {
   const int* present;
   LevelCells blocks;
@@ -66,7 +67,7 @@ struct Place {
   SIM_FN void operator()(int i) const { placed[begin[cell_of[i]] + arrival[i]] = i; }
 };
 
-/// Orders the particles within each cell by id, so that the result does not depend on the order before.
+/// Sorts the particles within each cell by id, so that the result does not depend on the previous order.
 struct OrderWithinCells {
   const int* begin;
   const int* cell_of;
@@ -74,7 +75,7 @@ struct OrderWithinCells {
   const int* id;
   int* order;
 
-  /// In crowded cells (all in one cell is a test case) counting would be quadratic.
+  /// In crowded cells (all in one cell is a test case) pairwise counting would be quadratic.
   static constexpr int crowd = 64;
 
   SIM_FN bool before(int a, int b) const { return id[a] < id[b] || (id[a] == id[b] && a < b); }
@@ -116,7 +117,7 @@ struct OrderWithinCells {
   }
 };
 
-/// Cells of `edge`, and along x of `edge_x`, over the domain, with the outermost ones.
+/// Cells of `edge`, and along x of `edge_x`, over the domain, plus the outermost cells.
 LevelCells cells_of(Vec3 size, double edge, double edge_x, float support) {
   const auto count = [](float length, double of_one) {
     const double inside = std::ceil(std::max(static_cast<double>(length), 0.0) / of_one);
@@ -133,7 +134,7 @@ LevelCells cells_of(Vec3 size, double edge, double edge_x, float support) {
           .first = 0};
 }
 
-/// Water splashes above the rim; what is higher shares the uppermost cells.
+/// Water splashes above the rim; higher particles share the uppermost cells.
 constexpr float headroom = 1.5f;
 
 }  // namespace
@@ -165,7 +166,7 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
     }
     if (sum > static_cast<double>(most)) continue;
     const float widest = shape_.level[shape_.levels - 1].support;
-    // Beyond what rounding hides; see CellTable::window.
+    // Larger than rounding errors; see CellTable::window.
     const double block = wider * 1.001 * static_cast<double>(margin * widest) +
                          1e-5 * static_cast<double>(size.x + size.y + size.z);
     shape_.blocks = cells_of(size, block, block, widest);
@@ -186,7 +187,7 @@ void Grid::find_met(Particles& particles) {
 void Grid::sort(Particles& particles, bool by_level) {
   const Reads<Column::Predicted, Column::Level, Column::Id> p(particles);
   const int n = particles.size();
-  // Once for all sizes to come.
+  // Allocate once for all later sizes.
   const auto room = static_cast<std::size_t>(particles.capacity());
   for (auto* column : {&cell_of_, &placed_, &order_}) {
     column->reserve(room);
@@ -194,7 +195,7 @@ void Grid::sort(Particles& particles, bool by_level) {
   }
   begin_.resize(static_cast<std::size_t>(size()) + 1);
   begin_.zero();
-  // Who came as which is done with when the order is written.
+  // The arrival numbers are no longer needed when the order is written.
   int* const arrival = order_.data();
   for_each("count cells", n,
            CountCells{p.predicted(), by_level ? p.level() : nullptr, shape_, begin_.data(), cell_of_.data(),

@@ -8,9 +8,9 @@ namespace sim::SIM_BACKEND {
 class Grid {
  public:
   /// Sorts particles of one support by the cell of their predicted positions and permutes their columns. The
-  /// order does not depend on the order before, as long as no two share an id.
+  /// result does not depend on the previous order if ids are unique.
   void build(Particles& particles, float margin, const Domain& domain, float support);
-  /// The same for mixed levels, whose supports are the given ones.
+  /// The same for mixed levels with the given supports.
   void build(Particles& particles, float margin, const Domain& domain, const LevelSupports& supports);
 
   CellTable cells() const {
@@ -21,29 +21,29 @@ class Grid {
   }
   /// Cells that hold particles, read back from the device (a synchronisation; for tests).
   int count_cells() const;
-  /// Cells in the table.
+  /// Number of cells in the table.
   int size() const;
 
-  /// Cells along the reach of a pair, margin x h: the finer they are, the fewer particles beyond it are
-  /// looked at, and the more lines of cells. `across`: along y and z.
+  /// Cells along the reach of a pair, margin x h: with finer cells fewer particles beyond the reach are
+  /// tested, but there are more lines of cells. `across`: along y and z.
   struct CellsPerReach {
     double along_x, across;
   };
 #ifdef SIM_CUDA
-  /// Short lines are read side by side. With several levels most lines of a window are empty or nearly so,
-  /// and fewer of them pay; short cells keep a line's particles few.
+  /// Short lines are read in parallel. With several levels most lines of a window are almost empty, so fewer
+  /// lines are faster; short cells keep the particles per line few.
   static constexpr CellsPerReach of_one_level{2, 2};
   static constexpr CellsPerReach of_levels{4, 1};
-  /// Empty lines cost the GPU less than the two passes that tell where a level is.
+  /// Empty lines cost the GPU less than the two passes that find the levels of each block.
   static constexpr bool finds_met = false;
 #else
-  /// The CPU reads long lines in lanes.
+  /// The CPU reads long lines in SIMD lanes.
   static constexpr CellsPerReach of_one_level{1, 1};
   static constexpr CellsPerReach of_levels{1, 1};
   static constexpr bool finds_met = true;
 #endif
-  /// The table has at most so many cells for each particle there is room for, and a least number; where the
-  /// domain asks for more, the cells are wider.
+  /// Upper bound on the cells per particle of capacity, and a minimum table size; if the domain needs more,
+  /// the cells are widened.
   static constexpr std::int64_t most_per_particle = 4;
   static constexpr std::int64_t always = 1 << 16;
 
@@ -53,9 +53,9 @@ class Grid {
   void find_met(Particles& particles);
 
   Scanner scanner_;
-  CellTable shape_{};  ///< but for what its arrays hold
+  CellTable shape_{};  ///< all but the array pointers
   Array<int> begin_, cell_of_, placed_, order_;
-  Array<int> present_;  ///< 1 = the block has particles of the level; levels of a block lie side by side
+  Array<int> present_;  ///< 1 = the block contains particles of the level; the levels of a block are adjacent
   Array<std::uint8_t> met_;
 };
 

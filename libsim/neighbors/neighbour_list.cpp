@@ -28,29 +28,29 @@ struct ListNeighbours {
   NeighbourList::Need* need;
   Witness witness;
   float margin;
-  std::uint64_t build;  ///< differs from one build to the next
+  std::uint64_t build;  ///< unique per build
 
 #ifdef SIM_CUDA
-  /// As measured on an H200. In the grids of several levels a particle walks more lines, and shares them
-  /// longer.
+  /// As measured on an H200. With several levels a particle reads more lines, so sharing them pays up to more
+  /// particles.
   int lanes(int n) const { return n < 20'000 ? 8 : n < (cells.levels > 1 ? 300'000 : 110'000) ? 4 : 1; }
 
-  /// Those near among up to 32 particles from `begin` on, a bit each.
+  /// Bit mask of the near ones among up to 32 particles from `begin` on.
   struct Found {
     int begin;
     unsigned near_ones;
   };
-  /// What a lane notes before the lanes agree on places in the list.
+  /// Number of entries that a lane collects before the lanes agree on positions in the list.
   static constexpr int most_noted = 8;
 
-  /// Where a lane is: its next line, how many are left, and what is left of the line before.
+  /// Position of a lane: its next line, the number of lines left, and the rest of the previous line.
   struct Way {
     int y, z, lines;
     IndexRange run;
     SIM_FN bool left() const { return lines > 0 || run.begin < run.end; }
   };
 
-  /// Each lane takes its share of a grid's lines, one line after another.
+  /// Each lane processes its share of a grid's lines, one after another.
   template <class Team>
   SIM_FN int look(int slot, int i, Vec4 self, Team team) const {
     int found = 0;
@@ -116,7 +116,7 @@ struct ListNeighbours {
 #endif
   }
 
-  /// Who is near among the run's next 32, i itself left out; several loads at once.
+  /// Bit mask of the near ones among the run's next 32, excluding i; several loads at once.
   SIM_FN unsigned near_ones(int i, Vec4 self, float square, IndexRange run) const {
     constexpr int at_once = 8;
     constexpr float far = 1e30f;
@@ -142,7 +142,7 @@ struct ListNeighbours {
     return own < 32 ? out & ~(1u << own) : out;
   }
 #else
-  /// Goes through what particles of one cell share.
+  /// Uses the candidates shared by the particles of one cell.
   template <class Team>
   int look(int slot, int i, Vec4 self, Team) const {
     thread_local Candidates shared[LevelSupports::most];
@@ -182,7 +182,7 @@ struct ListNeighbours {
     int i;
     Vec4 self;
     int* next;
-    const int* end;  ///< of the room that was taken
+    const int* end;  ///< of the reserved space
     SIM_FN void operator()(int from, int to) {
       for (int j = from; j < to; ++j) {
         if (j != i && next < end && task.near(self, task.predicted[j])) *next++ = j;
@@ -190,7 +190,7 @@ struct ListNeighbours {
     }
   };
 
-  /// Walks the cells once more for what has no room of its own; few particles do, and one lane is enough.
+  /// Loops over the cells again for a list that exceeds its own space; this is rare, and one lane suffices.
   SIM_FN void put_in_store(int slot, int i, Vec4 self, int found) const {
     atomic_max(&need->longest, found);
     const std::uint64_t first = atomic_take(&need->stored, static_cast<std::uint64_t>(found));
@@ -203,7 +203,7 @@ struct ListNeighbours {
     int* const begin = store + first;
     Put put{*this, i, self, begin, begin + found};
     cells.around(self, margin, [&put](int from, int to) { put(from, to); });
-    // A pair at the very margin may have been rounded otherwise when it was counted.
+    // A pair exactly at the margin may have been rounded differently when it was counted.
     const int put_there = static_cast<int>(put.next - begin);
     count[slot] = put_there;
     if (put_there > list.room()) {
@@ -220,7 +220,7 @@ struct ListNeighbours {
   }
 };
 
-/// Of all lists, so that what a thread holds of one is no other's.
+/// Counts the builds of all lists, so that a thread's cached candidates are never used for another list.
 std::atomic<std::uint64_t> builds = 0;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-/// One list of neighbours a substep, with a margin, that all passes of the substep read; iterations never
-/// walk the grid.
+/// One neighbour list per substep, with a margin, read by all passes of the substep; iterations never search
+/// the grid.
 
 #include "libsim/neighbors/grid.hpp"
 #include "libsim/particles/selection.hpp"
@@ -8,7 +8,7 @@
 namespace sim::SIM_BACKEND {
 
 #ifdef SIM_CUDA
-/// Lists of 32 consecutive particles interleave, so that a warp reads whole lines.
+/// Lists of 32 consecutive particles are interleaved, so that a warp reads contiguous memory.
 constexpr int list_interleave = 32;
 #else
 constexpr int list_interleave = 1;
@@ -20,21 +20,21 @@ struct NeighbourRun {
 #ifdef SIM_CUDA
   int stride;
 #else
-  static constexpr int stride = 1;  // known to the compiler, which loads several at once
+  static constexpr int stride = 1;  // known at compile time, so that several entries load at once
 #endif
   SIM_FN int operator[](int k) const { return first[k * stride]; }
 };
 
-/// The list as kernels see it. A list that is longer than its room lies whole in a common store, and its
-/// first entry says where. i is a slot of the pass that reads it (particles/selection.hpp): the particle
-/// itself while everyone is solved.
+/// The list in the form that kernels use. A list longer than its own space is stored completely in a common
+/// store; its first entry is the index there. i is a slot of the reading pass (particles/selection.hpp): the
+/// particle itself if all particles are solved.
 struct Neighbours {
   const int* count;
   const int* entry;
   const int* store;
   int capacity;
   SIM_FN int size(int i) const { return count[i]; }
-  /// The longest list that has room of its own: the last place only takes what is not kept.
+  /// The longest list that fits its own space: the last entry only absorbs discarded neighbours.
   SIM_FN int room() const { return capacity - 1; }
   SIM_FN std::size_t place(int i, int k) const {
     const int group = i / list_interleave;
@@ -56,8 +56,8 @@ struct Neighbours {
   SIM_FN int operator()(int i, int k) const { return run(i)[k]; }
 };
 
-/// The list of particle i where lists belong to slots that were chosen in the last substep; slot_of is null
-/// where a slot is a particle. For passes at a frame's start, which are few.
+/// The list of particle i if lists belong to slots that were chosen in the last substep; slot_of is null if
+/// slots are particles. For the few passes at a frame's start.
 struct ParticleNeighbours {
   Neighbours list;
   const int* slot_of;
@@ -71,38 +71,39 @@ using PredictedView = Reads<Column::Predicted>;
 
 class NeighbourList {
  public:
-  /// Search radius as a multiple of the pair's support radius, so that pairs may move within a substep.
+  /// Search radius as a multiple of the pair's support radius, so that particles may move within a substep.
   static constexpr float margin = 1.1f;
 
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Lists beyond the
-  /// capacity go to the store; what finds no room there either is left out and told to the witness.
+  /// capacity go to the store; neighbours that do not fit there either are dropped and reported to the
+  /// witness.
   void build(PredictedView particles, const Grid& grid, Witness witness);
-  /// For the active particles only, a list for each of their slots.
+  /// The same for the active particles only, one list per slot.
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
-  /// The same with lists for the others' slots too.
+  /// The same with lists for the slots of unsolved particles too.
   void build(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness);
-  /// Takes lists made elsewhere, each within most_capacity; a test's way in.
+  /// Replaces the lists by the given ones, each within most_capacity; for tests.
   void assign(const std::vector<std::vector<int>>& lists);
   /// Every slot's list, for tests.
   std::vector<std::vector<int>> lists() const;
   Neighbours view() const { return {count_.data(), entry_.data(), store_.data(), capacity_}; }
 
-  /// What lists asked for that had no room of their own.
+  /// The space that long lists requested.
   struct Need {
-    int longest;           ///< since the lists grew last
-    std::uint64_t stored;  ///< entries of the store that the last build asked for
+    int longest;           ///< since the lists last grew
+    std::uint64_t stored;  ///< store entries requested by the last build
   };
-  /// Reads the need back and makes room for it: the store holds what was asked of it, and lists get a quarter
-  /// more room, up to `most_capacity` entries, where much was. True when it grew.
+  /// Reads the need back and allocates space: the store gets what was requested, and lists get a quarter more
+  /// space, up to `most_capacity` entries, if much was requested. True if the lists grew.
   bool grow();
-  /// The same with the need as need() had it.
+  /// The same with a need that the caller has read.
   bool grow(Need met);
   /// In the back end's memory; nullptr before the first build.
   const Need* need() const { return need_.data(); }
   static constexpr int most_capacity = 512;
   int capacity() const { return capacity_; }
-  /// What outlives a frame (libsim/solver/state_archive.hpp): how far the lists have grown and, where they
-  /// hold, the lists themselves. Room that nothing uses is left out.
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp): the lists' capacity and, if still
+  /// valid, the lists themselves. Unused space is left out.
   template <class Archive>
   void keep(Archive& archive, bool with_lists) {
     std::uint64_t store = store_.size();
@@ -122,24 +123,24 @@ class NeighbourList {
   }
 
  private:
-  /// Of water of one size: a particle has 40 within the margin, and 55 at most in SingleDam.
+  /// For water of one size: a particle has 40 neighbours within the margin, and at most 55 in SingleDam.
   static constexpr int usual_capacity = 56;
-  /// A coarse particle among the finest has 113 within the support and some 150 within the margin. The
-  /// longest list of the three scenes had 108 (Ours, n_* = 32k).
+  /// A coarse particle among the finest has 113 neighbours within the support and some 150 within the margin.
+  /// The longest list of the three scenes had 108 (Ours, n_* = 32k).
 #ifdef SIM_CUDA
   static constexpr int mixed_capacity = 128;
 #else
-  // Each pass walks all rows: what nobody fills of one keeps the next from being fetched in time.
+  // Each pass walks all rows: unused space in a row delays the prefetch of the next row.
   static constexpr int mixed_capacity = 72;
 #endif
-  /// The store may hold one entry for so many lists before all lists get more room: few long ones are read
-  /// from it at no cost that shows, and room of their own is room in every list.
+  /// The store may hold one entry per this many lists before all lists get more space: reading a few long
+  /// lists from it costs nothing measurable, but more space enlarges every list.
   static constexpr std::size_t most_stored = 4;
   /// A thousand particles in one place, 4 MB.
   static constexpr std::size_t least_store = 1 << 20;
   static constexpr std::size_t most_store = 1 << 26;
 
-  /// Fills the lists from their entries, one list after the other.
+  /// Fills the lists from their entries, stored list by list.
   void put_back(const std::vector<int>& counts, const std::vector<int>& entries);
 
   template <class Selection>

@@ -1,5 +1,5 @@
 #pragma once
-/// Rigid bodies as particles meet them: distance, normal, and how much of a kernel lies inside.
+/// Rigid bodies as obstacles for particles: distance, normal, and the share of a kernel inside the body.
 
 #include "libsim/particles/mesh_grid.hpp"
 #include "libsim/particles/walls.hpp"
@@ -9,7 +9,7 @@ namespace sim::SIM_BACKEND {
 SIM_FN Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// v turned by the unit quaternion q.
+/// v rotated by the unit quaternion q.
 SIM_FN Vec3 turned(Vec4 q, Vec3 v) {
   const Vec3 u = xyz(q);
   const Vec3 t = cross(u, v);
@@ -17,13 +17,13 @@ SIM_FN Vec3 turned(Vec4 q, Vec3 v) {
 }
 SIM_FN Vec4 turned_back(Vec4 q) { return {-q.x, -q.y, -q.z, q.w}; }
 
-/// Share of a ball of radius 1 with poly6's weights that a sphere of radius r holds, and its slope with
-/// spiky's; both are exact. q: distance of the ball's centre from the sphere's surface, 0 .. 1. The
-/// half-space of libsim/particles/walls.hpp is their limit for a large r.
+/// Share of a ball of radius 1 with poly6's weights inside a sphere of radius r, and its slope with spiky's
+/// weights; both are exact. q: distance of the ball's centre from the sphere's surface, 0 .. 1. For large r
+/// they approach the half-space of libsim/particles/walls.hpp.
 struct SphereShare {
   float q, r;
 
-  /// A shell of radius z lies inside with the share (1 - (z^2 + a^2 - r^2) / (2 z a)) / 2, a = q + r.
+  /// The share of a shell of radius z inside is (1 - (z^2 + a^2 - r^2) / (2 z a)) / 2, a = q + r.
   SIM_FN float inside() const {
     const float a = q + r;
     const float far = at_most(q + 2 * r, 1.0f);
@@ -64,15 +64,15 @@ struct SphereShare {
   }
 };
 
-/// A sphere, a capsule along its own y, or a box: all within `radius` of a box of half sides `half`, of which
-/// a box has no radius and the others no half sides but along y. Or a mesh, which lies in a box of half sides
-/// `half`, and whose distances are a MeshGrid's.
+/// A sphere, a capsule along its own y axis, or a box: all points within `radius` of a box with half sides
+/// `half`. A box has radius 0; the others have half sides only along y. Or a mesh inside a box of half sides
+/// `half`, with distances from a MeshGrid.
 struct Body {
   Vec3 half;
   float radius;
   Vec3 centre;
   Vec4 turn;      ///< unit quaternion, from the body's axes to the world's
-  Vec3 velocity;  ///< of the centre on its way to this place, m/s
+  Vec3 velocity;  ///< of the centre in this substep, m/s
   Vec3 spin;      ///< rad/s
 
   using Near = NearSurface;
@@ -95,8 +95,8 @@ struct Body {
   SIM_FN float distance(Vec3 x) const { return near_here(to_body(x)).distance; }
   SIM_FN Vec3 velocity_at(Vec3 x) const { return velocity + cross(spin, x - centre); }
 
-  /// Share of the kernel of a particle at x that the body holds, and its gradient (1/m) with the spiky
-  /// kernel's slope; a particle inside counts as on the surface.
+  /// Share of the kernel of a particle at x inside the body, and its gradient (1/m) with the spiky kernel's
+  /// slope; a particle inside counts as on the surface.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     gradient = {0, 0, 0};
     const Vec3 p = to_body(x);
@@ -109,8 +109,8 @@ struct Body {
   }
 
  private:
-  /// Of a round surface as of a sphere of the same mean curvature: the side of a cylinder is curved half as
-  /// much as its ends.
+  /// For round surfaces, as a sphere of the same mean curvature: the side of a cylinder has half the
+  /// curvature of its ends.
   SIM_FN float missing_round(Vec3 p, Near at, float h, Vec3& gradient) const {
     const float past_end = (fabsf(p.y) - half.y) / h;
     const float end = half.y > 0 ? at_most(at_least(0.5f + past_end, 0.0f), 1.0f) : 1.0f;
@@ -118,8 +118,8 @@ struct Body {
     gradient = -(share.slope() / h) * at.normal;
     return share.inside();
   }
-  /// Of a box as the product of its shares along the three axes: exact for planes and, at an edge or a
-  /// corner, a quarter or an eighth.
+  /// For a box, as the product of the shares along its three axes: exact for planes, and a quarter or an
+  /// eighth at an edge or a corner.
   SIM_FN float missing_box(Vec3 p, Near at, float h, Vec3& gradient) const {
     if (at.distance < 0) p += -at.distance * at.normal;
     float sx, sy, sz;
@@ -135,7 +135,7 @@ struct Body {
     slope = (p < 0 ? -1 : 1) * (slope_of(high) - slope_of(low)) / h;
     return beyond(low) - beyond(high);
   }
-  /// Share beyond a plane at the signed distance q, and -its slope.
+  /// Share beyond a plane at the signed distance q, and minus its slope.
   SIM_FN static float beyond(float q) {
     const float inside = Walls::behind(at_most(fabsf(q), 1.0f));
     return q < 0 ? 1 - inside : inside;

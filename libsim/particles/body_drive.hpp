@@ -1,16 +1,16 @@
 #pragma once
-/// What moves a free body apart from what it meets.
+/// Forces on a free body other than contacts.
 
 #include "libsim/particles/free_body.hpp"
 #include "libsim/particles/particles.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// A substep's gravity, and the water's push of the substep before.
+/// Applies a substep's gravity, and the water's force of the previous substep.
 struct BodyDrive {
   Guards* guards;
   float gravity, dt, most_speed;
-  bool first;  ///< of the frame
+  bool first;  ///< first substep of the frame
 
   SIM_FN void operator()(FreeBody& it) const {
     if (first) it.by_walls = {0, 0, 0};

@@ -1,5 +1,5 @@
 #pragma once
-/// What counts as water at rest.
+/// The criterion for water at rest.
 
 #include <cmath>
 
@@ -7,18 +7,19 @@
 
 namespace sim::SIM_BACKEND {
 
-/// How much a particle belongs to water at rest, by its speed: 1 without motion, 0 from `speed` on.
+/// Degree to which a particle is at rest, by its speed: 1 without motion, 0 from `speed` on.
 struct Calm {
   float inverse_square = 0;  ///< 1 / speed^2, s2/m2; 0 = nothing rests
-  float most = 0;            ///< what it is without motion: 1, or 0 where nothing rests
+  float most = 0;            ///< value without motion: 1, or 0 if nothing rests
 
-  // Without a branch, which a loop over lanes has no place for.
+  // Branch-free for vectorised loops.
   SIM_FN float operator()(float vx, float vy, float vz) const {
     return at_least(most - inverse_square * (vx * vx + vy * vy + vz * vz), 0.0f);
   }
 };
 
-/// `share` of sqrt(g d_*), with g in m/s2 and the finest spacing d_* in m. Without gravity nothing rests.
+/// Rest below `share` of sqrt(g d_*), with g in m/s2 and the finest spacing d_* in m. Without gravity nothing
+/// rests.
 inline Calm calm_below(double share, double gravity, double finest_spacing) {
   const double square = share * share * gravity * finest_spacing;
   if (!(square > 0)) return {};

@@ -1,30 +1,30 @@
 #pragma once
-/// Regular cells over the tank, on which particles are summed.
+/// Regular cells over the tank, for sums over particles.
 
 #include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Cells of one edge from a low corner.
+/// Cubic cells of one edge length from a low corner.
 struct CellFrame {
   Vec3 low{};
   float edge = 1;
 };
 
-/// A box that holds the whole tank.
+/// A box that contains the whole tank.
 struct Domain {
   Vec3 low{}, high{};
 };
 
-/// An open part of a block's side, in cells of the finest grid: `axis` 0, 1, 2 = x, y, z, at the low or the
-/// high end, from low to high along the other two axes, ascending.
+/// An open part of a block's side, in cells of the finest grid: `axis` 0, 1, 2 = x, y, z, at its low or high
+/// end, from low to high along the other two axes, ascending.
 struct OpenFace {
   int axis;
   bool at_high;
   float low[2], high[2];
 };
 
-/// Cells of one grid, x fastest. Beside and below it are walls but for open faces, above it is air.
+/// Cells of one grid, x fastest. Its sides and bottom are walls except for open faces; its top is air.
 struct CellBlock {
   int nx = 0, ny = 0, nz = 0;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The columns that a particle can have: one table, and sets of them.
+/// The columns that particles can have: one table, and sets of columns.
 
 #include <bit>
 #include <cstdint>
@@ -8,60 +8,60 @@
 
 namespace sim::SIM_BACKEND {
 
-/// f_a, f_m, f_T and F (ViP-Fluid Eq. 1-6) of the eye with the larger F.
+/// f_a, f_m, f_T and F (ViP-Fluid Eq. 1-6) for the eye with the larger F.
 struct SaliencyParts {
   float acuity, manifold, temporal, combined;
 };
 
-/// How long a column's values live.
+/// Lifetime of a column's values.
 enum class Life {
-  Core,    ///< with their particle, in every run
-  Kept,    ///< with their particle, where a stage declares them
+  Core,    ///< as long as the particle, in every run
+  Kept,    ///< as long as the particle, if a stage declares the column
   Scratch  ///< within a substep
 };
 
-/// What the particles that a split or a merge makes have of a column (particles/descent.hpp). The last four
-/// need no line anywhere else: such columns begin at 0, where no pass says otherwise, and splits, merges and
-/// nozzles treat them by their rule.
+/// Rule for a column's values when a split or a merge makes particles (particles/descent.hpp). The last four
+/// need no other code: such columns start at 0 unless a pass writes them, and splits, merges and nozzles
+/// apply their rule.
 enum class Descent {
-  None,      ///< nothing: the column is scratch
-  Own,       ///< what the passes that split, merge and pour say by its name
-  Copy,      ///< children have their parent's; a merged particle keeps what the one that stays had
-  MassMean,  ///< children have their parent's; a merged particle the mean by mass: m times it is conserved
-  Sum,       ///< children share their parent's by mass, a merged particle has the sum: it is conserved
-  Max,       ///< children have their parent's, a merged particle the larger
+  None,      ///< no values: the column is scratch
+  Own,       ///< set by the passes that split, merge and pour
+  Copy,      ///< children copy the parent's; a merged particle keeps that of the remaining one
+  MassMean,  ///< children copy the parent's; a merged particle gets the mean by mass: m times it is conserved
+  Sum,       ///< children share the parent's by mass; a merged particle gets the sum: it is conserved
+  Max,       ///< children copy the parent's; a merged particle gets the larger
   Reset      ///< 0
 };
 
-// The table, a row each: COLUMN(enumerator, member, type of a value, how long it lives, what splits and
-// merges make of it), in the order in which schedules list them. LIST is the neighbour list
-// (neighbors/neighbour_list.hpp), which passes declare like a column.
+// The table, one row each: COLUMN(enumerator, member, value type, lifetime, rule for splits and merges), in
+// the order in which schedules list them. LIST is the neighbour list (neighbors/neighbour_list.hpp), which
+// passes declare like a column.
 //
 //   Position        x, y, z in m and the support radius h in m (h = 2 d = 4 r; mass = rho_0 d^3)
 //   Velocity        m/s, w unused
-//   Id              unique, kept for life
+//   Id              unique, never changes
 //   Level           mass level; mass = 2^level m_*
 //   Predicted       position at the end of the substep as far as it is solved, and h
-//   PredictedNext   where a projection writes, then swapped with Predicted; the substep's kicks; of effects
-//   VelocityNext    where a velocity filter writes, then swapped with Velocity; later of effects
+//   PredictedNext   output of a projection, then swapped with Predicted; the substep's kicks; of effects
+//   VelocityNext    output of a velocity filter, then swapped with Velocity; later scratch of effects
 //   Lambda          change of the density constraint's multiplier in this projection, kg m2
 //   Density         rho / rho_0, walls included
 //   Target          level that the particle should have
 //   History         targets of the last four frames, two bits each, the newest lowest
 //   Saliency        s in [0, 1], ViP-Fluid 3.2.3
-//   Unrest          f_T gamma_t of ViP-Fluid Eq. 6, followed over frames
-//   SaliencyParts   f_a, f_m, f_T and F behind it
-//   Waiting         frames in a row that it has been ready to merge
-//   Normal          of the surface, inwards, without unit; scratch of the effects (libsim/scene/effects.hpp)
+//   Unrest          f_T gamma_t of ViP-Fluid Eq. 6, smoothed over frames
+//   SaliencyParts   f_a, f_m, f_T and F, from which s follows
+//   Waiting         consecutive frames in which it was ready to merge
+//   Normal          of the surface, inwards, dimensionless; scratch of the effects (libsim/scene/effects.hpp)
 //   Ease            share of its constraint that a particle near a fresh one enforces, (0, 1]
-//   Age             frames since it was made by a split or a merge, 255 and more are one
-//   Active          1 = solved in this frame, 2 = the same and left out of means (activation/activation.hpp),
+//   Age             frames since it was made by a split or a merge, at most 255
+//   Active          1 = solved in this frame, 2 = solved but not in means (activation/activation.hpp),
 //                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
-//   Rest            why and how long it was not solved (activation/activation.hpp)
-//   StartCell       where in the velocity grid the particle was when the frame began
-//   Temperature     kelvin above the reference of the effect that keeps it
-//   TemperatureNext where conduction writes, then swapped with Temperature
-//   Swirl           how fast the water round it turns, 1/s, as the effect vorticity last found it
+//   Rest            how long it was not solved, and flags (activation/activation.hpp)
+//   StartCell       cell of the velocity grid in which the particle started the frame
+//   Temperature     kelvin above the reference of the effect heat
+//   TemperatureNext output of conduction, then swapped with Temperature
+//   Swirl           rotation rate of the surrounding water, 1/s, last measured by the effect vorticity
 #define SIM_COLUMNS(COLUMN, LIST)                                         \
   COLUMN(Position, position, Vec4, Core, Own)                             \
   COLUMN(Velocity, velocity, Vec4, Core, Own)                             \
@@ -98,7 +98,7 @@ enum class Column : unsigned {
 
 const char* column_name(Column column);
 
-/// A set of columns that is known at compile time where a stage declares it.
+/// A set of columns, constexpr where a stage declares it.
 struct ColumnSet {
   std::uint32_t bits = 0;
 
@@ -106,11 +106,11 @@ struct ColumnSet {
   constexpr bool holds(ColumnSet other) const { return (other.bits & ~bits) == 0; }
   constexpr bool meets(ColumnSet other) const { return (other.bits & bits) != 0; }
   constexpr bool empty() const { return bits == 0; }
-  /// The first in the table's order; the set is not empty.
+  /// The first in the table's order; the set must not be empty.
   constexpr Column first() const { return static_cast<Column>(std::countr_zero(bits)); }
 
   friend constexpr ColumnSet operator|(ColumnSet a, ColumnSet b) { return {a.bits | b.bits}; }
-  /// Those of a that b lacks.
+  /// The columns of a that are not in b.
   friend constexpr ColumnSet operator-(ColumnSet a, ColumnSet b) { return {a.bits & ~b.bits}; }
   constexpr ColumnSet& operator|=(ColumnSet other) { return *this = *this | other; }
 };

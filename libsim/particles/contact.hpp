@@ -1,23 +1,23 @@
 #pragma once
-/// Where rigid bodies meet each other and the tank's walls.
+/// Contacts of rigid bodies with each other and with the tank's walls.
 
 #include "libsim/particles/free_body.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// A place where a body meets another or a wall.
+/// A contact of a body with another or with a wall.
 struct Contact {
   Vec3 at;
-  Vec3 normal;  ///< out of the other, towards the body
-  float gap;    ///< between the surfaces, m; negative: so deep
-  float ahead;  ///< the least gap until the substep's end, were there no contact
+  Vec3 normal;  ///< from the other towards the body
+  float gap;    ///< distance between the surfaces, m; negative: penetration depth
+  float ahead;  ///< smallest gap until the substep's end without contact forces
 };
 
-/// The places by which a body meets others. Of a shape: the corners of the box round which it lies and the
-/// nearest place of each of that box's edges, as balls of its radius. Of a mesh: its contacts.
+/// The points at which a body can touch others. Of a shape: the corners of its inner box and the nearest
+/// point of each of that box's edges, as balls of the body's radius. Of a mesh: its contacts.
 struct Feelers {
   const Body& body;
-  const MeshGrid* mesh;  ///< nullptr: another shape
+  const MeshGrid* mesh;  ///< nullptr: not a mesh
 
   static constexpr int most_of_shapes = 20;
 
@@ -28,17 +28,18 @@ struct Feelers {
   }
   SIM_FN int edges() const { return mesh || body.half.y == 0 ? 0 : is_box() ? 12 : 1; }
   SIM_FN int count() const { return corners() + edges(); }
-  /// Farthest of the body from its centre, m.
+  /// Distance of the farthest point of the body from its centre, m.
   SIM_FN float reach() const { return length(body.half) + body.radius; }
 
-  /// In the body's own axes.
+  /// In the body's axes.
   SIM_FN Vec3 corner(int k) const {
     if (mesh) return mesh->contacts[k];
     const Vec3 h = body.half;
     if (!is_box()) return {0, k ? h.y : -h.y, 0};
     return {k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z};
   }
-  /// s: -1 .. 1 from one end to the other; of the box whose half sides are this share of the body's.
+  /// A point on an edge, s = -1 .. 1 from end to end, of the box whose half sides are `share` times the
+  /// body's.
   SIM_FN Vec3 on_edge(int edge, float s, Vec3 share) const {
     const Vec3 h = scaled(body.half, share);
     if (!is_box()) return {0, s * h.y, 0};
@@ -50,9 +51,9 @@ struct Feelers {
   }
   SIM_FN Vec3 in_world(Vec3 own) const { return body.centre + turned(body.turn, own); }
 
-  /// Where feeler k is nearest to another body; `ahead` is left open. What is nearest to a corner on
-  /// another's edge changes with the last bit. So the other is looked at from a little deeper in the body,
-  /// where it shows a plane, and the gap is the corner's from that plane.
+  /// Contact of feeler k with another body, without `ahead`. Near an edge of the other, the nearest point to
+  /// a corner changes with the last bit. So the distance is taken from a point slightly deeper in the body,
+  /// for which the other is a plane, and the gap is the corner's distance from that plane.
   SIM_FN Contact meets(int k, const Solids& solids, int other) const {
     Vec3 own, deeper;
     if (k < corners()) {
@@ -77,7 +78,7 @@ struct Feelers {
   }
 
  private:
-  /// What of a box's half sides lies deeper than a twentieth of the shortest.
+  /// Factors that shrink a box's half sides by a twentieth of the shortest.
   SIM_FN Vec3 inset() const {
     if (!is_box()) return {1, 1, 1};
     const Vec3 h = body.half;
@@ -85,11 +86,11 @@ struct Feelers {
     return {1 - way / h.x, 1 - way / h.y, 1 - way / h.z};
   }
   SIM_FN static Vec3 scaled(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-  /// By the golden section: along a straight line the distance from a convex body has one low.
+  /// Golden-section search: along a straight line the distance from a convex body has one minimum.
   SIM_FN float nearest_on_edge(int edge, const Solids& solids, int other) const {
     const Vec3 share = inset();
     constexpr float golden = 0.618034f;
-    constexpr int halvings = 16;  ///< to 1/2200 of the edge
+    constexpr int halvings = 16;  ///< down to 1/2200 of the edge
     float low = -1, high = 1;
     float a = high - golden * (high - low), b = low + golden * (high - low);
     float at_a = solids.distance(other, in_world(on_edge(edge, a, share)));
@@ -113,11 +114,11 @@ struct Feelers {
   }
 };
 
-/// Contacts that two bodies, or a body and a wall, are held apart by at once.
+/// Maximum number of contacts per pair of bodies, or per body and wall.
 inline constexpr int most_contacts = 4;
 
-/// Of n contacts those that hold two bodies apart: the one that will be deepest, then time and again the one
-/// that lies farthest from all picked, of those whose gap `pad` could close. Returns how many.
+/// Selects from n contacts those that hold two bodies apart: first the one that will be deepest, then
+/// repeatedly the one farthest from all picked, among those with `ahead` below `pad`. Returns their number.
 template <class Contacts>
 SIM_FN int pick_contacts(const Contacts& all, int n, float pad, Contact* picked) {
   int count = 0;

@@ -1,63 +1,64 @@
 #pragma once
-/// The pushes that keep bodies apart, all at once: sweeps of projected Gauss-Seidel find who pushes, and
-/// conjugate gradients how much (Silcowitz, Niebe and Erleben 2010, Projected Gauss-Seidel subspace
-/// minimization). Sweeps alone take a heavy body on a light one as often as the ratio of their masses.
+/// Solves the pushes that keep bodies apart, all at once: sweeps of projected Gauss-Seidel find the active
+/// contacts, and conjugate gradients their magnitudes (Silcowitz, Niebe and Erleben 2010, Projected
+/// Gauss-Seidel subspace minimization). With sweeps alone, a heavy body on a light one needs about as many
+/// sweeps as the ratio of their masses.
 
 #include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// How a body moves while its contacts are solved.
+/// Velocities of a body while its contacts are solved.
 struct BodyRate {
   Vec3 velocity;  ///< of the centre, m/s
   Vec3 spin;      ///< rad/s
-  float ease;     ///< 1 / mass, 1/m_*; 0: nothing moves it
+  float ease;     ///< 1 / mass, 1/m_*; 0: immovable
 };
 
 /// One direction of a contact, along which two bodies push each other.
 struct ContactRow {
   int first, second;        ///< bodies; second < 0: a wall
   Vec3 way;                 ///< unit vector, towards the first
-  Vec3 lever, other_lever;  ///< arm x way of the first and the second
-  Vec3 turn, other_turn;    ///< what a push of 1 does to their spins
-  float ease;               ///< speed of parting that a push of 1 gives, 1/m_*
-  float wanted;             ///< least speed of parting; of friction the speed of sliding, 0
-  float push;               ///< so far, m_* m/s
-  bool open;                ///< neither at rest nor at its bound
-  float most;               ///< that bound, m_* m/s; of friction it follows from the normal's push
-  // Of conjugate gradients: speed that is missing, direction of pushes, speed that it gives.
+  Vec3 lever, other_lever;  ///< cross product arm x way for the first and the second
+  Vec3 turn, other_turn;    ///< change of their spins per unit push
+  float ease;               ///< separation speed per unit push, 1/m_*
+  float wanted;             ///< minimum separation speed; for friction the sliding speed, 0
+  float push;               ///< current push, m_* m/s
+  bool open;                ///< neither zero nor at its bound
+  float most;  ///< upper bound of the push, m_* m/s; for friction it follows from the normal's push
+  // For conjugate gradients: missing speed, direction of pushes, speed that the direction gives.
   float left, step, along;
 };
 
-/// What one thread tells the others. It is read before the next wait, and written after it.
+/// Data that one thread shares with the others: written after one barrier, read before the next.
 struct ContactProgress {
-  float swept;  ///< the most that a sweep changed a speed, m/s
+  float swept;  ///< largest change of a speed in a sweep, m/s
 };
 
-/// Contacts of `width` rows each: the normal, and with friction two ways to slide. Each step waits for the
-/// one before; sweeps are one thread's, and sums have one order.
+/// Contacts of `width` rows each: the normal, and with friction two sliding directions. Steps run one after
+/// another; one thread runs the sweeps, and sums have a fixed order.
 struct ContactRows {
   ContactRow* rows;
-  const float* friction;  ///< coefficient of each contact; nullptr: all slide freely
+  const float* friction;  ///< coefficient of each contact; nullptr: no friction
   BodyRate* bodies;
-  BodyRate* along;  ///< as many: what the direction does to them
+  BodyRate* along;  ///< one per body: its velocity change along the current direction
   ContactProgress* at;
-  const int* touches;      ///< by body: twice the contact's number, and 1 more for the second of its bodies
-  const int* touch_begin;  ///< of each body, and the end
+  const int* touches;      ///< by body: twice the contact's index, plus 1 if the body is its second
+  const int* touch_begin;  ///< first index of each body, and the end
   int body_count;
   int contacts, width;
 
   static constexpr int most_rounds = 8, last_rounds = 4, most_steps = 32;
-  static constexpr float still = 1e-5f;  ///< changes of speed that end them, m/s
+  static constexpr float still = 1e-5f;  ///< smaller speed changes end the iteration, m/s
 
   SIM_FN float speed(const ContactRow& row) const { return speed(row, bodies); }
 
-  /// The bodies' rates are then those that the rows' pushes give. Where friction does not settle, it stays as
-  /// it came to be, and the rest does.
+  /// Afterwards the bodies' rates include the rows' pushes. If friction does not converge, its pushes stay
+  /// fixed, and the normals are solved again.
   template <class Threads>
   SIM_FN void solve(Threads threads) const {
     if (settles(threads, most_rounds) || !friction) return;
-    threads.each(0, Step<&ContactRows::sweep>{*this});  // all have read what the last sweep told
+    threads.each(0, Step<&ContactRows::sweep>{*this});  // all threads have read the last sweep's result
     ContactRows normals = *this;
     normals.friction = nullptr;
     normals.settles(threads, last_rounds);
@@ -73,7 +74,7 @@ struct ContactRows {
   template <class Threads>
   SIM_FN bool settles(Threads threads, int rounds) const {
     for (int round = 1; round <= rounds; ++round) {
-      // A sweep has the last word: it keeps pushes from pulling, and friction within its cone.
+      // The last step is a sweep: it prevents pulling pushes, and limits friction to its cone.
       threads.each(1, Step<&ContactRows::sweep>{*this});
       if (at->swept <= still) return true;
       if (round < rounds) descend(threads);
@@ -109,14 +110,14 @@ struct ContactRows {
     }
     at->swept = most;
   }
-  /// The push that would give a row what it wants.
+  /// The change of push that brings a row to its wanted speed.
   SIM_FN float missing(const ContactRow& row) const { return (row.wanted - speed(row)) / row.ease; }
   SIM_FN void change(ContactRow& row, float push, float& most) const {
     most = at_least(fabsf(push - row.push) * row.ease, most);
     give(row, push - row.push);
     row.push = push;
   }
-  /// Coulomb's law: what slides is braked by `bound`, what sticks by as much as holds it.
+  /// Coulomb's law: sliding contacts are braked by `bound`, sticking contacts by the push that holds them.
   SIM_FN void rub(ContactRow* row, float bound, float& most) const {
     const float u = row[0].push + missing(row[0]);
     const float v = row[1].push + missing(row[1]);
@@ -128,8 +129,8 @@ struct ContactRows {
     row[0].most = row[1].most = bound;
   }
 
-  /// Conjugate gradients over the open rows. One that comes to its bound is shut, and the rest begin anew.
-  /// All threads know the same sums, and so go the same way.
+  /// Conjugate gradients over the open rows. A row that reaches its bound is closed, and the method restarts.
+  /// All threads get the same sums, and so take the same branches.
   template <class Threads>
   SIM_FN void descend(Threads threads) const {
     const int n = row_count();
@@ -141,7 +142,7 @@ struct ContactRows {
       threads.each(body_count, Step<&ContactRows::look_along>{*this});
       threads.each(n, Step<&ContactRows::look>{*this});
       const float steep = threads.sum(n, Steep{rows});
-      // In directions that move nobody there is nothing left to gain.
+      // A direction that moves no body gives no further gain.
       if (!(steep > 1e-6f * worth)) return;
       int shut, any;
       const float way = threads.least(n, worth / steep, shut, ToBound{*this});
@@ -154,24 +155,24 @@ struct ContactRows {
       worth = next;
     }
   }
-  /// What is missing says what a step along it gains.
+  /// Squared residual of the open rows, divided by their ease.
   struct Worth {
     const ContactRow* rows;
     SIM_FN float operator()(int r) const {
       return rows[r].open ? rows[r].left * rows[r].left / rows[r].ease : 0.0f;
     }
   };
-  /// Less than 0 by what an open row misses, m/s.
+  /// Minus the missing speed of an open row, m/s.
   struct Missed {
     const ContactRow* rows;
     SIM_FN float operator()(int r) const { return rows[r].open ? -fabsf(rows[r].left) : 0.0f; }
   };
-  /// What a way of 1 along the direction changes of that gain.
+  /// Curvature along the direction.
   struct Steep {
     const ContactRow* rows;
     SIM_FN float operator()(int r) const { return rows[r].step * rows[r].along; }
   };
-  /// The next direction: what is missing, and of the last direction the share that keeps them conjugate.
+  /// The next direction: the residual, plus the share of the last direction that makes them conjugate.
   struct Aim {
     ContactRow* rows;
     float share;
@@ -180,7 +181,7 @@ struct ContactRows {
       row.step = row.open ? row.left / row.ease + share * row.step : 0.0f;
     }
   };
-  /// The way along the direction at which a row comes to its bound.
+  /// Step length along the direction at which a row reaches its bound.
   struct ToBound {
     const ContactRows& here;
     SIM_FN float operator()(int r) const {
@@ -189,7 +190,7 @@ struct ContactRows {
       return at_least((here.bound_of(r, row.step < 0) - row.push) / row.step, 0.0f);
     }
   };
-  /// Along the direction, to its lowest place or to the first bound.
+  /// Steps along the direction, to its minimum or to the first bound.
   struct Go {
     const ContactRows& here;
     float way;
@@ -233,7 +234,7 @@ struct ContactRows {
     along[b] = out;
   }
   SIM_FN void look(int r) const { rows[r].along = speed(rows[r], along); }
-  /// Of a row's pushes: a normal never pulls, and friction follows the pushes that the sweep left.
+  /// Bounds of a row's push: a normal never pulls, and friction uses the bound set by the last sweep.
   SIM_FN float bound_of(int r, bool low) const {
     if (!low) return rows[r].most;
     return r % width == 0 ? 0.0f : -rows[r].most;

@@ -1,5 +1,5 @@
 #pragma once
-/// The columns that splits and merges treat by the rule of their row (columns.hpp), as kernels see them.
+/// Columns whose values splits and merges compute by the rule of their row (columns.hpp), for kernels.
 
 #include <cstdint>
 #include <type_traits>
@@ -8,13 +8,14 @@
 
 namespace sim::SIM_BACKEND {
 
-/// A rule that needs no pass of the column's own.
+/// True for rules that need no code specific to the column.
 constexpr bool by_rule(Descent rule) {
   return rule == Descent::MassMean || rule == Descent::Sum || rule == Descent::Max || rule == Descent::Reset;
 }
 
-/// Scratch columns have no rule and all others have one. What is averaged or added is a float; bytes have a
-/// largest and are reset; other types are copied or treated by name.
+/// True if a column of type T may have this lifetime and rule: scratch columns have no rule and all others
+/// have one. Mean and sum need float; bytes allow maximum and reset; other types are copied or handled by
+/// name.
 template <class T>
 constexpr bool may_descend(Life life, Descent rule) {
   if ((life == Life::Scratch) != (rule == Descent::None)) return false;
@@ -27,7 +28,8 @@ constexpr bool may_descend(Life life, Descent rule) {
 SIM_COLUMNS(SIM_CHECK, SIM_NOTHING)
 #undef SIM_CHECK
 
-/// How many columns of a type live with their particle, and how many of them have such a rule.
+/// The number of columns of a type that last as long as their particle, and how many of them have such a
+/// rule.
 template <class T>
 constexpr int kept_count() {
   int sum = 0;
@@ -45,7 +47,7 @@ constexpr int ruled_count() {
   return sum;
 }
 
-/// The columns with such a rule, which begin at 0 and have been written before any pass reads them.
+/// The columns with such a rule; they start at 0 and are written before any pass reads them.
 constexpr ColumnSet ruled_columns() {
   ColumnSet out;
 #define SIM_ADD(Name, member, Type, life, rule) \
@@ -56,14 +58,14 @@ constexpr ColumnSet ruled_columns() {
   return out;
 }
 
-/// Those of one type that are there.
+/// The allocated columns of one type.
 template <class T>
 struct RuledColumns {
   T* values[ruled_count<T>()];
   Descent rule[ruled_count<T>()];
   int count;
 
-  /// Of a particle that is a copy of its parent, one of `children` of equal mass.
+  /// For particle i, a copy of its parent, one of `children` of equal mass.
   SIM_FN void split(int i, int children) const {
     for (int k = 0; k < count; ++k) {
       if (rule[k] == Descent::Reset) values[k][i] = 0;
@@ -71,14 +73,15 @@ struct RuledColumns {
         if (rule[k] == Descent::Sum) values[k][i] /= static_cast<float>(children);
     }
   }
-  /// Two of equal mass become one, in the place of `kept`.
+  /// Merges two particles of equal mass into `kept`.
   SIM_FN void join(int kept, int left) const {
     for (int k = 0; k < count; ++k) {
       T* v = values[k];
       v[kept] = met(rule[k], v[kept], v[left], 1);
     }
   }
-  /// Each of two gets a half of j, which has their masses' sum and goes on as one of the two.
+  /// j has the mass of `kept` and `left` together. One half of j merges with `kept`, the other with `left`;
+  /// the results are in `kept` and in j.
   SIM_FN void share(int j, int kept, int left) const {
     for (int k = 0; k < count; ++k) {
       T* v = values[k];
@@ -87,13 +90,13 @@ struct RuledColumns {
       v[j] = met(rule[k], v[left], whole, 0.5f);
     }
   }
-  /// Of a particle that none was before.
+  /// For a new particle without a parent.
   SIM_FN void make(int i) const {
     for (int k = 0; k < count; ++k) values[k][i] = 0;
   }
 
  private:
-  /// What meets an equal mass, which is `share` of a particle with b.
+  /// Merges a with an equal mass taken from a particle with value b; `share`: mass taken over its mass.
   SIM_FN static T met(Descent rule, T a, T b, float share) {
     if (rule == Descent::Reset) return 0;
     if (rule == Descent::Max) return a > b ? a : b;
@@ -102,7 +105,7 @@ struct RuledColumns {
   }
 };
 
-/// All that are there.
+/// All allocated columns with such rules.
 struct Descents {
   RuledColumns<float> floats;
   RuledColumns<std::uint8_t> bytes;

@@ -1,5 +1,5 @@
 #pragma once
-/// The first trouble of a run, found in the frame in which it happens.
+/// The first trouble of a run, detected in the frame in which it occurs.
 
 #include <array>
 #include <cstdint>
@@ -8,32 +8,32 @@
 
 namespace sim {
 
-/// In the order in which a substep can meet them.
+/// In the order in which a substep can detect them.
 enum class Trouble : std::uint8_t {
-  NotFinite,          ///< a place or a velocity is NaN or infinite
-  FarOutside,         ///< beyond a wall by ten times the tank's longest side
-  TooFast,            ///< the guard on speed braked it
-  NeighboursDropped,  ///< neighbours found no room in its list
-  Coincident,         ///< another particle is at the same place
+  NotFinite,          ///< position or velocity is NaN or infinite
+  FarOutside,         ///< beyond a wall by more than ten times the tank's longest side
+  TooFast,            ///< braked by the speed limit
+  NeighboursDropped,  ///< its list had no room for some neighbours
+  Coincident,         ///< another particle has the same position
   TooDense            ///< denser than Divergence::most_density after the frame's last projection
 };
 
-/// What went wrong first, and how often anything did. A sound run has none.
+/// The first trouble of a run, and the number of cases. A sound run has none.
 struct Divergence {
-  /// rho / rho_0 that no sound run reaches: a whole tank that splits at once may reach 1.25.
+  /// rho / rho_0 that no sound run exceeds: a tank in which all particles split at once may reach 1.25.
   static constexpr float most_density = 1.5f;
 
-  int frame = 0;     ///< Simulation::frame() after it
-  int particle = 0;  ///< id; the lowest where several met the same in the same pass
+  int frame = 0;     ///< Simulation::frame() after the frame
+  int particle = 0;  ///< id; the lowest if several had the same trouble in the same pass
   Trouble cause{};
-  /// At the frame's end, m. None: the place itself is not finite, or nobody has this id any more.
+  /// Position at the frame's end, m. None if it is not finite, or the particle no longer exists.
   std::optional<std::array<double, 3>> where_m;
-  /// Cases up to now, as GuardCounts counts them, and one for each particle and frame that is too dense or
-  /// not finite at the frame's end.
+  /// Cases so far, as GuardCounts counts them, plus one per particle and frame that is too dense or not
+  /// finite at the frame's end.
   std::uint64_t count = 0;
 };
 
-/// In words, such as "is not finite".
+/// Text such as "is not finite".
 const char* in_words(Trouble cause);
 /// "frame 12, particle 40 at (1.20, 0.31, 0.95) m is not finite; 3 cases so far".
 std::string in_words(const Divergence& divergence);

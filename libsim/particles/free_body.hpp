@@ -1,37 +1,37 @@
 #pragma once
-/// Rigid bodies that the water and gravity move. Masses are in m_*.
+/// Rigid bodies moved by water and gravity. Masses are in m_*.
 
 #include "libsim/particles/solids.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// What moves a body, beside its place (Body).
+/// Dynamic state of a body; its position is in Body.
 struct FreeBody {
   float mass;     ///< m_*; 0: the body is not free
-  float volume;   ///< in that of m_*
+  float volume;   ///< in volumes of m_*
   Vec3 inertia;   ///< about its own axes, m_* m2
   Vec3 momentum;  ///< m_* m/s
   Vec3 spin;      ///< angular momentum about the centre, m_* m2/s
-  /// Of the water, as the body follows it in the next substep: m_* m/s2 and m_* m2/s2.
+  /// From the water, applied in the next substep: m_* m/s2 and m_* m2/s2.
   Vec3 force, torque;
-  Vec3 force_left, torque_left;  ///< what it has yet to follow
-  Vec3 by_walls;                 ///< what walls gave it in this frame, m_* m/s
-  BodySum counted;               ///< of this frame's sums, by the substeps before
-  BodySum counted_of_effects;    ///< the same of what effects gave
+  Vec3 force_left, torque_left;  ///< not yet applied
+  Vec3 by_walls;                 ///< momentum received from walls in this frame, m_* m/s
+  BodySum counted;               ///< part of this frame's sums already applied by earlier substeps
+  BodySum counted_of_effects;    ///< the same for the sums of effects
 };
 
-/// Velocity of the centre, m/s, and turning, rad/s.
+/// Velocity of the centre, m/s, and angular velocity, rad/s.
 struct BodyTurn {
   Vec3 along, round;
 };
-/// A body in a system of equations for velocities (libsim/solver/effects/sticking.hpp). Of one that is not
-/// free the turns are momentum, m_* m/s, and its moment.
+/// A body in a system of equations for velocities (libsim/solver/effects/sticking.hpp). For a body that is
+/// not free, the turns hold momentum, m_* m/s, and its moment.
 struct BodyRow {
   BodyTurn gained, residual, direction, bent;
-  Momentum push, moment;  ///< taken from particles in one pass, in units of BodyRows
+  Momentum push, moment;  ///< received from particles in one pass, in the unit of BodyRows
 };
 
-/// q turned by the way of a turn about the world's axes, rad.
+/// q rotated by a rotation vector in world axes, rad.
 SIM_FN Vec4 turned_by(Vec4 q, Vec3 way) {
   const float angle = length(way);
   const float s = angle > 1e-6f ? sinf(0.5f * angle) / angle : 0.5f;
@@ -44,30 +44,30 @@ SIM_FN Vec4 turned_by(Vec4 q, Vec3 way) {
   return with_w(scale * part, scale * out.w);
 }
 
-/// What an angular momentum does to a body of this attitude, rad/s.
+/// Angular velocity for an angular momentum at this attitude, rad/s.
 SIM_FN Vec3 spin_of(const FreeBody& free, Vec4 turn, Vec3 momentum) {
   const Vec3 own = turned(turned_back(turn), momentum);
   return turned(turn, {own.x / free.inertia.x, own.y / free.inertia.y, own.z / free.inertia.z});
 }
 
-/// The reverse: of a turning, rad/s.
+/// The inverse: angular momentum for an angular velocity.
 SIM_FN Vec3 momentum_of(const FreeBody& free, Vec4 turn, Vec3 spin) {
   const Vec3 own = turned(turned_back(turn), spin);
   return turned(turn, {own.x * free.inertia.x, own.y * free.inertia.y, own.z * free.inertia.z});
 }
 
-/// Turns a body for dt as nothing holds it, with the spin of the middle of the way.
+/// Rotates a free body for dt without torque, using its spin at the midpoint.
 SIM_FN void turn_on(Body& body, const FreeBody& free, float dt) {
   const Vec4 halfway = turned_by(body.turn, (0.5f * dt) * spin_of(free, body.turn, free.spin));
   body.spin = spin_of(free, halfway, free.spin);
   body.turn = turned_by(body.turn, dt * body.spin);
 }
 
-/// Takes from a free body's momentum what would carry it through the tank's walls in dt. Contacts are those
-/// of the corners of the box round which the body lies, each a ball of its radius, or of a mesh's contacts;
-/// they are inelastic and without friction. Outlets let no body through.
+/// Removes the momentum that would carry a free body through the tank's walls in dt. Contact points are the
+/// corners of the body's inner box, each a ball of its radius, or a mesh's contacts; contacts are inelastic
+/// and frictionless. Outlets let no body through.
 struct WallContact {
-  static constexpr int sweeps = 8;  ///< over all contacts, in which those of one body agree
+  static constexpr int sweeps = 8;  ///< over all contacts, until those of one body agree
   const Walls& walls;
   const Body& body;
   FreeBody& free;
@@ -90,7 +90,7 @@ struct WallContact {
       if (!met) return;
     }
   }
-  /// The contact may come as near as the wall within dt; was it to be stopped?
+  /// Lets the contact point come at most to the wall within dt. True if it had to be stopped.
   SIM_FN bool stop(Vec3 normal, float away, Vec3 arm) const {
     const float gap = away + dot(normal, arm) - body.radius;
     const Vec3 lever = cross(arm, normal);
@@ -105,7 +105,7 @@ struct WallContact {
     free.spin += push * lever;
     return true;
   }
-  /// How far beyond the walls the body is, as the way back.
+  /// Displacement that moves the body back inside the walls.
   SIM_FN Vec3 way_back() const {
     Vec3 out{0, 0, 0};
     for (int k = 0; k < walls.count; ++k) {

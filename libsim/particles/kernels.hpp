@@ -1,7 +1,7 @@
 #pragma once
 /// Smoothing kernels of the solver: density by poly6, gradients by spiky (Mueller et al. 2003;
-/// Macklin and Mueller 2013), evaluated once a pair with hbar = (h_i + h_j) / 2 so that W_ij = W_ji and pair
-/// terms cancel exactly.
+/// Macklin and Mueller 2013), evaluated once per pair with hbar = (h_i + h_j) / 2 so that W_ij = W_ji and
+/// pair terms cancel exactly.
 
 #include <cstdint>
 
@@ -22,8 +22,8 @@ struct Kernel {
   float h, h2, poly6, spiky;
 
   SIM_FN explicit Kernel(float support_radius) : Kernel(support_radius, 1 / support_radius) {}
-  /// The same from h and 1 / h. All powers come from the one quotient: made anew for each pair, three would
-  /// cost as much as the rest of the pair.
+  /// The same from h and 1 / h. All powers come from the one quotient: computing three quotients per pair
+  /// would cost as much as the rest of the pair.
   SIM_FN Kernel(float support_radius, float inverse) : h(support_radius), h2(h * h) {
     const float inverse3 = inverse * inverse * inverse;
     spiky = 45 / (pi * lattice_density) * (inverse3 * inverse3);
@@ -42,7 +42,7 @@ struct Kernel {
   }
 };
 
-/// Gives the pair's kernel: the same for all (one level), or made from both supports (mixed levels).
+/// The kernel of a pair: the same for all pairs (one level), or from both supports (mixed levels).
 template <bool OneLevel>
 struct PairKernel;
 
@@ -69,7 +69,7 @@ struct PairKernel<false> {
 /// m = rho_0 d^3 with d = h / 2.
 SIM_FN float mass_of(float h, float rest_density) { return rest_density * 0.125f * h * h * h; }
 
-/// A unit vector that two coincident particles agree on with opposite signs.
+/// A unit vector for two coincident particles; swapping them flips its sign.
 SIM_FN Vec3 parting_direction(int id_i, int id_j) {
   const bool swapped = id_i > id_j;
   const auto a = static_cast<std::uint32_t>(swapped ? id_j : id_i);
@@ -82,7 +82,8 @@ SIM_FN Vec3 parting_direction(int id_i, int id_j) {
   return {sign * across * cosf(angle), sign * y, sign * across * sinf(angle)};
 }
 
-/// For loops over neighbours: lanes on the CPU. The body is one call; structs made in it leave one lane.
+/// For loops over neighbours: SIMD lanes on the CPU. The body must be one call; constructing structs in it
+/// prevents vectorisation.
 #ifdef SIM_CUDA
 #define SIM_LANES(...)
 #else

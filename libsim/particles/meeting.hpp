@@ -1,5 +1,5 @@
 #pragma once
-/// Rigid bodies that meet: a substep of all of them in one block of threads.
+/// Contacts between rigid bodies: a substep of all bodies in one block of threads.
 
 #include "libsim/exec/one_block.hpp"
 #include "libsim/particles/body_drive.hpp"
@@ -8,7 +8,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Two bodies, or one and a wall.
+/// Two bodies, or one body and a wall.
 struct Partners {
   int first, second;  ///< second < 0: the wall ~second
 };
@@ -20,26 +20,26 @@ struct ListedContact {
 };
 
 /// Moves free bodies to the end of the substep. Contacts are inelastic, with Coulomb friction. They are found
-/// where the bodies are at its beginning, and stop surfaces at each other. A deeper penetration is corrected
-/// in position only. Contacts with walls are solved last.
+/// at the bodies' positions at its beginning, and stop surfaces at each other. A deeper penetration is
+/// corrected in position only. Contacts with walls are solved last.
 struct Meeting {
-  Body* bodies;  ///< of those that are not free: at the substep's end
+  Body* bodies;  ///< bodies that are not free: at the substep's end
   FreeBody* free;
-  const MeshGrid* meshes;  ///< as Solids has them
-  const float* friction;   ///< of each
-  Vec3* by_others;         ///< what others gave each in this frame, m_* m/s
+  const MeshGrid* meshes;  ///< as in Solids
+  const float* friction;   ///< of each body
+  Vec3* by_others;         ///< momentum that each body received from others in this frame, m_* m/s
   Walls walls;
   BodyDrive drive;
   float spacing;  ///< of the finest particles, m
   int count;
-  int feelers;  ///< the most that a body has
-  bool rough;   ///< one has friction
+  int feelers;  ///< the largest number on one body
+  bool rough;   ///< true if one body has friction
 
-  /// Depth that stays, and the most that a substep takes away, as shares of the spacing.
+  /// Remaining depth, and maximum correction per substep, as shares of the spacing.
   static constexpr float slop = 1e-3f, fastest_mend = 0.1f;
-  /// What a substep takes of the depth beyond.
+  /// Share of the excess depth that a substep corrects.
   static constexpr float mended = 0.5f;
-  /// How far contacts are looked for beyond what speeds close, as a share of the smaller body.
+  /// Extra search distance for contacts beyond the closing speeds, as a share of the smaller body.
   static constexpr float wide = 0.02f;
 
   SIM_FN int width() const { return rough ? 3 : 1; }
@@ -58,22 +58,22 @@ struct Meeting {
 
   struct Room {
     std::size_t bytes = 0;
-    Body* start;      ///< where bodies are when the substep begins
-    BodyRate* rates;  ///< how they move, till they meet
-    BodyRate* along;  ///< as ContactRows has it
-    float* speeds;    ///< of their fastest places, m/s
-    int* found;       ///< contacts of each group; of pairs at first: may they meet?
-    Contact* felt;    ///< by both of each pair
-    Contact* picked;  ///< most_contacts of each group
+    Body* start;      ///< bodies at the beginning of the substep
+    BodyRate* rates;  ///< their velocities before contacts
+    BodyRate* along;  ///< as in ContactRows
+    float* speeds;    ///< of the fastest point of each body, m/s
+    int* found;       ///< number of contacts per group; for pairs first a flag: contact possible
+    Contact* felt;    ///< candidate contacts of both bodies of each pair
+    Contact* picked;  ///< most_contacts per group
     ListedContact* list;
-    int* listed;                 ///< how many
-    int *touches, *touch_begin;  ///< as ContactRows has them
+    int* listed;                 ///< number of listed contacts
+    int *touches, *touch_begin;  ///< as in ContactRows
     ContactProgress* progress;
-    int* deep;        ///< is one deeper than may stay?
-    float* friction;  ///< of those listed
+    int* deep;        ///< true if a contact is deeper than the allowed rest
+    float* friction;  ///< of the listed contacts
     ContactRow* rows;
   };
-  /// The parts of the room; of none, its size alone.
+  /// The parts of the scratch memory; with nullptr only its size.
   SIM_FN Room parts_of(unsigned char* room) const {
     const auto n = static_cast<std::size_t>(count);
     const auto most = static_cast<std::size_t>(groups() * most_contacts);
@@ -115,7 +115,7 @@ struct Meeting {
       return room.rates[b].velocity + cross(room.rates[b].spin, x - room.start[b].centre);
     }
 
-    /// Where a body is, and how it would go on.
+    /// Sets each body's start position and velocities.
     SIM_FN void begin(int b) const {
       if (m.drive.first) m.by_others[b] = {0, 0, 0};
       Body body = m.bodies[b];
@@ -137,20 +137,20 @@ struct Meeting {
       for (int b = 0; b < m.count; ++b) out = at_least(room.speeds[b], out);
       return out;
     }
-    /// The most that two bodies push each other. In a wedge pushes grow as 1 / (2 sin) of its half angle:
-    /// this holds what sinks into one of 2 degrees. Of a body that is pinned, others' pushes end here, and
-    /// walls have the last word.
+    /// Upper bound of the push between two bodies. In a wedge pushes grow as 1 / (2 sin) of its half angle:
+    /// the bound suffices for a wedge of 2 degrees. It limits other bodies' pushes on a pinned body, and
+    /// walls are solved last.
     SIM_FN float most_push(float speed) const {
       float mass = 0;
       for (int b = 0; b < m.count; ++b) mass += m.free[b].mass;
       return 16 * mass * speed;
     }
 
-    /// How far a gap may reach that is looked at, m.
+    /// Largest gap that is considered, m.
     SIM_FN float pad(Partners pair) const {
       float size = feelers_of(pair.first).reach();
       if (pair.second >= 0) size = at_most(feelers_of(pair.second).reach(), size);
-      // What is struck may go on to others.
+      // A struck body may hit others.
       return wide * size + 0.25f * m.drive.dt * fastest();
     }
     SIM_FN void screen(int group) const {
@@ -163,15 +163,15 @@ struct Meeting {
       const float reach = feelers_of(a).reach() + far;
       const Vec3 centre = room.start[a].centre;
       if (length(centre - room.start[b].centre) > reach + feelers_of(b).reach()) return false;
-      // Beyond its grid a mesh tells no bound.
+      // Beyond its grid a mesh gives no bound on the distance.
       return mesh_of(m.meshes, b) || room.start[b].distance(centre) <= reach;
     }
 
-    /// Who parts may be stopped by others, and is looked at as if it stayed.
+    /// Separating contacts are treated as staying, because other bodies may stop them.
     SIM_FN void look_ahead(Contact& it, Vec3 speed) const {
       it.ahead = it.gap + m.drive.dt * at_most(dot(it.normal, speed), 0.0f);
     }
-    /// One feeler of one of a pair.
+    /// Tests one feeler of one body of a pair.
     SIM_FN void feel(int k) const {
       const int group = k / (2 * m.feelers);
       if (!room.found[group]) return;
@@ -187,7 +187,7 @@ struct Meeting {
       look_ahead(out, velocity_at(self, out.at) - velocity_at(other, out.at));
       if (back) out.normal = -1.0f * out.normal;
     }
-    /// A ball's centre tells all.
+    /// True if the feelers of `self` are redundant: for a ball the test of its centre suffices.
     SIM_FN bool spares(int other, int self, bool back) const {
       return is_ball(self) && is_ball(other) ? back : is_ball(other);
     }
@@ -251,7 +251,7 @@ struct Meeting {
       rows[1] = row_along(it, along, false);
       rows[2] = row_along(it, cross(it.contact.normal, along), false);
     }
-    /// A unit vector across n, along v if that has a part across it.
+    /// A unit vector perpendicular to n, along v's perpendicular part if there is one.
     SIM_FN static Vec3 across(Vec3 n, Vec3 v) {
       Vec3 part = v - dot(n, v) * n;
       if (length(part) < 1e-4f) part = fabsf(n.x) < 0.7f ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0});
@@ -316,7 +316,7 @@ struct Meeting {
       m.free[b].momentum += push;
       m.free[b].spin += moment;
     }
-    /// From here on rates are of a way apart alone, which no momentum keeps.
+    /// From here on rates only describe the position correction; they add no momentum.
     SIM_FN void want_apart() const {
       const float dt = m.drive.dt;
       float most = 0;

@@ -1,11 +1,11 @@
 #pragma once
-/// Meshes as particles meet them: signed distances at the nodes of a grid (libsim/scene/mesh.hpp).
+/// Meshes as obstacles for particles: signed distances at the nodes of a grid (libsim/scene/mesh.hpp).
 
 #include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// What a place has of a body's surface.
+/// Distance and normal of a body's surface from a point.
 struct NearSurface {
   float distance;  ///< signed, m
   Vec3 normal;     ///< outwards
@@ -15,14 +15,15 @@ struct MeshGrid {
   Vec3 low;
   float step;
   int nx, ny, nz;
-  const float* values;   ///< m, x fastest; nullptr: the body is no mesh
-  const Vec3* contacts;  ///< places of the surface that walls meet, in the body's own axes
+  const float* values;   ///< m, x fastest; nullptr: the body is not a mesh
+  const Vec3* contacts;  ///< surface points that can touch walls, in the body's axes
   int contact_count;
-  Vec3 turns;  ///< 1 for each own axis about which pressure turns the body, 0 where it is round
+  /// 1 for each own axis about which pressure can turn the body, 0 if it is round about that axis.
+  Vec3 turns;
 
-  /// Between nodes the distance is trilinear, and the normal is its slope. Beyond the grid both are those
-  /// from the place of the surface that the nearest point of the grid has. A call of its own: scenes whose
-  /// bodies are no meshes carry no more of it than that.
+  /// Between nodes the distance is trilinear, and the normal is its gradient. Beyond the grid both come from
+  /// the surface point found at the nearest grid point. Not inlined, so that scenes without meshes carry no
+  /// more of it than the call.
   SIM_FN_APART NearSurface near(Vec3 p) const {
     const Vec3 most{static_cast<float>(nx - 1), static_cast<float>(ny - 1), static_cast<float>(nz - 1)};
     const Vec3 cells = (1 / step) * (p - low);
@@ -45,7 +46,7 @@ struct MeshGrid {
     const Vec3 slope{(1 - w) * (s0 + v * (s1 - s0)) + w * (s2 + v * (s3 - s2)),
                      (1 - w) * (d1 - d0) + w * (d3 - d2), behind - front};
     const float steep = length(slope);
-    // In the middle of a body slopes cancel.
+    // Gradients can cancel in the middle of a body.
     const Vec3 normal = steep > 1e-6f * step ? (1 / steep) * slope : Vec3{0, 1, 0};
     const float distance = front + w * (behind - front);
     if (within.x == cells.x && within.y == cells.y && within.z == cells.z) return {distance, normal};
@@ -55,7 +56,7 @@ struct MeshGrid {
   }
 };
 
-/// The mesh of a body; nullptr: it is another shape.
+/// The mesh of a body; nullptr for other shapes.
 SIM_FN const MeshGrid* mesh_of(const MeshGrid* meshes, int body) {
   return meshes && meshes[body].values ? &meshes[body] : nullptr;
 }

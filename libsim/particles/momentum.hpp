@@ -1,5 +1,5 @@
 #pragma once
-/// Sums of mass times a vector in fixed point, so that they do not depend on the order of adding.
+/// Sums of mass times a vector in fixed point, so that they do not depend on the order of addition.
 
 #include <cstdint>
 
@@ -21,7 +21,7 @@ struct MassSum {
     y += fixed(mass * v.y);
     z += fixed(mass * v.z);
   }
-  /// Adds a sum while others do.
+  /// Adds a sum atomically.
   SIM_FN void add_at_once(const MassSum& other) {
     atomic_add(&x, other.x);
     atomic_add(&y, other.y);
@@ -33,7 +33,7 @@ struct MassSum {
   friend SIM_FN MassSum operator-(const MassSum& a, const MassSum& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
-  /// Back from fixed point.
+  /// Converts from fixed point.
   SIM_FN Vec3 value() const { return {in_units(x), in_units(y), in_units(z)}; }
 
  private:
@@ -41,7 +41,8 @@ struct MassSum {
     return unit * static_cast<float>(static_cast<std::int64_t>(sum));
   }
   SIM_FN static std::uint64_t fixed(float value) {
-    constexpr auto most = static_cast<float>(1ull << (56 - Bits));  // of one particle; a sum of many has room
+    // Limit for one particle, which leaves room for the sum of many.
+    constexpr auto most = static_cast<float>(1ull << (56 - Bits));
     return static_cast<std::uint64_t>(
         static_cast<std::int64_t>(rintf(at_most(at_least(value, -most), most) / unit)));
   }
@@ -49,7 +50,7 @@ struct MassSum {
 
 /// Of velocities, m/s.
 using Momentum = MassSum<24>;
-/// Of ways within a substep, m.
+/// For displacements within a substep, m.
 using MassWay = MassSum<36>;
 
 /// Mass of a particle of support h in m_*.

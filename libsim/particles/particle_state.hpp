@@ -1,15 +1,15 @@
 #pragma once
-/// Particles as programs see them, on the host.
+/// Particle data for programs, on the host.
 
 namespace sim {
 
-/// One particle as the renderer and the bake take it.
+/// A particle for the renderer and the bake.
 struct RenderParticle {
   float x_m = 0, y_m = 0, z_m = 0;
   float radius_m = 0;
 };
 
-/// One particle in full, for tests, checkpoints and comparisons.
+/// A complete particle, for tests, checkpoints and comparisons.
 struct ParticleState {
   int id = 0;
   int level = 0;
@@ -17,12 +17,12 @@ struct ParticleState {
   float vx_m_s = 0, vy_m_s = 0, vz_m_s = 0;
 };
 
-/// A value of each particle, for pictures.
+/// A value per particle, for pictures.
 enum class ParticleField {
   Speed,         ///< m/s
   DensityError,  ///< rho / rho_0 - 1 in the last projection, walls included
   Active,        ///< 1 = solved in the last frame, 0 = moved by the velocity grid
-  Temperature    ///< K above the reference of the effect heat; 0 without it
+  Temperature    ///< K above the reference of the effect heat; 0 without the effect
 };
 
 }  // namespace sim

@@ -1,6 +1,6 @@
 #pragma once
 /// Particles as a structure of arrays. A column has memory only while a stage declares it, and a stage
-/// reaches the columns that it declares and no others.
+/// accesses only the columns that it declares.
 
 #include <cstdint>
 #include <type_traits>
@@ -13,7 +13,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What the guards met; each field counts one rule (sim::GuardCounts gives them to programs).
+/// Guard counters, one per rule (programs get them as sim::GuardCounts).
 struct Guards {
   std::uint64_t speed_limited;
   std::uint64_t coincident_pairs;
@@ -21,15 +21,15 @@ struct Guards {
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
-  Momentum braked;      ///< that the limit of speed and the quarantine took
-  std::uint64_t first;  ///< what Witness met first, as a TroubleKey; 0 = nothing
+  Momentum braked;      ///< momentum removed by the speed limit and the quarantine
+  std::uint64_t first;  ///< the first trouble that Witness noted, as a TroubleKey; 0 = none
 };
 
-/// When in a frame, what and to whom: the earlier has the larger number, so that atomic_max keeps the first
-/// whatever the order of the threads.
+/// Encodes time within a frame, cause and particle: earlier keys are larger, so that atomic_max keeps the
+/// first, whatever the order of the threads.
 struct TroubleKey {
   static constexpr std::uint64_t all = ~std::uint64_t{0};
-  /// `half`: half of a substep, counted over the frame, 0 .. 2^24 - 1.
+  /// `half`: index of half a substep within the frame, 0 .. 2^24 - 1.
   SIM_FN static std::uint64_t of(int half, Trouble cause, int id) {
     return all - (static_cast<std::uint64_t>(half) << 40 | static_cast<std::uint64_t>(cause) << 32 |
                   static_cast<std::uint32_t>(id));
@@ -38,7 +38,7 @@ struct TroubleKey {
   SIM_FN static int id(std::uint64_t key) { return static_cast<int>(static_cast<std::uint32_t>(all - key)); }
 };
 
-/// What a pass tells of particles in trouble.
+/// Records particles in trouble for a pass.
 struct Witness {
   Guards* guards;
   const int* id;
@@ -55,7 +55,7 @@ struct LevelSupports {
 };
 LevelSupports level_supports(double finest_support);
 
-/// The memory of every column, n values where it is there and none where it is not.
+/// The memory of every column: n values if allocated, otherwise none.
 struct ColumnArrays {
 #define SIM_MEMBER(Name, member, Type, ...) Array<Type> member;
 #define SIM_NOTHING(...)
@@ -67,26 +67,26 @@ struct ColumnArrays {
 class Particles {
  public:
   /// Gives each column of the set room for `capacity` particles (at least n), n of them in use, and frees the
-  /// others.
+  /// other columns.
   void allocate(ColumnSet set, int n, int capacity = 0);
-  /// Gives each column of the set that is not there room for as many, at 0 where it descends by a rule, and
-  /// frees the others. Those that stay keep their values.
+  /// Allocates missing columns of the set with the same capacity, set to 0 if they descend by a rule, and
+  /// frees columns outside the set. Columns that stay keep their values.
   void change_columns(ColumnSet set);
   int size() const { return n_; }
   int capacity() const { return capacity_; }
   bool has(Column column) const { return set_.has(column); }
-  /// Sets how many are in use, at most the capacity. Those that stay keep their values.
+  /// Sets the number in use, at most the capacity. Remaining particles keep their values.
   void resize(int n);
   /// Bytes held by all columns.
   std::size_t bytes() const;
 
-  /// Gathers the columns that outlive a substep: new[i] = old[order[i]] for i < order.size(), which becomes
-  /// the number of particles. A source may be named more than once (a split) or never (a merge).
+  /// Gathers the columns that last beyond a substep: new[i] = old[order[i]] for i < order.size(), which
+  /// becomes the number of particles. A source may occur more than once (a split) or never (a merge).
   void reorder(const Array<int>& order);
 
-  /// The columns that splits and merges treat by their rule.
+  /// The columns that splits and merges compute by rule.
   Descents descents();
-  /// Sets them to 0, as a run begins.
+  /// Sets them to 0 for the start of a run.
   void begin_descents();
 
   /// Every column, for starts, read-outs and tests. Passes go through a ColumnView.
@@ -94,10 +94,10 @@ class Particles {
   const ColumnArrays& all() const { return columns_; }
 
  private:
-  /// Gives each column to visit(column, declared, life, rule), in the table's order.
+  /// Calls visit(column, declared, life, rule) for each column, in the table's order.
   template <class Self, class Visit>
   static void for_each_column(Self& self, Visit visit);
-  /// The columns of one type that are declared and live with their particle.
+  /// The declared columns of one type that last as long as their particle.
   template <class T>
   std::vector<Array<T>*> kept_columns();
 
@@ -105,7 +105,7 @@ class Particles {
   int capacity_ = 0;
   ColumnSet set_;
   ColumnArrays columns_;
-  // Targets of the permutation, swapped with the columns.
+  // Destination buffers of the permutation, swapped with the columns.
   Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
   Array<std::uint8_t> spare_level_;
@@ -115,11 +115,10 @@ class Particles {
   std::vector<Array<SaliencyParts>> spare_parts_;
 };
 
-/// The columns that a pass declares, and no others: each is a function that gives its values, const unless
-/// they are declared as written. Asking for a column that is not declared, or writing one that is only read,
-/// does not compile. IfThere names columns that the pass reads, and WritesIfThere such that it writes, in
-/// runs where another pass calls for them; elsewhere they are nullptr. A view converts to one that declares
-/// less.
+/// Access to the columns that a pass declares, and no others: each is a function that returns its values,
+/// const unless declared as written. Using an undeclared column, or writing a column that is only read, does
+/// not compile. IfThere names columns that the pass reads, and WritesIfThere columns that it writes, only in
+/// runs where another pass needs them; otherwise they are nullptr. A view converts to one that declares less.
 template <ColumnSet Reads, ColumnSet Writes, ColumnSet IfThere = ColumnSet{},
           ColumnSet WritesIfThere = ColumnSet{}>
 class ColumnView {
@@ -130,10 +129,10 @@ class ColumnView {
   static constexpr ColumnSet may_write = Writes | WritesIfThere;
 
   explicit ColumnView(Particles& particles) : particles_(&particles) {}
-  /// Of particles that nobody may change.
+  /// For particles that must not be changed.
   explicit ColumnView(const Particles& particles) requires(may_write.empty())
       : particles_(const_cast<Particles*>(&particles)) {}
-  /// Of a view that declares at least as much.
+  /// From a view that declares at least as much.
   template <ColumnSet R, ColumnSet W, ColumnSet I, ColumnSet WI>
   requires((R | W).holds(Reads) && W.holds(Writes) && (R | W | I | WI).holds(may_read) &&
            (W | WI).holds(may_write)) ColumnView(const ColumnView<R, W, I, WI>& wider)
@@ -151,7 +150,7 @@ class ColumnView {
   SIM_COLUMNS(SIM_ACCESS, SIM_NOTHING)
 #undef SIM_ACCESS
 
-  /// The first column gets the second one's values.
+  /// Copies the second column's values to the first column.
   template <Column To, Column From>
   void copy() const requires(may_write.has(To) && may_read.has(From)) {
     const auto& from = array<From>();
@@ -186,7 +185,7 @@ class ColumnView {
 };
 #undef SIM_NOTHING
 
-/// A view for what only looks.
+/// A read-only view.
 template <Column... C>
 using Reads = ColumnView<columns(C...), ColumnSet{}>;
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Random numbers without a state: each depends on nothing but its arguments, so that runs repeat whatever
-/// the order and the number of threads.
+/// Stateless random numbers: each depends only on its arguments, so that runs are reproducible whatever the
+/// order and number of threads.
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Which particles a pass solves for, chosen before the launch: everyone, or the active ones of temporal
-/// acceleration (ViP-Fluid, Algorithm 3). A pass runs over slots 0 .. n-1 and asks for the particle of each.
+/// Selects the particles that a pass solves, before the launch: all, or the active ones of temporal
+/// acceleration (ViP-Fluid, Algorithm 3). A pass runs over slots 0 .. n-1 and looks up the particle of each.
 
 #include <cstdint>
 
@@ -8,31 +8,31 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Slot = particle. Everything here folds away.
+/// Slot = particle. Everything here is optimised away.
 struct AllParticles {
   static constexpr bool everyone = true;
-  /// The k-th slot that a pass has to look at, -1 = none.
+  /// The k-th slot that a pass must process, -1 = none.
   SIM_FN int slot(int k) const { return k; }
   SIM_FN int operator()(int slot) const { return slot; }
   SIM_FN float moves(int) const { return 1; }
 };
 
 /// The first slots hold the active particles in the grid's order, the last ones the others as ~particle, a
-/// negative number: whole warps are either at work or gone.
+/// negative number: whole warps are either active or idle.
 struct ActiveParticles {
   static constexpr bool everyone = false;
   const int* slots;
   const std::uint8_t* active;
-  bool others_pressed;  ///< gravity and the coarse pressure move the others too
+  bool others_pressed;  ///< gravity and the coarse pressure also move the unsolved particles
   SIM_FN int slot(int k) const { return k; }
   SIM_FN int operator()(int slot) const { return slots[slot]; }
-  /// 1 for a particle that is solved, 0 for one that only its grid moves.
+  /// 1 for a solved particle, 0 for one moved only by the velocity grid.
   SIM_FN float moves(int i) const { return active[i] ? 1.0f : 0.0f; }
-  /// Does gravity move it?
+  /// 1 if gravity moves the particle, otherwise 0.
   SIM_FN float falls(int i) const { return others_pressed || active[i] ? 1.0f : 0.0f; }
 };
 
-/// Both, in the order of the slots, for a pass whose results outlive the solve.
+/// Active and resting particles, in the order of the slots, for a pass whose results outlive the solve.
 struct EverySlot {
   static constexpr bool everyone = true;
   const int* slots;
@@ -44,7 +44,7 @@ struct EverySlot {
   SIM_FN float moves(int) const { return 1; }
 };
 
-/// Those of another selection that a pass before has listed, in any order: they are few.
+/// A short list of particles of another selection, made by an earlier pass, in any order.
 template <class Selection>
 struct Listed {
   static constexpr bool everyone = false;
@@ -55,7 +55,7 @@ struct Listed {
   SIM_FN int operator()(int slot) const { return slot < 0 ? -1 : select(slot); }
 };
 
-/// Whether a pass looks at a few only; a profile tells it from the pass over all.
+/// True if a pass processes only a short list; profiles use it to separate such passes.
 template <class Selection>
 inline constexpr bool few_in = false;
 template <class Selection>

@@ -1,5 +1,5 @@
 #pragma once
-/// Walls and obstacles together: what bounds the water of scenes with obstacles.
+/// Walls and obstacles together: the boundaries in scenes with obstacles.
 
 #include "libsim/particles/bodies.hpp"
 #include "libsim/particles/momentum.hpp"
@@ -8,25 +8,26 @@ namespace sim::SIM_BACKEND {
 
 inline constexpr int most_bodies = 16;
 
-/// What a body gave the water: mass in m_* times way in m, and its moment about the body's centre in m_* m2.
+/// Sum of what a body gave the water: mass in m_* times displacement in m, and its moment about the body's
+/// centre in m_* m2.
 struct BodySum {
   MassWay push, moment;
 };
 
-/// What kernels tell of bodies.
+/// Records in kernels what bodies give the water.
 struct BodyListener {
   BodySum* sums;
   const Body* bodies;
   float finest_support;
   float times;  ///< as in WallListener
 
-  /// `push` in m_* m at a place.
+  /// Adds `push`, in m_* m, at a position.
   SIM_FN void add(int body, Vec3 at, Vec3 push) const {
     BodySum sum{};
     add_to(sum, body, at, push);
     add_at_once(body, sum);
   }
-  /// The same, first to a sum of one's own.
+  /// The same, added to a local sum.
   SIM_FN void add_to(BodySum& sum, int body, Vec3 at, Vec3 push) const {
     sum.push.add(times, push);
     sum.moment.add(times, cross(at - bodies[body].centre, push));
@@ -37,13 +38,13 @@ struct BodyListener {
   }
 };
 
-/// The functions of Walls, for walls and bodies.
+/// The functions of Walls, for walls and bodies together.
 struct Solids {
   Walls walls;
   const Body* bodies;
   int count;
-  float dt;                          ///< in which the bodies came to their places, s
-  const MeshGrid* meshes = nullptr;  ///< of all bodies; nullptr: none is a mesh
+  float dt;                          ///< duration of the bodies' move to their positions, s
+  const MeshGrid* meshes = nullptr;  ///< of all bodies; nullptr: no body is a mesh
 
   SIM_FN Body::Near near(int body, Vec3 x) const {
     const MeshGrid* mesh = mesh_of(meshes, body);
@@ -55,7 +56,7 @@ struct Solids {
     const MeshGrid* mesh = mesh_of(meshes, body);
     return mesh ? mesh->near(bodies[body].to_body(x)).distance : bodies[body].distance(x);
   }
-  /// Body::missing; a mesh's surface counts as a plane.
+  /// Like Body::missing; a mesh's surface counts as a plane.
   SIM_FN float missing(int body, Vec3 x, float h, Vec3& gradient) const {
     if (!mesh_of(meshes, body)) return bodies[body].missing(x, h, gradient);
     gradient = {0, 0, 0};
@@ -77,7 +78,7 @@ struct Solids {
     }
     return 1 - present;
   }
-  /// The part of `gradient` above that one body has.
+  /// The part of the gradient above that comes from one body.
   SIM_FN Vec3 missing_gradient(int body, Vec3 x, float h) const {
     Vec3 own;
     Vec3 other;
@@ -88,7 +89,7 @@ struct Solids {
     }
     return present * own;
   }
-  /// Share of the kernel that bodies leave.
+  /// Share of the kernel outside all bodies.
   SIM_FN float beside_bodies(Vec3 x, float h) const {
     float present = 1;
     Vec3 own;
@@ -96,7 +97,7 @@ struct Solids {
     return present;
   }
 
-  /// Signed distance to the nearest body's surface, and which it is; only with bodies.
+  /// Signed distance to the nearest body's surface, and the index of that body; needs at least one body.
   SIM_FN float nearest_body(Vec3 x, int& body) const {
     float least = 3e38f;
     body = 0;
@@ -115,8 +116,9 @@ struct Solids {
   SIM_FN float nearest(Vec3 x) const { return at_most(nearest_body(x), walls.nearest(x)); }
   SIM_FN bool holds(Vec3 x, float gap = 0) const { return walls.holds(x, gap) && nearest_body(x) >= gap; }
 
-  /// As Walls::hold_back. A body counts its distance from a particle as if that had ridden with it. Where a
-  /// body stands on a wall, the way out of it may lead into the wall: who finds no other stays where it was.
+  /// Like Walls::hold_back. A body measures the distance at the start as if the particle had moved with it.
+  /// If a body touches a wall, the way out of the body may lead into the wall: a particle without another way
+  /// out stays where it was.
   template <class Heard = NobodyHears>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
     const Vec3 from = x;
@@ -136,7 +138,7 @@ struct Solids {
     return true;
   }
 
-  /// As Walls::project; walls have the last word, but for who lay outside and would lie in a body.
+  /// Like Walls::project; walls are applied last, unless that would push a particle from outside into a body.
   template <class Heard = NobodyHears>
   SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
     bool moved = false;
@@ -163,7 +165,7 @@ struct Solids {
   }
 };
 
-/// The walls of what bounds the water.
+/// The walls of a boundary.
 SIM_FN const Walls& tank(const Walls& walls) { return walls; }
 SIM_FN const Walls& tank(const Solids& solids) { return solids.walls; }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Walls of a tank as particles meet them.
+/// Walls of a tank as boundaries for particles.
 
 #include "libsim/exec/vec.hpp"
 
@@ -11,7 +11,7 @@ struct Plane {
   float offset;
 };
 
-/// A hole in a plane: the box that holds it, without end across the plane.
+/// A hole in a plane: a box around it, infinite across the plane.
 struct Opening {
   int plane;
   Vec3 low, high;
@@ -21,14 +21,14 @@ struct Opening {
   }
 };
 
-/// Who does not listen to what walls and bodies do to a particle.
+/// Listener that ignores corrections by walls and bodies.
 struct NobodyHears {
   SIM_FN void operator()(int, float) const {}
   SIM_FN void body(int, Vec3, Vec3) const {}
 };
 
-/// Walls of a tank as signed distances. Before an opening its plane is not there. Water comes to the far side
-/// of a plane through its openings only: what is there is through and meets that plane no more.
+/// Walls of a tank as signed distances. In front of an opening its plane does not act. Water reaches the far
+/// side of a plane only through its openings: such water no longer meets that plane.
 struct Walls {
   static constexpr int most = 8;
   static constexpr int most_openings = 4;
@@ -40,14 +40,14 @@ struct Walls {
   SIM_FN float distance(int plane, Vec3 x) const {
     return dot(planes[plane].normal, x) - planes[plane].offset;
   }
-  /// Does x lie before an opening in this plane?
+  /// True if x is in front of an opening in this plane.
   SIM_FN bool opens(int plane, Vec3 x) const {
     for (int o = 0; o < opening_count; ++o) {
       if (openings[o].plane == plane && openings[o].holds(x)) return true;
     }
     return false;
   }
-  /// Is x on the far side of a plane that has an opening?
+  /// True if x is on the far side of a plane that has an opening.
   SIM_FN bool through(int plane, Vec3 x) const {
     for (int o = 0; o < opening_count; ++o) {
       if (openings[o].plane == plane) return distance(plane, x) < 0;
@@ -60,24 +60,24 @@ struct Walls {
     }
     return false;
   }
-  /// Does the plane not touch a particle at x? Only asked near and beyond the plane.
+  /// True if the plane does not act on a particle at x. Only valid near and beyond the plane.
   SIM_FN bool absent(int plane, Vec3 x) const {
     return opening_count > 0 && (through(plane, x) || opens(plane, x));
   }
-  /// Is the plane not there for what moves from `from` to `to`? Only asked near and beyond the plane.
+  /// True if the plane does not act on a move from `from` to `to`. Only valid near and beyond the plane.
   SIM_FN bool lets(int plane, Vec3 from, Vec3 to) const {
     if (opening_count == 0) return false;
     if (through(plane, from)) return true;
     const float before = distance(plane, from);
     const float after = distance(plane, to);
-    // The straight way meets the plane there.
+    // Point where the straight path crosses the plane.
     return opens(plane, after < 0 ? from + (before / (before - after)) * (to - from) : to);
   }
 
-  /// Share of a particle's kernel that lies behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient
-  /// (1/m) with the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875
-  /// is missing. f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 - u^5/5), u = 1 - q, for
-  /// spiky; both are exact.
+  /// Share of a particle's kernel behind the walls, 1 - prod (1 - f(s_k / h)), and its gradient (1/m) with
+  /// the spiky kernel's slope. Summing half-spaces instead would give 1.5 in a corner where 0.875 is missing.
+  /// f(q) = 315/256 int_q^1 (1 - z^2)^4 dz for poly6; slope 30/h (u^4/4 - u^5/5), u = 1 - q, for spiky; both
+  /// are exact.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     float present = 1;
     gradient = {0, 0, 0};
@@ -87,7 +87,7 @@ struct Walls {
       if (absent(k, x)) continue;
       const float inside = at_least(q, 0.0f);
       const float kept = 1 - behind(inside);
-      // Product rule; the wall's share falls along its normal.
+      // Product rule; the wall's share decreases along its normal.
       gradient = kept * gradient - (present * slope(inside) / h) * planes[k].normal;
       present *= kept;
     }
@@ -104,7 +104,7 @@ struct Walls {
     return 30 * u4 * (0.25f - 0.2f * u);
   }
 
-  /// The part of `gradient` above that wall k has, along its normal: <= 0.
+  /// The part of the gradient above that comes from wall k, along its normal: <= 0.
   SIM_FN float missing_slope(int k, Vec3 x, float h) const {
     float out = -slope_at(k, x, h) / h;
     for (int other = 0; other < count; ++other) {
@@ -125,7 +125,7 @@ struct Walls {
     return least;
   }
 
-  /// True where x lies at least `gap` inside every wall.
+  /// True if x is at least `gap` inside every wall, except in front of openings.
   SIM_FN bool holds(Vec3 x, float gap = 0) const {
     for (int k = 0; k < count; ++k) {
       if (dot(planes[k].normal, x) < planes[k].offset + gap && !opens(k, x)) return false;
@@ -133,9 +133,9 @@ struct Walls {
     return true;
   }
 
-  /// Takes x, which lies inside the walls, on its way `to`, but over at most a share of its distance from a
-  /// wall (`gap` before it): what moves at one speed keeps its order, where a clamp would lay layers on one
-  /// plane. True when it had to hold back; heard(wall, way in m) is told by which wall and how much.
+  /// Moves x, which is inside the walls, towards `to`, but at most a share of its distance to each wall
+  /// (minus `gap`): particles of equal speed keep their order, whereas a clamp would put layers on one plane.
+  /// True if a wall held x back; calls heard(wall, distance in m) for each such wall.
   template <class Heard = NobodyHears>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
     bool held = false;
@@ -153,7 +153,7 @@ struct Walls {
   }
   static constexpr float kept_distance = 0.25f;
 
-  /// Moves x, which comes from `from`, to at least `gap` inside every wall; true when it had to. heard: as
+  /// Moves x, which came from `from`, to at least `gap` inside every wall; true if it was moved. heard: as
   /// above.
   template <class Heard = NobodyHears>
   SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {

@@ -12,7 +12,7 @@ void CoarseGrid::fit(const Domain& domain, float edge) {
   const auto across = [&](float length) { return std::max(1, static_cast<int>(std::round(length / edge))); };
   const int nx = across(size.x);
   const int nz = across(size.z);
-  const int ny = std::max(1, static_cast<int>(std::ceil(size.y / edge)));  // open above
+  const int ny = std::max(1, static_cast<int>(std::ceil(size.y / edge)));  // open at the top
   frame = {domain.low, {size.x / static_cast<float>(nx), edge, size.z / static_cast<float>(nz)}};
   multigrid.fit({nx, ny, nz}, frame.conductance());
   sums.resize(static_cast<std::size_t>(multigrid.finest().block.size()));

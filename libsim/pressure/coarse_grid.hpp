@@ -1,23 +1,23 @@
 #pragma once
-/// The bridge between particles and the coarse pressure's cells.
+/// The coupling between particles and the coarse pressure's cells.
 
 #include "libsim/particles/solids.hpp"
 #include "libsim/pressure/multigrid.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// What particles bring to a cell, in fixed point, so that the sum does not depend on the order of adding.
+/// Sums over the particles of a cell, in fixed point, so that they do not depend on the order of addition.
 struct CellSum {
   std::uint64_t volume, excess;
 };
 
-/// The coarse pressure's cells. They fit whole between the walls: for the equation a wall stands where its
-/// cell ends, and the little water before a wall that cuts a cell would weigh as much as a full cell.
+/// The coarse pressure's cells. A whole number fits between the walls: in the equation a wall is at its
+/// cell's end, and a thin layer of water in a cell cut by a wall would weigh as much as a full cell.
 struct PressureFrame {
   Vec3 low{};
   Vec3 edge{1, 1, 1};
 
-  /// A place in cells.
+  /// A position in cell units.
   SIM_FN Vec3 in_cells(Vec3 x) const {
     const Vec3 from = x - low;
     return {from.x / edge.x, from.y / edge.y, from.z / edge.z};
@@ -25,38 +25,39 @@ struct PressureFrame {
   SIM_FN Vec3 in_metres(Vec3 cells) const {
     return low + Vec3{edge.x * cells.x, edge.y * cells.y, edge.z * cells.z};
   }
-  /// Volume over upright edge, the unit in which sources C V and the conductances of faces are given.
+  /// Volume divided by the vertical edge, the unit of the sources C V and the conductances of faces.
   SIM_FN float floor_area() const { return edge.x * edge.z; }
-  /// Area over way of the faces across x, y and z.
+  /// Area divided by distance for the faces across x, y and z.
   Vec3 conductance() const { return {edge.z / edge.x, floor_area() / (edge.y * edge.y), edge.x / edge.z}; }
 };
 
-/// What the coarse pressure did to the water as a whole, and what the walls gave of it: ways over m_*.
+/// What the coarse pressure did to the water in total, and the walls' share of it: mass in m_* times
+/// displacement.
 struct PushBalance {
   MassWay pushed, walls;
   std::uint64_t mass;  ///< of the particles that were pushed, in m_*
 
-  /// Way of each pushed particle that makes the two equal.
+  /// Displacement of each pushed particle that makes the two equal.
   SIM_FN Vec3 correction() const {
     if (mass == 0) return {0, 0, 0};
     return (1 / static_cast<float>(mass)) * (walls - pushed).value();
   }
 };
 
-/// The middle of a cell, m.
+/// The centre of a cell, m.
 SIM_FN Vec3 middle_of(const PressureFrame& frame, int x, int y, int z) {
   const auto middle = [](int cell) { return static_cast<float>(cell) + 0.5f; };
   return frame.in_metres({middle(x), middle(y), middle(z)});
 }
-/// Is a solid cell an obstacle's and no wall's?
+/// True if a solid cell belongs to an obstacle and not to a wall.
 SIM_FN bool body_has(const Walls&, const PressureFrame&, const GridView&, int, int, int) { return false; }
 SIM_FN bool body_has(const Solids& solids, const PressureFrame& frame, const GridView& grid, int x, int y,
                      int z) {
   return grid.block.holds(x, y, z) && solids.walls.holds(middle_of(frame, x, y, z));
 }
 
-/// Gives hear(wall, inward normal, area in m2) what is shut of each face of a cell that lies on a wall, in
-/// the order of Walls.
+/// Calls hear(wall, inward normal, area in m2) with the closed area of each face of a cell that lies on a
+/// wall, in the order of Walls.
 template <class Boundary, class Hear>
 SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, const Boundary& boundary,
                            int cell, Hear hear) {
@@ -81,20 +82,20 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, con
 struct CoarseGrid {
   PressureFrame frame;
   Array<CellSum> sums;
-  Array<std::uint64_t> volume;  ///< of all particles in a cell, as CellSum has it; only beside obstacles
+  Array<std::uint64_t> volume;  ///< of all particles in a cell, as in CellSum; only with obstacles
   Array<PushBalance> balance;
   Multigrid multigrid;
 
-  /// Cells of `edge`, or wider where the domain would need more than `most_cells`; across they are as much
-  /// wider or narrower as makes whole ones fit between the walls.
+  /// Uses cells of `edge`, or wider if the domain would need more than `most_cells`; horizontal edges are
+  /// then adjusted so that a whole number of cells fits between the walls.
   void fit(const Domain& domain, float edge);
-  /// The walls' openings as open faces; after fit. Walls are those of the domain.
+  /// Sets the walls' openings as open faces; call after fit. The walls must be those of the domain.
   void open(const Walls& walls);
   static constexpr double most_cells = 1 << 24;
 
  private:
-  int opened_ = 0;      ///< openings that the multigrid has
-  Vec3 opened_edge_{};  ///< with cells of this edge
+  int opened_ = 0;      ///< number of openings passed to the multigrid
+  Vec3 opened_edge_{};  ///< cell edge at that time
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -1,18 +1,18 @@
 #pragma once
-/// The coarse pressure's slope between its cells.
+/// The gradient of the coarse pressure between its cells.
 
 #include "libsim/pressure/coarse_grid.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// -grad q, interpolated from the faces that touch fluid, as a MAC grid's velocity would be. Before an
-/// opening the outside is air, however small a part of the cell's face is open.
+/// -grad q, interpolated from the faces that touch fluid, like the velocity of a MAC grid. In front of an
+/// opening the outside is air, however small the open part of the cell's face is.
 struct CoarseSlope {
   PressureFrame frame;
   GridView grid;
   Walls walls;
 
-  /// At a place in metres, m.
+  /// At a position in metres.
   SIM_FN Vec3 down(Vec3 x) const {
     const Vec3 at = frame.in_cells(x);
     return {along<1, 0, 0>(at, x) / frame.edge.x, along<0, 1, 0>(at, x) / frame.edge.y,
@@ -53,7 +53,7 @@ struct CoarseSlope {
   struct Place {
     int x, y, z;
   };
-  /// Is this solid place outside the block, beyond an opening that the particle lies before?
+  /// True if this solid cell is outside the block, beyond an opening in front of the particle.
   template <int X, int Y, int Z>
   SIM_FN bool opens(Place solid, bool low, Vec3 metres) const {
     if (grid.block.holds(solid.x, solid.y, solid.z)) return false;

@@ -1,6 +1,6 @@
 #pragma once
-/// The passes of a V-cycle, a functor of a cell each. cell(place, index) does the work where the place is
-/// known.
+/// The passes of a V-cycle, one functor each, called per cell. cell(place, index) does the work if the
+/// position is known.
 
 #include "libsim/pressure/multigrid.hpp"
 
@@ -15,8 +15,9 @@ SIM_FN Place place_of(const CellBlock& block, int i) {
   return {i - row * block.nx, row - z * block.ny, z};
 }
 
-/// A coarser cell is fluid when no child is air: its surface then lies within half a cell of the true one, on
-/// either side. Counting cells with any fluid as fluid lets a grid overshoot until the cycles diverge.
+/// A coarser cell is fluid if no child is air and one is fluid: its surface is then within half a cell of the
+/// true one, on either side. Counting every cell with some fluid as fluid lets a grid overshoot until the
+/// cycles diverge.
 struct Coarsen {
   GridView fine, coarse;
   SIM_FN void operator()(int i) const {
@@ -33,7 +34,8 @@ struct Coarsen {
   }
 };
 
-/// Conductances of a cell's faces across x, y, z: area over way, in finest cells, times theirs.
+/// Conductances of a cell's faces across x, y, z: area over distance, in finest cells, times the finest
+/// conductances.
 SIM_FN Vec3 conductances(const GridView& grid, Place p) {
   if (grid.scale == 1) return grid.conductance;
   const float x = grid.extent(p.x, grid.finest.nx);
@@ -43,7 +45,7 @@ SIM_FN Vec3 conductances(const GridView& grid, Place p) {
   return {y * z * over.x, x * z * over.y, x * y * over.z};
 }
 
-/// The diagonal of a fluid cell's equation, for all sweeps of a solve.
+/// Computes the diagonal of a fluid cell's equation, for all sweeps of a solve.
 struct Weigh {
   GridView grid;
   SIM_FN void operator()(int i) const {
@@ -65,14 +67,14 @@ struct Weigh {
     }
     grid.diagonal[i] = sum;
   }
-  /// Towards this place.
+  /// Openness towards the neighbour cell at this position.
   SIM_FN float opening(int x, int y, int z) const {
     if (grid.kind_at(x, y, z) != CellKind::Solid) return 1;
     return grid.open_count > 0 ? grid.openness(x, y, z) : 0;
   }
 };
 
-/// The sum of conductance x q around cell i, which lies at p.
+/// The sum of conductance x q around cell i at position p.
 SIM_FN float around(const GridView& grid, Place p, int i) {
   const CellBlock& block = grid.block;
   const Vec3 over = conductances(grid, p);
@@ -88,8 +90,8 @@ SIM_FN float around(const GridView& grid, Place p, int i) {
   return sum;
 }
 
-/// Gauss-Seidel on the cells of one colour; on the finest grid the pressure stays a push. Index: every second
-/// cell of a row, from the first one on.
+/// Gauss-Seidel on the cells of one colour; with push_only (the finest grid) q stays >= 0. Index: every
+/// second cell of a row, starting with the first.
 struct Smooth {
   GridView grid;
   int colour;
@@ -109,8 +111,8 @@ struct Smooth {
   }
 };
 
-/// Source of the coarser grid: the sum of the finer residuals. Where a cell rests at q = 0 and wants to pull,
-/// nothing is left to solve.
+/// Source of the coarser grid: the sum of the finer residuals. A cell at q = 0 whose residual is negative
+/// contributes nothing.
 struct Restrict {
   GridView fine, coarse;
   bool push_only;
@@ -130,7 +132,7 @@ struct Restrict {
   }
 };
 
-/// Adds the coarser grid's correction, trilinear between cell centres, mirrored at walls and sloping to zero
+/// Adds the coarser grid's correction, trilinear between cell centres, mirrored at walls and falling to zero
 /// outside open faces.
 struct Prolong {
   GridView fine, coarse;

@@ -1,6 +1,6 @@
 #pragma once
-/// Geometric multigrid for the slow part of the pressure: -laplace q = C on the cells that hold fluid, q >=
-/// 0, q = 0 in the air and outside open faces, no flux through walls.
+/// Geometric multigrid for the low-frequency part of the pressure: -laplace q = C on the cells that contain
+/// fluid, q >= 0, q = 0 in the air and outside open faces, no flux through walls.
 
 #include <vector>
 
@@ -10,14 +10,14 @@ namespace sim::SIM_BACKEND {
 
 enum class CellKind : std::uint8_t { Air, Fluid, Solid };
 
-/// One grid as kernels see it. The equation of a fluid cell is the sum of conductance (q_i - q_j) over its
-/// six neighbours j that are not solid = source_i.
+/// One grid in the form that kernels use. The equation of a fluid cell is the sum of conductance (q_i - q_j)
+/// over its six neighbours j that are not solid = source_i.
 struct GridView {
   CellBlock block, finest;
   Vec3 conductance;  ///< of a finest cell's faces across x, y, z; 1 for cubes
-  int scale;         ///< edge of a cell in finest cells
+  int scale;         ///< edge of a cell, in finest cells
   CellKind* kind;
-  float* q;  ///< 0 where there is no fluid
+  float* q;  ///< 0 in cells without fluid
   float* source;
   float* diagonal;  ///< of a fluid cell's equation: the sum of its conductances
   const OpenFace* open;
@@ -27,13 +27,13 @@ struct GridView {
     if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
     return y >= block.ny ? CellKind::Air : CellKind::Solid;
   }
-  /// Finest cells along a cell's edge; the last cell of a row may reach beyond the block.
+  /// Length of a cell's edge in finest cells; the last cell of a row may extend beyond the block.
   SIM_FN float extent(int cell, int finest_cells) const {
     const int left = finest_cells - cell * scale;
     return static_cast<float>(left < scale ? left : scale);
   }
-  /// Conductance of the face between the block and this place outside it, of one inside. The water outside
-  /// has q = 0 at one finest cell beyond the last one's centre, on every grid.
+  /// Conductance of the face between the block and this outside cell, relative to an inner face. The water
+  /// outside has q = 0 at one finest cell beyond the last cell's centre, on every grid.
   SIM_FN float openness(int x, int y, int z) const {
     float share = 0;
     for (int o = 0; o < open_count; ++o) share += share_of(open[o], x, y, z);
@@ -41,7 +41,7 @@ struct GridView {
     const auto way = static_cast<float>(scale);
     return quotient(way, 0.5f * (way - 1) + reciprocal(fminf(share, 1.0f)));
   }
-  /// Share of an open face in that face.
+  /// Share of that face that the open face covers.
   SIM_FN float share_of(const OpenFace& face, int x, int y, int z) const {
     const int across = face.axis == 0 ? x : face.axis == 1 ? y : z;
     const int cells = face.axis == 0 ? block.nx : face.axis == 1 ? block.ny : block.nz;
@@ -52,7 +52,7 @@ struct GridView {
         face.axis == 2 ? covered(face, 1, y, block.ny, finest.ny) : covered(face, 1, z, block.nz, finest.nz);
     return first * second;
   }
-  /// Share of the face in a cell's extent along one of its two axes.
+  /// Share of the cell's extent that the open face covers along one of its two axes.
   SIM_FN float covered(const OpenFace& face, int along, int cell, int cells, int finest_cells) const {
     if (cell < 0 || cell >= cells) return 0;
     const auto low = static_cast<float>(cell * scale);
@@ -60,7 +60,7 @@ struct GridView {
     const float both = fminf(face.high[along], low + wide) - fmaxf(face.low[along], low);
     return quotient(fmaxf(both, 0.0f), wide);
   }
-  /// 0 in air, walls and outside.
+  /// 0 in air, in walls and outside.
   SIM_FN float q_at(int x, int y, int z) const {
     return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f;
   }
@@ -68,10 +68,10 @@ struct GridView {
 
 class Multigrid {
  public:
-  /// Makes room for a finest grid of this many cells and its coarser ones. Cheap when nothing changed. The
-  /// conductance of a face is its area over the way across it.
+  /// Allocates a finest grid of this many cells and its coarser grids. Cheap if nothing changed. The
+  /// conductance of a face is its area divided by the distance across it.
   void fit(CellBlock finest, Vec3 conductance = {1, 1, 1});
-  /// Opens these faces of the finest grid, and shuts all others.
+  /// Opens these faces of the finest grid, and closes all others.
   void open(const std::vector<OpenFace>& faces) { open_.from_host(faces); }
   /// The finest grid. Write kind and source (C times the volume of each fluid cell, in the unit of
   /// conductances), then solve.
@@ -80,7 +80,7 @@ class Multigrid {
   void solve(int cycles);
 
  private:
-  /// Grids below the first small one live in scratch memory and have no columns.
+  /// Grids below the first small one live in scratch memory and have no arrays.
   struct Level {
     CellBlock block;
     Array<CellKind> kind;
@@ -88,7 +88,7 @@ class Multigrid {
   };
 
   GridView view(std::size_t level);
-  /// The first of the grids that one block handles together.
+  /// The first of the grids that one block solves together.
   std::size_t first_small() const;
 
   void cycle(std::size_t level);

@@ -1,5 +1,5 @@
 #pragma once
-/// V-cycles over grids that are small enough for one block, in its own memory.
+/// V-cycles over grids that are small enough for one block, in its shared memory.
 
 #include "libsim/exec/one_block.hpp"
 #include "libsim/pressure/grid_passes.hpp"
@@ -7,20 +7,20 @@
 namespace sim::SIM_BACKEND {
 
 constexpr int coarsest_sweeps = 4;
-/// A grid of at most so many cells is left to one warp.
+/// A grid of at most this many cells is processed by one warp.
 constexpr int one_warp_cells = 64;
 
-/// A fluid cell's place, in the room.
+/// A fluid cell's position, in the scratch memory.
 struct CellPlace {
   std::uint16_t x, y, z;
 };
 
-/// The fluid cells of one grid, which are few: passes go over them and need not look at the others. Those of
-/// the first colour lie at the front, those of the second at the back.
+/// List of the few fluid cells of one grid, so that passes skip the others. Cells of the first colour are at
+/// the front, those of the second at the back.
 struct FluidCells {
   CellBlock block;
   CellPlace* place;
-  int* count;  ///< by colour
+  int* count;  ///< per colour
 
   SIM_FN int size() const { return count[0] + count[1]; }
   SIM_FN int nth(int colour, int k) const { return colour == 0 ? k : block.size() - 1 - k; }
@@ -31,7 +31,7 @@ struct FluidCells {
   }
 };
 
-/// f.cell for the fluid cells of one colour, or for all.
+/// Calls f.cell for the fluid cells of one colour, or of both.
 template <class F>
 struct OfColour {
   FluidCells cells;
@@ -63,7 +63,7 @@ struct ListFluid {
   }
 };
 
-/// Takes what the first of the small grids is given,
+/// Copies kinds and sources of the first small grid into the block's memory.
 struct Load {
   GridView from, to;
   SIM_FN void operator()(int i) const {
@@ -71,7 +71,7 @@ struct Load {
     to.source[i] = from.source[i];
   }
 };
-/// and gives its q back.
+/// Copies q of the first small grid back.
 struct Store {
   GridView from, to;
   SIM_FN void operator()(int i) const { to.q[i] = from.q[i]; }
@@ -81,27 +81,27 @@ struct Nothing {
   SIM_FN void operator()(int i) const { count[i] = 0; }
 };
 
-/// The grids from the first one that is small enough for one block down to the coarsest: V-cycles over them.
-/// All values live in the block's room.
+/// V-cycles over the grids from the first one that is small enough for one block down to the coarsest. All
+/// values are in the block's scratch memory.
 struct SmallGrids {
   static constexpr int most = 16;
   struct Grid {
     CellBlock block;
-    int scale, begin;  ///< cells before it in the room
+    int scale, begin;  ///< edge in finest cells; index of its first cell
   };
-  GridView outside;  ///< the first one where others see it
+  GridView outside;  ///< the first grid in global memory
   Grid grid[most];
   int count;
-  int cells;  ///< of all
-  int few;    ///< the first grid for one warp; the last one at most
+  int cells;  ///< of all grids
+  int few;    ///< index of the first grid for one warp, at most the last grid
   int cycles;
 
   static constexpr std::size_t cell_bytes = 3 * sizeof(float) + sizeof(CellPlace) + sizeof(CellKind);
   std::size_t bytes() const { return counts_bytes + static_cast<std::size_t>(cells) * cell_bytes; }
   static constexpr std::size_t counts_bytes = 2 * most * sizeof(int);
 
-  /// The steps of a V-cycle over the grids in a room: counts, then q, sources and diagonals, then places,
-  /// then kinds.
+  /// The steps of a V-cycle over the grids in scratch memory. Layout: counts, then q, sources and diagonals,
+  /// then cell positions, then kinds.
   struct InRoom {
     const SmallGrids& grids;
     unsigned char* room;

@@ -1,18 +1,18 @@
 #pragma once
-/// How high the water stands beside bodies, as the coarse pressure's cells have it.
+/// Water level beside bodies, from the coarse pressure's cells.
 
 #include "libsim/pressure/coarse_grid.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// What a cell's sums say.
+/// Evaluates a cell's sums.
 struct CellWater {
   PressureFrame frame;
-  float unit_volume;  ///< of the sums, m3
+  float unit_volume;  ///< volume unit of the sums, m3
 
   static constexpr float fixed_point = 1 << 20;
-  /// A cell whose particles miss more than this share of the rest density on average holds a surface: q = 0
-  /// there. Left to the sign of q alone, the set of such cells swings from cycle to cycle.
+  /// A cell whose particles are on average below the rest density by more than this share contains a surface:
+  /// q = 0 there. If only the sign of q decided, the set of such cells would oscillate between cycles.
   static constexpr float surface_deficit = 0.05f;
 
   SIM_FN static float mean_excess(const CellSum& sum) {
@@ -21,26 +21,26 @@ struct CellWater {
   SIM_FN static bool is_water(const CellSum& sum) {
     return sum.volume > 0 && mean_excess(sum) > -surface_deficit;
   }
-  /// Share of the cell that particles of this volume fill.
+  /// Share of the cell filled by particles of this volume.
   SIM_FN float filled(std::uint64_t volume) const {
     const float cell = frame.edge.x * frame.edge.y * frame.edge.z;
     return at_most(static_cast<float>(volume) / fixed_point * unit_volume / cell, 1.0f);
   }
 };
 
-/// How far up a cell's height water stands beside a body: 0 dry, 1 below the surface.
+/// Height of the water beside a body within a cell: 0 dry, 1 below the surface.
 struct LevelBeside {
-  float mean;  ///< of the sides that have one
+  float mean;  ///< over the sides that have a value
   float most;
 };
 
-/// Looks from a cell along the level, out of the bodies that hold it, on four sides.
+/// Searches horizontally from a cell inside bodies to the water outside, on four sides.
 struct Waterline {
   CellWater water;
   CellBlock block;
   Solids solids;
   const CellSum* sums;
-  const std::uint64_t* volume;  ///< of all particles, those that rest included
+  const std::uint64_t* volume;  ///< of all particles, including resting ones
 
   SIM_FN LevelBeside beside(int x, int y, int z) const {
     const Vec3 at = middle_of(water.frame, x, y, z);
@@ -66,8 +66,8 @@ struct Waterline {
     }
     return {sides > 0 ? sum / static_cast<float>(sides) : 0, most};
   }
-  /// The place from which on no body reaches into a cell, most of the time; the last one before a wall where
-  /// the gap is narrower.
+  /// The first position along `way` whose cell is usually free of bodies; if the gap is narrower, the last
+  /// one before a wall.
   SIM_FN Vec3 outside(Vec3 from, Vec3 way) const {
     const float clear = 0.75f * water.frame.edge.x;
     Vec3 x = from;
@@ -80,7 +80,7 @@ struct Waterline {
     }
     return x;
   }
-  /// The farthest place from x towards `beyond` that the walls hold, to an eighth.
+  /// The farthest position from x towards `beyond` inside the walls, to an eighth.
   SIM_FN Vec3 before_wall(Vec3 x, Vec3 beyond) const {
     for (int part = 7; part > 0; --part) {
       const Vec3 place = x + (static_cast<float>(part) / 8) * (beyond - x);

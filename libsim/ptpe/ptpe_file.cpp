@@ -14,7 +14,7 @@
 namespace sim {
 
 namespace {
-/// Always with a point or exponent, so that TOML sees a float.
+/// Always with a point or exponent, so that TOML reads a float.
 std::string exact(double value) {
   if (!std::isfinite(value)) throw std::invalid_argument("a PTPE file holds finite numbers only");
   const std::string out = base::shortest(value);
@@ -31,7 +31,7 @@ bool is_utc(const std::string& text) {
   return true;
 }
 
-/// The interval of an estimate, which lies in it.
+/// The interval of an estimate; it must contain the estimate.
 std::array<double, 2> interval(const base::TomlTable& table, const char* key, const char* of,
                                double estimate) {
   const auto ends = table.numbers(key, 2);
@@ -42,7 +42,7 @@ std::array<double, 2> interval(const base::TomlTable& table, const char* key, co
   return {ends[0], ends[1]};
 }
 
-/// The lists of one format 2 file; each has an entry for each delta.
+/// Reads the lists of a format 2 file; each has one entry per delta.
 std::vector<PtpeBandPoint> band_of(const base::TomlTable& table, const stats::PtpeModel& model) {
   constexpr base::Range rate{1e-6, 1e9};
   const auto deltas = table.numbers("band_delta_fps", 0, {0, 1e4});

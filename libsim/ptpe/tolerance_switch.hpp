@@ -1,5 +1,6 @@
 #pragma once
-/// When temporal acceleration runs and how far it goes (paper sections 4.1 and 4.3, Eq. 11, Algorithm 3).
+/// Switches temporal acceleration on and off, and sets its strength (paper sections 4.1 and 4.3, Eq. 11,
+/// Algorithm 3).
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +12,8 @@
 
 namespace sim {
 
-/// "live" gives none (tau from the frames' times), "fixed:X" gives X in frames/s; others are a base::Error.
+/// "live" returns none (tau from the measured frame times), "fixed:X" returns X in frames/s; others are a
+/// base::Error.
 std::optional<double> parse_tau(std::string_view text);
 
 /// Mean and standard deviation of a frame rate, frames/s.
@@ -24,32 +26,32 @@ struct FrameRate {
 FrameRate parse_frame_rate(std::string_view text);
 
 /// tau over the last 30 frames, with two thresholds so that noise does not switch back and forth: on below 0,
-/// off above +1 frames/s. A tau from outside (tests, benches), or the tau of a frame rate from outside (a
-/// study's schedule), stands in for the measured one and goes the same way.
+/// off above +1 frames/s. A given tau (tests, benches), or the tau of a given frame rate (a study's
+/// schedule), replaces the measured one, with the same thresholds.
 class ToleranceSwitch {
  public:
   static constexpr std::size_t window_frames = 30;
   static constexpr double off_above = 1;  ///< frames/s
 
-  /// Of fixed_tau and fixed_rate at most one is given; base::Error otherwise, or when one is not finite.
+  /// At most one of fixed_tau and fixed_rate may be given; base::Error otherwise, or if one is not finite.
   explicit ToleranceSwitch(const stats::PtpeModel& model = {}, std::optional<double> fixed_tau = {},
                            std::optional<FrameRate> fixed_rate = {});
 
-  /// Takes the time of a whole frame, ms. A time that is not positive and finite is left out and counted;
-  /// with a fixed tau the call changes nothing. The switch waits for a full window: few frames do not tell
-  /// delta.
+  /// Adds the duration of a whole frame, ms. A value that is not positive and finite is ignored and counted;
+  /// with a fixed tau the call changes nothing. The switch waits for a full window: delta cannot be estimated
+  /// from few frames.
   void frame_time(double ms);
 
-  /// tau = mu - a exp(b delta), frames/s; none before the first frame's time is known.
+  /// tau = mu - a exp(b delta), frames/s; none before the first frame time is known.
   std::optional<double> tau() const { return tau_; }
-  /// mu and delta behind it; none where tau itself was given, or is not known.
+  /// mu and delta behind tau; none if tau was given, or is unknown.
   std::optional<FrameRate> rate() const { return rate_; }
   bool on() const { return on_; }
-  /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability of a
-  /// particle to be solved.
+  /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability that a
+  /// particle is solved.
   double beta() const;
   std::uint64_t left_out() const { return left_out_; }
-  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     std::vector<double> known(window_.intervals_s().begin(), window_.intervals_s().end());

@@ -11,13 +11,13 @@ namespace sim {
 namespace {
 
 constexpr float height_steps = 16777216;  // of 24 bits, up to four times the tank
-// Light that meets the floor went into the water at most so far beside its straight way, over the water's
-// depth: below the sun of shaders/light.glsl flat water bends it by 0.14 and 0.18, waves by less.
+// Maximum sideways shift of light between entering the water and the floor, divided by the water's depth: for
+// the sun of shaders/light.glsl flat water refracts it by 0.14 and 0.18, waves by less.
 constexpr float aside_with_the_sun = 0.3F, aside_against_it = 0.1F;
 constexpr float caustic_units = 65536;  // of shaders/caustic_units.glsl
-constexpr int border_cells = 8;         // beyond that, for the smoothing
-constexpr float smoothing_r = 2;  // hides the particles' lattice; waves 11 radii long keep half their height
-constexpr int surface_cell_in_cells = 3;  // edge over that of a cell of the floor
+constexpr int border_cells = 8;         // additional cells, for the smoothing
+constexpr float smoothing_r = 2;  // hides the particle lattice; waves 11 radii long keep half their height
+constexpr int surface_cell_in_cells = 3;  // ratio of its edge to that of a floor cell
 
 std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
 
@@ -30,7 +30,7 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   const float longest = std::max(tank(0), tank(2));
   const float edge = longest / static_cast<float>(options.floor_cells);
   const float surface_edge = edge * surface_cell_in_cells;
-  // Water is seldom deeper than wide, and what is higher is in the air.
+  // Water is seldom deeper than wide, and higher particles are in the air.
   const float deepest = std::min(tank(1), longest);
   const auto cells = [](float length, float of) { return static_cast<std::int32_t>(std::ceil(length / of)); };
   const int before = cells(aside_with_the_sun * deepest, surface_edge) + border_cells;

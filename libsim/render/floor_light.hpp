@@ -1,5 +1,5 @@
 #pragma once
-/// The picture effects of a scene: maps of the light on the floor, the same for every view. Internal to the
+/// The picture effects of a scene: maps of the light on the floor, shared by all views. Internal to the
 /// renderer.
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace sim {
 
-/// What the passes read.
+/// Inputs of the passes.
 struct FloorWater {
   unsigned particles = 0;  ///< GL buffer of RenderParticle
   std::int64_t count = 0;
-  unsigned obstacles = 0;       ///< GL buffer of their poses (shaders/obstacles.glsl); 0: none
+  unsigned obstacles = 0;       ///< GL buffer of obstacle poses (shaders/obstacles.glsl); 0: none
   unsigned obstacle_grids = 0;  ///< of meshes (shaders/obstacle_meshes.glsl); 0: none
   int obstacle_count = 0;
 };
 
-/// Made only where a scene lists a picture effect. Needs a current context at every call and when destroyed.
+/// Created only if a scene lists a picture effect. Needs a current context at every call and when destroyed.
 class FloorLight {
  public:
   FloorLight(const Scene& scene, const RenderOptions& options);
@@ -30,7 +30,7 @@ class FloorLight {
   FloorLight& operator=(const FloorLight&) = delete;
 
   void compute(const FloorWater& water, PassTimer& timer);
-  /// For shaders that show the floor (shaders/lit_floor.glsl).
+  /// Binds the maps for shaders that show the floor (shaders/lit_floor.glsl).
   void bind() const;
   FloorMap read() const;
 
@@ -54,7 +54,7 @@ class FloorLight {
   GlBuffer maps_;                                           // the Block
   GlBuffer top_, thickness_, image_top_, image_thickness_;  // surface map: splats, those of mirror images,
   GlBuffer surface_a_, surface_b_;                          // smoothed
-  GlBuffer shadow_, caustic_;                               // floor maps of the effects that there are
+  GlBuffer shadow_, caustic_;                               // floor maps of the listed effects
   unsigned sunlight_ = 0;                                   // texture, both together
 };
 

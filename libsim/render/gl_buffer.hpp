@@ -1,5 +1,5 @@
 #pragma once
-/// Memory on GL's device.
+/// Device memory of GL.
 
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// A GL buffer of a fixed size; moved, never copied. Needs a current context at every call and when it is
+/// A GL buffer of a fixed size; movable, not copyable. Needs a current context at every call and when it is
 /// destroyed.
 class GlBuffer {
  public:
@@ -15,10 +15,10 @@ class GlBuffer {
   GlBuffer(GlBuffer&& other) noexcept;
   GlBuffer& operator=(GlBuffer&& other) noexcept;
   ~GlBuffer();
-  /// Makes room for at least `bytes`; when it grows, the contents are lost and the name may change.
+  /// Allocates at least `bytes`; if it grows, the contents are lost and the name may change.
   void reserve(std::int64_t bytes);
   void write(const void* from, std::int64_t bytes);
-  /// Sets every 32-bit word of the first `bytes` (all when negative).
+  /// Sets every 32-bit word of the first `bytes` (all if negative).
   void fill(std::uint32_t word, std::int64_t bytes = -1);
   void read(void* out, std::int64_t bytes) const;
   unsigned name() const { return name_; }  ///< 0 before the first reserve

@@ -1,4 +1,4 @@
-// epoxy first: it replaces the headers of EGL and GL.
+// epoxy must come first: it replaces the headers of EGL and GL.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -37,7 +37,7 @@ struct Trial {
   void* native;
 };
 
-/// epoxy aborts the program when a library is missing, so ask first.
+/// epoxy aborts the program if a library is missing, so check first.
 void require_libraries() {
   for (const char* library : {"libEGL.so.1", "libGL.so.1"}) {
     void* handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
@@ -97,7 +97,7 @@ struct EglState final : public GlContext::State {
     context = eglCreateContext(display, config, shared, attributes);
   }
 
-  /// Empty when it worked, otherwise what went wrong.
+  /// Returns an empty string on success, otherwise the problem.
   std::string open(const Trial& trial) {
     display = eglGetPlatformDisplayEXT(trial.platform, trial.native, nullptr);
     if (display == EGL_NO_DISPLAY) return "no display";
@@ -119,7 +119,7 @@ struct EglState final : public GlContext::State {
   }
 
   bool make_current() override {
-    eglBindAPI(EGL_OPENGL_API);  // each thread has its own
+    eglBindAPI(EGL_OPENGL_API);  // per thread
     return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
   }
   void release() override { eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }

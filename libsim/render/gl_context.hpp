@@ -1,50 +1,50 @@
 #pragma once
-/// An OpenGL 4.5 core context without a window. The renderer needs a current context and does not care who
-/// made it.
+/// An OpenGL 4.5 core context without a window. The renderer accepts any current context, whoever created it.
 
 #include <memory>
 #include <string>
 
 namespace sim {
 
-/// EGL's own names of a context, for those who hand it on.
+/// EGL handles of a context, for other libraries.
 struct EglHandles {
   void* display = nullptr;
   void* config = nullptr;
   void* context = nullptr;
 };
 
-/// The same of GLX.
+/// The same for GLX.
 struct GlxHandles {
-  void* display = nullptr;  ///< none: it is no context of GLX
+  void* display = nullptr;  ///< null: not a GLX context
   void* config = nullptr;
   unsigned long drawable = 0;
   void* context = nullptr;
   unsigned visual = 0;
 };
 
-/// A context without a window, current on the thread that made it; destroyed with the object.
+/// A context without a window, current on the thread that created it; destroyed with the object.
 class GlContext {
  public:
-  /// By EGL. Order of trial: EGL devices with hardware (a GPU without a display), Mesa's surfaceless
-  /// platform, EGL's software devices. Errors: base::Error when there is no EGL or no driver that gives
-  /// OpenGL 4.5, with what each trial said.
+  /// Uses EGL. Order of attempts: EGL devices with hardware (a GPU without a display), Mesa's surfaceless
+  /// platform, EGL's software devices. Errors: base::Error if there is no EGL or no driver with OpenGL 4.5,
+  /// with the message of each attempt.
   static GlContext make_headless();
 
   GlContext(GlContext&&) noexcept;
   GlContext& operator=(GlContext&&) noexcept;
   ~GlContext();
 
-  /// By GLX on the X display of $DISPLAY, for those who know no EGL. base::Error when there is none.
+  /// Uses GLX on the X display of $DISPLAY, for libraries that do not support EGL. base::Error if there is
+  /// none.
   static GlContext make_on_x();
 
-  /// Another context that shares textures and buffers with this one; current nowhere. base::Error when the
-  /// driver gives none.
+  /// Another context that shares textures and buffers with this one; not current on any thread. base::Error
+  /// if the driver refuses.
   GlContext make_shared() const;
 
   /// Makes it current on the calling thread (release it on the other one first).
   void make_current();
-  /// Leaves the calling thread without a context.
+  /// Leaves the calling thread without a current context.
   void release();
   EglHandles egl() const;
   GlxHandles glx() const;
@@ -58,9 +58,9 @@ class GlContext {
 
 /// GL_RENDERER and GL_VERSION of the current context, for records and logs.
 std::string gl_description();
-/// True when the current context is drawn by the processor (llvmpipe, softpipe, SWR).
+/// True if the current context is rendered on the CPU (llvmpipe, softpipe, SWR).
 bool gl_is_software();
-/// base::Error unless a context of OpenGL 4.5 or newer is current; call once after a window made one.
+/// base::Error unless a context of OpenGL 4.5 or newer is current; call once after a window created one.
 void require_gl45();
 
 }  // namespace sim

@@ -1,5 +1,5 @@
 #pragma once
-/// What a GlContext is made of, whoever makes it.
+/// Implementation of a GlContext, for each window system.
 
 #include <memory>
 
@@ -14,7 +14,7 @@ struct GlContext::State {
   virtual ~State() = default;
   virtual bool make_current() = 0;
   virtual void release() = 0;
-  /// Shares objects with this one; null when the driver gives none.
+  /// A context that shares objects with this one; null if the driver refuses.
   virtual std::unique_ptr<State> make_shared() const = 0;
   virtual EglHandles egl() const { return {}; }
   virtual GlxHandles glx() const { return {}; }

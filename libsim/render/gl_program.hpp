@@ -10,15 +10,15 @@ namespace sim {
 
 struct ShaderFile {
   unsigned type;     ///< GL_COMPUTE_SHADER, ...
-  std::string file;  ///< below shaders/
+  std::string file;  ///< relative to shaders/
 };
 
-/// A linked program; moved, never copied. Needs a current context.
+/// A linked program; movable, not copyable. Needs a current context.
 class GlProgram {
  public:
   GlProgram() = default;
-  /// `defines` is put behind #version 450 core; a line `#include "name"` brings in another file of shaders/.
-  /// Errors (base::Error) name the file and carry the driver's log.
+  /// `defines` is inserted after #version 450 core; a line `#include "name"` includes another file of
+  /// shaders/. Errors (base::Error) name the file and contain the driver's log.
   GlProgram(std::initializer_list<ShaderFile> files, const std::string& defines = "");
   GlProgram(GlProgram&& other) noexcept;
   GlProgram& operator=(GlProgram&& other) noexcept;
@@ -26,7 +26,7 @@ class GlProgram {
 
   void use() const;
   unsigned name() const { return name_; }
-  /// Location; -1 when the program has no use for it. The driver is asked once.
+  /// Location; -1 if the program does not use it. The driver is queried once per name.
   int uniform(const char* name) const;
 
  private:

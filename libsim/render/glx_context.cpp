@@ -1,4 +1,4 @@
-// epoxy first: it replaces the headers of GL.
+// epoxy must come first: it replaces the headers of GL.
 #include <epoxy/gl.h>
 #include <epoxy/glx.h>
 
@@ -17,7 +17,7 @@ namespace sim {
 
 namespace {
 
-/// libX11, opened when it is needed: no other program asks for it.
+/// libX11, loaded on demand: no other program needs it.
 struct XLibrary {
   Display* (*open)(const char*) = nullptr;
   int (*close)(Display*) = nullptr;
@@ -34,7 +34,7 @@ struct XLibrary {
  private:
   XLibrary() {
     void* handle = dlopen("libX11.so.6", RTLD_LAZY | RTLD_LOCAL);
-    void* gl = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);  // epoxy ends the program without it
+    void* gl = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);  // without it epoxy aborts the program
     if (!handle || !gl)
       throw base::Error("OpenGL", "no libX11.so.6 or libGL.so.1 on this machine",
                         "install libx11-6 and libgl1");
@@ -54,8 +54,8 @@ struct XLibrary {
   }
 };
 
-/// While it lives, errors of X on one connection are noted. Xlib's own handler ends the program, and a driver
-/// without OpenGL 4.5 answers with such an error.
+/// Records X errors of one connection while it exists. Xlib's own handler ends the program, and a driver
+/// without OpenGL 4.5 causes such an error.
 class XErrors {
  public:
   explicit XErrors(Display* display) : lock_(mutex_) {
@@ -74,14 +74,14 @@ class XErrors {
   XErrors(const XErrors&) = delete;
   XErrors& operator=(const XErrors&) = delete;
 
-  /// Whether there was one: they come some time after their requests.
+  /// True if an error occurred; waits, because errors arrive after their requests.
   bool any() const {
     XLibrary::get().sync(watched_, False);
     return found_;
   }
 
  private:
-  // A handler is the process's.
+  // Error handlers are per process.
   static inline std::mutex mutex_;
   static inline std::atomic<Display*> watched_;
   static inline std::atomic<bool> found_;
@@ -90,7 +90,7 @@ class XErrors {
   std::lock_guard<std::mutex> lock_;
 };
 
-/// The connection lives as long as the last context on it.
+/// The connection stays open as long as a context uses it.
 std::shared_ptr<Display> open_display() {
   const XLibrary& x = XLibrary::get();
   Display* display = x.open(nullptr);
@@ -138,7 +138,7 @@ struct GlxState final : public GlContext::State {
     if (all && count > 0) config = all[0];
     if (all) XLibrary::get().free(all);
   }
-  /// A surface of one pixel, which nobody sees, and the context on it. False where the driver gives none.
+  /// Creates an invisible surface of one pixel and a context on it. False if the driver refuses.
   bool create(GLXContext shared) {
     const XErrors errors(display.get());
     const int size[] = {GLX_PBUFFER_WIDTH, 1, GLX_PBUFFER_HEIGHT, 1, 0};
@@ -150,7 +150,7 @@ struct GlxState final : public GlContext::State {
     if (context && !errors.any()) return true;
     if (context) glXDestroyContext(display.get(), context);
     context = nullptr;
-    drawable = 0;  // it may be none; the connection takes it along
+    drawable = 0;  // it may not exist; closing the connection frees it
     return false;
   }
 };

@@ -44,8 +44,8 @@ Image from_the_top(Image image) {
 
 }  // namespace
 
-/// Not through the framebuffer: what compute shaders stored took a driver sixty times as long that way
-/// (docs/performance.md).
+/// Does not read through the framebuffer: for pixels stored by compute shaders one driver took sixty times as
+/// long that way (docs/performance.md).
 Image Offscreen::read() const {
   Image image = black(width_, height_);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

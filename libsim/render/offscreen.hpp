@@ -1,5 +1,5 @@
 #pragma once
-/// A framebuffer object to draw into when there is no window, and pictures read back from any framebuffer.
+/// A framebuffer object for drawing without a window, and reading pictures from any framebuffer.
 
 #include "libsim/render/png.hpp"
 
@@ -8,7 +8,7 @@ namespace sim {
 /// RGBA8 colour only. Needs a current context at every call and when it is destroyed.
 class Offscreen {
  public:
-  /// At least 1 x 1 px; a size that the driver refuses is a base::Error.
+  /// At least 1 x 1 px; base::Error for a size that the driver refuses.
   Offscreen(int width, int height);
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;
@@ -26,7 +26,7 @@ class Offscreen {
   unsigned texture_ = 0;
 };
 
-/// The colours of a framebuffer object (0 = the window), waiting until they are drawn.
+/// The colours of a framebuffer object (0 = the window); waits until they are drawn.
 Image read_framebuffer(unsigned framebuffer, int width, int height);
 
 }  // namespace sim

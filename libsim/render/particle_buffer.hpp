@@ -1,6 +1,5 @@
 #pragma once
-/// The particles as the renderer reads them: a GL shader storage buffer of RenderParticle (x, y, z, radius in
-/// m).
+/// Particles as the renderer's input: a GL shader storage buffer of RenderParticle (x, y, z, radius in m).
 
 #include <cstdint>
 #include <span>
@@ -13,14 +12,14 @@ namespace sim {
 /// Needs a current context at every call and when it is destroyed.
 class ParticleBuffer {
  public:
-  /// Replaces the contents; grows the buffer when needed.
+  /// Replaces the contents; grows the buffer if needed.
   void upload(std::span<const RenderParticle> particles);
 
-  /// For writers on the device (CUDA interop): makes room for `capacity` particles, then gl() may be
-  /// registered; it stays the same until reserve() or upload() asks for more than capacity(). The old
-  /// contents are lost when it grows.
+  /// For writers on the device (CUDA interop): allocates `capacity` particles; then gl() may be registered.
+  /// It stays the same until reserve() or upload() needs more than capacity(). The old contents are lost if
+  /// it grows.
   void reserve(std::int64_t capacity);
-  /// Says how many particles a writer on the device has put there, at most capacity() (base::Error).
+  /// Sets the number of particles that a writer on the device has stored, at most capacity() (base::Error).
   void set_count(std::int64_t count);
 
   unsigned gl_name() const { return buffer_.name(); }  ///< 0 before the first reserve or upload

@@ -1,5 +1,5 @@
 #pragma once
-/// How long each pass of a draw takes: timestamp queries on a GPU, glFinish and the clock on software GL.
+/// Durations of a draw's passes: timestamp queries on a GPU, glFinish and the clock on software GL.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// Needs a current context. When off, every call is free.
+/// Needs a current context. While off, calls cost nothing.
 class PassTimer {
  public:
   explicit PassTimer(bool on);
@@ -16,9 +16,9 @@ class PassTimer {
   PassTimer(const PassTimer&) = delete;
   PassTimer& operator=(const PassTimer&) = delete;
 
-  /// Begins a draw and forgets the last one.
+  /// Starts a draw and discards the last one.
   void start();
-  /// The pass that ran since the last mark (or start) was `pass`. The same name may come again: times add up.
+  /// The pass since the last mark (or start) was `pass`. Times of repeated names are added.
   void mark(const char* pass);
   std::vector<PassTime> times() const;
 

@@ -14,7 +14,7 @@ GLint attachment(unsigned framebuffer, GLenum what) {
   return value;
 }
 
-/// The RGBA8 texture that is a framebuffer's colour; 0 when the colour is anything else.
+/// The RGBA8 texture that is a framebuffer's colour; 0 for any other colour attachment.
 GLuint storable_texture(unsigned framebuffer) {
   if (framebuffer == 0 || attachment(framebuffer, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) != GL_TEXTURE ||
       attachment(framebuffer, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL) != 0)
@@ -41,7 +41,7 @@ void PictureTarget::begin(unsigned framebuffer, std::span<const View> views) {
       own_ = std::make_unique<Offscreen>(width, height);
     texture = own_->texture();
   }
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // who drew or read there before
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // after earlier draws and reads
   glBindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
 }
 

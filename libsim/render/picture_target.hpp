@@ -1,5 +1,5 @@
 #pragma once
-/// Where a compute shader writes a picture that a framebuffer is to hold. Internal to the renderer.
+/// Destination of a compute shader's picture for a framebuffer. Internal to the renderer.
 
 #include <memory>
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace sim {
 
-/// Image unit 0 as a window into a framebuffer: its own texture where that is RGBA8, else a picture of ours,
+/// Image unit 0 as access to a framebuffer: its own texture if that is RGBA8, otherwise an internal picture,
 /// which is copied. Pixels keep their coordinates. Needs a current context at every call and when destroyed.
 class PictureTarget {
  public:
-  /// What is stored between both calls reaches the framebuffer's viewports of the views.
+  /// Pixels stored between begin() and end() reach the views' viewports in the framebuffer.
   void begin(unsigned framebuffer, std::span<const View> views);
   void end(unsigned framebuffer, std::span<const View> views) const;
 

@@ -9,23 +9,24 @@
 
 namespace sim {
 
-/// sRGB, 8 bits a channel, RGBA; row 0 is the top.
+/// sRGB, 8 bits per channel, RGBA; row 0 is the top.
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgba;  ///< 4 * width * height bytes
 };
 
-/// The bytes of a PNG file. Errors (base::Error, at `place`): no picture.
+/// The bytes of a PNG file. Errors (base::Error, at `place`): an empty picture.
 std::string png_bytes(const Image& image, const std::string& place);
-/// Of the bytes of a PNG of 8 or 16 bits, grey or colour, widened to RGBA; at most 16,384 px a side. Errors
+/// Decodes a PNG of 8 or 16 bits, grey or colour, widened to RGBA; at most 16,384 px per side. Errors
 /// (base::Error, at `place`): truncated, not a PNG.
 Image png_of(std::string_view bytes, const std::string& place);
 
-/// Written to a temporary neighbour and renamed. Errors (base::Error): no picture, not writable, disk full.
+/// Writes a temporary file in the same folder and renames it. Errors (base::Error): an empty picture, not
+/// writable, disk full.
 void write_png(const std::filesystem::path& path, const Image& image);
 
-/// png_of a file. Errors (base::Error): also missing.
+/// png_of a file. Errors (base::Error): also a missing file.
 Image read_png(const std::filesystem::path& path);
 
 }  // namespace sim

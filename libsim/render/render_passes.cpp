@@ -50,13 +50,13 @@ GlProgram compute_program(const char* file, const char* defines) {
 }
 
 namespace {
-/// What the scene calls for in the passes that show it.
+/// The defines that the scene needs in the passes that show it.
 std::string defines_of(const Scene& scene) {
   return std::string(coefficients_of(scene.effects)[EffectKind::Foam] > 0 ? "#define FOAM\n" : "") +
          obstacle_defines(scene);
 }
 
-/// The grids of meshes for shaders/obstacle_meshes.glsl; empty without any.
+/// The grids of meshes for shaders/obstacle_meshes.glsl; empty without meshes.
 std::vector<std::uint32_t> grids_of(const std::vector<Obstacle>& obstacles) {
   std::vector<std::uint32_t> out;
   if (!any_mesh(obstacles)) return out;
@@ -100,7 +100,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
                                 (defines_of(scene) + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles) {
-  // An invocation of llvmpipe is a lane of the processor: work groups of one footprint only add overhead.
+  // On llvmpipe an invocation is a SIMD lane: work groups of one footprint only add overhead.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
   counters.reserve(sizeof(RenderCounts));
   counters.fill(0);
@@ -348,7 +348,7 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   particles_ = from.gl_name() ? from.gl_name() : no_particles.name();
   count_ = from.count();
   views_drawn = views.size();
-  // The passes of the last draw wrote these buffers; what a resize fills is no shader access.
+  // The passes of the last draw wrote these buffers; the fills of a resize are not shader accesses.
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   for (std::size_t i = 0; i < views.size(); ++i) {
     targets[i].resize(views[i], options.thickness_step, foam);

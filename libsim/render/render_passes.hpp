@@ -1,5 +1,5 @@
 #pragma once
-/// What stands behind a FluidRenderer: its programs and buffers, and the passes of a draw. Internal to the
+/// Implementation of a FluidRenderer: its programs and buffers, and the passes of a draw. Internal to the
 /// renderer.
 
 #include <epoxy/gl.h>
@@ -19,26 +19,26 @@ namespace sim {
 
 inline constexpr std::size_t most_views = 2;
 
-/// A program of one compute shader.
+/// A program with one compute shader.
 GlProgram compute_program(const char* file, const char* defines = "");
 
-/// The buffers become shader storage 0, 1, ...; 0 is none.
+/// Binds the buffers to shader storage 0, 1, ...; 0 binds none.
 void bind_storage(std::initializer_list<unsigned> buffers);
 
-/// An invocation a pixel, in groups of 16 x 8, or a particle, in groups of 64.
+/// One invocation per pixel, in groups of 16 x 8, or per particle, in groups of 64.
 void dispatch_pixels(int width, int height);
 void dispatch_particles(std::int64_t count);
 
-/// Does the scene list a picture effect with a strength above 0?
+/// True if the scene lists a picture effect with a strength above 0.
 bool lights_the_floor(const Scene& scene);
-/// What of shaders/obstacles.glsl the scene calls for, as #define lines.
+/// The parts of shaders/obstacles.glsl that the scene needs, as #define lines.
 std::string obstacle_defines(const Scene& scene);
 
 struct FluidRenderer::State {
   RenderOptions options;
   std::array<float, 4> tank;
   PassTimer timer;
-  bool foam;  // the scene lists it: a pass more, and a composite that shows what it left
+  bool foam;  // the scene lists foam: one more pass, and a composite that shows its result
   GlProgram clear_targets = compute_program("clear.comp");
   GlProgram splat = compute_program("splat.comp");
   GlProgram wide_dispatch = compute_program("wide_dispatch.comp");
@@ -58,8 +58,8 @@ struct FluidRenderer::State {
   GlProgram overlay{{GL_VERTEX_SHADER, "screen.vert"}, {GL_FRAGMENT_SHADER, "overlay.frag"}};
   GlBuffer counters, no_particles, values;
   std::vector<Obstacle> obstacles;  // of the scene
-  GlBuffer poses;                   // of the obstacles; only with some
-  GlBuffer grids;                   // of those that are meshes
+  GlBuffer poses;                   // of the obstacles; only if there are any
+  GlBuffer grids;                   // of the meshes among them
   PictureTarget picture;
   GLuint vertex_array = 0;
   std::array<ViewTargets, most_views> targets;
@@ -69,15 +69,15 @@ struct FluidRenderer::State {
   State(const Scene& scene, const RenderOptions& chosen);
   ~State();
 
-  /// A view of the last draw, ready to be read.
+  /// The buffers of a view of the last draw, ready for reading.
   const ViewTargets& drawn(std::size_t view) const;
   void place_obstacles(const std::vector<BodyMotion>& motions);
   void draw_views(const ParticleBuffer& from, std::span<const View> views, unsigned framebuffer,
                   const ParticleBuffer* foam_from);
 
  private:
-  /// A pass: `dispatch` for one view after another with its ViewBlock bound, then the barrier. The device may
-  /// work on both views at once.
+  /// Runs a pass: `dispatch` for one view after another with its ViewBlock bound, then the barrier. The
+  /// device may process both views at once.
   template <class Dispatch>
   void each_view(Dispatch dispatch, unsigned more_barriers = 0);
   void bind_splat(const ViewTargets& t) const;
@@ -90,12 +90,12 @@ struct FluidRenderer::State {
   void smooth_depth();
   void smooth_thickness();
   void splat_foam(const ParticleBuffer& from);
-  void tell_obstacles(const GlProgram& program) const;  ///< to a program in use
+  void tell_obstacles(const GlProgram& program) const;  ///< for a program in use
   void bind_obstacles() const;
   void light_floor();
   void shade(std::span<const View> views, unsigned framebuffer);
 
-  GLuint particles_ = 0;  // of this draw
+  GLuint particles_ = 0;  // of the present draw
   std::int64_t count_ = 0;
 };
 

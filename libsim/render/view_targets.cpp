@@ -30,7 +30,7 @@ void ViewTargets::resize(const View& new_view, int thickness_step, bool with_foa
     foam.fill(0);
   }
   wet.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 7) / 8));
-  wet.fill(1);  // nothing in the buffers holds for this size
+  wet.fill(1);  // the old contents are invalid for this size
 }
 
 void ViewTargets::follow(std::int64_t count) {
@@ -53,7 +53,7 @@ void ViewTargets::read_picture(const RenderOptions& options, GBuffer& out) const
   for (auto* unread : {&out.filtered_depth, &out.thickness, &out.radius}) unread->clear();
   out.front.clear();
   read_depth(out.depth);
-  // Normal and radius of a pixel lie together; the radii are squeezed out in place.
+  // Normal and radius of a pixel are adjacent; the radii are removed in place.
   out.normal.resize(4 * pixels());
   normals.read(out.normal.data(), static_cast<std::int64_t>(16 * pixels()));
   for (std::size_t p = 1; p < pixels(); ++p) std::copy_n(&out.normal[4 * p], 3, &out.normal[3 * p]);
@@ -68,7 +68,7 @@ GBuffer ViewTargets::read_gbuffer(const RenderOptions& options) const {
     buffer.read(out.data(), static_cast<std::int64_t>(4 * count));
   };
   fetch(filter_a, g.filtered_depth, pixels());
-  for (float& nearness : g.filtered_depth) nearness = 1 / nearness;  // no water: infinite
+  for (float& nearness : g.filtered_depth) nearness = 1 / nearness;  // no water: infinity
   fetch(front, g.front, pixels());
   std::vector<float> with_radii;
   std::vector<std::uint32_t> cells;

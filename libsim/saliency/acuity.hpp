@@ -1,5 +1,5 @@
 #pragma once
-/// Visual acuity by eccentricity and depth (paper Eq. 3-4).
+/// Visual acuity as a function of eccentricity and depth (paper Eq. 3-4).
 
 #include "libsim/methods/preset.hpp"
 #include "libsim/saliency/eye.hpp"
@@ -13,8 +13,8 @@ struct Acuity {
 
   SIM_FN static constexpr float radians(float degrees) { return degrees * 0.017453292519943f; }
 
-  /// Angle between the gaze and the direction to x as the eye sees them in the picture, rad. An arc cosine
-  /// would lose everything below 0.03 degrees.
+  /// Angle between the gaze and the direction to x, as seen in the picture, rad. An arc cosine would lose all
+  /// precision below 0.03 degrees.
   SIM_FN static float eccentricity(const Eye& eye, Vec3 x) {
     const Vec3 u = eye.visual(x - eye.viewpoint);
     const Vec3 g = eye.gaze;
@@ -22,7 +22,7 @@ struct Acuity {
     return atan2f(length(across), dot(g, u));
   }
 
-  /// e(theta): 1 within the fovea, then falling.
+  /// e(theta): 1 within the fovea, decreasing outside.
   SIM_FN float falloff_at(float theta) const {
     const float beyond = theta - fovea;
     if (beyond <= 0) return 1;
@@ -41,12 +41,11 @@ struct Acuity {
   SIM_FN float feature(const Eye& eye, Vec3 x, float z) const {
     if (z <= 0) return 0;
     const float quotient = falloff_at(eccentricity(eye, x)) / depth_factor(z);
-    return quotient > 1 ? 1 : quotient;  // keeps a NaN, as fminf would not
+    return quotient > 1 ? 1 : quotient;  // preserves a NaN, unlike fminf
   }
 
-  /// s of a method that follows the gaze alone (FovFluid-like): 1 in the fovea, falling to 0 over a band as
-  /// wide as `band` (m) outside its cone. Near the axis an angle of the eye's is visual_scale times the
-  /// camera's.
+  /// s of a gaze-only method (FovFluid-like): 1 in the fovea, falling to 0 over a band of width `band` (m)
+  /// outside its cone. Near the axis an angle at the eye is visual_scale times the camera's angle.
   SIM_FN float gaze_saliency(const Eye& eye, Vec3 x, float band) const {
     const float beyond = (eccentricity(eye, x) - fovea) / eye.visual_scale;
     if (beyond <= 0) return 1;
@@ -56,7 +55,8 @@ struct Acuity {
   }
 };
 
-/// Eq. 9 with the floor and the clamp that its print lost; s outside [0, 1] or NaN is the caller's to mend.
+/// Eq. 9 with the floor and the clamp that the printed version lost; the caller handles s outside [0, 1] or
+/// NaN.
 SIM_FN int level_of_saliency(float s, int levels) {
   const int level = static_cast<int>(floorf(static_cast<float>(levels) * (1 - s)));
   return level < 0 ? 0 : level < levels ? level : levels - 1;

@@ -1,17 +1,17 @@
 #pragma once
-/// One eye as kernels see it: its camera, its gaze and the picture it saw last.
+/// One eye in the form that kernels use: its camera, its gaze and the last picture it saw.
 
 #include "libsim/exec/vec.hpp"
 #include "libsim/view/camera.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// The G-buffer of libsim/view/gbuffer.hpp in the back end's memory, whoever owns it: SaliencyInput uploads
-/// a host one; a renderer on the same device may give its own buffers.
+/// The G-buffer of libsim/view/gbuffer.hpp in the back end's memory, with any owner: SaliencyInput uploads a
+/// host buffer; a renderer on the same device may pass its own.
 struct GBufferView {
-  const float* depth = nullptr;   ///< not smoothed, m; +infinity where there is no fluid. nullptr: no picture
-  const float* normal = nullptr;  ///< filtered, eye space; 0 where there is no fluid
-  int normal_stride = 3;          ///< floats from pixel to pixel: 3 from the host, 4 in the renderer's buffer
+  const float* depth = nullptr;   ///< not smoothed, m; +infinity without fluid. nullptr: no picture
+  const float* normal = nullptr;  ///< filtered, eye space; 0 without fluid
+  int normal_stride = 3;          ///< floats per pixel: 3 from the host, 4 in the renderer's buffer
   int width = 0, height = 0;
   float radius_scale = 1;
 
@@ -25,7 +25,7 @@ struct GBufferView {
   }
 };
 
-/// World to eye, x right, y up, z against the line of sight.
+/// World to eye space: x right, y up, z against the line of sight.
 struct EyeSpace {
   float m[12];  ///< three rows of four
   SIM_FN Vec3 operator()(Vec3 x) const {
@@ -36,16 +36,16 @@ struct EyeSpace {
 
 struct Eye {
   Vec3 viewpoint{};  ///< p_v, m
-  Vec3 gaze{};       ///< as visual() gives it, of any length
+  Vec3 gaze{};       ///< from visual(), of any length
   EyeSpace now{};    ///< camera of the coming frame
   EyeSpace then{};   ///< camera of the picture
-  PixelRays rays{};  ///< of the picture
+  PixelRays rays{};  ///< of the picture's camera
   GBufferView picture{};
-  Vec3 axis{0, 0, -1};     ///< the camera's line of sight, of length 1
+  Vec3 axis{0, 0, -1};     ///< the camera's line of sight, a unit vector
   float visual_scale = 1;  ///< EyeLook::visual_scale
 
-  /// A direction of the scene as the eye sees it in the picture: what lies across the axis is scaled. Of any
-  /// length; unchanged at a scale of 1.
+  /// Scales the part of a direction perpendicular to the axis, as the eye sees it in the picture. The result
+  /// has any length; unchanged if visual_scale is 1.
   SIM_FN Vec3 visual(Vec3 u) const { return visual_scale * u + ((1 - visual_scale) * dot(u, axis)) * axis; }
 };
 

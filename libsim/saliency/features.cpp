@@ -17,7 +17,7 @@ struct Combine {
     SaliencyParts best{0, 0, 0, 0};
     for (int k = 0; k < eyes.count; ++k) {
       const SaliencyParts one = evaluate(numbers, eyes.eye[k], position[i], temporal[i]);
-      // A NaN wins, so that it is seen.
+      // A NaN takes precedence, so that it is detected.
       if (k == 0 || !(one.combined <= best.combined)) best = one;
     }
     combined[i] = best.combined;

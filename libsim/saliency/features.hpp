@@ -1,5 +1,5 @@
 #pragma once
-/// The saliency F of each particle (paper Eq. 1-3 and 5-8) and what becomes of it: s and the level (Eq. 9).
+/// The saliency F of each particle (paper Eq. 1-3 and 5-8), and from it s and the level (Eq. 9).
 
 #include "libsim/particles/particles.hpp"
 #include "libsim/saliency/acuity.hpp"
@@ -9,7 +9,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Numbers of Eq. 1-8 as kernels take them.
+/// Constants of Eq. 1-8 in the form that kernels use.
 struct FeatureNumbers {
   Acuity acuity;
   Attenuation attenuation;
@@ -29,18 +29,18 @@ SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec
   const float attenuation = numbers.attenuation(spot, thickness(eye, spot, r));
   SaliencyParts out;
   out.acuity = numbers.acuity.feature(eye, x, z);
-  // Behind the viewer nothing is seen; a NaN goes on into F and is counted there.
+  // Particles behind the viewer are not visible. A NaN propagates into F and is counted there.
   out.manifold = z <= 0 ? 0
                         : manifold_feature(eye, spot, r, numbers.window_max_px) /
                               fmaxf(numbers.acuity.depth_factor(z), 1e-6f);
   if (numbers.manifold_occlusion) out.manifold /= attenuation;
   const bool unseen = numbers.calm_out_of_view && spot.kind == Spot::Kind::OutOfView;
-  out.temporal = unseen ? 0 * temporal : temporal / attenuation;  // NaN stays
+  out.temporal = unseen ? 0 * temporal : temporal / attenuation;  // keeps NaN
   out.combined = (1 - numbers.alpha) * (out.acuity + out.manifold) + numbers.alpha * out.temporal;
   return out;
 }
 
-/// F of every particle, the larger of the eyes'; `parts` may be nullptr.
+/// F of every particle: the maximum over the eyes. `parts` may be nullptr.
 void combine_features(const FeatureNumbers& numbers, const Eyes& eyes, const Vec4* position,
                       const float* temporal, float* combined, SaliencyParts* parts, int n);
 
@@ -50,7 +50,7 @@ void saliency_to_levels(const float* combined, const SaliencyRange* range, int l
                         std::uint8_t* target, Guards* guards, int n);
 
 /// s and the target level from the gaze alone (FovFluid-like): finest in the fovea of either eye, coarsest
-/// outside, a band of width `band` (m) between.
+/// outside, with a transition band of width `band` (m) between.
 void gaze_to_levels(const Acuity& acuity, const Eyes& eyes, const Vec4* position, float band, int levels,
                     float* saliency, std::uint8_t* target, Guards* guards, int n);
 

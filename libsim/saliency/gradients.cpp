@@ -10,8 +10,8 @@ namespace {
 /// Velocity and density in one value.
 SIM_FN Vec4 quantities(const GradientFields& f, int i) { return with_w(xyz(f.velocity[i]), f.density[i]); }
 
-/// Rest volume m_j / rho_0 = d^3 with d = h / 2, and a guard: the emptiest place, a particle alone, has a
-/// fifth of the rest density.
+/// Rest volume m_j / rho_0 = d^3 with d = h / 2, divided by the density with a lower bound: even an isolated
+/// particle has a fifth of the rest density.
 SIM_FN float volume(float h, float density) { return 0.125f * h * h * h / at_least(density, 0.1f); }
 
 /// Gradients of velocity and density: (d/dx, d/dy, d/dz) of (vx, vy, vz, rho).
@@ -59,7 +59,7 @@ SIM_FN float pair_support(const GradientFields& f, int i, int j) {
   return 0.5f * (f.position[i].w + f.position[j].w);
 }
 
-/// m_j W_ij without the factors that all weights of i share.
+/// m_j W_ij without the factors common to all weights of i.
 SIM_FN float average_weight(const GradientFields& f, int i, int j) {
   const Vec4 other = f.position[j];
   const Vec3 offset = xyz(f.position[i]) - xyz(other);
@@ -171,7 +171,7 @@ struct WideKeys {
   }
 };
 
-/// Walks the rows of cells that a sphere of radius 2 h_i touches.
+/// Loops over the rows of cells that a sphere of radius 2 h_i touches.
 struct WithinTwoH {
   GradientFields fields;
   const std::uint64_t* keys;

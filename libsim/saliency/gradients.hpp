@@ -1,5 +1,5 @@
 #pragma once
-/// The temporal feature before occlusion (paper Eq. 6): how fast density and velocity change round a
+/// The temporal feature before occlusion (paper Eq. 6): spatial change of density and velocity around a
 /// particle.
 
 #include "libsim/methods/preset.hpp"
@@ -7,7 +7,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What every form of the gradient reads and writes.
+/// Inputs and outputs of all forms of the gradient.
 struct GradientFields {
   const Vec4* position;
   const Vec4* velocity;
@@ -20,8 +20,8 @@ struct GradientFields {
 
 class TemporalGradients {
  public:
-  /// Writes f_T gamma_t of n particles. TwoSupports sorts for itself and needs no list; no form changes an
-  /// order.
+  /// Writes f_T gamma_t of n particles. TwoSupports sorts a copy and needs no lists; the particles' order
+  /// does not change.
   void run(GradientReach reach, const GradientFields& fields, const ParticleNeighbours& neighbours, int n,
            float finest_support);
   std::size_t bytes() const {
@@ -33,7 +33,7 @@ class TemporalGradients {
   void run_wide(const GradientFields& fields, int n, float finest_support);
 
   Array<Vec4> averages_;   // velocity and density
-  Array<Vec4> gradients_;  // three a particle: the axes' (d/dx)(vx, vy, vz, density)
+  Array<Vec4> gradients_;  // three per particle: (d/dx, d/dy, d/dz) of (vx, vy, vz, density)
   Sorter sorter_;
   Array<std::uint64_t> keys_;
   Array<int> order_;

@@ -47,13 +47,13 @@ void check(const EyeLook& look) {
   check_camera(g.view);
 }
 
-/// The way of a picture that an eye gives.
+/// How an eye's picture is passed.
 PictureWay way_of(const EyeLook& look) {
   if (look.shared) return PictureWay::Device;
   return look.seen && look.seen->width > 0 ? PictureWay::Host : PictureWay::None;
 }
 
-/// The direction with length 1, or 0 when the gaze is lost.
+/// The unit direction, or 0 if the gaze is lost.
 Vec3d direction_of(const Gaze& gaze) {
   const double size = std::hypot(gaze.direction[0], gaze.direction[1], gaze.direction[2]);
   const double place = gaze.origin_m[0] + gaze.origin_m[1] + gaze.origin_m[2];
@@ -90,8 +90,8 @@ void SaliencyInput::OneEye::take(const GBuffer& seen) {
   picture = {depth.data(), normal.data(), 3, seen.width, seen.height, seen.radius_scale};
 }
 
-/// A copy, so that GL may draw the next picture while this one is looked at. The buffers stay mapped until
-/// give_back(): to give them back here would cost the device two more changes between GL and the back end.
+/// A copy, so that GL may draw the next picture while this one is in use. The buffers stay mapped until
+/// give_back(): unmapping here would cost two more switches between GL and the back end.
 void SaliencyInput::OneEye::take(const GlPicture& shared) {
   depth.resize(pixels_of(shared));
   normal.resize(4 * pixels_of(shared));
@@ -111,7 +111,7 @@ bool SaliencyInput::look(const Looks& looks, bool pictures) {
     const GlPicture* shared = looks.eyes[k].shared;
     if (shared && !eyes_[k].sharing.accept({shared->depth, shared->normal})) return false;
   }
-  // All at once, before the copies: GL takes its turn once.
+  // Map all before the copies: GL waits only once.
   for (std::size_t k = 0; k < looks.eyes.size() && pictures; ++k)
     if (looks.eyes[k].shared) eyes_[k].sharing.map();
   count_ = static_cast<int>(looks.eyes.size());

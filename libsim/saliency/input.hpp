@@ -1,5 +1,5 @@
 #pragma once
-/// Eyes between frames: their last G-buffers in the back end's memory, and what is done about a lost gaze.
+/// The eyes between frames: their last G-buffers in the back end's memory, and the handling of lost gazes.
 
 #include <array>
 #include <cstdint>
@@ -19,33 +19,32 @@ struct Eyes {
 
 class SaliencyInput {
  public:
-  /// Takes gazes and cameras and copies the pictures; without `pictures` the last ones stay. False, and
-  /// nothing is taken, when a picture lies in GL buffers that cannot be shared. base::Error: no eye or more
-  /// than two, a camera that is not finite, a G-buffer whose arrays are not whole.
+  /// Stores gazes and cameras and copies the pictures; without `pictures` the last ones remain. Returns
+  /// false, and changes nothing, if a picture is in GL buffers that cannot be shared. base::Error: no eye or
+  /// more than two, a camera that is not finite, a G-buffer with incomplete arrays.
   bool look(const Looks& looks, bool pictures = true);
-  /// Degrees by which a gaze has turned since mark_gazes(), in these looks or in the last ones: the larger of
-  /// two eyes. An eye that was shifted counts as one that turned, by the angle of the shift at one metre.
-  /// Without a gaze the view's axis counts. One that gets lost has not turned; before the first mark all have
-  /// by 180.
+  /// Degrees by which a gaze has turned since mark_gazes(), for these looks or the last ones: the larger of
+  /// two eyes. A shift of the eye adds the angle of the shift at one metre. Without a gaze the view's axis is
+  /// used. A gaze that gets lost has not turned; before the first mark the result is 180.
   double turned_deg(const Looks& looks) const;
   double turned_deg() const;
-  /// Not of a gaze that was lost less than hold_s ago: it is where it was.
+  /// Marks the present gazes, except a gaze lost less than hold_s ago: it keeps its last mark.
   void mark_gazes(double hold_s);
-  /// Gives GL the buffers of the pictures back, which look() keeps. They must be back before GL draws.
+  /// Unmaps the GL buffers of the pictures that look() mapped. Required before GL draws.
   void give_back();
-  /// The eye of a program that never calls look().
+  /// Sets the eye for programs that never call look().
   void look_by_default(const View& view);
 
-  /// The eyes for the coming frame of dt_s. A lost gaze stays where it last was for hold_s and then follows
-  /// the view's axis.
+  /// The eyes for the coming frame of dt_s. A lost gaze stays at its last position for hold_s and then
+  /// follows the view's axis.
   Eyes next_frame(double dt_s, double hold_s);
   /// Eye-frames without a valid gaze.
   std::uint64_t gaze_lost() const { return gaze_lost_; }
-  /// How the pictures of the last look() came.
+  /// How the pictures of the last look() arrived.
   SeenReport seen() const { return seen_; }
-  /// Bytes of the pictures.
+  /// Bytes used by the pictures.
   std::size_t bytes() const;
-  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(count_, gaze_lost_, seen_);
@@ -57,11 +56,11 @@ class SaliencyInput {
     Gaze gaze;
     View view;
     double visual_scale = 1;
-    Vec3d marked{};        ///< direction at the last mark; 0: there was none
-    Vec3d marked_place{};  ///< of the eye, m
+    Vec3d marked{};        ///< direction at the last mark; 0: none
+    Vec3d marked_place{};  ///< eye position at the last mark, m
     bool marked_valid = false;
-    Vec3d last_direction{};  ///< of the last valid gaze; 0 when there was none
-    double lost_s = 0;       ///< since then
+    Vec3d last_direction{};  ///< of the last valid gaze; 0 if there was none
+    double lost_s = 0;       ///< time since the last valid gaze
     View picture_view;
     GBufferView picture;
     Array<float> depth, normal;

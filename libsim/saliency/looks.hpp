@@ -1,6 +1,6 @@
 #pragma once
-/// Who looks at the fluid, from where and whereto: what a program gives a simulation before a frame. Plain
-/// host data, no back end, no GL calls.
+/// The eyes' positions, gazes and pictures that a program gives a simulation before a frame. Plain host data,
+/// no back end, no GL calls.
 
 #include <vector>
 
@@ -9,11 +9,11 @@
 
 namespace sim {
 
-/// A ray of sight in the world. `valid` is the tracker's own word; a ray that is not finite or has no
-/// direction counts as lost whatever it says.
+/// A line of sight in the world. `valid` is the tracker's flag; a ray that is not finite or has no direction
+/// counts as lost anyway.
 struct Gaze {
   Vec3d origin_m{};
-  Vec3d direction{};  ///< of any length but 0
+  Vec3d direction{};  ///< any length but 0
   bool valid = false;
 };
 
@@ -21,37 +21,37 @@ struct Gaze {
 struct EyeLook {
   Gaze gaze;
   View view;  ///< the camera of the coming frame
-  /// What this eye saw last; its own camera may be an older one. nullptr: nothing was drawn yet, then no
-  /// particle has a manifold feature and none is hidden. Copied by Simulation::look.
+  /// The picture this eye saw last; its camera may be an older one. nullptr: nothing was drawn yet; then no
+  /// particle has a manifold feature and none is occluded. Copied by Simulation::look.
   const GBuffer* seen = nullptr;
-  /// The same where the renderer left it, for a back end on GL's device; goes before `seen`.
+  /// The same picture in the renderer's buffers, for a back end on GL's device; takes precedence over `seen`.
   const GlPicture* shared = nullptr;
-  int seen_frame = -1;  ///< of the simulation that the picture shows; -1: not known
-  /// How the picture is seen: tan of half the angle that it fills of the eye's view, by tan of half the
-  /// camera's angle, > 0. A screen seen from far shows a wide camera's picture small. 1: the camera's angles
-  /// are the eye's, or nothing is known.
+  int seen_frame = -1;  ///< simulation frame that the picture shows; -1: unknown
+  /// Scale at which the eye sees the picture: tan of half the angle that it fills of the eye's view, divided
+  /// by tan of half the camera's angle, > 0. A distant screen shows a wide camera's picture small. 1: the
+  /// camera's angles are the eye's, or unknown.
   double visual_scale = 1;
 };
 
-/// How the last picture reached saliency.
+/// How the last picture was passed to saliency.
 enum class PictureWay {
-  None,    ///< no picture was given, or the method looks at none
-  Device,  ///< from GL's memory to the back end's on one device
-  Host     ///< read back, and uploaded where the back end is not the CPU
+  None,    ///< no picture was given, or the method uses none
+  Device,  ///< from GL's memory to the back end's, on one device
+  Host     ///< read back, and uploaded if the back end is not the CPU
 };
 
-/// What saliency saw, for the record.
+/// The picture used by saliency, for records.
 struct SeenReport {
   PictureWay way = PictureWay::None;
-  int frame = -1;  ///< EyeLook::seen_frame; the older one of two eyes
+  int frame = -1;  ///< EyeLook::seen_frame; the smaller one of two eyes
 };
 
-/// One eye or two. Each is evaluated for itself and the larger saliency counts.
+/// One eye or two. Each is evaluated separately, and the larger saliency counts.
 struct Looks {
   std::vector<EyeLook> eyes;
 };
 
-/// Saliency of one particle as it was evaluated when levels were chosen last (paper 3.2).
+/// Saliency of one particle at the last level update (paper 3.2).
 struct ParticleSaliency {
   float acuity = 0;    ///< f_a, Eq. 3
   float manifold = 0;  ///< f_m, Eq. 5

@@ -25,7 +25,7 @@ SIM_FN float value_of(std::uint32_t bits) {
   return value;
 }
 
-/// Counts the next bits of the values whose higher bits are those of each end.
+/// Counts the next bits of the values whose higher bits equal those of each bound.
 struct CountBits {
   const float* values;
   const std::uint8_t* level;
@@ -42,7 +42,7 @@ struct CountBits {
   }
 };
 
-/// The bin that holds the wanted rank narrows the search; one run of an end's bins has it.
+/// The bin that contains the wanted rank narrows the search; it is in one run of each bound's bins.
 struct Narrow {
   BinCounts counts;
   const Selection* selection;
@@ -74,7 +74,7 @@ struct FollowRange {
   SIM_FN void operator()(int) const {
     const float low = value_of(found->prefix[0]);
     const float high = fmaxf(value_of(found->prefix[1]), floor);
-    // A spread of rounding errors tells nothing.
+    // A range of the size of rounding errors is meaningless.
     range->usable = found->valid >= 2 && high - low > 1e-6f * high;
     if (!range->usable) return;
     const float step = range->known ? share : 1;
@@ -84,7 +84,7 @@ struct FollowRange {
   }
 };
 
-/// A round's end, and the search's.
+/// The end of a round, and of the search.
 struct SelectBins {
   const Selection* selection;
   Selection* next;

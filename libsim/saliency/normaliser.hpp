@@ -1,5 +1,6 @@
 #pragma once
-/// From F to s in [0, 1] (paper 3.2.3 is silent on how): the ends of F's range and how they follow it.
+/// From F to s in [0, 1] (paper 3.2.3 does not define how): the bounds of F and how they are smoothed over
+/// frames.
 
 #include <cstdint>
 
@@ -15,31 +16,31 @@ struct SaliencyRange {
   int usable;  ///< 0: this frame has fewer than two finite values, or all are the same
 };
 
-/// Finds exact percentiles of non-negative values by three rounds of histograms over their bits: no sort, no
-/// dependence on an outlier, the same result for any order of the values.
+/// Finds exact percentiles of non-negative values by three rounds of histograms over their bits: no sort,
+/// robust to outliers, and independent of the order of the values.
 class SaliencyNormaliser {
  public:
-  /// Share of the way to a frame's percentiles that the range goes in a frame.
+  /// Share by which the range moves towards a frame's percentiles.
   static constexpr double follow = 0.1;
-  /// Updates the range from values[0 .. n-1]; those that are not finite are left out. Percentile: the ends
-  /// follow the 1st and 98th percentile by `share` (the first frame sets them); value i counts 2^level[i]
-  /// times, so that it is a share of the water and does not depend on how finely it is divided. MinMax: the
-  /// frame's own ends. The upper end is never below `floor`: where nothing stands out, nothing becomes s = 1.
-  /// Nothing is read back.
+  /// Updates the range from values[0 .. n-1]; non-finite values are ignored. Percentile: the bounds move
+  /// towards the 1st and 98th percentile by `share` (the first frame sets them); value i counts 2^level[i]
+  /// times, so that it weighs by mass and does not depend on the resolution. MinMax: the frame's own bounds.
+  /// The upper bound is never below `floor`: if nothing is salient, no particle gets s = 1. Nothing is read
+  /// back.
   void update(const Array<float>& values, const std::uint8_t* level, int n, Normalisation reading,
               float share = static_cast<float>(follow), float floor = 0);
   /// In the back end's memory; valid after the first update.
   const SaliencyRange* range() const { return range_.data(); }
   void forget() { range_ = Array<SaliencyRange>(); }
 
-  /// State of the search between two rounds, for both ends.
+  /// Search state between two rounds, for both bounds.
   struct Selection {
     std::uint32_t prefix[2];
     int rank[2];
     int valid;
   };
 
-  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(range_);

@@ -10,7 +10,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, float* out) {
-  // d_* = h_* / 2. The last term only keeps a fluid without gravity from 0 / 0.
+  // d_* = h_* / 2. The last term only prevents 0 / 0 in a fluid without gravity.
   const double scale =
       std::sqrt(static_cast<double>(fluid.gravity) * static_cast<double>(fluid.finest_support) / 2);
   const auto speed_epsilon = static_cast<float>(p.speed_floor * scale + 1e-12);
@@ -18,33 +18,33 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
           speed_epsilon,  p.dimensionless};
 }
 
-/// In water at rest only what exceeds `floor` counts; where it moves faster the floor fades out, so that no
-/// level hangs on one speed. No floor takes from swirl, which has one of its own. What is not known yet
-/// starts with the frame's value, so that a NaN does not stay.
+/// In water at rest only the excess over `floor` counts; for faster water the floor fades out, so that no
+/// level depends on one threshold speed. The floor does not apply to swirl, which has its own. Unknown values
+/// start with the frame's value, so that a NaN does not persist.
 struct FollowUnrest {
   const float* now;
   float* unrest;
   const Vec4* velocity;
   SwirlSeen swirl;
-  Calm fading;  ///< over a half up to the speed below which water rests
+  Calm fading;  ///< above 0.5 for speeds that count as at rest
   float share, floor;
   SIM_FN void operator()(int i) const {
     const float before = unrest[i];
     const Vec4 v = velocity[i];
     const float rest = floor * fminf(2 * fading(v.x, v.y, v.z), 1.0f);
-    // A NaN passes, so that it is seen.
+    // A NaN passes, so that it is detected.
     float wish = now[i] < rest ? 0 : now[i] - rest;
     if (swirl.rate) wish += swirl.adds(i);
     unrest[i] = std::isfinite(before) ? before + share * (wish - before) : wish;
   }
 };
 
-/// The share of the way that one step goes instead of as many of `share` each, at least one.
+/// The share of one step that replaces `steps` steps of `share` each, at least one.
 float in_one_step(double share, int steps) {
   return static_cast<float>(1 - std::pow(1 - share, std::max(steps, 1)));
 }
 
-/// f_T gamma_t of this frame, and what has been followed of it.
+/// Measures f_T gamma_t of this frame, and updates its smoothed value.
 void measure_unrest(SaliencyState& state, const SaliencyFluid& fluid) {
   const Readings& p = state.readings;
   state.temporal.resize(static_cast<std::size_t>(fluid.n));

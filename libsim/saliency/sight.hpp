@@ -1,18 +1,18 @@
 #pragma once
-/// What the last picture says about a particle: the bend of the surface in front of it (paper Eq. 5) and how
-/// deep it lies below that surface (Eq. 7-8).
+/// Features of a particle from the last picture: the curvature of the surface in front of it (paper Eq. 5)
+/// and its depth below that surface (Eq. 7-8).
 
 #include "libsim/methods/preset.hpp"
 #include "libsim/saliency/eye.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// A particle's place in a picture.
+/// A particle's position in a picture.
 struct Spot {
   enum class Kind { NoPicture, OutOfView, Background, Fluid };
   Kind kind;
   int x, y;     ///< px
-  float depth;  ///< of the particle itself, m
+  float depth;  ///< of the particle, m
 };
 
 SIM_FN Spot find_spot(const Eye& eye, Vec3 x) {
@@ -23,7 +23,7 @@ SIM_FN Spot find_spot(const Eye& eye, Vec3 x) {
   if (!(z > 0)) return {Spot::Kind::OutOfView, 0, 0, z};
   const float px = floorf((e.x / z - eye.rays.offset_x) / eye.rays.scale_x);
   const float py = floorf((e.y / z - eye.rays.offset_y) / eye.rays.scale_y);
-  // Compared as floats: far off the picture an int could not hold them, and NaN is out of view too.
+  // Compared as floats: far-off positions overflow an int, and NaN counts as out of view too.
   const bool inside =
       px >= 0 && py >= 0 && px < static_cast<float>(g.width) && py < static_cast<float>(g.height);
   if (!inside) return {Spot::Kind::OutOfView, 0, 0, z};
@@ -33,10 +33,10 @@ SIM_FN Spot find_spot(const Eye& eye, Vec3 x) {
   return {fluid ? Spot::Kind::Fluid : Spot::Kind::Background, column, row, z};
 }
 
-/// |grad Phi_n| of Eq. 5 without unit: the mean of |n(q) - n(p)| over the fluid pixels q of a square window
-/// of half side R = clamp(round(window), 1, most) px round p. At most 64 pixels are read, in a fixed pattern
-/// whose columns and rows are equally dense. A window of R px reaches R + 1/2, which the last factor takes
-/// back: the same surface gives the same value at every resolution.
+/// |grad Phi_n| of Eq. 5, dimensionless: the mean of |n(q) - n(p)| over the fluid pixels q of a square window
+/// of half side R = clamp(round(window), 1, most) px around p. At most 64 pixels are read, in a fixed pattern
+/// with equally dense columns and rows. A window of R px covers R + 1/2; the last factor corrects this, so
+/// that a surface has the same value at every resolution.
 SIM_FN float normal_variation(const GBufferView& g, int x, int y, float window, int most) {
   const Vec3 centre = g.normal_at(x, y);
   if (!(dot(centre, centre) > 0.25f)) return 0;
@@ -63,7 +63,7 @@ SIM_FN float normal_variation(const GBufferView& g, int x, int y, float window, 
   return sum / static_cast<float>(found) * (wanted / (static_cast<float>(reach) + 0.5f));
 }
 
-/// Eq. 5's numerator for a particle of radius r; 0 where it has no fluid pixel.
+/// Numerator of Eq. 5 for a particle of radius r; 0 without a fluid pixel.
 SIM_FN float manifold_feature(const Eye& eye, const Spot& spot, float r, int window_max_px) {
   if (spot.kind != Spot::Kind::Fluid) return 0;
   const float pixels_per_slope = 1 / eye.rays.scale_y;
@@ -71,7 +71,7 @@ SIM_FN float manifold_feature(const Eye& eye, const Spot& spot, float r, int win
   return normal_variation(eye.picture, spot.x, spot.y, window, window_max_px);
 }
 
-/// d_t of Eq. 8 with positive eye depths, m. Nothing lies in front where there is no picture or no fluid.
+/// d_t of Eq. 8 with positive eye depths, m. 0 without a picture or without fluid.
 SIM_FN float thickness(const Eye& eye, const Spot& spot, float r) {
   if (spot.kind != Spot::Kind::Fluid) return 0;
   const float front = eye.picture.depth[eye.picture.at(spot.x, spot.y)];
@@ -82,7 +82,7 @@ struct Attenuation {
   ThicknessWeight reading;
   float per_m;
 
-  /// gamma_t of Eq. 7. Out of view a particle counts as hidden as far as Eq. 7's constant goes.
+  /// gamma_t of Eq. 7. Out of view a particle counts as occluded, with the constant 5 of Eq. 7.
   SIM_FN float operator()(const Spot& spot, float d_t) const {
     if (spot.kind == Spot::Kind::OutOfView) return 5;
     return at(d_t);

@@ -1,5 +1,5 @@
 #pragma once
-/// A pull towards an axis, beside gravity or instead of it.
+/// An attraction to an axis, in addition to gravity or instead of it.
 
 #include <array>
 #include <optional>
@@ -10,20 +10,21 @@ class TomlTable;
 
 namespace sim {
 
-/// Acceleration -Omega^2 r, where r leads to the particle from the nearest point of the axis. In a slab
-/// between two walls across the axis the water forms a drop of two dimensions (Monaghan and Rafiee 2013).
+/// Acceleration -Omega^2 r, where r is the vector from the nearest point of the axis to the particle. In a
+/// slab between two walls perpendicular to the axis the water forms a two-dimensional drop (Monaghan and
+/// Rafiee 2013).
 struct CentralForce {
-  double omega_per_s = 0;               ///< Omega: a lone particle swings with the period 2 pi / Omega
+  double omega_per_s = 0;               ///< Omega: a lone particle oscillates with the period 2 pi / Omega
   std::array<double, 3> centre_m{};     ///< a point of the axis
   std::array<double, 3> axis{0, 0, 1};  ///< direction of the axis, a unit vector
 };
 
-/// The table [central_force] of a scene file; none when it is absent. Errors are base::Error: unknown key,
-/// out of range, an axis without direction. origin_m: Scene::origin_m, which the centre then counts from.
+/// The table [central_force] of a scene file; none if absent. Errors are base::Error: unknown key, out of
+/// range, an axis without direction. origin_m: Scene::origin_m, subtracted from the centre.
 std::optional<CentralForce> read_central_force(const base::TomlTable& scene,
                                                const std::array<double, 3>& origin_m);
 
-/// Metres from the axis.
+/// Distance from the axis, m.
 double distance_from_axis(const CentralForce& force, const std::array<double, 3>& point_m);
 
 }  // namespace sim

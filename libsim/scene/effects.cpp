@@ -49,7 +49,7 @@ const Effect* find(const std::vector<Effect>& effects, EffectKind kind) {
   return found == effects.end() ? nullptr : &*found;
 }
 
-/// Is there what this one needs, or does it need nothing?
+/// True if the effect that this one needs is listed, or it needs none.
 bool stands(const std::vector<Effect>& effects, const Effect& effect) {
   const EffectKind needs = traits_of(effect.kind).needs;
   if (needs == no_effect || effect.coefficient == 0) return true;
@@ -150,7 +150,7 @@ std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
   std::vector<Effect> out = kept;
   for (const auto& table : tables) {
     const auto named = effect_named(table.choice("kind", known));
-    if (!named) continue;  // the picture's
+    if (!named) continue;  // a picture effect
     const EffectKind kind = *named;
     if (!has_effects()) table.fail("kind", without_effects, build_them);
     if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");

@@ -1,5 +1,5 @@
 #pragma once
-/// Effects that a scene may list beside what every method does. What a scene does not list costs nothing.
+/// Effects that a scene may list in addition to the method's own stages. Unlisted effects cost nothing.
 
 #include <array>
 #include <cstddef>
@@ -16,19 +16,19 @@ namespace sim {
 
 inline constexpr double rest_density_kg_m3 = 1000;
 
-/// What a coefficient is a coefficient of; the explicit step's natural time T follows from it, with the rest
+/// Unit of an effect's coefficient c. It determines the natural time T of the explicit step, with the rest
 /// density rho_0 and the finest spacing d.
 enum class EffectUnit {
   NewtonPerMetre,         ///< T = sqrt(rho_0 d^3 / c)
   PerSecond,              ///< T = 1 / c
   MetrePerSecond,         ///< T = d / c
   MetreSquaredPerSecond,  ///< T = d^2 / c
-  Unlimited               ///< of any unit, where no step is too long: T has no end
+  Unlimited               ///< any unit, stable for any step: T is infinite
 };
 
-// The registry, a row each: EFFECT(enumerator, the scene file's word, key of its coefficient, unit, longest
-// substep in T, an effect that it needs or none, source). A row's stages are the function WORD_stages() of
-// one file in libsim/solver/effects; they run in the table's order, after the viscosity.
+// The registry, one row per effect: EFFECT(enumerator, word in the scene file, key of its coefficient, unit,
+// longest stable substep in T, a required effect or none, source). The stages of a row come from the function
+// WORD_stages() in one file of libsim/solver/effects; they run in the table's order, after the viscosity.
 #define SIM_EFFECTS(EFFECT)                                                        \
   EFFECT(Viscosity, viscosity, viscosity_m2_s, Unlimited, 1, no_effect,            \
          "Weiler et al. 2018, implicit, of pairs of any size")                     \
@@ -56,9 +56,9 @@ enum class EffectKind {
 inline constexpr std::size_t effect_count = static_cast<std::size_t>(EffectKind::count);
 inline constexpr EffectKind no_effect = EffectKind::count;
 
-// Further numbers that an effect takes, a row each: OPTION(enumerator, its effect, key, value where the key
-// is absent, least, most). A wall_k of 0 stands for walls that insulate, a length_m of 0 for a sixth of the
-// edge of a cube that holds the water.
+// Further parameters of effects, one row each: OPTION(enumerator, its effect, key, default, minimum,
+// maximum). wall_k = 0 means insulating walls; length_m = 0 means a sixth of the edge of a cube that holds
+// the water.
 #define SIM_EFFECT_OPTIONS(OPTION)                                  \
   OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)           \
   OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                 \
@@ -96,7 +96,7 @@ enum class EffectOption {
       count
 };
 inline constexpr std::size_t option_count = static_cast<std::size_t>(EffectOption::count);
-/// A value for each row; those of other effects mean nothing.
+/// One value per row; values of other effects have no meaning.
 using EffectOptions = std::array<double, option_count>;
 inline constexpr EffectOptions usual_options{
 #define SIM_VALUE(Name, effect, key, usual, ...) usual,
@@ -104,7 +104,7 @@ inline constexpr EffectOptions usual_options{
 #undef SIM_VALUE
 };
 
-/// A row of the options.
+/// One row of the options.
 struct OptionTraits {
   EffectKind of;
   const char* key;
@@ -112,11 +112,11 @@ struct OptionTraits {
 };
 const OptionTraits& traits_of(EffectOption option);
 
-/// The option that says up to which level an effect acts: its own, or that of the effect that it needs; none
-/// where both have none.
+/// The option that limits the levels on which an effect acts: its own, or that of the effect it needs. None
+/// if neither has one.
 std::optional<EffectOption> coarsest_level_of(EffectKind kind);
 
-/// A row of the registry.
+/// One row of the registry.
 struct EffectTraits {
   const char* word;
   const char* key;  ///< ends in the unit
@@ -127,7 +127,7 @@ struct EffectTraits {
 };
 const EffectTraits& traits_of(EffectKind kind);
 
-/// An effect as a scene lists it. SI units, as the key says.
+/// An effect as listed by a scene. SI units, as the key says.
 struct Effect {
   EffectKind kind{};
   double coefficient = 0;  ///< >= 0; 0 drops the effect
@@ -135,10 +135,10 @@ struct Effect {
 
   friend bool operator==(const Effect&, const Effect&) = default;
 };
-/// " key = value" of each of an effect's options, for records and people; empty without options.
+/// " key = value" for each option of an effect, for records and people; empty without options.
 std::string options_in_words(const Effect& effect);
 
-/// Coefficient of each effect, 0 where it is not listed, and their options.
+/// Coefficient of each effect, 0 if it is not listed, and the options of the effects.
 struct EffectCoefficients {
   std::array<float, effect_count> values{};
   EffectOptions options = usual_options;
@@ -149,31 +149,31 @@ struct EffectCoefficients {
 };
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 
-/// The tables [[effect]] of a scene file of format 2, but for the picture's (picture_effects.hpp). Errors are
-/// base::Error at file:line:column: unknown, listed twice, without the effect that it needs, out of range, or
-/// a program built without effects. kept: effects that stand beside them already.
+/// Reads the tables [[effect]] of a scene file of format 2, except picture effects (picture_effects.hpp).
+/// Errors are base::Error at file:line:column: unknown, listed twice, missing an effect that it needs, out of
+/// range, or a program built without effects. kept: effects already listed.
 std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
                                  const std::vector<Effect>& kept = {});
-/// The kind that a scene file's word names; none for another word.
+/// The effect kind that a word of a scene file names; none for an unknown word.
 std::optional<EffectKind> effect_named(const std::string& word);
-/// The tables that read_effects() reads back as the same effects; of those that are not dropped.
+/// Writes tables that read_effects() reads back as the same effects; omits dropped effects.
 std::string format_effects(const std::vector<Effect>& effects);
 /// "foam emission_per_s = 0.3 lifetime_s = 4 ...; air_drag ...", for records and people; empty: no effects.
 std::string effects_in_words(const std::vector<Effect>& effects);
-/// The same of a scene that no file described; base::Error names the effect.
+/// The same checks for a scene without a file; base::Error names the effect.
 void check_effects(const std::vector<Effect>& effects);
 
-/// The longest substep that every effect is stable with, and whose it is.
+/// The longest substep for which every effect is stable, and the effect that limits it.
 struct EffectStep {
   double seconds = std::numeric_limits<double>::infinity();
   EffectKind of = no_effect;
 };
 EffectStep longest_step(const std::vector<Effect>& effects, double finest_spacing_m);
-/// What water may get to by its own surface, m/s: sqrt(12 sigma / (rho_0 d)), all of a particle's surface
-/// energy; 0 without tension.
+/// Maximum speed that surface tension can give water, m/s: sqrt(12 sigma / (rho_0 d)), the full surface
+/// energy of a particle; 0 without tension.
 double capillary_speed(const std::vector<Effect>& effects, double finest_spacing_m);
 
-/// Built with -DVIP_EFFECTS=ON?
+/// True if built with -DVIP_EFFECTS=ON.
 bool has_effects();
 
 }  // namespace sim

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenes that could only be computed for nothing, told before memory is asked for.
+/// Rejects scenes that cannot be computed sensibly, before memory is allocated.
 
 #include <cstdint>
 #include <optional>
@@ -9,17 +9,17 @@
 
 namespace sim {
 
-/// base::Error that names the key when the water is thinner than a particle, a frame takes more than 1000
+/// base::Error that names the key if the water is thinner than a particle, a frame takes more than 1000
 /// substeps, or the tank is so much larger than its water that the cells of the coarse pressure, of
 /// `cell_edge_m`, would outnumber particles sixteen times (a million are always allowed).
 void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, double cell_edge_m);
 
-/// Memory that programs can have without swapping, in bytes; nothing where the system does not say.
+/// Memory that programs can use without swapping, in bytes; none if the system does not report it.
 std::optional<double> available_memory_bytes();
 
-/// base::Error when a run on the CPU would take more than `available_bytes`: measured at 1.1 kB a particle,
-/// 2.3 kB where particles split and merge. A system that promises memory it does not have ends such a program
-/// without a word.
+/// base::Error if a run on the CPU would take more than `available_bytes`: measured as 1.1 kB per particle,
+/// 2.3 kB if particles split and merge. A system that overcommits memory kills such a program without a
+/// message.
 void check_memory(MethodKind method, std::int64_t n_star, std::optional<double> available_bytes);
 
 }  // namespace sim

@@ -40,7 +40,7 @@ std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::in
 
 int substeps_of(const Scene& scene, std::int64_t n_star) {
   const double radius = resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m / 2;
-  // The rule is stated in round numbers; without the margin 1/60 s would round one case up.
+  // The rule is given in round numbers; without the margin 1/60 s would round one case up.
   const double steps = scene.v_ref_m_s * scene.frame_dt_s / (0.5 * 4 * radius);
   return std::max(scene.min_substeps, static_cast<int>(std::ceil(steps - 1e-9)));
 }

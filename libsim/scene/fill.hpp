@@ -1,5 +1,5 @@
 #pragma once
-/// Where the particles start: the fill rule of the scenes, exact at every n_*.
+/// Start positions of the particles: the fill rule of the scenes, exact at every n_*.
 
 #include <vector>
 
@@ -12,28 +12,28 @@ namespace sim {
 struct Resolution {
   double finest_spacing_m = 0;  ///< d_* = 2 r_*: cbrt(V / (8 n_*))
   double spacing_m = 0;         ///< d of the particles at frame 0: 2 d_* for LoRes, d_* for the others
-  int level = 0;                ///< their level: 3 (mass 8 m_*) for LoRes, 0 (m_*) for the others
+  int level = 0;  ///< level of these particles: 3 (mass 8 m_*) for LoRes, 0 (m_*) for the others
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 
-/// Exactly particle_count(method, n_star) points, less those inside obstacles: layers from the floor up, the
+/// Exactly particle_count(method, n_star) points, minus those inside obstacles: layers from the floor up, the
 /// last layer partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
 
 /// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.
 int substeps_of(const Scene& scene, std::int64_t n_star);
 
-/// Kinematic viscosity, m2/s, the same for all methods, levels and time steps: the scene's or, where it names
-/// none, 0.05 h sqrt(g h) with the support h of particles of level 3. With less the solver's own jitter stirs
+/// Kinematic viscosity, m2/s, the same for all methods, levels and time steps: the scene's value or, if
+/// absent, 0.05 h sqrt(g h) with the support h of particles of level 3. With less, the solver's jitter stirs
 /// water at rest; it goes to zero with h.
 double viscosity_of(const Scene& scene, std::int64_t n_star);
 
-/// Numbers that say what rules a scene: L = the water's shortest side, v = time.v_ref_m_s, the water's
-/// viscosity and that of the effect, gravity and tension. 0 where nothing moves or falls; otherwise infinite
-/// where what they divide by is absent.
+/// Dimensionless numbers of a scene, from L = the water's shortest side, v = time.v_ref_m_s, the viscosity of
+/// the water and of the effect, gravity and tension. 0 without motion or gravity; otherwise infinite if the
+/// divisor is absent.
 struct Scales {
   double length_m = 0, speed_m_s = 0;
-  double viscosity_m2_s = 0;  ///< nu, the water's and the effect's
+  double viscosity_m2_s = 0;  ///< nu, of the water and of the effect
   double reynolds = 0;        ///< v L / nu
   double weber = 0;           ///< rho_0 v^2 L / sigma
   double bond = 0;            ///< rho_0 g L^2 / sigma

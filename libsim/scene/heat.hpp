@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene with the effect `heat` says of temperatures.
+/// The temperatures of a scene with the effect `heat`.
 
 #include <array>
 
@@ -7,22 +7,22 @@ namespace sim {
 
 struct Scene;
 
-/// A box whose water is warm, or cold, when frame 0 begins. Where boxes overlap the later one counts. Water
-/// in no box has the effect's reference temperature.
+/// A box whose water is warm, or cold, at frame 0. Where boxes overlap, the later one counts. Water outside
+/// all boxes has the effect's reference temperature.
 struct WarmBox {
   std::array<double, 3> min_m{}, max_m{};
   double temperature_k = 0;
 };
 
-/// The coldest and the hottest that a scene names; 1 K apart at least, for a scale of colours.
+/// The lowest and highest temperature in a scene; at least 1 K apart, for a colour scale.
 struct TemperatureRange {
   double least_k = 0, most_k = 1;
 };
 TemperatureRange temperatures_of(const Scene& scene);
 
-/// What water poured by a nozzle without a temperature has, K: the reference.
+/// Temperature of water from a nozzle without one, K: the reference.
 double reference_temperature(const Scene& scene);
-/// Is the effect listed?
+/// True if the scene lists the effect.
 bool lists_heat(const Scene& scene);
 
 }  // namespace sim

@@ -16,12 +16,11 @@ namespace {
 
 using Matrix = std::array<Vector, 3>;
 constexpr int usual_cells = 48, fewest_cells = 4;
-constexpr int margin = 2;   ///< cells round the mesh
-constexpr int spread = 64;  ///< directions of contacts, beside the axes
+constexpr int margin = 2;   ///< cells around the mesh
+constexpr int spread = 64;  ///< directions of contacts, in addition to the axes
 constexpr unsigned most_threads = 8;
 
-/// Turns a symmetric matrix diagonal by Jacobi's rotations; what it returns has the principal axes as
-/// columns.
+/// Diagonalises a symmetric matrix by Jacobi rotations; returns the principal axes as columns.
 Matrix principal_axes(Matrix& a) {
   Matrix axes{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
   const double least = 1e-9 * (a[0][0] + a[1][1] + a[2][2]);
@@ -50,7 +49,7 @@ Matrix principal_axes(Matrix& a) {
   return axes;
 }
 
-/// Of a rotation matrix.
+/// Quaternion of a rotation matrix.
 std::array<double, 4> quaternion_of(const Matrix& m) {
   const double trace = m[0][0] + m[1][1] + m[2][2];
   std::array<double, 4> out{};
@@ -90,7 +89,7 @@ Settled settled(const Triangles& mesh) {
   return out;
 }
 
-/// Of a settled surface. Sums over the middles of edges are exact, as what is summed is quadratic.
+/// For a settled surface. Sums over the midpoints of edges are exact, because the integrand is quadratic.
 std::array<bool, 3> round_about(const Triangles& mesh) {
   constexpr double most = 0.01;  ///< a long prism of 19 sides is round
   Vector turning{}, from_axis{};
@@ -113,9 +112,9 @@ std::array<bool, 3> round_about(const Triangles& mesh) {
   return out;
 }
 
-/// A row of nodes after another, each by whichever thread is free.
+/// Fills the grid row by row; each free thread takes the next row.
 void bake(const SurfaceTree& tree, DistanceGrid& out) {
-  // Names of their own: clang 14 lets no lambda use a structured binding.
+  // Separate names: clang 14 does not allow lambdas to capture structured bindings.
   const int nx = out.nodes[0], ny = out.nodes[1], rows = ny * out.nodes[2];
   std::atomic<int> next = 0;
   const auto work = [&] {

@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh as a rigid body: where its mass lies, and its signed distance on a grid.
+/// A mesh as a rigid body: its mass distribution, and its signed distance on a grid.
 
 #include <array>
 #include <mutex>
@@ -11,7 +11,7 @@
 
 namespace sim {
 
-/// Signed distances at the nodes of a grid round the surface, x fastest.
+/// Signed distances at the nodes of a grid around the surface, x fastest.
 struct DistanceGrid {
   std::array<double, 3> low_m{};
   double step_m = 0;
@@ -19,20 +19,20 @@ struct DistanceGrid {
   std::vector<float> values_m;
 };
 
-/// Volume, centre of mass and moments of what a surface encloses, of an even density: the sums over its
-/// tetrahedra with one point.
+/// Volume, centre of mass and moments of the solid enclosed by a surface, for uniform density: sums over the
+/// tetrahedra from one point to its triangles.
 struct MassProperties {
   double volume_m3 = 0;
   std::array<double, 3> centre_m{};
-  /// Inertia tensor about the centre over the mass, m2.
+  /// Inertia tensor about the centre divided by the mass, m2.
   std::array<std::array<double, 3>, 3> inertia_m2{};
 };
 MassProperties mass_properties(const Triangles& mesh);
 
 inline constexpr std::size_t most_grid_nodes = 1 << 21;
 
-/// The body's own axes begin in its centre of mass and are its principal ones, those of the file where these
-/// are principal.
+/// The body's axes have their origin in its centre of mass and are principal axes, equal to the file's axes
+/// if those are principal.
 class Mesh {
  public:
   /// spacing_m: of the grid, which must not have more than most_grid_nodes; 0: a 48th of the longest side, or
@@ -42,26 +42,26 @@ class Mesh {
   const std::vector<std::array<double, 3>>& places_m() const { return mesh_.places; }
   double volume_m3() const { return volume_m3_; }
   const std::array<double, 3>& inertia_m2() const { return inertia_m2_; }
-  /// Unit quaternion x, y, z, w from its own axes to the file's.
+  /// Unit quaternion x, y, z, w from the body's axes to the file's.
   const std::array<double, 4>& turn() const { return turn_; }
-  /// Whether it is round about each of its own axes, but for facets: of (r x n)_k^2 over the surface, at most
-  /// 1 % of the square of the way from the axis.
+  /// True for each own axis about which the body is round, except for facets: (r x n)_k^2 over the surface is
+  /// at most 1 % of the squared distance from the axis.
   const std::array<bool, 3>& round_about() const { return round_about_; }
-  /// Of the box round it along its own axes.
+  /// Bounding box along the body's axes.
   const std::array<double, 3>& low_m() const { return low_m_; }
   const std::array<double, 3>& high_m() const { return high_m_; }
-  double farthest_m() const { return farthest_m_; }  ///< of its places from the centre
+  double farthest_m() const { return farthest_m_; }  ///< distance of the farthest point from the centre
   double spacing_m() const { return spacing_m_; }
-  double grid_nodes() const;  ///< how many
-  /// Signed distance in its own axes, exact.
+  double grid_nodes() const;  ///< number of nodes
+  /// Exact signed distance in the body's axes.
   double distance_m(const std::array<double, 3>& at_m) const { return tree_.distance(at_m); }
-  /// Computed when first asked for. The same bits for any number of threads.
+  /// Computed on first use. Bit-identical for any number of threads.
   const DistanceGrid& grid() const;
-  /// Places of the surface that walls meet: the farthest ones in some 70 directions.
+  /// Surface points for contacts with walls: the farthest ones in some 70 directions.
   std::vector<std::array<double, 3>> contacts_m() const;
   /// Twice the depth of its deepest node, m.
   double thickness_m() const;
-  /// SHA-256 of all that it was made of.
+  /// SHA-256 of all inputs.
   const std::string& sha256() const { return sha256_; }
 
  private:

@@ -42,12 +42,12 @@ Triangles read_triangles(const base::TomlTable& table, const std::optional<std::
   return read_file(*beside / name);
 }
 
-/// What follows the blanks.
+/// The text after leading blanks.
 std::string_view after_blanks(std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
 }
 
-/// The file that a line `file = "name"` or `file = 'name'` names; empty when the line is another.
+/// The file named by a line `file = "name"` or `file = 'name'`; empty for other lines.
 std::string_view file_named_by(std::string_view line) {
   constexpr std::string_view key = "file";
   line = after_blanks(line);
@@ -63,8 +63,8 @@ std::string_view file_named_by(std::string_view line) {
   return rest.empty() || rest[0] == '#' ? name : std::string_view{};
 }
 
-/// The quotes of the text that a line of TOML leaves open, if it goes on in the next line: three or none.
-/// open: those that the line before left.
+/// The quotes of a multi-line string that a line of TOML leaves open: three, or none. open: those left open
+/// by the previous line.
 std::string_view left_open(std::string_view line, std::string_view open) {
   constexpr std::string_view quotes[] = {"\"\"\"", "'''", "\"", "'"};
   std::size_t k = 0;
@@ -80,7 +80,7 @@ std::string_view left_open(std::string_view line, std::string_view open) {
       k += 2;
     } else if (rest.starts_with(open)) {
       k += open.size();
-      // Three quotes that close a text may follow up to two that are of it.
+      // Three closing quotes may be preceded by up to two that belong to the string.
       for (int more = 0; open.size() == 3 && more < 2 && k < line.size() && line[k] == open[0]; ++more) ++k;
       open = {};
     } else {

@@ -8,7 +8,7 @@ namespace sim {
 
 namespace {
 
-/// Length of the jet that an open mouth has let through before a frame.
+/// Length of the jet that an open nozzle has poured before a frame.
 double length_before(const Nozzle& nozzle, std::int64_t frame, double frame_dt_s) {
   const std::int64_t cycle = nozzle.on_frames + nozzle.off_frames;
   const std::int64_t open =

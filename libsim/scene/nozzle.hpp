@@ -1,43 +1,43 @@
 #pragma once
-/// A nozzle that pours downwards in pulses, and the timetable of its layers.
+/// A nozzle that pours downwards in pulses, and the schedule of its layers.
 
 #include <array>
 #include <cstdint>
 
 namespace sim {
 
-/// A round mouth that pours straight down.
+/// A round nozzle that pours straight down.
 struct Nozzle {
   double diameter_m = 0;
   std::array<double, 3> position_m{};  ///< centre of the mouth
   double speed_m_s = 0;                ///< of the water at the mouth
-  int on_frames = 0;                   ///< a pulse lasts so long, from frame 0
-  int off_frames = 0;                  ///< and then rests
+  int on_frames = 0;                   ///< duration of a pulse; the first begins at frame 0
+  int off_frames = 0;                  ///< pause after each pulse
   double temperature_k = 0;            ///< of the water; 0 = the reference of the effect heat
 };
 
-/// A layer of the jet: a Vogel disc of `sites` particles, each of volume spacing^3. Layers follow each other
-/// by `pitch_m` = spacing^3 sites / A, so that the flow A u is the same at every spacing.
+/// A layer of the jet: a Vogel disc of `sites` particles, each of volume spacing^3. The distance between
+/// layers is `pitch_m` = spacing^3 sites / A, so that the flow A u is the same at every spacing.
 struct JetLayer {
   int sites = 0;
   double pitch_m = 0;
 };
 JetLayer jet_layer(const Nozzle& nozzle, double spacing_m);
 
-/// How much of the jet has been poured.
+/// The part of the jet that has been poured.
 struct Poured {
   double length_m = 0;
   std::int64_t layers = 0;
 };
-/// What a nozzle has poured before `frame` with one spacing throughout; a pure function of the frame, so that
-/// a run from a checkpoint pours as the run that made it.
+/// What a nozzle with a constant spacing has poured before `frame`; a pure function of the frame, so that a
+/// run from a checkpoint pours like the original run.
 Poured poured_before(const Nozzle& nozzle, double spacing_m, int frame, double frame_dt_s);
 
-/// Layers whose turn comes within one frame.
+/// Layers that are due within one frame.
 struct LayersDue {
   int count = 0;
-  double first_time_s = 0;  ///< from the frame's start to the moment when the first passes the mouth
-  double interval_s = 0;    ///< from layer to layer
+  double first_time_s = 0;  ///< from the frame's start until the first passes the mouth
+  double interval_s = 0;    ///< between layers
 };
 
 /// The next layer passes the mouth when the nozzle has been open for (length + pitch / 2) / speed; pulses

@@ -14,7 +14,7 @@ namespace sim {
 namespace {
 
 constexpr double farthest = 1e6;
-/// Least area of a triangle over the square of its longest edge.
+/// Minimum area of a triangle divided by the square of its longest edge.
 constexpr double flattest = 1e-9;
 
 /// The words of a line, before a comment.
@@ -103,7 +103,7 @@ class Reader {
     mesh_.faces.push_back(face);
     lines_.push_back(line_);
   }
-  /// Every edge is met twice, once in each direction.
+  /// Every edge must occur twice, once in each direction.
   void check_edges() const {
     std::map<std::array<int, 2>, int> line_of;
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
@@ -120,7 +120,7 @@ class Reader {
               "close the surface; corners that share a place must share its number (merge by distance)");
     }
   }
-  /// Places that no face names are no part of the surface; the others keep their order.
+  /// Vertices that no face uses are dropped; the others keep their order.
   void leave_out_loose_places() {
     std::vector<int> number(mesh_.places.size(), -1);
     for (const auto& face : mesh_.faces) {
@@ -174,7 +174,7 @@ std::string obj_of(const Triangles& mesh) {
 
 double enclosed_volume(const Triangles& mesh) {
   if (mesh.faces.empty()) return 0;
-  // From a place of the surface: far from the origin little would be left of the sum's digits.
+  // Relative to a vertex of the surface: far from the origin the sum would lose precision.
   const Vector from = mesh.places[static_cast<std::size_t>(mesh.faces[0][0])];
   double sum = 0;
   for (const auto& face : mesh.faces) {

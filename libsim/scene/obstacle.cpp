@@ -36,7 +36,7 @@ Vector turned(const Quaternion& q, const Vector& v) {
 }
 Quaternion back(const Quaternion& q) { return {-q[0], -q[1], -q[2], q[3]}; }
 
-/// How far the shape reaches from its centre along each axis of the world.
+/// Extent of the shape from its centre along each axis of the world.
 Vector reach(const Obstacle& o, const Pose& pose) {
   const Vector half = half_sides_m(o);
   Vector out{o.radius_m, o.radius_m, o.radius_m};
@@ -53,7 +53,7 @@ bool in_tank(const Mesh& mesh, const Pose& pose, const Vector& tank_size_m) {
   return std::all_of(mesh.places_m().begin(), mesh.places_m().end(), [&](const Vector& own) {
     const Vector at = in_world(pose, own);
     const bool low = at[0] < -1e-9 || at[1] < -1e-9 || at[2] < -1e-9;
-    return !low && at[0] <= tank_size_m[0] + 1e-9 && at[2] <= tank_size_m[2] + 1e-9;  // open above
+    return !low && at[0] <= tank_size_m[0] + 1e-9 && at[2] <= tank_size_m[2] + 1e-9;  // open at the top
   });
 }
 bool in_tank(const Obstacle& o, const Pose& pose, const Vector& tank_size_m) {
@@ -61,7 +61,7 @@ bool in_tank(const Obstacle& o, const Pose& pose, const Vector& tank_size_m) {
   const Vector far = reach(o, pose);
   for (std::size_t a = 0; a < 3; ++a) {
     if (pose.centre_m[a] - far[a] < -1e-9) return false;
-    if (a != 1 && pose.centre_m[a] + far[a] > tank_size_m[a] + 1e-9) return false;  // open above
+    if (a != 1 && pose.centre_m[a] + far[a] > tank_size_m[a] + 1e-9) return false;  // open at the top
   }
   return true;
 }
@@ -141,7 +141,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
   return out;
 }
 
-/// The last obstacle against those before it.
+/// Checks the last obstacle against the earlier ones.
 void check_apart(const base::TomlTable& table, const std::vector<Obstacle>& obstacles) {
   const Obstacle& last = obstacles.back();
   for (std::size_t k = 0; k + 1 < obstacles.size(); ++k) {
@@ -232,7 +232,7 @@ Vector inertia_m2(const Obstacle& o) {
     const auto [x, y, z] = o.size_m;
     return {(y * y + z * z) / 12, (x * x + z * z) / 12, (x * x + y * y) / 12};
   }
-  // A cylinder and two halves of a ball, whose middles lie 3/8 r beyond its ends.
+  // A cylinder and two hemispheres, whose centroids are 3/8 r beyond its ends.
   const double l = o.length_m;
   const double ball = 4 * o.radius_m / (4 * o.radius_m + 3 * l);
   const double across =

@@ -13,8 +13,8 @@ class TomlTable;
 
 namespace sim {
 
-/// A rectangle in which a wall is not there. Water that passes the wall's plane in it leaves the simulation
-/// at the end of that frame. While the water settles it is shut.
+/// A rectangle in which a wall is open. Water that passes the wall's plane in it leaves the simulation at the
+/// end of that frame. Outlets are closed while the water settles.
 struct Outlet {
   Wall wall = Wall::Floor;
   std::array<double, 2> min_m{}, max_m{};  ///< corners along axes_of(wall); each side at least 1 mm
@@ -24,8 +24,8 @@ inline constexpr std::size_t most_outlets = 4;
 
 /// The tables [[outlet]] of a scene file: wall = "x_low", "x_high", "z_low", "z_high" or "y_low", and min_m
 /// and max_m, two numbers each, such as y and z of x_low. Errors are base::Error: unknown key, another wall,
-/// no area, a rectangle that reaches beyond the wall, more than most_outlets.
-/// origin_m: Scene::origin_m, which the rectangles then count from.
+/// no area, a rectangle that exceeds the wall, more than most_outlets. origin_m: Scene::origin_m, subtracted
+/// from the rectangles.
 std::vector<Outlet> read_outlets(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
                                  const std::array<double, 3>& origin_m);
 

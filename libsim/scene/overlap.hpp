@@ -1,16 +1,15 @@
 #pragma once
-/// Obstacles that begin inside each other.
+/// Obstacles that overlap at the start.
 
 #include "libsim/scene/obstacle.hpp"
 
 namespace sim {
 
-/// How deep the one lies in the other where they begin, m; <= 0: apart. Looked at along the edges of the
-/// boxes round which shapes lie and at the places of meshes, so that a mesh whose places are far apart may
-/// hide some.
+/// Depth of the overlap at the start, m; <= 0: separate. Tested along the edges of the shapes' inner boxes
+/// and at the vertices of meshes, so that overlaps between distant vertices of a mesh may be missed.
 double overlap_m(const Obstacle& one, const Obstacle& other);
 
-/// Touching is no overlap, and neither is what numbers of a file round to.
+/// Smaller overlaps are touching or rounding of the file's numbers, and not errors.
 inline constexpr double least_overlap_m = 1e-5;
 
 }  // namespace sim

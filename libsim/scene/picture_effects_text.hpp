@@ -1,5 +1,5 @@
 #pragma once
-/// Effects of the picture as text, for bakes and records.
+/// Picture effects as text, for bakes and records.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace sim {
 
-/// The tables that read_picture_effects() reads back as the same; of those that are not dropped.
+/// Writes tables that read_picture_effects() reads back as the same effects; omits dropped effects.
 std::string format_picture_effects(const std::vector<PictureEffect>& effects);
-/// The same as "shadows strength = 1; caustics strength = 0.5".
+/// The same in the form "shadows strength = 1; caustics strength = 0.5".
 std::string picture_effects_in_words(const std::vector<PictureEffect>& effects);
 
 }  // namespace sim

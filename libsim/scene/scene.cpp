@@ -13,7 +13,7 @@ namespace sim {
 namespace {
 
 constexpr int newest_format = 2;
-// A double resolves 1e-10 m there.
+// A double resolves 1e-10 m at this distance.
 constexpr double farthest_origin_m = 1e6;
 constexpr double hottest_k = 1e4;
 
@@ -22,7 +22,7 @@ Vec3d vector(const base::TomlTable& table, const char* key, base::Range range) {
   return {v[0], v[1], v[2]};
 }
 
-/// A place as the file has it, in the world, as one from the tank's low corner.
+/// Converts a position in the file's world to one relative to the tank's low corner.
 Vec3d place(const base::TomlTable& table, const char* key, const Vec3d& origin_m) {
   const auto [least, most] = std::minmax_element(origin_m.begin(), origin_m.end());
   Vec3d out = vector(table, key, {*least - farthest_m, *most + farthest_m});
@@ -47,7 +47,7 @@ Camera camera(const base::TomlTable& table, const Vec3d& origin_m) {
   return out;
 }
 
-/// The same view from three times as far.
+/// The same view from three times the distance.
 Camera overview_of(const Camera& view) {
   Camera out = view;
   for (std::size_t k = 0; k < 3; ++k)
@@ -62,7 +62,7 @@ void read_water(const base::TomlTable& table, Scene& scene) {
     if (!(scene.fill_max_m[k] - scene.fill_min_m[k] >= 1e-3)) {
       table.fail("max_m", "leaves no room for water", "make each entry at least 1 mm larger than in min_m");
     }
-    const bool above = k == 1;  // the tank is open above
+    const bool above = k == 1;  // the tank is open at the top
     if (scene.fill_min_m[k] < -1e-9 || (!above && scene.fill_max_m[k] > scene.tank_size_m[k] + 1e-9)) {
       table.fail("max_m", "reaches outside the tank", "keep the block within tank.size_m from tank.origin_m");
     }
@@ -72,7 +72,7 @@ void read_water(const base::TomlTable& table, Scene& scene) {
   if (table.has("viscosity_m2_s")) scene.viscosity_m2_s = table.number("viscosity_m2_s", {0, 1e3});
 }
 
-/// The mouth must lie within the walls, below the drawn rim and above the floor.
+/// The mouth must be within the walls, below the drawn rim and above the floor.
 void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene& scene) {
   for (const std::size_t k : {0u, 2u}) {
     const double at = nozzle.position_m[k];
@@ -92,7 +92,7 @@ void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene
     table.fail("position_m", "lies below the floor or above the tank", "choose a height within tank.size_m");
 }
 
-/// Only where heat is listed: without it nothing keeps a temperature.
+/// Only with the effect heat: without it no particle has a temperature.
 double temperature(const base::TomlTable& table, const Scene& scene) {
   const double out = table.number("temperature_k", {1, hottest_k});
   if (!lists_heat(scene))
@@ -124,7 +124,7 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
                        "use at most half of the tank's width");
 }
 
-/// min_m and max_m of a table.
+/// Reads min_m and max_m of a table.
 template <class Box>
 void read_box(const base::TomlTable& table, const Vec3d& origin_m, Box& box) {
   box.min_m = place(table, "min_m", origin_m);
@@ -219,7 +219,7 @@ Scene read_scene(const std::filesystem::path& path) {
   const auto found = base::find_input(path);
   const std::string text = base::read_file(found, most_scene_bytes);
   Scene out = parse_scene(text, found.string(), found.parent_path());
-  // Who changes a mesh's file has another scene.
+  // A changed mesh file makes a different scene.
   out.sha256 = base::sha256_hex(with_meshes(text, found));
   return out;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// A scene as its file describes it: tank, water, time step, views, gaze. SI units; y points up; gravity acts
+/// The contents of a scene file: tank, water, time step, views, gaze. SI units; y points up; gravity acts
 /// along -y.
 
 #include <array>
@@ -30,13 +30,13 @@ struct Camera {
   double far_m = 200;
 };
 
-/// From `frame` on the gaze rests on `point_m`; it jumps there in 2 frames.
+/// From `frame` on the gaze stays on `point_m`; it jumps there in 2 frames.
 struct GazeKey {
   int frame = 0;
   Vec3d point_m{};
 };
 
-/// What must stay in the participant's picture, as the box that holds it; each side at least 1 mm.
+/// A box that must stay in the participant's picture; each side at least 1 mm.
 struct VisibleBox {
   std::string name;  ///< 1 to 64 characters, such as "the falling jet"
   Vec3d min_m{}, max_m{};
@@ -44,53 +44,54 @@ struct VisibleBox {
 
 struct Scene {
   std::string name;
-  /// Where the file's world has the tank's low corner. All places in this struct, and all that a simulation
-  /// takes and gives, count from that corner, so that floats are as fine for a tank far out; place in the
-  /// world = origin_m + place.
+  /// The tank's low corner in the file's world. All positions in this struct, and all that a simulation takes
+  /// and returns, are relative to that corner, so that floats are equally precise for a distant tank; world
+  /// position = origin_m + position.
   Vec3d origin_m{};
-  /// Inner size of the tank; glass walls and floor, open above (y is the walls' drawn height
-  /// only).
+  /// Inner size of the tank; glass walls and floor, open at the top (y is only the drawn height of the
+  /// walls).
   Vec3d tank_size_m{};
   /// Box that is filled with water before frame 0.
   Vec3d fill_min_m{};
   Vec3d fill_max_m{};
   double gravity_m_s2 = 9.81;
-  std::optional<CentralForce> central_force;   ///< beside gravity
-  std::vector<Effect> effects;                 ///< each kind once; a coefficient of 0 is listed and dropped
-  std::vector<PictureEffect> picture_effects;  ///< each kind once; the solver does not read them
-  std::vector<WarmBox> warm;                   ///< with the effect heat only
+  std::optional<CentralForce> central_force;   ///< in addition to gravity
+  std::vector<Effect> effects;                 ///< each kind once; includes dropped effects (coefficient 0)
+  std::vector<PictureEffect> picture_effects;  ///< each kind once; the solver ignores them
+  std::vector<WarmBox> warm;                   ///< only with the effect heat
   double frame_dt_s = 1.0 / 60;
-  /// Reference speed for the number of substeps (the rule stands at its key in data/scenes).
+  /// Reference speed for the number of substeps (the rule is documented at its key in data/scenes).
   double v_ref_m_s = 0;
-  /// True: walls close round the block until it has settled.
+  /// True: walls enclose the water block until it has settled.
   bool gate = false;
   int settle_frames = 0;
   int solver_iterations = 4;
   int min_substeps = 2;
-  /// Way of the fastest particle in a substep at most, as a share of the finest h.
+  /// Maximum distance of the fastest particle per substep, as a share of the finest h.
   double courant = 0.5;
-  /// Kinematic viscosity of the water; < 0 = by the particles' size (viscosity_of in libsim/scene/fill.hpp).
+  /// Kinematic viscosity of the water; < 0 = from the particles' size (viscosity_of in
+  /// libsim/scene/fill.hpp).
   double viscosity_m2_s = -1;
   std::vector<int> checkpoints;
   std::vector<GazeKey> gaze;
   std::vector<VisibleBox> visible;
   std::vector<Nozzle> nozzles;
   std::vector<Outlet> outlets;      ///< at most most_outlets
-  std::vector<Obstacle> obstacles;  ///< at most most_obstacles; water of the start inside them is left out
-  /// Nozzles pour what lies lowest in the four corner columns of this edge; 0 without nozzles.
+  std::vector<Obstacle> obstacles;  ///< at most most_obstacles; initial water inside them is removed
+  /// Edge of the four corner columns from which nozzles take the lowest water; 0 without nozzles.
   double recirculation_corner_m = 0;
   Camera view;         ///< the participant's
   Camera overview;     ///< for figures
-  std::string sha256;  ///< of the file's text, or of scene_text() where it names files of meshes
+  std::string sha256;  ///< of the file's text, or of scene_text() if it names mesh files
 };
 
 /// Formats 1 and 2, which has [[effect]] and [[obstacle]]. Errors are base::Error at file:line:column:
-/// unknown key, wrong type, out of range, water, nozzle or outlet outside the tank, effects that do not go
-/// together. beside: the folder that files of meshes count from, if the text has one.
+/// unknown key, wrong type, out of range, water, nozzle or outlet outside the tank, effects that are
+/// incompatible. beside: the folder to which mesh files are relative, if the text has one.
 Scene parse_scene(std::string_view text, const std::string& name,
                   const std::optional<std::filesystem::path>& beside = {});
 Scene read_scene(const std::filesystem::path& path);
-/// The file's text as it stands alone: with the triangles of its meshes in it. Scene::sha256 is its hash.
+/// The file's text in self-contained form, including the triangles of its meshes. Scene::sha256 is its hash.
 std::string scene_text(const std::filesystem::path& path);
 
 }  // namespace sim

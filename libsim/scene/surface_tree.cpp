@@ -21,7 +21,7 @@ double angle(const Vector& a, const Vector& b) {
   return std::acos(std::clamp(dot(unit(a), unit(b)), -1.0, 1.0));
 }
 
-/// Square of the distance from a box.
+/// Squared distance from a box.
 double away2(const Vector& low, const Vector& high, const Vector& p) {
   double out = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -31,10 +31,10 @@ double away2(const Vector& low, const Vector& high, const Vector& p) {
   return out;
 }
 
-/// The nearest point of a triangle, and what of it that belongs to.
+/// The nearest point of a triangle, and the edge or corner that contains it.
 struct Nearest {
   Vector at;
-  int edge = -1, corner = -1;  ///< neither: the face
+  int edge = -1, corner = -1;  ///< both -1: inside the face
 };
 Nearest nearest_on_edge(const std::array<Vector, 3>& corners, int k, const Vector& p) {
   const auto from = static_cast<std::size_t>(k), to = static_cast<std::size_t>((k + 1) % 3);

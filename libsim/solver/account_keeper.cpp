@@ -8,16 +8,16 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Each lane looks at every so many'th particle, so that neighbours in a warp read neighbours in memory; a
-/// team's lanes are summed first, since all sums meet in one place.
+/// Each lane reads particles at a fixed stride, so that adjacent lanes of a warp read adjacent memory. A
+/// team's lanes are summed first, because all teams add to the same sums.
 struct Gather {
   const Vec4* velocity;
   const float* density;
   const std::uint8_t* level;
-  const std::uint8_t* active;  ///< nullptr when everyone was solved
+  const std::uint8_t* active;  ///< nullptr if all were solved
   const int* id;
   int n, teams;
-  int half;  ///< the frame's end, see TroubleKey
+  int half;  ///< index of the frame's end, see TroubleKey
   Extremes* out;
 #ifdef SIM_CUDA
   static constexpr int particles_a_team = 128;
@@ -72,12 +72,12 @@ struct FastestBody {
   }
 };
 
-/// Index `level` counts one level between its two borders, which halving finds; the first also takes the
-/// rest.
+/// Index `level` counts one level as the distance between its two borders, found by bisection; index 0 also
+/// copies the other values.
 struct Tally {
   const Guards* guards;
   const NeighbourList::Need* lists;
-  /// The last of the inclusive sums of who was solved, before some left; nullptr when everyone was.
+  /// Last inclusive sum of the solved particles, before some left; nullptr if all were solved.
   const int* active;
   const std::uint8_t* level_of;
   int n;
@@ -85,7 +85,7 @@ struct Tally {
   FrameTally* out;
 
   SIM_FN void operator()(int level) const {
-    if (level >= LevelSupports::most) return;  // never: for compilers that look for it
+    if (level >= LevelSupports::most) return;  // never true: silences compiler warnings
     out->by_level[level] = first_of(level + 1) - first_of(level);
     if (level > 0) return;
     out->guards = *guards;
@@ -111,7 +111,7 @@ struct Tally {
   }
 };
 
-/// Costs a read-back: for the one frame of a run that has trouble first.
+/// Costs a read-back: only for the first frame of a run that has trouble.
 std::optional<Vec3d> place_of(const Particles& particles, int id) {
   const std::vector<int> ids = particles.all().id.to_host();
   const auto found = std::find(ids.begin(), ids.end(), id);

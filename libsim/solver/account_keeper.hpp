@@ -1,6 +1,6 @@
 #pragma once
-/// The account of each frame (sim::FrameAccount): what the host knows already, and the few numbers that stand
-/// in the back end's memory, brought over in one copy.
+/// The account of each frame (sim::FrameAccount): values that the host already has, and a few numbers from
+/// the back end's memory, read in one copy.
 
 #include <bit>
 
@@ -9,17 +9,18 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What is gathered over the particles.
+/// Reductions over the particles.
 struct Extremes {
-  int fastest_bits;        ///< of the largest speed as a float, m/s: the order of floats >= 0
-  std::uint64_t excess;    ///< max(rho / rho_0 - 1, 0) of the solved particles, times mass, as the last
-                           ///< projection met it; in excess_unit
-  std::uint64_t mass;      ///< of these, in m_*
+  int fastest_bits;  ///< bit pattern of the largest speed as a float, m/s: orders like the float for values
+                     ///< >= 0
+  std::uint64_t excess;    ///< max(rho / rho_0 - 1, 0) of the solved particles in the last projection, times
+                           ///< mass; in excess_unit
+  std::uint64_t mass;      ///< mass of the solved particles, in m_*
   std::uint64_t troubled;  ///< particles that are not finite or too dense
-  std::uint64_t first;     ///< of them, as a TroubleKey; 0 = none
+  std::uint64_t first;     ///< the first troubled particle, as a TroubleKey; 0 = none
 
   static constexpr float excess_unit = 1.0f / (1 << 20);
-  /// Mean over the water.
+  /// Mean excess over the solved water.
   double compression() const {
     return mass ? static_cast<double>(excess_unit) * static_cast<double>(excess) / static_cast<double>(mass)
                 : 0;
@@ -27,30 +28,30 @@ struct Extremes {
   float fastest() const { return std::bit_cast<float>(fastest_bits); }
 };
 
-/// What is brought over.
+/// The data copied to the host.
 struct FrameTally {
   Guards guards;              ///< since the run began
   NeighbourList::Need lists;  ///< of the last substep
-  int active;                 ///< particles that the frame solved
+  int active;                 ///< particles solved in the frame
   Extremes extremes;
-  int by_level[LevelSupports::most];  ///< particles
+  int by_level[LevelSupports::most];  ///< particle counts
 };
 
-/// What the guards met since the run began.
+/// Guard counts since the run began.
 GuardCounts guard_counts(const Guards& met, const FluidState& state);
 
 class AccountKeeper {
  public:
-  /// Who is there before the first frame; levels that particles can have: finest .. coarsest.
+  /// Starts the account with the particles before the first frame; their levels lie in finest .. coarsest.
   void begin(const std::vector<ParticleState>& start, int finest_level, int coarsest_level);
-  /// After run_frame, which leaves the particles in the grid's order: level by level. `went_by`: temporal
-  /// acceleration, whose number of active particles is filled in; none where the method has none. `frame`:
-  /// Simulation::frame() after it.
+  /// Call after run_frame, which leaves the particles in the grid's order: level by level. `went_by`: the
+  /// report of temporal acceleration, in which the number of active particles is filled in; none if the
+  /// method has none. `frame`: Simulation::frame() after this frame.
   FrameTally take(const FluidState& state, std::optional<TemporalReport> went_by, int frame);
   const FrameAccount& account() const { return account_; }
-  /// What take() has found since begin().
+  /// The first trouble that take() has found since begin(), if any.
   const std::optional<Divergence>& divergence() const { return divergence_; }
-  /// What outlives a frame (libsim/solver/state_archive.hpp).
+  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(finest_level_, coarsest_level_, account_.particles_by_level, account_.temporal, account_.guards,
@@ -60,10 +61,10 @@ class AccountKeeper {
  private:
   int finest_level_ = 0, coarsest_level_ = 0;
   FrameAccount account_;
-  /// Adds what a frame met, and says who was the first of the run.
+  /// Adds the frame's trouble counts, and records the first troubled particle of the run.
   void look_for_trouble(const FluidState& state, const FrameTally& tally, int frame);
 
-  GuardCounts met_;  ///< up to the last frame
+  GuardCounts met_;  ///< counts up to the last frame
   std::optional<Divergence> divergence_;
   Array<FrameTally> tally_;
   Array<Extremes> extremes_;

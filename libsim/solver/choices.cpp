@@ -1,4 +1,4 @@
-/// What scene, method and readings mean for each part of the solver.
+/// Derives the settings of each part of the solver from scene, method and readings.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace sim::SIM_BACKEND {
 
 namespace {
-constexpr int most_computed = 1000;  ///< substeps a frame
+constexpr int most_computed = 1000;  ///< substeps per frame
 }
 
 double frame_dt_of(const Scene& scene, const SimulationOptions& options) {
@@ -30,7 +30,7 @@ CentralPull pull_of(const CentralForce& force) {
           vector(force.axis)};
 }
 
-/// The farthest that nozzles and particles are from the axis of the central force, m; 0 without one.
+/// Largest distance of nozzles and particles from the axis of the central force, m; 0 without one.
 double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
   if (!scene.central_force) return 0;
   double out = 0;
@@ -46,15 +46,15 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
 }
 
 /// Shear, 1/s, below which a pool of one level resists by more than a quarter beyond its viscosity: 0.1 g h /
-/// nu, half of its height below the surface. The lattice of its particles carries a stress that grows with
-/// the pressure (docs/truth.md). 0 without the effect or gravity.
+/// nu, at half of its depth h. The lattice of its particles carries a stress that increases with the pressure
+/// (docs/truth.md). 0 without the effect or gravity.
 double least_shear(const Scene& scene) {
   const auto nu = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
   const double height = scene.fill_max_m[1] - scene.fill_min_m[1];
   return nu > 0 ? 0.1 * scene.gravity_m_s2 * height / 2 / nu : 0;
 }
 
-/// A line for each effect that acts on finer levels alone than any water here has.
+/// One line for each effect whose coarsest level is finer than all water.
 std::string idle_in_words(const std::vector<Effect>& effects, int finest_level) {
   const EffectCoefficients all = coefficients_of(effects);
   std::string out;

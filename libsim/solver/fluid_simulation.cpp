@@ -28,7 +28,7 @@ class FluidSimulation final : public Simulation {
         resolution_(resolution_of(scene, options.method, options.n_star)),
         tolerance_(options.temporal.model, options.temporal.fixed_tau, options.temporal.fixed_rate),
         frame_(options.start_frame),
-        // A start may be anything; what lies in the middle of a run goes on as it was.
+        // A start at frame 0 may be compressed; a start in the middle of a run continues as it was.
         compression_(options.start_frame == 0 ? 1 : 0) {
     if (options.levels < 1 || options.levels > most_levels) {
       throw base::Error(
@@ -69,7 +69,7 @@ class FluidSimulation final : public Simulation {
   }
 
   bool look(const Looks& looks) override {
-    // GL has drawn: what the coming frame is drawn from changes hands now, not in a turn of its own.
+    // GL has finished drawing: map the coming frame's buffers now, to avoid a separate switch of ownership.
     gl_.map_again();
     if (!follows_gaze()) return true;
     SaliencyInput& input = state_.saliency.input;
@@ -99,7 +99,7 @@ class FluidSimulation final : public Simulation {
     const FrameTally tally = keeper_.take(state_, went_by(), frame_ + 1);
     substeps_.frame_ended(static_cast<double>(tally.extremes.fastest()));
     compression_.frame_ended(tally.extremes.compression());
-    // Longer lists lie elsewhere: what they held is gone.
+    // Growing the lists moves them: their contents are lost.
     if (state_.neighbours.grow(tally.lists)) state_.lists_hold = false;
     state_.levels.turns.end_frame();
     ++frame_;
@@ -289,7 +289,7 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  /// What temporal acceleration went by in the frame just run, of which frame_time has not been told yet.
+  /// Inputs of temporal acceleration in the last frame, before its frame_time is reported.
   std::optional<TemporalReport> went_by() const {
     if (!state_.particles.has(Column::Active)) return {};
     return TemporalReport{tolerance_.tau(), tolerance_.rate(), tolerance_.beta(), 0};
@@ -300,7 +300,7 @@ class FluidSimulation final : public Simulation {
     return state_.one_level ? "level " + std::to_string(resolution_.level) : "mixed levels";
   }
 
-  /// Methods that split have room for 8 n_* particles, which all of their water makes at level 0.
+  /// Methods that split have capacity for 8 n_* particles, the number if all water is at level 0.
   int capacity_for(std::size_t start) const {
     const std::int64_t room =
         options_.particle_capacity > 0 ? options_.particle_capacity : 8 * options_.n_star;
@@ -327,7 +327,7 @@ class FluidSimulation final : public Simulation {
     if (adaptive()) state_.levels.begin(NewLevelsView(state_.particles));
   }
 
-  /// Columns, walls and jets for n particles of the levels that there can be.
+  /// Allocates columns, and sets up walls and jets, for n particles of the possible levels.
   void lay_out(int n, int capacity) {
     schedule_ = compile_schedule(demand_of(scene_, options_, state_.parameters));
     state_.particles.allocate(schedule_.columns, n, capacity);
@@ -385,7 +385,7 @@ class FluidSimulation final : public Simulation {
   GlSharing gl_{GlSharing::Access::Overwrite}, foam_gl_{GlSharing::Access::Overwrite};
   int frame_;
   TwoFramesAgo<double> compression_;           ///< mean of max(rho / rho_0 - 1, 0)
-  int finest_level_ = 0, coarsest_level_ = 0;  ///< that particles can have
+  int finest_level_ = 0, coarsest_level_ = 0;  ///< possible levels of particles
   AccountKeeper keeper_;
 };
 

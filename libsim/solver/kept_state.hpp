@@ -1,5 +1,5 @@
 #pragma once
-/// What of a fluid outlives a frame, for a file of its state.
+/// The state of a fluid that lasts beyond a frame, for state files.
 
 #include "libsim/solver/stages/fluid_state.hpp"
 #include "libsim/solver/state_archive.hpp"
@@ -20,8 +20,9 @@ void keep_activation(Archive& archive, Activation& a) {
   archive(a.columns_set, a.all_marked, a.grid, a.near, a.range, a.slots, a.slot_of);
 }
 
-/// The particles in their order, each method's memory, and the neighbours that the next frame begins with.
-/// `state` has its particles' number, columns and walls. What is rebuilt in each frame is left out.
+/// Archives the particles in their order, each method's memory, and the neighbours with which the next frame
+/// begins. `state` already has its particle count, columns and walls. State that each frame rebuilds is left
+/// out.
 template <class Archive>
 void keep_fluid(Archive& archive, FluidState& state) {
   archive(state.mass_units, state.drained, state.guards, state.parameters.iterations,
@@ -35,11 +36,11 @@ void keep_fluid(Archive& archive, FluidState& state) {
           state.saliency.frames_since);
   keep_activation(archive, state.activation);
   if (state.foam.capacity() > 0) archive(state.foam);
-  // Where the last substep left them: a frame begins there.
+  // Positions at the end of the last substep: a frame begins there.
   if (state.obstacles.there()) archive(state.obstacles.bodies);
   if (state.obstacles.free.size() > 0) archive(state.obstacles.free);
   if (state.obstacles.meet()) archive(state.obstacles.by_others);
-  // Only methods with levels look at neighbours before anything moves.
+  // Only methods with levels use neighbours before particles move.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
   state.neighbours.keep(archive, with_lists);
   if constexpr (Archive::reads) state.lists_hold = with_lists;

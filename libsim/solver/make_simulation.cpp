@@ -5,11 +5,11 @@
 
 namespace sim {
 
-// Each back end is a namespace of its own, compiled from one text (libsim/exec/space.hpp).
+// Each back end is a separate namespace, compiled from the same source (libsim/exec/space.hpp).
 namespace cpu {
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
 int substeps_needed(const Scene& scene, const SimulationOptions& options);
-}
+}  // namespace cpu
 #ifdef SIM_HAS_CUDA
 namespace cuda {
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
@@ -27,7 +27,7 @@ std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const Simulation
 }
 }  // namespace
 
-// Both back ends have the same rule.
+// Both back ends use the same rule.
 int least_substeps(const Scene& scene, const SimulationOptions& options) {
   return cpu::substeps_needed(scene, options);
 }
@@ -45,7 +45,8 @@ std::unique_ptr<Simulation> make_simulation(const Scene& scene, const Simulation
     rested.start = make_on_backend(scene, options)->read_state();
     if (!key.empty()) write_settled(options.cache, key, *rested.start);
   }
-  // Kept or settled just now, a run begins with its particles in one order, so that its files are the same.
+  // With a cached or a new settled state alike, a run starts with its particles in the same order, so that
+  // its files are identical.
   return make_on_backend(scene, rested);
 }
 

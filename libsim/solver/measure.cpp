@@ -54,7 +54,7 @@ using MeasuringView =
     ColumnView<ColumnSet{}, columns(Column::Position, Column::Velocity, Column::Id, Column::Level,
                                     Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density)>;
 
-/// The same fluid with particles, lists and guards of its own.
+/// A copy of the fluid with its own particles, lists and guards.
 FluidState copy_of(const FluidState& live) {
   FluidState out;
   out.parameters = live.parameters;

@@ -14,7 +14,7 @@ Vec3d vector(Vec3 v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-/// m_*, kg.
+/// Value of m_*, kg.
 double mass_unit(const FluidState& state) {
   const auto edge = static_cast<double>(state.finest_support) / 2;
   return static_cast<double>(state.parameters.rest_density) * edge * edge * edge;
@@ -43,7 +43,7 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
                                   mass_unit(state));
   const auto moment = [&](std::size_t k) { return static_cast<float>(mass * moments[k]); };
   out.inertia = {moment(0), moment(1), moment(2)};
-  // It begins at rest, as if its weight had been borne.
+  // It starts at rest, with its weight supported.
   out.force = {0, out.mass * state.parameters.gravity, 0};
   out.force_left = -1.0f * out.force;
   return out;
@@ -53,7 +53,7 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
 
 void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool told) {
   auto& o = state.obstacles;
-  // A substep takes a particle no farther than the finest spacing.
+  // A substep moves a particle at most by the finest spacing.
   const auto least = static_cast<double>(state.finest_support);
   for (const Obstacle& obstacle : scene.obstacles) {
     if (thickness_m(obstacle) >= least) continue;

@@ -17,7 +17,7 @@ struct PackForDrawing {
   }
 };
 
-/// What it still holds of its volume in the last quarter of a mean life shows.
+/// In the last quarter of a mean lifetime the radius shrinks with the remaining volume.
 struct PackFoam {
   const Vec4* place;
   float radius, fades_s;

@@ -28,7 +28,7 @@ std::vector<Stage>& phase_of(Schedule& schedule, Phase phase) {
   return schedule.frame_end;
 }
 
-/// In the order of a frame.
+/// The phases in the order of a frame.
 template <class AnySchedule>
 auto phases_of(AnySchedule& s) {
   return std::array{&s.frame_start, &s.substep, &s.iteration, &s.substep_end, &s.frame_end};
@@ -68,7 +68,7 @@ void check_reads(const std::vector<Stage>& passes, ColumnSet& written) {
   }
 }
 
-/// May `later` run before this pass? Neither writes what the other touches.
+/// True if `later` may run before this pass: neither writes what the other accesses.
 bool may_pass(const Stage& later, const Stage& pass) {
   return !pass.writes.meets(later.reads | later.writes) && !later.writes.meets(pass.reads);
 }
@@ -89,7 +89,7 @@ std::optional<Sharing> next_to_share(const std::vector<Stage>& passes, const std
   return {};
 }
 
-/// Where two passes can walk over the neighbours together, the later one joins the earlier one.
+/// If two passes can share a loop over neighbours, the later one joins the earlier one.
 void share_loops(std::vector<Stage>& passes, const std::vector<SharedLoop>& loops, std::string& explanation) {
   while (auto sharing = next_to_share(passes, loops)) {
     explanation += "  one loop     " + padded(sharing->stage.name, 20) + "instead of " +
@@ -137,7 +137,7 @@ Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages
   Schedule out;
   std::string absent;
   out.columns = columns(Column::Position, Column::Velocity, Column::Id, Column::Level);
-  // Set when a particle is made.
+  // Set when a particle is created.
   ColumnSet written = out.columns | columns(Column::Target, Column::History) | ruled_columns();
   for (const auto& stage : stages) {
     const std::string reason = reason_for(stage, demand);

@@ -1,6 +1,5 @@
 #pragma once
-/// From what is wanted to what runs: keeps only the stages that are called for, in their fixed order, and
-/// checks them.
+/// From demand to schedule: selects the required stages in their fixed order, and checks them.
 
 #include <string>
 #include <vector>
@@ -14,16 +13,16 @@ struct Schedule {
   std::vector<Stage> frame_start, substep, iteration, substep_end, frame_end;
   std::size_t passes = 0;   ///< of all phases together
   ColumnSet columns;        ///< union of what the passes read and write
-  std::string explanation;  ///< each pass with why it is there, each known stage with why it is not
+  std::string explanation;  ///< why each pass runs, and why each other known stage does not
 };
 
-/// Prunes, and reorders only where two passes of one phase share a loop: the later one then runs with the
-/// earlier one, if nothing between them touches what it writes or writes what it reads. A pass that reads a
-/// column nothing has written is an error (base::Error names both).
+/// Drops stages that are not required. The order changes only if two passes of one phase share a loop: the
+/// later one then runs with the earlier one, if nothing between them touches what it writes or writes what it
+/// reads. base::Error if a pass reads a column that no earlier pass has written; it names both.
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages(),
                           const std::vector<SharedLoop>& loops = shared_loops());
 
-/// The passes in their order, with what the clock last measured of each.
+/// The passes in their order, with their last measured times.
 std::vector<StageTime> stage_times(const Schedule& schedule, const PassClock& clock);
 
 /// One frame: the frame's start, substeps x (substep passes, iterations x iteration passes, closing passes),

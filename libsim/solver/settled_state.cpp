@@ -27,8 +27,8 @@ constexpr std::size_t most_bytes = std::size_t{32} * 8 * (4u << 20) + digest_siz
 constexpr std::chrono::hours forgotten_after{30 * 24};
 static_assert(std::is_trivially_copyable_v<ParticleState> && sizeof(ParticleState) == 32);
 
-/// A hash tells of damage, not of what was kept: numbers that are none, or other particles than a fill makes,
-/// are settled anew.
+/// A hash detects damage, but not a bad state: if numbers are not finite, or the particles are not those of a
+/// fill, the water is settled again.
 bool is_sound(const std::vector<ParticleState>& state) {
   int id = 0;
   return std::all_of(state.begin(), state.end(), [&](const ParticleState& p) {

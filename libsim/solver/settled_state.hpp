@@ -1,5 +1,5 @@
 #pragma once
-/// Settled states kept between runs: 120 frames of settling need not be computed anew by every program.
+/// Cache of settled states: programs need not recompute the 120 frames of settling.
 
 #include <filesystem>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace sim {
 
-/// $VIP_CACHE_DIR, else vip-lab in $XDG_CACHE_HOME or in ~/.cache; empty (keep nothing) when none is set or
+/// $VIP_CACHE_DIR, else vip-lab in $XDG_CACHE_HOME or in ~/.cache; empty (cache disabled) if none is set or
 /// VIP_CACHE_DIR is empty.
 std::filesystem::path default_cache_folder();
 
@@ -19,12 +19,12 @@ std::filesystem::path default_cache_folder();
 /// changed solver never reads an old state. Programs of one build share their states.
 std::string settled_key(const Scene& scene, const SimulationOptions& options);
 
-/// The state kept under `key`; nothing when there is none or it is damaged (checksum, or
-/// values that are not finite), which is no error.
+/// The state stored under `key`; none if it is missing or damaged (checksum, or values that are not finite),
+/// which is not an error.
 std::optional<std::vector<ParticleState>> read_settled(const std::filesystem::path& folder,
                                                        const std::string& key);
-/// Keeps a state by rename and forgets those that nobody read for 30 days. A folder that cannot be written is
-/// no error: the next run settles again.
+/// Stores a state by rename, and deletes states that were not read for 30 days. An unwritable folder is not
+/// an error: the next run settles again.
 void write_settled(const std::filesystem::path& folder, const std::string& key,
                    const std::vector<ParticleState>& state);
 

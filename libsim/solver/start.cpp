@@ -10,11 +10,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Mean compression of a start's mass. What is left becomes speed on the cells of the coarse pressure: at 1 %
-/// the surface of SingleDam at n_* = 32k had dents five frames later, and threw lumps up after fifteen.
+/// Accepted mean compression of a start. The remainder becomes speed on the cells of the coarse pressure: at
+/// 1 % the surface of SingleDam at n_* = 32k had dents five frames later, and ejected lumps after fifteen.
 constexpr double enough = 0.002;
 
-/// Weighted by mass: a mean over particles would let many fine ones outvote coarse water that is still
+/// Weighted by mass: in a mean over particles many fine ones would outweigh coarse water that is still
 /// compressed.
 struct Excess {
   const float* density;
@@ -151,7 +151,7 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
   jets.frame_dt_s = frame_dt_of(scene, options);
   jets.nozzles = scene.nozzles;
   for (Nozzle& nozzle : jets.nozzles) {
-    // A scene counts in frames of its own: a pulse is as long in a run whose frames are not.
+    // A scene counts its own frames: a pulse lasts equally long in a run with another frame time.
     const auto in_the_run = [&](int frames) {
       return static_cast<int>(std::lround(frames * scene.frame_dt_s / jets.frame_dt_s));
     };
@@ -169,8 +169,8 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
 
 namespace {
 
-/// Edge of the cells on which foam sees how water meets: the scene's length, but 1.5 spacings at least of the
-/// coarsest particles that a method may have at this n_*, and no more cells than there may be.
+/// Edge of the cells for foam's closing speeds: the scene's length, but at least 1.5 spacings of the coarsest
+/// particles that a method may have at this n_*, and at most the maximum number of cells.
 float foam_length(const FluidState& state, const EffectCoefficients& e, const Scene& scene) {
   double volume = 1;
   for (std::size_t k = 0; k < 3; ++k) volume *= scene.fill_max_m[k] - scene.fill_min_m[k];
@@ -190,7 +190,7 @@ void lay_foam_cells(FluidState& state, const Scene& scene) {
 void check_foam(const FluidState& state, const EffectCoefficients& e, const Scene& scene, double frame_dt_s) {
   const double diameter = static_cast<double>(e[EffectOption::FoamDiameter]);
   const Vec3d& tank = scene.tank_size_m;
-  // Approach and crest may both be at their full potential, in a tank full of water that is all surface.
+  // Approach and crest may both have their full potential, in a tank full of water that is all surface.
   const auto crest = static_cast<double>(e[EffectOption::FoamCrestWeight] * foam_length(state, e, scene) /
                                          state.supports.h[0]);
   const double most = (1 + 2 * crest) * static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] *
@@ -228,7 +228,7 @@ void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns) 
 }
 
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options) {
-  // Levels and activity wait until the water rests.
+  // Levels and activation are off until the water rests.
   Demand demand;
   demand.parameters = state.parameters;
   demand.settling = true;
@@ -247,7 +247,7 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
                       std::to_string(lost) + " times a particle was not finite or far outside the tank",
                       "use a longer or shorter time step, or other numbers of the solver");
   }
-  // What else was met on the way to rest is not part of the run.
+  // Other guard events while settling are not part of the run.
   state.guards.zero();
 }
 
@@ -275,7 +275,7 @@ void start_velocity_grid(FluidState& state) {
 RelaxedStart prepare_start(FluidState& state, int most) {
   const RelaxedStart out = relax_start(state, most);
   if (state.particles.has(Column::Active)) start_velocity_grid(state);
-  // What was met on the way is not part of the run.
+  // Guard events of this phase are not part of the run.
   state.guards.zero();
   return out;
 }

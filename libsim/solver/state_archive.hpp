@@ -1,6 +1,6 @@
 #pragma once
-/// Writes and reads what outlives a frame. A class that has some lists it once, in keep(archive): writing and
-/// reading cannot part ways.
+/// Writes and reads state that lasts beyond a frame. A class lists its state once, in keep(archive), so that
+/// writing and reading cannot diverge.
 
 #include <cstring>
 #include <optional>
@@ -57,7 +57,7 @@ class StateWriter {
   std::string out_;
 };
 
-/// Of bytes whose checksum was right. base::Error for what does not fit all the same.
+/// Reads bytes whose checksum was verified. base::Error if they still do not fit.
 class StateReader {
  public:
   static constexpr bool reads = true;
@@ -115,7 +115,7 @@ class StateReader {
   std::string_view left_;
 };
 
-/// The columns that are there, n values each.
+/// The allocated columns, n values each.
 template <class Archive>
 void keep_columns(Archive& archive, Particles& particles) {
   auto& columns = particles.all();

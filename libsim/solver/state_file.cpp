@@ -37,7 +37,7 @@ void add(std::ostream& text, const Readings& r) {
        << ' ' << r.calm_floor << ' ' << r.calm_viscosity << '\n';
 }
 
-/// A scene that no file describes has no hash: what shapes a run stands here too.
+/// A scene without a file has no hash: so everything that shapes a run is included here too.
 void add(std::ostream& text, const Scene& s) {
   text << s.sha256 << ' ' << s.gravity_m_s2 << ' ' << s.frame_dt_s << ' ' << s.v_ref_m_s << ' '
        << s.solver_iterations << ' ' << s.min_substeps << ' ' << s.courant << ' ' << s.viscosity_m2_s;

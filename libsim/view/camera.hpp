@@ -17,14 +17,14 @@ Mat4 multiply(const Mat4& a, const Mat4& b);
 Mat4 look_at(const Vec3d& eye_m, const Vec3d& target_m);
 /// Symmetric frustum; vertical field of view in (0, 180) degrees, aspect = width / height, 0 < near < far.
 Mat4 perspective(double vertical_fov_deg, double aspect, double near_m, double far_m);
-/// The frustum between slopes from straight ahead, right > left and up > down; 0 < near < far.
+/// The frustum between slopes relative to the viewing direction, right > left and up > down; 0 < near < far.
 Mat4 frustum(double left, double right, double down, double up, double near_m, double far_m);
-/// Eye to world: a place and a turn by a unit quaternion x, y, z, w.
+/// Eye to world: a position and a rotation by a unit quaternion x, y, z, w.
 Mat4 rigid_pose(const Vec3d& place_m, const std::array<double, 4>& turn);
-/// Inverse of a rotation and a translation (no scale).
+/// Inverse of a rotation and translation (no scale).
 Mat4 rigid_inverse(const Mat4& m);
 
-/// Where a view lies in its framebuffer, px; (0, 0) is the lower left corner.
+/// Position of a view in its framebuffer, px; (0, 0) is the lower left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
 };

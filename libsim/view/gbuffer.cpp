@@ -29,7 +29,7 @@ struct Header {
   Mat4 view, projection;
 };
 
-/// Takes the arrays out of the file one after the other.
+/// Extracts the arrays of the file one after the other.
 struct Reader {
   std::string_view rest;
   template <class T>

@@ -1,6 +1,5 @@
 #pragma once
-/// What the camera sees of the fluid, pixel by pixel, on the host. No GL: tests and the saliency feed stored
-/// ones.
+/// The camera's view of the fluid, per pixel, on the host. No GL: tests and the saliency can use stored ones.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,44 +12,45 @@
 
 namespace sim {
 
-/// All arrays hold width * height values, row by row from the bottom (as OpenGL counts). Depths are positive
-/// distances along the view direction in m, +infinity where there is no fluid.
+/// All arrays hold width * height values, row by row from the bottom (as in OpenGL). Depths are positive
+/// distances along the view direction in m, +infinity without fluid.
 struct GBuffer {
   static constexpr std::uint32_t no_particle = 0xffffffffu;
 
   int width = 0, height = 0;
   View view;  ///< camera of this picture
 
-  /// The radius that was splatted is this times the particle's own: with positive eye depth z, Eq. 8 reads
-  /// d_t = max(0, z_i - depth[p] - radius_scale * r_i).
+  /// Splatted radius divided by the particle's radius: with positive eye depth z, Eq. 8 reads d_t = max(0,
+  /// z_i - depth[p] - radius_scale * r_i).
   float radius_scale = 1;
 
   std::vector<float> depth;           ///< front of the splatted spheres, not smoothed (Eq. 8)
   std::vector<float> filtered_depth;  ///< after the narrow-range filter
-  /// 3 values a pixel: unit normal in eye space (x right, y up, z to the viewer); 0: no fluid. Rough in foam.
+  /// 3 values per pixel: unit normal in eye space (x right, y up, z to the viewer); 0: no fluid. Noisy in
+  /// foam.
   std::vector<float> normal;
   /// Sum of the chords of all spheres along the pixel's ray, m, not smoothed; water is this / packing.
   std::vector<float> thickness;
-  std::vector<std::uint32_t> front;  ///< index of the particle in front, or no_particle
-  std::vector<float> radius;         ///< that particle's own radius, m; 0 where there is no fluid
+  std::vector<std::uint32_t> front;  ///< index of the front particle, or no_particle
+  std::vector<float> radius;         ///< radius of the front particle, m; 0 without fluid
 };
 
-/// A picture that is still in the GL buffers it was drawn into (FluidRenderer::picture), until the renderer
-/// draws again. Only what saliency reads of a GBuffer.
+/// A picture that is still in the GL buffers into which it was drawn (FluidRenderer::picture), until the
+/// renderer draws again. Only the parts of a GBuffer that saliency reads.
 struct GlPicture {
   int width = 0, height = 0;
   View view;  ///< camera of this picture
   float radius_scale = 1;
-  GlBufferRef depth;   ///< a float a pixel: GBuffer::depth
-  GlBufferRef normal;  ///< four floats a pixel: GBuffer::normal and GBuffer::radius
+  GlBufferRef depth;   ///< one float per pixel: GBuffer::depth
+  GlBufferRef normal;  ///< four floats per pixel: GBuffer::normal and GBuffer::radius
 };
 
 /// A versioned binary file, written by rename; reading checks magic, version, size and that every array is
-/// whole (base::Error).
+/// complete (base::Error).
 void write_gbuffer(const std::filesystem::path& path, const GBuffer& gbuffer);
 GBuffer read_gbuffer(const std::filesystem::path& path);
 
-/// The same as part of another file, whose name stands in errors.
+/// The same as part of another file; errors name that file.
 std::string gbuffer_bytes(const GBuffer& gbuffer, const std::string& place);
 GBuffer gbuffer_of(std::string_view bytes, const std::string& place);
 

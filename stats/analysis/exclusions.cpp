@@ -11,7 +11,7 @@ namespace stats {
 
 namespace {
 
-/// All that one participant did on one visit.
+/// All records of one participant on one visit.
 struct Visit {
   std::vector<const TrialRecord*> trials, repeats;
   int catches = 0, correct = 0;
@@ -42,7 +42,7 @@ std::map<VisitKey, Visit> by_visit(std::span<const TrialRecord> trials,
   return visits;
 }
 
-/// Too few catch pages right; empty when the rule does not hold.
+/// The reason if too few catch pages were answered correctly; empty if the rule does not apply.
 std::string fails_catches(const Visit& visit, const ExclusionRules& rules) {
   if (!rules.min_catch_correct || visit.catches == 0) return {};
   if (visit.correct >= *rules.min_catch_correct * visit.catches) return {};
@@ -50,7 +50,7 @@ std::string fails_catches(const Visit& visit, const ExclusionRules& rules) {
          number_text(100 * *rules.min_catch_correct) + " %";
 }
 
-/// |repeat - original| for each repeated showing of which both were answered.
+/// |repeat - original| for each repeated showing with both answers.
 std::vector<double> repeat_differences(const Visit& visit) {
   std::vector<double> out;
   for (const TrialRecord* repeat : visit.repeats) {
@@ -103,7 +103,7 @@ std::string is_incomplete(const Visit& visit, const ExclusionRules& rules) {
          " %";
 }
 
-/// The first rule that leaves out the whole visit.
+/// The first rule that excludes the whole visit, and its reason.
 std::pair<std::string, std::string> visit_rule(const Visit& visit, const ExclusionRules& rules, bool pairs) {
   std::string reason = fails_catches(visit, rules);
   if (!reason.empty()) return {"catch", reason};
@@ -156,7 +156,7 @@ std::vector<Exclusion> find_exclusions(std::span<const TrialRecord> trials,
     exclude_trials(out, visit, rules);
     auto [rule, reason] = visit_rule(visit, rules, pairs);
     if (reason.empty()) continue;
-    int left = visit.answers;  // trials excluded one by one took theirs along
+    int left = visit.answers;  // without those of trials that were excluded singly
     for (const Exclusion& one : out) {
       if (one.participant == key.first && one.visit == key.second) left -= one.answers;
     }

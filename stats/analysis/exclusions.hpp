@@ -1,6 +1,6 @@
 #pragma once
-/// Exclusions by rules fixed beforehand. What comes in tells neither method nor scene nor n_*, so no rule can
-/// look at a contrast of interest.
+/// Exclusions by rules fixed beforehand. The rules see neither method, scene nor n_*, so they cannot depend
+/// on a contrast of interest.
 
 #include <limits>
 #include <span>
@@ -13,23 +13,23 @@ namespace stats {
 
 enum class TrialTiming { Unjudged, Pass, Degraded, Fail };
 
-/// One planned trial as the rules may see it.
+/// The part of a planned trial that the rules may use.
 struct TrialRecord {
   static constexpr double unanswered = std::numeric_limits<double>::quiet_NaN();
 
   std::string participant;
   int visit = 1;
   int position = 0;                            ///< 0-based
-  TrialTiming timing = TrialTiming::Unjudged;  ///< the worse of a pair's two
-  std::string timing_reason;                   ///< why it is not a pass
-  bool interrupted = false;                    ///< left out by the protocol's policy after an interruption
-  std::string by_experimenter;                 ///< the reason given; empty: not excluded by hand
+  TrialTiming timing = TrialTiming::Unjudged;  ///< for a pair, the worse of its two intervals
+  std::string timing_reason;                   ///< why the verdict is not Pass
+  bool interrupted = false;                    ///< excluded by the protocol's interruption policy
+  std::string by_experimenter;                 ///< the experimenter's reason; empty: not excluded by hand
   double answer = unanswered;                  ///< main rating, or 1 / 2 for the interval chosen
-  int answers = 0;                             ///< questions answered about it
-  int repeats = -1;                            ///< of a repeated showing: position of its original
+  int answers = 0;                             ///< questions answered in this trial
+  int repeats = -1;  ///< position of the original trial that this one repeats; -1: not a repeat
 };
 
-/// One catch page that was answered.
+/// One answered catch page.
 struct CatchRecord {
   std::string participant;
   int visit = 1;
@@ -42,20 +42,20 @@ struct Exclusion {
   int position = -1;   ///< of the trial; -1: the whole visit
   std::string rule;    ///< "experimenter", "interruption", "timing", "catch", "repeat", "straight_lining" or
                        ///< "incomplete"
-  std::string reason;  ///< with the figures that made it so
-  int answers = 0;     ///< answers that no longer count
+  std::string reason;  ///< in words, with the figures that triggered the rule
+  int answers = 0;     ///< number of answers excluded
 
   bool by_hand() const { return rule == "experimenter"; }
 };
 
 /// All exclusions, ordered by participant, visit and position, whole visits first. A trial or visit is listed
-/// once, under the first rule that holds in the order of Exclusion::rule. `pairs`: answers are intervals
-/// chosen, so that repeats are judged by agreement.
+/// once, under the first rule that holds in the order of Exclusion::rule. `pairs`: the answers are chosen
+/// intervals, so repeats are compared by agreement.
 std::vector<Exclusion> find_exclusions(std::span<const TrialRecord> trials,
                                        std::span<const CatchRecord> catches, const ExclusionRules& rules,
                                        bool pairs);
 
-/// Whether a list excludes this trial, by itself or with its visit.
+/// True if the list excludes this trial or its whole visit.
 bool is_excluded(std::span<const Exclusion> exclusions, const std::string& participant, int visit,
                  int position);
 

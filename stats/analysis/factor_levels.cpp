@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t most_count = std::numeric_limits<int>::max();
 
-/// Of the t test, or of the exact sign test in its place.
+/// p of the t test, or of the exact sign test in its place.
 std::optional<double> p_of(const Result<OneSampleTTest>& test, const std::optional<Unanimous>& all_alike,
                            double null) {
   if (test) return test->p;
@@ -37,7 +37,7 @@ LevelPreference prefer(std::span<const PairChoice> choices, std::span<const Fact
   LevelPreference out;
   out.a = a;
   out.b = b;
-  std::map<int, std::pair<int, int>> people;  // a chosen, answers
+  std::map<int, std::pair<int, int>> people;  // choices of a, answers
   for (const PairChoice& choice : choices) {
     const FactorPlace& first = places[static_cast<std::size_t>(choice.first)];
     const FactorPlace& second = places[static_cast<std::size_t>(choice.second)];
@@ -58,7 +58,7 @@ LevelPreference prefer(std::span<const PairChoice> choices, std::span<const Fact
   return out;
 }
 
-/// Over a common denominator where a count holds it.
+/// The sum over a common denominator, if an int can hold it.
 ExactMean sum_of(const ExactMean& x, const ExactMean& y) {
   const auto common = std::lcm(std::int64_t{x.count}, std::int64_t{y.count});
   if (common > most_count) return {x.value() + y.value(), 1};
@@ -66,7 +66,7 @@ ExactMean sum_of(const ExactMean& x, const ExactMean& y) {
   return {x.sum * (count / x.count) + y.sum * (count / y.count), count};
 }
 
-/// Each participant's sum over the treatments of a level; NaN where one of them was not judged.
+/// Each participant's sum over the treatments of a level; NaN if one of them was not judged.
 std::vector<ExactMean> sums_of(const ScoreTable& table, std::span<const FactorPlace> places, int n_star,
                                int level) {
   std::vector<ExactMean> out(static_cast<std::size_t>(table.participants()), ExactMean{0, 1});
@@ -79,7 +79,7 @@ std::vector<ExactMean> sums_of(const ScoreTable& table, std::span<const FactorPl
   return out;
 }
 
-/// Of each participant who judged all treatments of both levels: a - b, averaged over the other factors.
+/// a - b of each participant who judged all treatments of both levels, averaged over the other factors.
 Result<ExactDifferences> differences_of(const ScoreTable& table, std::span<const FactorPlace> places,
                                         int n_star, int a, int b) {
   const auto sums = exact_differences(sums_of(table, places, n_star, a), sums_of(table, places, n_star, b));

@@ -1,6 +1,6 @@
 #pragma once
-/// What a level of one factor is worth over another, the other factors alike: treatments that differ in that
-/// factor alone, pooled over the rest within each participant.
+/// Effects of one factor: compares two of its levels over treatments that differ in that factor alone, pooled
+/// over the other factors within each participant.
 
 #include <optional>
 #include <span>
@@ -15,29 +15,30 @@
 
 namespace stats {
 
-/// A treatment (what tables and choices call a method) as levels of one factor and of the others together.
+/// Place of a treatment (called a method in tables and choices) in a factorial design: its level of the
+/// factor, and the index of its combination of all other factors.
 struct FactorPlace {
   int level = 0, rest = 0;
 };
 
-/// Task 2: level a over level b, from pairs that differ in nothing else.
+/// Task 2: preference for level a over level b, from pairs that differ only in the factor.
 struct LevelPreference {
   int a = 0, b = 0;
-  int n = 0, k = 0;  ///< answers, and those of them that chose a
+  int n = 0, k = 0;  ///< answers, and how many of them chose a
   int participants = 0;
-  /// Of each participant's share of choosing a, against one half.
+  /// t test of each participant's share of choices of a against one half.
   Result<OneSampleTTest> shares = Refusal{"not computed"};
-  std::optional<Unanimous> all_alike;  ///< every participant has the same share: tested in place of t
+  std::optional<Unanimous> all_alike;  ///< if all shares are equal: the exact test in place of t
   std::optional<double> p_holm;        ///< over the pairs of levels of the factor
 
   std::optional<double> p() const;
 };
 
-/// Task 1: mean score of level a less that of level b at one n_*.
+/// Task 1: mean score of level a minus that of level b at one n_*.
 struct LevelDifference {
   int n_star = 0, a = 0, b = 0;
-  std::size_t participants = 0;  ///< who judged all treatments of both levels
-  /// Of each participant's difference, averaged over the other factors, against nought.
+  std::size_t participants = 0;  ///< participants who judged all treatments of both levels
+  /// t test against zero of each participant's difference, averaged over the other factors.
   Result<OneSampleTTest> difference = Refusal{"not computed"};
   std::optional<Unanimous> all_alike;
   std::optional<double> p_holm;  ///< over the pairs of levels at this n_*
@@ -45,7 +46,7 @@ struct LevelDifference {
   std::optional<double> p() const;
 };
 
-/// places: of each treatment. Every pair of levels, a before b.
+/// places: one for each treatment. Returns every pair of levels, a before b.
 std::vector<LevelPreference> level_preferences(std::span<const PairChoice> choices,
                                                std::span<const FactorPlace> places, int levels,
                                                const AnalysisPlan& plan);

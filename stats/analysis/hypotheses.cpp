@@ -6,11 +6,11 @@ namespace stats {
 
 namespace {
 
-/// What H1 to H3 are tested on.
+/// The data for the tests of H1 to H3.
 struct Scores {
   const AnalysisPlan& plan;
   const ScoreTable &realism, &sickness;
-  std::vector<Result<MixedScores>> models;  ///< of both, where the plan says so
+  std::vector<Result<MixedScores>> models;  ///< of both scores, if the plan uses the mixed model
 };
 
 Scores scores_of(const ScoreTable& realism, const ScoreTable& sickness, const AnalysisPlan& plan) {
@@ -19,12 +19,12 @@ Scores scores_of(const ScoreTable& realism, const ScoreTable& sickness, const An
   return out;
 }
 
-/// "paired t tests" in a rule.
+/// The tests' name in a rule, as "paired t tests".
 std::string tests_of(const Scores& scores) {
   return scores.plan.tests == ScoreTests::Mixed ? "t tests of the mixed model" : "paired t tests";
 }
 
-/// Score by method by n_*.
+/// Adds a test for each score, method and n_*.
 template <class Test>
 void add_tests(Family& family, const Scores& scores, const std::vector<std::string>& a, const std::string& b,
                Test test) {
@@ -79,7 +79,7 @@ Hypothesis test_h3(const Scores& scores) {
   return finish(std::move(family));
 }
 
-/// The paired verdict beside one by the mixed model; the paper's own procedure is of paired tests.
+/// Adds the paired verdict to one by the mixed model; the paper's own procedure uses paired tests.
 void put_beside(Hypothesis& out, Hypothesis paired) {
   for (std::size_t i = 0; i < out.tests.size(); ++i) {
     out.tests[i].paper_p = paired.tests[i].paper_p;

@@ -1,6 +1,7 @@
 #pragma once
-/// H1 to H6 of the paper (5.3.1) as confirmatory tests: each a claim with a family of its own, decided by the
-/// plan's rule. What the paper's own, uncorrected procedure says of the same data stands beside.
+/// H1 to H6 of the paper (5.3.1) as confirmatory tests. Each claim has its own family of tests, decided by
+/// the plan's rule. The verdict of the paper's own, uncorrected procedure on the same data is given beside
+/// it.
 
 #include <array>
 #include <optional>
@@ -16,10 +17,10 @@
 namespace stats {
 
 enum class HypothesisStatus {
-  Supported,        ///< every test of the family holds by the plan's rule
-  PartlySupported,  ///< some do after Holm
-  NotSupported,     ///< none does after Holm
-  NotTestable,      ///< the study cannot tell, whatever the figures are
+  Supported,        ///< every test of the family holds under the plan's rule
+  PartlySupported,  ///< some tests hold after Holm
+  NotSupported,     ///< no test holds after Holm
+  NotTestable,      ///< the study cannot test it, whatever its figures
   NoData,           ///< no test could be computed
 };
 /// "supported", "partly supported", ...
@@ -31,36 +32,36 @@ const char* kind_name(HypothesisKind kind);
 
 struct HypothesisTest {
   std::string label;
-  std::string method;              ///< "paired t test", "t test of the mixed model", ...
-  std::string score, n_star;       ///< of Task 1
-  std::string a, b;                ///< methods
-  std::size_t n = 0;               ///< participants with both, or of the mixed model; answers
-  std::optional<int> k;            ///< a chosen (Task 2)
-  std::optional<double> estimate;  ///< mean difference a - b, or share of a
+  std::string method;         ///< "paired t test", "t test of the mixed model", ...
+  std::string score, n_star;  ///< Task 1 only
+  std::string a, b;           ///< methods
+  std::size_t n = 0;          ///< participants with both methods, or in the mixed model; for Task 2 answers
+  std::optional<int> k;       ///< Task 2: number of choices of a
+  std::optional<double> estimate;  ///< mean difference a - b, or share of choices of a
   std::optional<std::array<double, 2>> ci;
   double ci_confidence = 0.95;
   std::optional<double> margin;
-  /// Task 1: statistic to which p belongs (of two one-sided tests the one nearer to zero), and the paired
-  /// effect size, which the mixed model does not have.
+  /// Task 1: the t statistic that p belongs to (of two one-sided tests the one nearer to zero), and the
+  /// paired effect size, which is empty for the mixed model.
   std::optional<double> t, df, d_z;
   std::optional<double> se;  ///< of the estimate
   std::optional<double> p, p_holm;
   bool holds_alone = false;       ///< p < alpha in the direction claimed
   bool holds_holm = false;        ///< p_holm < alpha in the direction claimed
-  bool holds = false;             ///< that of the two by which the plan decides
+  bool holds = false;             ///< the one of these two that the plan's rule uses
   bool against = false;           ///< p_holm < alpha in the other direction (two-sided tests)
-  std::string reason;             ///< why there is no p; it then counts as 1 in the family
+  std::string reason;             ///< why there is no p, which then counts as 1 in the family
   std::optional<double> paper_p;  ///< two-sided, uncorrected
   bool paper_holds = false;
-  /// Of a two-sided test of preference: what Holm makes of p over the five pairs of the paper's Fig. 10 and
-  /// over all ten. The choice of the family decides, so all are shown.
+  /// Of a two-sided test of preference: p after Holm over the five pairs of the paper's Fig. 10 and over all
+  /// ten pairs. The result depends on the choice of the family, so both are shown.
   std::optional<double> p_holm_of_five, p_holm_of_ten;
-  std::optional<Result<TippingPoint>> tipping;  ///< of `holds`; see add_tipping_points
+  std::optional<Result<TippingPoint>> tipping;  ///< for `holds`; see add_tipping_points
 };
 
-/// What the paired tests say where the plan decides by the mixed model.
+/// The verdict of the paired tests when the plan decides by the mixed model.
 struct PairedVerdict {
-  HypothesisStatus status = HypothesisStatus::NoData;  ///< were the hypothesis testable
+  HypothesisStatus status = HypothesisStatus::NoData;  ///< status if the hypothesis were testable
   int confirmed = 0;
   std::vector<HypothesisTest> tests;
 };
@@ -79,36 +80,37 @@ struct Hypothesis {
   std::string status_text;  ///< one sentence
   int confirmed = 0;        ///< tests that hold
   int confirmed_holm = 0;   ///< tests that hold after Holm
-  /// Of the whole claim: the largest p of its tests (after Holm where that decides), 1 where one is refused
-  /// or points the other way. Empty without any test.
+  /// p of the whole claim: the largest p of its tests (after Holm if the plan decides by Holm); 1 if a test
+  /// is refused or points the other way. Empty without any test.
   std::optional<double> p_claim;
   std::optional<double> p_claim_of_six;  ///< see correct_over_claims
   std::vector<HypothesisTest> tests;
   std::optional<PairedVerdict> paired;
   std::string paper_rule, paper_text;
   bool paper_supported = false;
-  std::string paper_published;  ///< what the paper said of its own data
+  std::string paper_published;  ///< the paper's verdict on its own data
 };
 
-/// H1 to H3. `untestable`: why H1 cannot be tested, such as gaze that was not tracked; empty: it can.
-/// Within each n_*, by paired t tests over participants, or by the mixed model of each score with the paired
-/// tests beside. Two-sided or one-sided as the plan says. Two-sided, H2 has twice the larger one-sided p, H3
-/// the two-sided p against its margin, and both the interval of 1 - alpha. What the paper's rule says is of
-/// the paired tests.
+/// Tests H1 to H3 within each n_*: by paired t tests over participants, or by the mixed model of each score
+/// with the paired tests beside it, two-sided or one-sided, as the plan says. `untestable`: why H1 cannot be
+/// tested, such as gaze that was not tracked; empty if it can. Two-sided, the p of H2 is twice the larger
+/// one-sided p, the p of H3 is the two-sided p against its margin, and both give the interval of 1 - alpha.
+/// The paper's rule is always applied to the paired tests.
 std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
                                          const AnalysisPlan& plan, const std::string& untestable);
 
 /// Tipping points of the tests of H1 to H3: by how many points missing answers must be worse before the
-/// plan's decision on the test (`holds`) changes, the other tests and the error of this one being as they
-/// are. `tables`: those that the tests were made of, among others.
+/// plan's decision on the test (`holds`) changes, if the other tests and the error of this one stay as they
+/// are. `tables` must include those that the tests were computed from.
 void add_tipping_points(std::span<Hypothesis> hypotheses, std::span<const ScoreTable> tables);
 
-/// H4 to H6 by exact binomial tests. `untestable`: why H5 cannot be tested.
+/// Tests H4 to H6 by exact binomial tests, or by share_test if PairPreference::shares is set. `untestable`:
+/// why H5 cannot be tested.
 std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,
                                          const std::string& untestable);
 
-/// Hypotheses about methods that a protocol shows, and why each other one is not tested.
+/// The hypotheses whose methods a protocol shows, and why each other one is left out.
 struct ShownClaims {
   struct LeftOut {
     std::string id;      ///< "H1"
@@ -117,14 +119,14 @@ struct ShownClaims {
   std::vector<Hypothesis> claims;
   std::vector<LeftOut> left_out;
 };
-/// A hypothesis of which any test names a method that is not among `methods` is left out.
+/// Leaves out each hypothesis with a test of a method that is not among `methods`.
 ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::string>& methods);
 
-/// Holm over the claims H1 to H6 themselves, those that are absent or not testable as p = 1: shown beside the
-/// decisions, which keep to alpha for each claim.
+/// Corrects p_claim by Holm over the claims H1 to H6; absent or untestable claims count as p = 1. Shown
+/// beside the decisions, which use alpha for each claim.
 void correct_over_claims(std::span<Hypothesis> claims);
 
-/// The pairs in the paper's Fig. 10.
+/// True for the pairs in the paper's Fig. 10.
 bool in_paper_figure_10(const std::string& a, const std::string& b);
 
 }  // namespace stats

@@ -1,5 +1,5 @@
 #pragma once
-/// From the tests of one hypothesis to its verdict.
+/// Combines the tests of one hypothesis into its verdict.
 
 #include <functional>
 #include <optional>
@@ -18,32 +18,34 @@ inline constexpr const char* hi_res = "HiRes";
 
 struct FamilyTest {
   HypothesisTest test;
-  /// The estimate lies in the direction claimed; true for tests that have a direction built in.
+  /// The estimate lies in the claimed direction. Always true for tests with a built-in direction.
   bool right = true;
 };
 
 struct Family {
   const AnalysisPlan& plan;
-  std::string untestable;  ///< why the hypothesis cannot be tested; empty: it can
-  Hypothesis out;          ///< id, title, rules are filled in
+  std::string untestable;  ///< why the hypothesis cannot be tested; empty if it can
+  Hypothesis out;          ///< its id, title and rules are set; finish() sets the rest
   std::vector<FamilyTest> tests;
 };
 
-/// A family that stands empty, with what the plan says of it.
+/// A family without tests, with the plan's settings.
 Family begin_family(const char* id, HypothesisKind kind, const AnalysisPlan& plan,
                     const std::string& untestable);
 
-/// A rule in words, "paired t tests, two-sided, all significant and in the direction of better": the test as
-/// it is with one side or with two, and the side that a two-sided one must fall on (empty: it has none).
+/// Parts of a decision rule in words, as in "paired t tests, two-sided, all significant and in the direction
+/// of better": the test when one-sided and when two-sided, and the side that a two-sided result must lie on
+/// (empty: none).
 struct RuleWords {
   std::string one_sided, two_sided, claim;
 };
 std::string rule_text(const Hypothesis& hypothesis, const RuleWords& words, std::size_t tests);
 
-/// Holm over the family as planned (a test without p counts as 1), decisions and sentences.
+/// Corrects by Holm over the planned family (a test without p counts as 1), then sets decisions and
+/// sentences.
 Hypothesis finish(Family family);
 
-/// Holm over those pairs that `chosen` names; empty for the others and for refused tests.
+/// Holm over the pairs for which `chosen` is true; empty for other pairs and for refused tests.
 std::vector<std::optional<double>> holm_over_pairs(
     std::span<const PairPreference> pairs, const std::vector<std::string>& methods,
     const std::function<bool(const std::string&, const std::string&)>& chosen);

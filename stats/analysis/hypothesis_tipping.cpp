@@ -11,8 +11,8 @@ namespace stats {
 
 namespace {
 
-/// The uncorrected level below which a test's p holds, given the others: alpha, or what Holm leaves it behind
-/// those that it rejects without this one.
+/// The level below which a test's uncorrected p holds, given the other tests: alpha, or under Holm alpha
+/// divided by the number of tests that Holm does not reject without this one.
 double level_of(const Hypothesis& hypothesis, std::size_t index) {
   if (hypothesis.decision != DecisionRule::Holm) return hypothesis.alpha;
   std::vector<double> p;
@@ -24,7 +24,7 @@ double level_of(const Hypothesis& hypothesis, std::size_t index) {
   return hypothesis.alpha / static_cast<double>(static_cast<std::ptrdiff_t>(p.size()) - rejected);
 }
 
-/// Estimates in which the test holds, its error as it is.
+/// Range of estimates for which the test holds, with its error unchanged.
 DecisionRange range_of(const Hypothesis& hypothesis, const HypothesisTest& test, double level,
                        bool higher_is_better) {
   constexpr double open = std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 #pragma once
-/// A linear mixed model of all answers of one score: what stands beside the paired tests, which need both of
-/// a pair. Whatever is missing may depend on anything that was answered or is in the model (missing at
-/// random); of what depends on the missing answers themselves tipping.hpp speaks.
+/// A linear mixed model of all answers of one score, given beside the paired tests, which drop participants
+/// who lack one of the two methods. It assumes that missing answers depend only on the answers given and the
+/// model's terms (missing at random); tipping.hpp treats missing answers that depend on their own value.
 
 #include <span>
 #include <string>
@@ -13,20 +13,21 @@
 
 namespace stats {
 
-/// Period of each trial of one session in the order of showing, from 0: runs of trials of one block, which is
-/// any number. All 0 where a block comes twice, so that the order mixes blocks.
+/// Period of each trial of one session, from 0 in the order of showing: a period is a run of trials of one
+/// block. `blocks` holds a block number for each trial. All 0 if a block comes back after another one, that
+/// is, if the order mixes blocks.
 std::vector<int> periods_of(std::span<const int> blocks);
 
-/// Terms: each n_* with each method, scenes, the trial's position (linear) and periods against the first;
-/// random effects of the participant, and of the participant with each method.
+/// Terms: each n_* with each method, scenes and periods (each against the first), and the trial's position
+/// (linear). Random effects: the participant, and the participant with each method.
 struct MixedScores {
   LinearMixedFit fit;
 
-  /// Method a - method b at one n_*. Refused when one of them was not judged there.
+  /// Method a - method b at one n_*. Refused if one of them has no answers there.
   Result<MixedContrast> difference(int n_star, int a, int b, double confidence) const;
 };
 
-/// Refused as fit_linear_mixed() refuses.
+/// Refused if fit_linear_mixed() refuses.
 Result<MixedScores> fit_mixed_scores(const ScoreTable& table);
 
 }  // namespace stats

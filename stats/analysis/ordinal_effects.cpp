@@ -41,7 +41,7 @@ MethodEffect effect_of(const MixedOrdinalFit& fit, std::size_t column, int metho
   return out;
 }
 
-/// Over the family as planned.
+/// Corrects p over the planned family.
 void correct(std::vector<MethodEffect>& effects, std::size_t family) {
   std::vector<double> p;
   for (const MethodEffect& effect : effects) p.push_back(effect.p);

@@ -1,4 +1,4 @@
-/// H4 to H6: which of two is preferred.
+/// H4 to H6: preferences between two methods.
 
 #include "stats/analysis/hypotheses.hpp"
 #include "stats/analysis/hypothesis_family.hpp"
@@ -7,7 +7,7 @@ namespace stats {
 
 namespace {
 
-/// By each person's share of a, as some answered more than once.
+/// The test of each person's share of choices of a, used if some answered more than once.
 FamilyTest shares_of(HypothesisTest test, const PairPreference& pair, bool forwards, Alternative side,
                      double alpha) {
   std::vector<PersonChoices> people = pair.people;
@@ -24,7 +24,7 @@ FamilyTest shares_of(HypothesisTest test, const PairPreference& pair, bool forwa
   return {test, right};
 }
 
-/// One answer of Task 2: a preferred to b.
+/// The test that a is preferred to b.
 FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<std::string>& methods,
                       const std::string& a, const std::string& b, const Family& family) {
   const AnalysisPlan& plan = family.plan;
@@ -58,7 +58,7 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
   return {test};
 }
 
-/// Holm over the pairs of a larger family.
+/// Adds p after Holm over larger families of pairs.
 void add_larger_families(Hypothesis& hypothesis, std::span<const PairPreference> pairs,
                          const std::vector<std::string>& methods) {
   const auto five = holm_over_pairs(pairs, methods, in_paper_figure_10);

@@ -1,6 +1,6 @@
 #pragma once
-/// Task 1's scores with one value for each participant, n_* and method. Scenes are averaged first: blocks of
-/// one participant pooled as if independent gave 7.7 % false alarms at 5 % in simulation.
+/// Task 1's scores with one value for each participant, n_* and method. Scenes are averaged first: in
+/// simulation, pooling one participant's blocks as if independent gave 7.7 % false alarms at 5 %.
 
 #include <span>
 #include <string>
@@ -13,26 +13,26 @@ namespace stats {
 /// One report. Indices count from 0. Its score is the mean of `items` answers.
 struct MethodScore {
   int participant = 0, scene = 0, n_star = 0, method = 0;
-  double sum = 0;  ///< of the answers; NaN = planned, not all answered
+  double sum = 0;  ///< sum of the answers; NaN = planned, but not all answered
   int items = 1;
   int position = 0;  ///< of the trial in its visit
-  int period = 0;    ///< part of the session; see periods_of() in mixed_scores.hpp
+  int period = 0;    ///< period of the session; see periods_of() in mixed_scores.hpp
 
   double value() const { return sum / items; }
 };
 
-/// What a table's score is and how it counts.
+/// A score: its name, scale, direction and margin.
 struct ScoreScale {
   std::string code;   ///< "realism", "sickness", ...
-  std::string label;  ///< for print
+  std::string label;  ///< for display
   bool primary = true;
   double min = 1, max = 7;
   bool higher_is_better = true;
   std::vector<std::string> items;  ///< ids of the questions whose mean it is
-  double margin = 0.5;             ///< of equivalence and non-inferiority, points
+  double margin = 0.5;             ///< for equivalence and non-inferiority, points
 };
 
-/// Participants by n_* by method.
+/// One mean for each participant, n_* and method.
 class ScoreTable {
  public:
   /// Averages over scenes (and visits) within participant x n_* x method. std::invalid_argument for an index
@@ -44,15 +44,15 @@ class ScoreTable {
   int participants() const { return participants_; }
   const std::vector<std::string>& n_stars() const { return n_stars_; }
   const std::vector<std::string>& methods() const { return methods_; }
-  /// One value for each participant, NaN where there is none.
+  /// One value for each participant; NaN if missing.
   std::span<const double> column(int n_star, int method) const;
-  /// The same as sums, for what compares differences of means.
+  /// The same as sum and count, for code that compares differences of means.
   std::span<const ExactMean> means(int n_star, int method) const;
-  /// Participants by methods, row after row, of those who gave anything at this n_*; NaN = missing.
+  /// Participants by methods, row after row, of all participants with an answer at this n_*; NaN = missing.
   std::vector<double> rows(int n_star) const;
-  /// Which participants were to judge it, whether or not they did; one value for each.
+  /// Nonzero for each participant who was planned to judge this method, answered or not.
   std::span<const char> planned(int n_star, int method) const;
-  /// Reports as they were given, without those that lack an answer.
+  /// Single reports, without those that lack an answer.
   const std::vector<MethodScore>& answers() const { return answers_; }
   /// Index, or -1.
   int n_star_index(const std::string& n_star) const;
@@ -66,7 +66,7 @@ class ScoreTable {
 
   std::vector<ExactMean> means_;  ///< [n_star][method][participant]
   std::vector<double> values_;    ///< of means_
-  std::vector<char> planned_;     ///< as means_
+  std::vector<char> planned_;     ///< indexed as means_
   std::vector<MethodScore> answers_;
 };
 

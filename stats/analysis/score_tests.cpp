@@ -10,8 +10,8 @@ namespace stats {
 
 namespace {
 
-/// Without the intervals of effect sizes, which t_test_paired would spend most of its time on: simulations of
-/// power come here often.
+/// Omits the intervals of effect sizes, on which t_test_paired would spend most of its time; power
+/// simulations call this often.
 void take_pairs(ScoreContrast& contrast, const ScoreTable& table, int n_star, int a, int b) {
   HypothesisTest& test = contrast.test;
   const auto pairs = complete_pairs(table.column(n_star, a), table.column(n_star, b));
@@ -37,7 +37,7 @@ void take_model(ScoreContrast& contrast, const Result<MixedScores>& model, int n
   if (difference) contrast.difference = {difference->estimate, difference->se, difference->df};
 }
 
-/// Differences that are all the same have no t. `p`: of the exact test in its place.
+/// The exact test for differences that are all equal, which have no t. `p`: of that test.
 FamilyTest sign_test(const ScoreContrast& contrast, double p, bool right = true) {
   FamilyTest out{contrast.test, right};
   out.test.method = "exact sign test";
@@ -55,7 +55,7 @@ Alternative better_side(const ScoreContrast& contrast) {
   return contrast.higher_is_better ? Alternative::Greater : Alternative::Less;
 }
 
-/// The level of one side: each hypothesis has all of alpha on one side, or half of it on each.
+/// The level of one side: alpha for a one-sided hypothesis, half of it for a two-sided one.
 double level_of(const Family& family) {
   return family.out.one_sided ? family.plan.alpha : 0.5 * family.plan.alpha;
 }
@@ -67,7 +67,7 @@ void set_interval(ScoreContrast& contrast, double confidence) {
   contrast.test.ci_confidence = confidence;
 }
 
-/// The paper reports nothing but the uncorrected two-sided p.
+/// True if the uncorrected two-sided p, the only one in the paper, is below alpha.
 bool paper_differs(const ScoreContrast& contrast, const Family& family) {
   return *contrast.test.paper_p < family.plan.alpha;
 }
@@ -127,7 +127,7 @@ FamilyTest equivalence(ScoreContrast contrast, const Family& family) {
   const bool one_sided = family.out.one_sided;
   const double margin = contrast.margin;
   HypothesisTest& test = contrast.test;
-  test.margin = margin;  // also of a test that is refused: it was fixed beforehand
+  test.margin = margin;  // set even if the test is refused, since it was fixed beforehand
   const auto larger = [&](double lower, double upper) {
     return one_sided ? std::max(lower, upper) : std::min(1.0, 2 * std::max(lower, upper));
   };
@@ -151,7 +151,7 @@ FamilyTest non_inferiority(ScoreContrast contrast, const Family& family) {
   const double worst = contrast.higher_is_better ? -contrast.margin : contrast.margin;
   const Alternative side = one_sided ? better_side(contrast) : Alternative::TwoSided;
   HypothesisTest& test = contrast.test;
-  test.margin = contrast.margin;  // also of a test that is refused: it was fixed beforehand
+  test.margin = contrast.margin;  // set even if the test is refused, since it was fixed beforehand
   if (!contrast.difference) {
     if (!contrast.unanimous) return {test};
     const Unanimous& all = *contrast.unanimous;

@@ -1,5 +1,5 @@
 #pragma once
-/// The tests of H1 to H3, each of one difference between two methods at one n_*: by a paired t test, or by
+/// The tests of H1 to H3. Each tests one difference between two methods at one n_*, by a paired t test or by
 /// the mixed model.
 
 #include <optional>
@@ -19,24 +19,24 @@ struct ScoreDifference {
   double p(Alternative side, double null = 0) const;
 };
 
-/// What a test is made of.
+/// The input of a test.
 struct ScoreContrast {
-  HypothesisTest test;  ///< what is known without a difference, and why there is none
+  HypothesisTest test;  ///< fields that need no difference, and the reason if there is none
   std::optional<ScoreDifference> difference;
-  std::optional<Unanimous> unanimous;  ///< all paired differences are the same, and tested by sign
+  std::optional<Unanimous> unanimous;  ///< if all paired differences are equal: the exact sign test
   bool higher_is_better = true;
   double margin = 0;
 };
 
-/// `model`: of all answers of the table; null: paired.
+/// `model`: the mixed model of all answers of the table; null: paired test.
 ScoreContrast score_contrast(const ScoreTable& table, const Result<MixedScores>* model, int n_star,
                              const std::string& a, const std::string& b);
 
-/// a is better than b.
+/// Tests the claim that a is better than b.
 FamilyTest superiority(ScoreContrast contrast, const Family& family);
-/// a and b differ by less than the margin: two one-sided tests.
+/// Tests the claim that a and b differ by less than the margin: two one-sided tests.
 FamilyTest equivalence(ScoreContrast contrast, const Family& family);
-/// a is not worse than b by the margin.
+/// Tests the claim that a is not worse than b by the margin.
 FamilyTest non_inferiority(ScoreContrast contrast, const Family& family);
 
 }  // namespace stats

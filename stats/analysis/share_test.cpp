@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::int64_t largest_sum = 1'000'000;
 
-/// Probabilities of the sum of +-values, each sign by one half, from -total to total in steps of one.
+/// Distribution of the sum of +-values, each sign with probability one half, from -total to total in steps of
+/// one.
 std::vector<double> distribution_of(const std::vector<std::int64_t>& values, std::int64_t total) {
   std::vector<double> mass(static_cast<std::size_t>(2 * total + 1), 0.0);
   const auto at = [&](std::int64_t sum) { return static_cast<std::size_t>(sum + total); };

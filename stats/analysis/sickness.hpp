@@ -1,6 +1,6 @@
 #pragma once
-/// Sickness before and after a session. Its scores are skewed, with many zeros: changes go by signed ranks
-/// and by a bootstrap, without an assumption of normality.
+/// Sickness before and after a session. The scores are skewed, with many zeros, so changes are tested by
+/// signed ranks and a bootstrap, without assuming normality.
 
 #include <span>
 
@@ -13,20 +13,20 @@
 
 namespace stats {
 
-/// A score before and after, one value for each participant; differences are after - before.
+/// A score before and after, one value each per participant; differences are after - before.
 struct SicknessChange {
   std::size_t n = 0;          ///< participants with both
-  std::size_t n_missing = 0;  ///< participants with one of them alone
-  Result<Description> before = Refusal{"not computed"}, after = Refusal{"not computed"};  ///< all there are
+  std::size_t n_missing = 0;  ///< participants with only one of them
+  Result<Description> before = Refusal{"not computed"}, after = Refusal{"not computed"};  ///< of all values
   Result<Description> change = Refusal{"not computed"};
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< of the mean change
   Result<SignedRank> ranks = Refusal{"not computed"};             ///< of the changes
 };
 
-/// `before` and `after` are sums of items, participant by participant (NaN: missing); a score is `weight`
-/// times their mean, and so is all that is returned but the ranks, which compare the sums themselves, so that
-/// equal changes tie. Only the ranks' location and its interval are scores again.
-/// std::invalid_argument unless the lengths agree and counts are above 0.
+/// `before` and `after` are sums of items with one entry per participant (NaN: missing). A score is `weight`
+/// times the entry's mean, and all results are in units of the score, except the ranks: these compare the
+/// sums themselves, so that equal changes tie. Of `ranks`, only the location and its interval are in units of
+/// the score.
 SicknessChange compare_sickness(std::span<const ExactMean> before, std::span<const ExactMean> after,
                                 double weight, const AnalysisPlan& plan);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Task 1: cells, all pairs of methods within each n_*, omnibus tests.
+/// Task 1: summaries of cells, comparisons of all pairs of methods within each n_*, omnibus tests.
 
 #include <optional>
 #include <string>
@@ -28,44 +28,45 @@ struct MethodCell {
   std::vector<double> outliers;  ///< beyond 1.5 interquartile ranges: drawn, never dropped
   Result<Description> summary = Refusal{"not computed"};
   Result<BoxPlot> box = Refusal{"not computed"};
-  Result<OneSampleTTest> mean = Refusal{"not computed"};  ///< for its interval
+  Result<OneSampleTTest> mean = Refusal{"not computed"};  ///< for the interval of the mean
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};
   Result<ShapiroWilk> normality = Refusal{"not computed"};
 };
 
-/// Two methods at one n_*, difference a - b, participants with both.
+/// Comparison of two methods at one n_*: difference a - b over participants with both.
 struct MethodComparison {
   int n_star = 0, a = 0, b = 0;
   std::size_t n = 0;                     ///< participants with both
   std::size_t n_missing = 0;             ///< participants with only one
   std::optional<double> mean_a, mean_b;  ///< of participants with both
   Result<PairedTTest> t = Refusal{"not computed"};
-  std::optional<Unanimous> unanimous;  ///< all differences are the same: tested in place of t
+  std::optional<Unanimous> unanimous;  ///< if all differences are equal: the exact test in place of t
   Result<IndependentTTest> welch = Refusal{"not computed"};  ///< as if the groups were independent
   Result<SignedRank> wilcoxon = Refusal{"not computed"};
   Result<EquivalenceTest> equivalence = Refusal{"not computed"};
   Result<ShapiroWilk> normality = Refusal{"not computed"};        ///< of the differences
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< of the mean difference
-  Result<MixedContrast> mixed = Refusal{"not computed"};          ///< from all answers of the score
-  /// Of t, or of the exact sign test in its place.
+  Result<MixedContrast> mixed = Refusal{"not computed"};  ///< from the mixed model of all answers of the
+                                                          ///< score
+  /// p of t, or of the exact sign test in its place.
   std::optional<double> p() const;
-  /// Within the pairs of this score and n_*; a refused test counts as not significant.
+  /// Corrected over the pairs of this score and n_*; a refused test counts as not significant.
   std::optional<double> p_holm, p_bh, wilcoxon_p_holm, wilcoxon_p_bh, mixed_p_holm, mixed_p_bh;
 };
 
-/// On whom the pairs of one n_* rest.
+/// How many participants the pairs of one n_* are based on.
 struct PairPeople {
   int n_star = 0;
-  std::size_t planned = 0;           ///< participants who were to judge it
-  std::size_t any = 0, all = 0;      ///< who judged a method, and who judged every one
-  std::size_t fewest = 0, most = 0;  ///< with both of a pair, over the pairs
-  bool differ = false;               ///< somebody counts in one pair and not in another
+  std::size_t planned = 0;           ///< participants who were planned to judge a method
+  std::size_t any = 0, all = 0;      ///< participants who judged any method, and every method
+  std::size_t fewest = 0, most = 0;  ///< smallest and largest number with both methods of a pair
+  bool differ = false;               ///< a participant counts in one pair and not in another
 };
 
 struct Omnibus {
   int n_star = 0;
   int n = 0;             ///< participants with all methods
-  int n_incomplete = 0;  ///< participants without some
+  int n_incomplete = 0;  ///< participants who lack a method
   Result<Friedman> friedman = Refusal{"not computed"};
   Result<RepeatedAnova> anova = Refusal{"not computed"};
 };
@@ -80,7 +81,7 @@ struct ScoreAnalysis {
 
 ScoreAnalysis analyse_scores(const ScoreTable& table, const AnalysisPlan& plan);
 
-/// Values of the participants with both, in pairs.
+/// Values of the participants with both methods, in the same order.
 struct PairedValues {
   std::vector<double> x, y;
   std::vector<double> differences() const;

@@ -79,7 +79,7 @@ std::vector<Comparison> comparisons(std::span<const PairChoice> choices) {
 
 IntervalBias test_intervals(std::span<const PairChoice> choices, int methods, const AnalysisPlan& plan) {
   IntervalBias out;
-  std::map<int, std::pair<int, int>> people;  // first chosen, answers
+  std::map<int, std::pair<int, int>> people;  // choices of the first interval, answers
   for (const PairChoice& choice : choices) {
     auto& [first, answers] = people[choice.participant];
     first += choice.first_chosen ? 1 : 0;
@@ -105,7 +105,7 @@ bool answered_twice(const std::vector<PairChoice>& own) {
   });
 }
 
-/// Of people none of whom answered every pair once.
+/// The reason, for people none of whom answered every pair exactly once.
 std::string why_no_triads(const ChoicesByPerson& people, int methods) {
   if (people.empty()) return "no answers";
   if (methods < 3) return "fewer than three methods have no triad";

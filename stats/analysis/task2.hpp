@@ -1,5 +1,5 @@
 #pragma once
-/// Task 2: which of two methods was chosen, over all pairs of methods.
+/// Task 2: choices between two methods, over all pairs of methods.
 
 #include <optional>
 #include <span>
@@ -23,38 +23,38 @@ struct PairChoice {
   int participant = 0, scene = 0;
   int first = 0, second = 0;  ///< methods in the first and the second interval
   bool first_chosen = false;
-  int position = 0;  ///< of the trial in its session
+  int position = 0;  ///< position of the trial in its session
 };
 
 /// All answers about two methods, a before b in the order of methods.
 struct PairPreference {
   int a = 0, b = 0;
   int n = 0;             ///< answers
-  int participants = 0;  ///< who gave them
-  int k = 0;             ///< a chosen
-  int a_first = 0;       ///< a shown first
-  int first_chosen = 0;  ///< the first interval chosen, whichever method it held
+  int participants = 0;  ///< participants who gave them
+  int k = 0;             ///< how often a was chosen
+  int a_first = 0;       ///< how often a was shown first
+  int first_chosen = 0;  ///< how often the first interval was chosen, whichever method it held
   int max_per_participant = 0;
   int several = 0;                    ///< participants who answered it more than once
-  std::string warning;                ///< empty, or why the test does not hold as it stands
-  std::vector<PersonChoices> people;  ///< of each participant: a chosen, answers
-  /// Exact, two-sided. Refused without answers, and with several of one participant under
-  /// RepeatedPairs::Refuse and Share.
+  std::string warning;                ///< why the test may not be valid; empty if it is
+  std::vector<PersonChoices> people;  ///< one entry for each participant: choices of a, and answers
+  /// Exact, two-sided. Refused without answers, and if a participant answered more than once under
+  /// RepeatedPairs::Refuse or Share.
   Result<BinomialTest> test = Refusal{"not computed"};
-  /// In its place, two-sided: where a participant gave several answers, under RepeatedPairs::Share.
+  /// Two-sided, in place of `test` if a participant answered more than once under RepeatedPairs::Share.
   std::optional<ShareTest> shares;
   std::optional<double> p_holm, p_bh;  ///< over all pairs; a refused test counts as not significant
 
-  std::optional<double> p() const;  ///< of the test that decides
+  std::optional<double> p() const;  ///< p of the test that decides
 };
 
-/// Whether the first interval drew choices, whatever it held.
+/// Bias to the first interval, whichever method it held.
 struct IntervalBias {
   int n = 0, first_chosen = 0;
   Result<BinomialTest> test = Refusal{"not computed"};  ///< as if all answers were independent
-  /// Share of each participant against one half: holds whatever a participant's answers have in common.
+  /// Each participant's share against one half: valid even if the answers of a participant are dependent.
   Result<OneSampleTTest> by_participant = Refusal{"not computed"};
-  std::optional<Unanimous> all_alike;  ///< every participant has the same share: tested in place of t
+  std::optional<Unanimous> all_alike;  ///< if all shares are equal: the exact test in place of t
   Result<OrderBias> model = Refusal{"not computed"};  ///< within the Bradley-Terry model
 };
 
@@ -64,18 +64,18 @@ struct ParticipantTriads {
 };
 
 struct PreferenceAnalysis {
-  std::vector<PairPreference> pairs;  ///< every pair, also those without answers
+  std::vector<PairPreference> pairs;  ///< every pair, including those without answers
   IntervalBias interval;
   Result<BradleyTerry> bradley_terry = Refusal{"not computed"};
-  std::vector<ParticipantTriads> triads;  ///< those who answered anything
+  std::vector<ParticipantTriads> triads;  ///< of participants with any answer
   Result<GroupTriads> group_triads = Refusal{"not computed"};
 };
 
-/// `methods`: how many. std::invalid_argument for a method out of range or shown against itself.
+/// `methods`: number of methods. std::invalid_argument for a method out of range or compared with itself.
 PreferenceAnalysis analyse_preferences(std::span<const PairChoice> choices, int methods,
                                        const AnalysisPlan& plan);
 
-/// Its pairs alone.
+/// Only the pairs of analyse_preferences().
 std::vector<PairPreference> count_preferences(std::span<const PairChoice> choices, int methods,
                                               const AnalysisPlan& plan);
 

@@ -7,10 +7,10 @@ namespace stats {
 
 namespace {
 
-/// Who was to judge both and what came of it.
+/// Counts of participants planned to judge both methods, and their means.
 struct Seen {
   std::size_t planned = 0, both = 0, missing_a = 0, missing_b = 0;
-  double mean_a = 0, mean_b = 0;  ///< of those with both
+  double mean_a = 0, mean_b = 0;  ///< means of participants with both
 };
 
 Seen count(const ScoreTable& table, int n_star, int a, int b) {
@@ -38,7 +38,7 @@ double room_of(const ScoreScale& scale, double mean) {
   return scale.higher_is_better ? mean - scale.min : scale.max - mean;
 }
 
-/// How far an estimate can fall before it crosses into, or out of, the range.
+/// How far an estimate can decrease before it crosses into, or out of, the range.
 std::optional<double> way_down(double estimate, DecisionRange holds) {
   const double edge = estimate > holds.high ? holds.high : holds.low;
   if (estimate < holds.low || std::isinf(edge) || holds.low >= holds.high) return {};
@@ -62,7 +62,7 @@ Result<TippingPoint> tipping_point(const ScoreTable& table, int n_star, int a, i
   const auto down = way_down(estimate, holds);
   const auto up = way_down(-estimate, {-holds.high, -holds.low});
   const ScoreScale& scale = table.scale();
-  const bool a_falls = scale.higher_is_better;  // where a becomes worse
+  const bool a_falls = scale.higher_is_better;  // the estimate falls if a becomes worse
   out.a = {seen.missing_a, room_of(scale, seen.mean_a),
            shift_of(a_falls ? down : up, seen.missing_a, seen.planned)};
   out.b = {seen.missing_b, room_of(scale, seen.mean_b),

@@ -1,7 +1,7 @@
 #pragma once
-/// Changes of folders that outlast a power loss. A file system may write them to the disk in another order
-/// than they were made, and what was made, moved or removed may come back, until the folder is synced. Errors
-/// are base::Error and name the path.
+/// Changes of folders that survive a power loss. Until a folder is synced, a file system may write changes to
+/// disk in another order than they were made, and may undo a creation, move or removal. Errors are
+/// base::Error and name the path.
 
 #include <filesystem>
 
@@ -10,22 +10,23 @@ namespace base {
 /// The folder that holds `path`: "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-/// Brings the names in the folder of `path` to the disk. A file system that cannot sync a folder is passed
-/// by, as is a folder that is not there.
+/// Writes the directory entries of the folder of `path` to disk (fsync). Skips a file system that cannot sync
+/// folders, and a folder that does not exist.
 void sync_folder_of(const std::filesystem::path& path);
 
-/// Brings the bytes of a file to the disk that another library wrote. Not while SQLite has it open in this
-/// process, which would lose its locks.
+/// Writes to disk the bytes of a file that another library wrote. Do not call it while SQLite has the file
+/// open in this process: SQLite would lose its locks.
 void sync_file(const std::filesystem::path& path);
 
-/// Brings the names in a folder, and in all folders below it, to the disk.
+/// Writes the directory entries of a folder, and of all folders below it, to disk.
 void sync_folders(const std::filesystem::path& folder);
 
-/// Renames, then syncs the folders of both names. flags: of renameat2(2); on error errno is its own.
+/// Renames, then syncs the folders of both names. flags: of renameat2(2). Returns false if the rename failed;
+/// errno is then that of renameat2.
 bool rename_durably(const std::filesystem::path& from, const std::filesystem::path& to, unsigned flags = 0);
 
-/// Removes a file, a link or a folder with all in it, then syncs the folder that held it: also where nothing
-/// stands there any more, as an earlier removal may not be on the disk yet.
+/// Removes a file, a link or a folder with all its contents, then syncs the parent folder. It syncs even if
+/// nothing exists at `path`, since an earlier removal may not be on disk yet.
 void remove_durably(const std::filesystem::path& path);
 
 }  // namespace base

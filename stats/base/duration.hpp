@@ -1,5 +1,5 @@
 #pragma once
-/// Lengths of time as people say them.
+/// Durations in words.
 
 #include <string>
 

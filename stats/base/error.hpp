@@ -1,5 +1,5 @@
 #pragma once
-/// The one exception of the project: what is wrong, where, and what to do about it.
+/// The project's exception type: what is wrong, where, and how to fix it.
 
 #include <stdexcept>
 #include <string>

@@ -38,7 +38,7 @@ std::string reason() { return std::strerror(errno); }
 
 }  // namespace
 
-// Without O_NONBLOCK a pipe would be waited for.
+// O_NONBLOCK, since opening a pipe would otherwise block.
 std::string read_file(const fs::path& path, std::size_t max_bytes) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0)
@@ -78,7 +78,7 @@ fs::path resource(const std::string& relative) {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   const fs::path installed = program.parent_path().parent_path() / "share" / "vip-lab";
-  // An installed program never mixes its files with those of a source tree that happens to be there.
+  // An installed program uses only its own files, even if a source tree exists.
   if (!program.empty() && fs::is_directory(installed, ignored)) return installed / relative;
   return fs::path(VIP_SOURCE_DIR) / relative;
 }

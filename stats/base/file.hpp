@@ -1,5 +1,6 @@
 #pragma once
-/// Whole files in and out, and where the project's own files lie. Errors are base::Error and name the path.
+/// Reading and writing of whole files, and the paths of the project's own files. Errors are base::Error and
+/// name the path.
 
 #include <cstddef>
 #include <filesystem>
@@ -8,19 +9,19 @@
 
 namespace base {
 
-/// The bytes of a regular file; an error when it is missing, unreadable or larger than max_bytes.
+/// Returns the bytes of a regular file. An error if it is missing, unreadable or larger than max_bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// Writes to a neighbour of a name of its own and puts it in place (NewFile): readers see the old file or the
-/// new, never a part. Nothing is left beside `path` when that fails.
+/// Writes to a temporary file in the same folder and renames it over `path` (NewFile): readers see the old
+/// file or the new one, never a part. On failure the temporary file is removed.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-/// A file or folder that ships with the project, e.g. "shaders/splat.comp" or "data/scenes/single_dam.toml".
-/// In $VIP_SHARE_DIR when that is set, else in <program>/../share/vip-lab when that folder is there (an
-/// installed program), else in the source tree. Whether the file exists is not asked.
+/// Path of a file or folder that ships with the project, e.g. "shaders/splat.comp" or
+/// "data/scenes/single_dam.toml": in $VIP_SHARE_DIR if that is set, else in <program>/../share/vip-lab if
+/// that folder exists (an installed program), else in the source tree. Does not check that the file exists.
 std::filesystem::path resource(const std::string& relative);
 
-/// A user's path as given when it exists, otherwise resource(path) when that exists, otherwise an error that
+/// Returns a user's path as given if it exists, else resource(path) if that exists. Otherwise an error that
 /// names both.
 std::filesystem::path find_input(const std::filesystem::path& path);
 

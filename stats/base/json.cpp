@@ -28,7 +28,7 @@ std::vector<std::string> steps_of(std::string_view text) {
   return steps;
 }
 
-/// The index that a step of a pointer names in an array; -1 where it names none.
+/// The array index that a pointer's step names; -1 if it is not an index.
 std::ptrdiff_t index_of(const std::string& step) {
   if (step.empty() || step.size() > 9 || step.find_first_not_of("0123456789") != std::string::npos) return -1;
   return std::stol(step);
@@ -94,7 +94,7 @@ Json Json::object(std::initializer_list<Json> members) {
   return out;
 }
 
-/// To and from the library's values.
+/// Converts to and from the library's values.
 struct JsonLibrary {
   static Json from(const Library& value) {
     switch (value.type()) {
@@ -149,7 +149,7 @@ struct JsonLibrary {
         return out;
       }
       case Json::Type::Object: {
-        // Keys are unique already: emplacing each would search for it.
+        // Keys are already unique; emplacing each one would search for it.
         Library::object_t out;
         out.reserve(value.items_.size());
         for (std::size_t i = 0; i < value.items_.size(); ++i)

@@ -1,6 +1,6 @@
 #pragma once
-/// A JSON value. nlohmann's library parses and prints it, in json.cpp alone: its templates took half of the
-/// compile time of files that build a table of results.
+/// A JSON value. nlohmann's library parses and prints it, but only json.cpp includes it: its templates took
+/// half of the compile time of files that build a table of results.
 ///
 ///     base::Json fit = {{"a", 24.5}, {"b", 0.021}, {"people", 16}};
 ///     fit["scenes"] = base::Json::array({"SingleDam"});
@@ -25,20 +25,20 @@
 
 namespace base {
 
-/// A text that is no JSON, a member that is missing, or a value of another kind than the one that is asked
-/// for.
+/// Thrown for text that is not JSON, a missing member, or a value of another kind than requested.
 class JsonError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Levels of brackets and braces that no file of these programs reaches.
+/// Deepest nesting of brackets and braces that is accepted; no file of these programs reaches it.
 inline constexpr int most_json_levels = 32;
 
-/// A place within a value, as RFC 6901 writes it: "/task1/mixed/0". The empty text is the value itself.
+/// A path to a value within a JSON value, as in RFC 6901: "/task1/mixed/0". The empty text is the value
+/// itself.
 class JsonPointer {
  public:
-  /// Throws JsonError where the text neither is empty nor begins with '/'.
+  /// Throws JsonError unless the text is empty or begins with '/'.
   explicit JsonPointer(std::string_view text);
   const std::vector<std::string>& steps() const { return steps_; }
   std::string text() const;
@@ -47,9 +47,9 @@ class JsonPointer {
   std::vector<std::string> steps_;
 };
 
-/// Null, a truth value, a number, a text, an array, or an object whose members keep the order in which they
-/// were added. A list in braces is an object if each of its elements is a pair that begins with a text, as in
-/// {{"n", 3}, {"mean", 2.5}}; otherwise it is an array. Numbers that are not finite are printed as null.
+/// Null, a boolean, a number, a string, an array, or an object whose members keep the order in which they
+/// were added. A list in braces is an object if each of its elements is a pair that begins with a string, as
+/// in {{"n", 3}, {"mean", 2.5}}; otherwise it is an array. Numbers that are not finite are printed as null.
 class Json {
  public:
   using exception = JsonError;
@@ -72,15 +72,15 @@ class Json {
   Json(std::string value);
   Json(std::string_view value);
   Json(std::initializer_list<Json> values);
-  /// Null where there is no value.
+  /// Null if the optional is empty.
   template <class T>
   Json(const std::optional<T>& value) {
     if (value) *this = Json(*value);
   }
-  /// Other pointers would become truth values.
+  /// Deleted: other pointers would convert to booleans.
   template <class T>
   Json(const T*) = delete;
-  /// Of vectors, arrays, sets and spans.
+  /// An array, from a vector, array, set or span.
   template <std::ranges::input_range Values>
   requires(!std::convertible_to<const Values&, std::string_view> && !std::derived_from<Values, Json>)
       Json(const Values& values)
@@ -100,14 +100,15 @@ class Json {
   static Json array();
   static Json array(std::initializer_list<Json> values);
   static Json object();
-  /// Throws JsonError where an element is not a pair that begins with a text.
+  /// Throws JsonError unless each element is a pair that begins with a string.
   static Json object(std::initializer_list<Json> members);
 
-  /// Throws JsonError with the place where the text stops being JSON, and where it is nested deeper than
+  /// Throws JsonError with the position of the first syntax error, or if the text is nested deeper than
   /// `most_json_levels`.
   static Json parse(std::string_view text);
   static Json parse(std::istream& text);
-  /// On one line where `indent` is negative. Bytes that are not UTF-8 become U+FFFD: a database may hold any.
+  /// On one line if `indent` is negative. Bytes that are not UTF-8 become U+FFFD, since a database may hold
+  /// any bytes.
   std::string dump(int indent = -1) const;
 
   bool is_null() const { return type_ == Type::Null; }
@@ -136,23 +137,24 @@ class Json {
     std::string key;
     const Json& value;
   };
-  /// The members with their keys, or the elements with their indices as texts; none of other values.
+  /// The members with their keys, or the elements with their indices as strings; empty for other values.
   std::vector<Member> items();
   std::vector<ConstMember> items() const;
 
   bool contains(std::string_view key) const { return find(key) != end(); }
   bool contains(const JsonPointer& place) const;
-  /// end() where there is no such member.
+  /// Returns end() if there is no such member.
   Json* find(std::string_view key);
   const Json* find(std::string_view key) const;
-  /// Throws JsonError where there is no such member or element.
+  /// Throws JsonError if there is no such member or element.
   Json& at(std::string_view key);
   const Json& at(std::string_view key) const;
   Json& at(std::size_t index);
   const Json& at(std::size_t index) const;
   Json& at(const JsonPointer& place);
   const Json& at(const JsonPointer& place) const;
-  /// Adds a missing member with the value null; null becomes an object. Constant values throw JsonError.
+  /// Adds a missing member with the value null; a null value becomes an object. On a const value a missing
+  /// member throws JsonError.
   Json& operator[](std::string_view key);
   const Json& operator[](std::string_view key) const { return at(key); }
   Json& operator[](const char* key) { return (*this)[std::string_view(key)]; }
@@ -168,14 +170,14 @@ class Json {
   Json& back() { return at(size() - 1); }
   const Json& back() const { return at(size() - 1); }
 
-  /// Null becomes an array. Throw JsonError for other kinds of values.
+  /// A null value becomes an array. Throws JsonError for other kinds of values.
   void push_back(Json value);
-  /// Adds the members of an object; those that exist get its values.
+  /// Adds the members of `object`; existing members get its values.
   void update(const Json& object);
-  /// How many members went, 0 or 1.
+  /// Returns the number of members removed, 0 or 1.
   std::size_t erase(std::string_view key);
 
-  /// Throws JsonError where the value is of another kind. Numbers are converted, as C++ does.
+  /// Throws JsonError if the value is of another kind. Numbers are converted as C++ does.
   template <class T>
   T get() const {
     T out;
@@ -206,16 +208,17 @@ class Json {
     out.clear();
     for (const Json& value : elements()) out.insert(value.get<T>());
   }
-  /// As get(); what compares and computes asks for the kind by name.
+  /// As get(), implicitly. Code that compares or computes calls get<T>().
   template <class T>
   requires(std::same_as<T, std::string> || std::same_as<T, double> || std::same_as<T, int> ||
            std::same_as<T, std::vector<double>> || std::same_as<T, std::set<std::string>>)
   operator T() const {
     return get<T>();
   }
-  /// Throws JsonError where the value is no text.
+  /// Throws JsonError if the value is not a string.
   const std::string& text() const;
-  /// The member's value, or `otherwise` where there is none. Throws JsonError where it is of another kind.
+  /// The member's value, or `otherwise` if there is no such member. Throws JsonError if it is of another
+  /// kind.
   template <class T>
   T value(std::string_view key, T otherwise) const {
     const Json* found = find(key);
@@ -226,17 +229,17 @@ class Json {
   }
   Json value(const JsonPointer& place, const Json& otherwise) const;
 
-  /// Numbers are equal by their value, objects whatever the order of their members.
+  /// Numbers compare by value; objects compare without regard to the order of their members.
   friend bool operator==(const Json& a, const Json& b);
   template <class T>
   requires std::is_arithmetic_v<T>
   friend bool operator==(const Json& a, T b) { return a == Json(b); }
-  /// Numbers and texts have an order, each among themselves.
+  /// Numbers are ordered among themselves, and so are strings; all else is unordered.
   friend std::partial_ordering operator<=>(const Json& a, const Json& b);
   template <class T>
   requires std::is_arithmetic_v<T>
   friend std::partial_ordering operator<=>(const Json& a, T b) { return a <=> Json(b); }
-  /// For messages of tests.
+  /// For the messages of tests.
   friend std::ostream& operator<<(std::ostream& out, const Json& value);
 
  private:
@@ -256,16 +259,16 @@ class Json {
     double double_;
   };
   std::string text_;
-  /// Elements, or the members' values, whose keys are `keys_`.
+  /// Elements of an array, or values of an object's members, whose keys are `keys_`.
   std::vector<Json> items_;
   std::vector<std::string> keys_;
 };
 
-/// True where brackets and braces outside of strings are nested deeper than `levels`. The text may be no
-/// JSON. A deep tree overflows the stack where it is printed or compared.
+/// True if brackets and braces outside strings are nested deeper than `levels`. The text need not be valid
+/// JSON. A deep tree would overflow the stack when it is printed or compared.
 bool nested_deeper_than(int levels, std::string_view json);
 
-/// JSON that outsiders made: null where it is no JSON or nested deeper than `levels`.
+/// Parses untrusted JSON: null if the text is not JSON or is nested deeper than `levels`.
 Json parse_json(std::string_view text, int levels = most_json_levels);
 
 }  // namespace base

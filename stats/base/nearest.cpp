@@ -8,7 +8,7 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-constexpr std::size_t longest_compared = 100;  // bytes: the work grows with the square
+constexpr std::size_t longest_compared = 100;  // bytes; the work is quadratic in the length
 
 }  // namespace
 
@@ -34,7 +34,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
   std::string nearest;
   if (word.empty() || word.size() > longest_compared) return nearest;
-  std::size_t least = word.size() / 3 + 1;  // farther away it is another word
+  std::size_t least = word.size() / 3 + 1;  // beyond this it is a different word
   for (const auto& one : known) {
     if (one.size() > longest_compared) continue;
     const std::size_t distance = edit_distance(word, one);

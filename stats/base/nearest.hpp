@@ -1,5 +1,5 @@
 #pragma once
-/// A word that is none of those known: which of them was meant.
+/// Finds the known word that a misspelt word probably means.
 
 #include <cstddef>
 #include <string>
@@ -8,15 +8,14 @@
 
 namespace base {
 
-/// Fewest letters inserted, removed, replaced, or swapped with their neighbour that make `b` of `a`; the case
-/// of ASCII letters does not count.
+/// Edit distance: the fewest insertions, deletions, replacements and swaps of neighbouring letters that turn
+/// `a` into `b`. The case of ASCII letters does not count.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The known word that lies nearest to `word`; empty when more than a third of its letters differ.
+/// The known word nearest to `word`; empty if more than a third of the letters of `word` differ.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
-/// What to do about a word that is none of the known ones: `use one of "a", "b"`, and behind it the nearest
-/// one, when one is near.
+/// Advice for an unknown word: `use one of "a", "b"`, followed by the nearest known word if one is near.
 std::string use_one_of(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace base

@@ -56,7 +56,7 @@ void remove_stale_drafts(const fs::path& path) {
 
 namespace {
 
-/// base::Error naming `output` unless one may write to the folder, or make it.
+/// base::Error naming `output` unless the folder is writable or can be created.
 void check_writable(fs::path folder, const fs::path& output) {
   struct stat above {};
   while (::stat(folder.c_str(), &above) != 0 && errno == ENOENT) folder = folder_of(folder);
@@ -94,7 +94,7 @@ NewFile::NewFile(const fs::path& path, Readers readers) : path_(path), readers_(
   }
 }
 
-/// False where remove_stale_drafts() took it before it was locked.
+/// False if remove_stale_drafts() locked or deleted the file before it was locked here.
 bool NewFile::make_draft() {
   const fs::path draft = draft_name(path_);
   const mode_t rights = readers_ == Readers::Owner ? 0600 : 0666;
@@ -102,7 +102,7 @@ bool NewFile::make_draft() {
   if (fd_ < 0) fail("cannot be created");
   draft_ = draft;
   struct stat made {};
-  // A file system without locks has no stale drafts removed either.
+  // On a file system without locks, stale drafts are not removed either.
   const bool taken = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   if (!taken && ::fstat(fd_, &made) == 0 && made.st_nlink > 0) return true;
   ::close(std::exchange(fd_, -1));
@@ -137,7 +137,7 @@ void NewFile::put_in_place() {
   if (::close(closing) != 0) fail("cannot be written");
   if (!rename_durably(draft_, path_)) fail("cannot be put in place");
   draft_.clear();
-  // A folder that was made for it stands in a folder itself.
+  // Each folder that was created for the file is an entry of its parent, which must be synced too.
   for (fs::path folder = folder_of(path_); !made_.empty(); folder = folder_of(folder)) {
     sync_folder_of(folder);
     if (folder == made_) made_.clear();

@@ -1,5 +1,5 @@
 #pragma once
-/// A file that is written under a name of its own and then takes its place at once.
+/// Files that are written under a temporary name and then renamed into place.
 
 #include <filesystem>
 #include <string>
@@ -7,37 +7,37 @@
 
 namespace base {
 
-/// Who may read a file: its owner alone (0600), or whoever the umask lets.
+/// Who may read a file: its owner alone (0600), or everyone whom the umask allows.
 enum class Readers { Owner, AsUmask };
 
-/// 16 random hexadecimal digits, not to be guessed.
+/// 16 random hexadecimal digits that cannot be guessed.
 std::string random_digits();
 
-/// `path` + ".tmp" + 16 random hexadecimal digits: beside `path`, and not to be guessed by others who may
-/// write there.
+/// Name for a temporary file beside `path`: `path` + ".tmp" + 16 random hexadecimal digits. Others who may
+/// write to that folder cannot guess it.
 std::filesystem::path draft_name(const std::filesystem::path& path);
 
-/// Whether `name` is `target` + ".tmp" + hexadecimal digits.
+/// True if `name` is `target` + ".tmp" + hexadecimal digits.
 bool is_draft_name(const std::string& name, const std::string& target);
 
-/// Deletes drafts of `path` that a kill left: those that no NewFile holds.
+/// Deletes drafts of `path` that a killed process left behind, that is, drafts that no NewFile has locked.
 void remove_stale_drafts(const std::filesystem::path& path);
 
-/// base::Error unless a file can be put at `path`: a file stands there or nothing, and no device or the like,
-/// which the file would replace; in a folder that one may write to, or may make. Makes nothing.
+/// base::Error unless a file can be written to `path`: `path` is a regular file or does not exist (a device,
+/// pipe or folder is refused), and its folder is writable or can be created. Creates nothing.
 void check_output(const std::filesystem::path& path);
 
-/// The same of files in a folder that is there or is to be made.
+/// The same check for files in a folder that exists or will be created.
 void check_output_folder(const std::filesystem::path& folder);
 
-/// Makes the folder that `path` is to stand in, with those above it, unless it is there; returns the topmost
-/// that was made, empty where none was. base::Error names `path`.
+/// Creates the folder of `path` and its missing parents. Returns the topmost folder created; empty if none
+/// was. base::Error names `path`.
 std::filesystem::path make_folder_of(const std::filesystem::path& path);
 
-/// A new file beside `path`. It is made for this object alone: a file or link that is already there is never
-/// written through. It goes with the object unless it was put in place, and so do the folders that had to be
-/// made for it; it is locked (flock) as long as the object lives. Errors are base::Error and name `path`;
-/// check_output() is asked first.
+/// A new file beside `path`. It is created exclusively: an existing file or link is never written through.
+/// Unless put_in_place() was called, the destructor deletes the file and the folders created for it. The file
+/// is locked (flock) as long as the object lives. Errors are base::Error and name `path`. The constructor
+/// calls check_output() first.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& path, Readers readers = Readers::AsUmask);
@@ -47,11 +47,12 @@ class NewFile {
 
   void write(std::string_view bytes);
 
-  /// Where it stands until it is put in place.
+  /// Path of the file until it is put in place.
   const std::filesystem::path& draft() const { return draft_; }
 
-  /// Syncs the file, renames it over `path` and syncs the folder, and those above it that were made. The
-  /// rights are 0600 for Readers::Owner, else those of the file that stood there, else what the umask leaves.
+  /// Syncs the file, renames it over `path`, and syncs its folder and any folders created above it. The
+  /// permissions are 0600 for Readers::Owner, else those of the file replaced, else those that the umask
+  /// leaves.
   void put_in_place();
 
  private:
@@ -59,13 +60,13 @@ class NewFile {
   [[noreturn]] void fail(const std::string& step) const;
 
   std::filesystem::path path_, draft_;
-  std::filesystem::path made_;  ///< topmost folder made for it; empty: none, or the file is in place
+  std::filesystem::path made_;  ///< topmost folder created; empty if none or once the file is in place
   Readers readers_;
   int fd_ = -1;
 };
 
-/// Waits for, and holds, the lock of the file at `path`: a file beside it, `path` + ".lock", which stays. For
-/// what is read and replaced by several programs. Errors are base::Error.
+/// Waits for and holds a lock for the file at `path`, for files that several programs read and replace. The
+/// lock is a file beside it, `path` + ".lock", which is not deleted. Errors are base::Error.
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& path);

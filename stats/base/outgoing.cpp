@@ -19,7 +19,7 @@ bool is_file_name(const std::string& name) {
          name.find_first_not_of(name_letters) == std::string::npos;
 }
 
-/// Bytes that the character beginning with `first` has, as its first byte says.
+/// Length in bytes of a character that begins with `first`.
 std::size_t wished_length(unsigned char first) {
   if (first < 0xC2 || first > 0xF4) return 1;
   return first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;

@@ -9,7 +9,7 @@ namespace {
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
-/// U+0080 to U+009F are C2 80 to C2 9F.
+/// U+0080 to U+009F are encoded as C2 80 to C2 9F.
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1) return first < 0x20 || first == 0x7F;
@@ -57,7 +57,7 @@ bool is_plain_line(std::string_view text) {
 
 std::string shortened(std::string_view value, std::size_t most_bytes) {
   if (value.size() <= most_bytes) return plain(value);
-  // Whole characters: what continues one goes with it.
+  // Cuts between characters: continuation bytes stay with their character.
   std::size_t head = most_bytes / 2, tail = value.size() - most_bytes / 2;
   while (head > 0 && continues(value[head])) --head;
   while (tail < value.size() && continues(value[tail])) ++tail;

@@ -1,5 +1,5 @@
 #pragma once
-/// Texts that come from outside: whether they are UTF-8, and how they stand in a message.
+/// Untrusted text: UTF-8 checks and display in messages.
 
 #include <cstddef>
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace base {
 
-/// Bytes of the character that begins `text`, or 0 when that is not UTF-8 (RFC 3629: no overlong forms, no
-/// surrogates, nothing above U+10FFFF) or `text` is empty.
+/// Number of bytes of the first character of `text`, or 0 if that is not UTF-8 (RFC 3629: no overlong forms,
+/// no surrogates, nothing above U+10FFFF) or `text` is empty.
 std::size_t utf8_length(std::string_view text);
 
-/// Whether all of it is UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F): a line that
-/// every file and terminal takes as it is.
+/// True if all of it is UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F), so that every
+/// file and terminal shows it unchanged.
 bool is_plain_line(std::string_view text);
 
-/// A user's value as a message shows it: what is no character of a plain line is '?', and where it has more
-/// than `most_bytes`, its middle gives way to the number of its bytes.
+/// A user's value for display in a message: characters that is_plain_line() would refuse become '?'. If it
+/// has more than `most_bytes`, its middle is replaced by its length in bytes.
 std::string shortened(std::string_view value, std::size_t most_bytes = 120);
 
-/// The words one after another, with ", " between them.
+/// The words, separated by ", ".
 std::string joined(const std::vector<std::string>& words);
 
 /// The shortest text that reads back to the same double: "0.1", "1e-05".

@@ -1,6 +1,7 @@
 #pragma once
-/// Checked reading of TOML: every key is asked for once with its type and range; what nobody asked for is an
-/// error. Errors are base::Error at file:line:column. toml++ itself is seen by toml.cpp alone.
+/// Checked reading of TOML: the reader asks for every key once with its type and range; a key that was not
+/// asked for is an error. Errors are base::Error at file:line:column. toml++ itself is included only by its
+/// implementation (toml_parser.hpp).
 
 #include <cstdint>
 #include <filesystem>
@@ -24,26 +25,26 @@ inline constexpr Range any{};
 inline constexpr Range positive{std::numeric_limits<double>::min()};
 inline constexpr Range non_negative{0.0};
 
-/// What a reader asked for under one key.
+/// How a reader asked for one key.
 struct AskedKey {
   std::string type;  ///< "number", "whole number", "true or false", "text", "list of numbers", "list of
-                     ///< texts", "table" or "tables"; empty: only whether the key is there
+                     ///< texts", "table" or "tables"; empty: only its presence was asked for
   std::optional<Range> range;        ///< of numbers
-  std::vector<std::string> choices;  ///< of a text
-  std::string fallback;              ///< for an absent key, as TOML writes it; empty: none
+  std::vector<std::string> choices;  ///< allowed texts
+  std::string fallback;              ///< value for an absent key, as TOML writes it; empty: none
 };
 
-/// A range as messages show it: "[0, 1]", "(0, inf]".
+/// A range as shown in messages: "[0, 1]", "(0, inf]".
 std::string range_text(Range range);
 
-/// A table of a TOML document. Copies share the document and the record of what was read.
+/// A table of a TOML document. Copies share the document and the record of the keys asked for.
 class TomlTable {
  public:
   bool has(std::string_view key) const;
-  /// True when the key is there and holds text: for keys that take a word or a number.
+  /// True if the key is present and holds text: for keys that take a word or a number.
   bool is_text(std::string_view key) const;
 
-  /// The value of a key; an error when it is absent, of another type, not finite or out of range.
+  /// The value of a key. An error if it is absent, of another type, not finite or out of range.
   double number(std::string_view key, Range range = any) const;
   std::int64_t integer(std::string_view key, Range range = any) const;
   bool boolean(std::string_view key) const;
@@ -54,12 +55,12 @@ class TomlTable {
   std::vector<double> numbers(std::string_view key, std::size_t size = 0, Range range = any) const;
   std::vector<std::string> strings(std::string_view key) const;
   TomlTable table(std::string_view key) const;
-  /// Its keys, in the order of the file where the table stands on one line.
+  /// The table's keys; for a table written on one line, in the order of the file.
   std::vector<std::string> keys() const;
   /// [[key]]: an array of tables; empty when absent.
   std::vector<TomlTable> tables(std::string_view key) const;
 
-  /// The same with a value for an absent key.
+  /// The same with a default for an absent key.
   double number_or(std::string_view key, double fallback, Range range = any) const;
   std::int64_t integer_or(std::string_view key, std::int64_t fallback, Range range = any) const;
   bool boolean_or(std::string_view key, bool fallback) const;
@@ -67,19 +68,19 @@ class TomlTable {
   std::string choice_or(std::string_view key, const std::string& fallback,
                         const std::vector<std::string>& allowed) const;
 
-  /// An error at this key (or at the table, when the key is empty) with the mend given.
+  /// Throws an error at this key (or at the table, if the key is empty) with the fix given.
   [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& mend) const;
 
   /// The same at element `index` of the list or [[tables]] under this key.
   [[noreturn]] void fail_at(std::string_view key, std::size_t index, const std::string& problem,
                             const std::string& mend) const;
 
-  /// What was asked for so far, here and below, by dotted name; all tables of a [[list]] are one, without
-  /// their indices. So a reference of a format can be held against its reader.
+  /// The keys asked for so far, in this table and below, by dotted name. All tables of a [[list]] count as
+  /// one, without indices. Tests use this to compare a format's reference with its reader.
   std::map<std::string, AskedKey> asked() const;
 
-  /// Call once on the root, when all was read: the first key that nobody asked for is an error that names the
-  /// known ones.
+  /// Call once on the root after reading everything: an error at the first key that was not asked for, naming
+  /// the known keys.
   void finish() const;
 
   struct State;
@@ -89,7 +90,7 @@ class TomlTable {
   std::shared_ptr<State> state_;
 };
 
-/// Parses text; `name` stands for the file in messages.
+/// Parses text; messages use `name` as the file name.
 TomlTable parse_toml(std::string_view text, const std::string& name);
 /// Reads a file of at most most_toml_bytes (toml_text.hpp).
 TomlTable read_toml(const std::filesystem::path& path);

@@ -1,8 +1,8 @@
 #pragma once
-/// toml++, seen by toml.cpp, what stands behind it and its tests alone. Version 3.3 asserts of a document
-/// what broken ones do not keep
-/// ("here begins a key"), and goes on to a proper error where such an assertion is empty. So they are: as
-/// assertions they would end the program, and as promises to the compiler (clang) be undefined behaviour.
+/// Includes toml++; only for toml.cpp, the files behind it, and their tests. Version 3.3 asserts properties
+/// that malformed documents violate ("here begins a key"); with assertions disabled it goes on to report a
+/// proper error. So they are disabled here: enabled, they would end the program, and as assumptions for the
+/// compiler (clang) they would be undefined behaviour.
 
 #pragma push_macro("NDEBUG")
 #undef NDEBUG

@@ -11,9 +11,9 @@ namespace base {
 
 namespace {
 
-constexpr std::size_t longest_problem = 400;  // bytes: it may quote a value of any length
+constexpr std::size_t longest_problem = 400;  // bytes; the text may quote a value of any length
 
-/// "known keys here: a, b", and behind it the one that is nearest to `key`.
+/// "known keys here: a, b", followed by the one nearest to `key`.
 std::string known_keys(std::string_view key, const std::map<std::string, AskedKey, std::less<>>& asked) {
   std::vector<std::string> names;
   for (const auto& [name, what] : asked) names.push_back(name);

@@ -1,5 +1,5 @@
 #pragma once
-/// What stands behind a TomlTable; seen by toml.cpp alone.
+/// Implementation of TomlTable, for toml.cpp and toml_state.cpp.
 
 #include <map>
 #include <memory>
@@ -16,10 +16,10 @@ namespace base {
 /// "file:line:column".
 std::string place_of(const std::string& file, const toml::source_region& region);
 
-/// A number as messages show it.
+/// A number as shown in messages.
 std::string shown(double value);
 
-/// A table of the document, what was asked of it, and the tables below it that were asked for.
+/// A table of the document, the keys asked for, and the child tables asked for.
 struct TomlTable::State {
   using Asked = std::map<std::string, AskedKey, std::less<>>;
 
@@ -33,7 +33,7 @@ struct TomlTable::State {
   std::string name(std::string_view key) const;
   [[noreturn]] void fail(const toml::node* node, std::string_view key, const std::string& problem,
                          const std::string& mend) const;
-  /// What was asked for is known to finish() from then on.
+  /// Looks up a key and records that it was asked for, which finish() checks.
   const toml::node* find(std::string_view key) const;
   const toml::node& need(std::string_view key) const;
   void note(std::string_view key, const char* type, std::optional<Range> range = {},

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-/// Walks over a text once, knowing as much of the grammar as tells keys, values, texts and comments apart.
-/// Where the text breaks the grammar the parser stops, so what the walk makes of the rest does not matter.
+/// Scans a text once, with just enough grammar to tell keys, values, quoted texts and comments apart. The
+/// parser stops where the text breaks the grammar, so the result for the rest does not matter.
 class Walk {
  public:
   Walk(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -43,10 +43,10 @@ class Walk {
   }
 
  private:
-  /// What is open: a list, a table on one line, or (at the bottom) the document.
+  /// An open list, an inline table, or (at the bottom) the document.
   struct Bracket {
     char kind;
-    int depth;  // of keys and brackets around what it holds
+    int depth;  // nesting depth of keys and brackets around its contents
   };
 
   void step(char c) {
@@ -88,7 +88,7 @@ class Walk {
     header_ = false;
   }
 
-  /// A header starts from the document, not from the header before it.
+  /// A header counts its levels from the document, not from the header before it.
   void open_header() {
     header_ = true;
     depth_ = 1;
@@ -118,7 +118,7 @@ class Walk {
     end_value();
   }
 
-  /// Whatever comes before the next comma, bracket or line belongs to no value.
+  /// Text before the next comma, bracket or line break belongs to no value.
   void end_value() {
     key_ = false;
     value_ = true;
@@ -132,7 +132,7 @@ class Walk {
 
   void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
-  /// toml++ 3.3 looks at what stands close behind a number or date as if it were a part of it.
+  /// toml++ 3.3 takes text directly after a number or date as a part of it.
   void check_value_is_alone(char c) const {
     if (!key_ && (c == '=' || (value_ && std::string_view("\"'[{").find(c) != std::string_view::npos)))
       fail(std::string("is a ") + c + " behind a value", "put a comma or the end of the line between them");
@@ -153,7 +153,7 @@ class Walk {
     at_ += 3;
     while (at_ < text_.size() && text_.substr(at_, 3) != three) skip_in_text(quote, true);
     at_ = std::min(at_ + 3, text_.size());
-    // Up to two quotes may stand before the closing three.
+    // Up to two quotes may precede the closing three.
     for (int i = 0; i < 2 && at_ < text_.size() && text_[at_] == quote; ++i) ++at_;
   }
 
@@ -202,7 +202,7 @@ class Walk {
   std::vector<Bracket> open_;
   int depth_ = 0, header_depth_ = 0;
   bool key_ = true, header_ = false;
-  bool value_ = false;  // in a value's place: it has begun
+  bool value_ = false;  // a value is expected and has begun
 };
 
 }  // namespace

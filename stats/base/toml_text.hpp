@@ -1,6 +1,6 @@
 #pragma once
-/// What a TOML text must be before the parser may see it. toml++ 3.3 recurses once a level and takes letters
-/// outside ASCII for spaces or undefined behaviour where no text in quotes and no comment stands.
+/// Checks of a TOML text before it is parsed. toml++ 3.3 recurses once per level of nesting. Outside quotes
+/// and comments it takes non-ASCII letters for spaces or runs into undefined behaviour.
 
 #include <cstddef>
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace base {
 
-/// Largest text that is parsed, in bytes: a hundred times the longest protocol.
+/// Largest text that is parsed, in bytes: a hundred times the length of the longest protocol.
 inline constexpr std::size_t most_toml_bytes = 1u << 20;
-/// Table headers, dotted keys, lists and tables on one line within each other, in all.
+/// Deepest nesting, counting table headers, dotted keys, lists and inline tables together.
 inline constexpr int most_toml_levels = 64;
 
-/// base::Error at `name`:line:column, columns counted in characters, when the text is too long; is not UTF-8;
-/// holds a control character; nests deeper than most_toml_levels; has a character outside ASCII elsewhere
-/// than in quotes or a comment, or right after a line-ending backslash; opens a quote right behind a key or
-/// value; or escapes a NUL. All else is left to the parser.
+/// base::Error at `name`:line:column (columns count characters) if the text is too long; is not UTF-8; holds
+/// a control character; nests deeper than most_toml_levels; has a non-ASCII character outside quotes and
+/// comments, or right after a line-ending backslash; opens a quote directly after a key or value; or escapes
+/// a NUL. The parser checks all else.
 void check_toml_text(std::string_view text, const std::string& name);
 
 }  // namespace base

@@ -1,5 +1,5 @@
 #pragma once
-/// Times in UTC as texts, such as "2026-01-31T12:00:00Z", and what tests set them by.
+/// Times in UTC as texts, such as "2026-01-31T12:00:00Z", and a fixed clock for tests.
 
 #include <cstdint>
 #include <optional>
@@ -7,20 +7,20 @@
 
 namespace base {
 
-/// ViP-Lab is younger: a clock that tells an earlier time is wrong.
+/// ViP-Lab did not exist before this time: a clock that shows an earlier time is wrong.
 inline constexpr const char* before_vip_lab_utc = "2024-01-01T00:00:00Z";
 
-/// The day on which this program was built, at its first second.
+/// The day on which this program was built, at 00:00:00.
 std::string built_utc();
 
 /// The type, compiler and switches of this build, as --version prints them.
 std::string build_options();
 
-/// Seconds since 1970; none: not a time that utc_now() writes.
+/// Seconds since 1970. Empty if the text is not a time in the format of utc_now().
 std::optional<std::int64_t> seconds_of_utc(const std::string& utc);
 std::string utc_of_seconds(std::int64_t seconds);
 
-/// For tests alone: while it lives, utc_now() gives this time in all threads.
+/// For tests: while it lives, utc_now() returns this time in all threads.
 class FixedUtc {
  public:
   explicit FixedUtc(const std::string& utc);

@@ -16,12 +16,12 @@ constexpr double most_pixels_per_degree = 200;
 // Section 4.3 and Table 1 of the paper.
 constexpr double colour_power = 0.7, knee_share = 0.4, knee_error = 0.95;
 constexpr double feature_power = 0.5, feature_width_deg = 0.082;
-/// Reference white of D65, that of the matrix below.
+/// Reference white D65, as of the matrix below.
 constexpr std::array<double, 3> white{0.950428545, 1.0, 1.088900371};
 
 using Colour = std::array<double, 3>;
 
-/// One number a pixel.
+/// One number per pixel.
 struct Plane {
   int width = 0, height = 0;
   std::vector<double> values;
@@ -37,7 +37,7 @@ Plane plane_like(const ImageView& image) {
   return {image.width, image.height, std::vector<double>(image.pixels())};
 }
 
-/// Weights of a window of 2 radius + 1 px a side.
+/// Weights of a square window with sides of 2 radius + 1 px.
 struct Kernel {
   int radius = 0;
   std::vector<double> weights;
@@ -51,7 +51,7 @@ Kernel make_kernel(int radius, const Weight& weight) {
   return out;
 }
 
-/// Positive weights sum to 1 and negative ones, if any, to -1.
+/// Scales positive weights to sum to 1, and negative ones, if any, to -1.
 Kernel balanced(Kernel kernel) {
   double above = 0, below = 0;
   for (const double weight : kernel.weights) (weight > 0 ? above : below) += weight;
@@ -80,7 +80,7 @@ double linear(std::uint8_t encoded) {
   return c > 0.04045 ? std::pow((c + 0.055) / 1.055, 2.4) : c / 12.92;
 }
 
-/// CIE XYZ over the white of linear sRGB.
+/// CIE XYZ of linear sRGB, relative to the white.
 Colour relative_xyz(const Colour& rgb) {
   return {(10135552 * rgb[0] + 8788810 * rgb[1] + 4435075 * rgb[2]) / 24577794 / white[0],
           (2613072 * rgb[0] + 8788810 * rgb[1] + 887015 * rgb[2]) / 12288897 / white[1],
@@ -94,15 +94,15 @@ Colour linear_rgb(const Colour& relative) {
           0.055639423 * x - 0.204011202 * y + 1.057148933 * z};
 }
 
-/// Lightness and two opponent colours of three numbers that are 1 for white: YCxCz of relative XYZ, L*a*b* of
-/// their roots.
+/// Lightness and two opponent colours of three numbers that are 1 for white: YCxCz from relative XYZ, L*a*b*
+/// from their roots.
 Colour opponent(const Colour& c) { return {116 * c[1] - 16, 500 * (c[0] - c[1]), 200 * (c[1] - c[2])}; }
 Colour from_opponent(const Colour& c) {
   const double y = (c[0] + 16) / 116;
   return {y + c[1] / 500, y, y - c[2] / 200};
 }
 
-/// L*a*b* with opponent colours that fade in the dark (Hunt).
+/// L*a*b* with opponent colours that fade in the dark (Hunt adjustment).
 Colour hunt_lab(const Colour& rgb) {
   constexpr double delta = 6.0 / 29;
   Colour c = relative_xyz(rgb);
@@ -137,7 +137,7 @@ Kernel sensitivity_kernel(const Sensitivity& s, double pixels_per_degree) {
   return balanced(std::move(out));
 }
 
-/// Lengths of the gradients, of edges (order 1) or points (order 2), of a plane.
+/// Magnitudes of a plane's gradients, for edges (order 1) or points (order 2).
 Plane gradient(const Plane& lightness, double pixels_per_degree, int order) {
   const double sd = 0.5 * feature_width_deg * pixels_per_degree;
   const auto weight = [&](int along, int across) {
@@ -151,7 +151,7 @@ Plane gradient(const Plane& lightness, double pixels_per_degree, int order) {
   return out;
 }
 
-/// What an eye makes of a picture.
+/// A picture as filtered by the eye.
 struct Seen {
   std::vector<Colour> colours;  ///< filtered, in hunt_lab
   Plane edges, points;
@@ -178,7 +178,7 @@ Seen seen(const ImageView& image, double pixels_per_degree) {
   return out;
 }
 
-/// A distance of colours, 0 to 1: large ones are drawn together.
+/// Maps a distance of colours to 0 to 1; large distances are compressed.
 double colour_error(double distance) {
   static const double most = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), colour_power);
   const double error = std::pow(distance, colour_power), knee = knee_share * most;

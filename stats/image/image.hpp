@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures and masks as the image metrics take them.
+/// Pictures and masks for the image metrics.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,8 +7,7 @@
 
 namespace stats {
 
-/// Rows of pixels, three bytes each: red, green, blue as encoded for sRGB displays. The bytes belong to the
-/// caller.
+/// Rows of pixels, three bytes each: red, green, blue, encoded for sRGB displays. The caller owns the bytes.
 struct ImageView {
   int width = 0, height = 0;
   std::span<const std::uint8_t> rgb;  ///< width x height x 3
@@ -16,13 +15,13 @@ struct ImageView {
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-/// One byte a pixel; others than 0 belong to the mask. Empty stands for the whole picture.
+/// One byte per pixel; nonzero pixels belong to the mask. Empty means the whole picture.
 using MaskView = std::span<const std::uint8_t>;
 
 /// A metric over the pixels of a mask.
 struct ImageScore {
   double value = 0;        ///< NaN when the mask is empty
-  std::size_t pixels = 0;  ///< over which it was taken
+  std::size_t pixels = 0;  ///< pixels counted
 };
 
 /// Throws std::invalid_argument unless both pictures have the same positive size and all spans fit it.

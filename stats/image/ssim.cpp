@@ -32,9 +32,9 @@ std::vector<double> luma(const ImageView& image) {
   return out;
 }
 
-/// Rows of the map that one thread takes at a time; it filters ten more along x.
+/// Rows of the map that one thread takes at a time; along x it filters ten rows more.
 constexpr int band_rows = 24;
-/// What the window averages: x, y, x^2, y^2 and x y.
+/// The quantities that the window averages: x, y, x^2, y^2 and x y.
 constexpr int quantities = 5;
 
 /// The five quantities of a row of lumas x and y, averaged along the row: out[q * width + i].
@@ -65,7 +65,7 @@ void index_row(const double* mean, int width, double* out) {
     const double variance_x = mean[2 * width + i] - mx * mx;
     const double variance_y = mean[3 * width + i] - my * my;
     const double covariance = mean[4 * width + i] - mx * my;
-    // C3 = C2 / 2 folds contrast and structure into one factor (Eq. 13).
+    // With C3 = C2 / 2, contrast and structure combine into one factor (Eq. 13).
     out[i] = (2 * mx * my + c1) * (2 * covariance + c2) /
              ((mx * mx + my * my + c1) * (variance_x + variance_y + c2));
   }

@@ -14,7 +14,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// p of rank i = 1, 2 ... times factor(i), capped at 1.
+/// Multiplies the ith smallest p (i = 1, 2 ...) by factor(i); capped at 1.
 Values scaled(const Values& sorted, const std::function<double(double)>& factor) {
   Values out(sorted.size());
   for (std::size_t i = 0; i < sorted.size(); ++i)
@@ -22,13 +22,13 @@ Values scaled(const Values& sorted, const std::function<double(double)>& factor)
   return out;
 }
 
-/// None smaller than one before it.
+/// Raises each value to the largest before it.
 Values step_down(Values values) {
   for (std::size_t i = 1; i < values.size(); ++i) values[i] = std::max(values[i], values[i - 1]);
   return values;
 }
 
-/// None larger than one after it.
+/// Lowers each value to the smallest after it.
 Values step_up(Values values) {
   for (std::size_t i = values.size() - 1; i-- > 0;) values[i] = std::min(values[i], values[i + 1]);
   return values;

@@ -3,7 +3,7 @@
 
 namespace stats {
 
-/// Less: the parameter lies below its value under the null. Greater: above it.
+/// Less: the parameter is below its null value. Greater: it is above it.
 enum class Alternative { TwoSided, Less, Greater };
 
 }  // namespace stats

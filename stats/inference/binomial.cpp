@@ -19,8 +19,8 @@ struct Count {
   double k, n, p, q;  ///< q = 1 - p
 };
 
-/// The last whole number in [low, high] at which `holds` is true; it holds at first, then no more. low - 1
-/// when it never does.
+/// The largest whole number in [low, high] for which `holds` is true; low - 1 if it never is. `holds` must be
+/// true up to some number and false beyond it.
 template <class Predicate>
 double last_where(double low, double high, const Predicate& holds) {
   double good = low - 1;
@@ -98,7 +98,7 @@ Interval agresti_coull(double k, double n, double z) {
   return {share - reach, share + reach};
 }
 
-/// The side that a one-sided interval leaves open.
+/// Opens the interval on the side that a one-sided alternative does not bound.
 Interval one_sided(Interval both, Alternative side) {
   if (side == Alternative::Less) both[0] = 0;
   if (side == Alternative::Greater) both[1] = 1;

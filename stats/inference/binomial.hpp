@@ -1,5 +1,5 @@
 #pragma once
-/// The exact test of a proportion, its intervals and effect sizes: the 2AFC answers of Task 2.
+/// The exact test of a proportion, with intervals and effect sizes, for the 2AFC answers of Task 2.
 
 #include <array>
 
@@ -17,10 +17,10 @@ struct BinomialTest {
   double confidence = 0.95;
   double estimate = 0;  ///< k / n
   /// Exact. Two-sided: the sum of all point probabilities that do not exceed the observed one (by more than
-  /// 1e-7 of it), as Fisher's method has it, not the doubled tail. A p below the range of double is given as
-  /// the smallest positive double, because it is not zero.
+  /// 1e-7 of it), as in Fisher's method; not the doubled tail. A p below the range of double is given as the
+  /// smallest positive double, since it is not zero.
   double p = 0;
-  /// Mid-p: half of the observed point's own probability is left out; two-sided it is twice the smaller tail
+  /// Mid-p: only half of the observed point's probability counts; two-sided it is twice the smaller tail
   /// (Lancaster 1961; Berry and Armitage 1995).
   double p_mid = 0;
   std::array<double, 2> clopper_pearson{};  ///< exact (Clopper and Pearson 1934)
@@ -37,7 +37,7 @@ struct BinomialTest {
 Result<BinomialTest> binomial_test(double k, double n, double p0 = 0.5,
                                    Alternative alternative = Alternative::TwoSided, double confidence = 0.95);
 
-/// The p-value alone. std::invalid_argument where binomial_test refuses.
+/// Only the p-value. std::invalid_argument if binomial_test refuses.
 double binomial_p(double k, double n, double p0 = 0.5, Alternative alternative = Alternative::TwoSided);
 
 }  // namespace stats

@@ -39,7 +39,8 @@ double variance_of(std::span<const double> values) {
   return moment(values, 2) / (static_cast<double>(values.size()) - 1);
 }
 
-/// Type 6 of Hyndman and Fan 1996: the order statistic at p (N + 1); the ends beyond the first and the last.
+/// Type 6 of Hyndman and Fan 1996: the order statistic at position p (N + 1), clamped to the first and the
+/// last.
 double quantile_type6(std::span<const double> ascending, double p) {
   const double at =
       std::clamp(p * (static_cast<double>(ascending.size()) + 1), 1.0, static_cast<double>(ascending.size()));
@@ -48,7 +49,7 @@ double quantile_type6(std::span<const double> ascending, double p) {
   return std::lerp(ascending[low - 1], ascending[high - 1], at - static_cast<double>(low));
 }
 
-/// The same place, interpolated on the normal scale (Davison and Hinkley 1997, Eq. 5.8).
+/// The same position, interpolated on the normal scale (Davison and Hinkley 1997, Eq. 5.8).
 double quantile_normal(std::span<const double> ascending, double p) {
   const double spaces = static_cast<double>(ascending.size()) + 1, at = p * spaces;
   if (at <= 1) return ascending.front();
@@ -59,15 +60,15 @@ double quantile_normal(std::span<const double> ascending, double p) {
   return std::lerp(ascending[index - 1], ascending[index], (normal_quantile(p) - before) / (after - before));
 }
 
-/// What the resamples were drawn from.
+/// The sample without missing values, its estimate, and the jackknife's acceleration.
 struct Resampled {
   Values x;
   int n_missing = 0;
   double estimate = 0, acceleration = 0;
 };
 
-/// No interval of resamples leaves the range of the values, which holds the centre of a symmetric
-/// distribution with this chance. Empty when that is enough.
+/// Why the sample is too small; empty if it is not. No interval from resamples exceeds the range of the
+/// values, which covers the centre of a symmetric distribution with probability 1 - 2^(1 - n).
 std::string too_few(std::size_t n, double confidence) {
   const double most = 1 - std::exp2(1 - static_cast<double>(n));
   if (most >= confidence) return {};
@@ -106,7 +107,8 @@ Result<Resampled> prepare(std::span<const double> x, const Statistic& statistic,
   return out;
 }
 
-/// Empty when all resamples lie on one side, or the acceleration turns the tails round.
+/// Empty if all resamples lie on one side of the estimate, or if the acceleration is so large that it
+/// reverses the tails.
 std::optional<BcaInterval> bca_interval(std::span<const double> ascending, double share_below,
                                         double acceleration, double confidence) {
   if (!(share_below > 0 && share_below < 1)) return std::nullopt;
@@ -137,7 +139,7 @@ Result<BootstrapInterval> summarise(const Resampled& sample, Values estimates, d
                         .acceleration = sample.acceleration};
   std::sort(estimates.begin(), estimates.end());
   const auto total = static_cast<double>(estimates.size());
-  // Another order of summation must not part a resample from the estimate that it equals.
+  // Rounding from another order of summation must not separate a resample from an equal estimate.
   const double rounding = 16 * std::numeric_limits<double>::epsilon() * std::abs(sample.estimate);
   const auto first = std::lower_bound(estimates.begin(), estimates.end(), sample.estimate - rounding);
   const auto last = std::upper_bound(first, estimates.end(), sample.estimate + rounding);

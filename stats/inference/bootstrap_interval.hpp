@@ -1,6 +1,6 @@
 #pragma once
 /// Bootstrap intervals of any statistic of one sample (Efron 1987; Davison and Hinkley 1997, chapter 5). For
-/// paired data give the differences.
+/// paired data pass the differences.
 
 #include <array>
 #include <functional>
@@ -15,12 +15,13 @@ namespace stats {
 
 using Statistic = std::function<double(std::span<const double>)>;
 
-/// A bias-corrected, accelerated interval for one way of counting resamples equal to the estimate.
+/// A bias-corrected, accelerated (BCa) interval, for one way of counting resamples equal to the estimate.
 struct BcaInterval {
   double z0 = 0;                          ///< bias correction
-  std::array<double, 2> probabilities{};  ///< quantiles of the resamples that make the interval
-  std::array<double, 2> ci{};             ///< linear between order statistics (type 7)
-  std::array<double, 2> ci_normal{};      ///< between order statistics on the normal scale, as R's boot.ci
+  std::array<double, 2> probabilities{};  ///< probabilities of the resamples' quantiles that bound the
+                                          ///< interval
+  std::array<double, 2> ci{};             ///< interpolated linearly between order statistics (type 7)
+  std::array<double, 2> ci_normal{};      ///< interpolated on the normal scale, as in R's boot.ci
 };
 
 struct BootstrapInterval {
@@ -30,28 +31,27 @@ struct BootstrapInterval {
   double estimate = 0;      ///< of the sample
   double mean = 0, se = 0;  ///< of the resamples (divisor N - 1)
   double acceleration = 0;  ///< from the jackknife
-  BcaInterval bca{};        ///< the interval to report; ties count half, which is right for coarse statistics
-  /// Only resamples strictly below the estimate count, as in R's boot. Empty when there are none, or only
-  /// such.
+  BcaInterval bca{};  ///< the interval to report; resamples equal to the estimate count half, as suits coarse
+                      ///< statistics
+  /// Counts only resamples strictly below the estimate, as R's boot does. Empty if no or all resamples are
+  /// below.
   std::optional<BcaInterval> bca_strict{};
   std::array<double, 2> percentile{};        ///< type 7 quantiles
   std::array<double, 2> percentile_type6{};  ///< type 6 quantiles (p (N + 1))
   std::array<double, 2> basic{};             ///< 2 estimate - quantiles on the normal scale
 };
 
-/// Resamples the values (seeded; equal on every machine). The statistic must be defined for any sample of n
-/// or n - 1 values drawn from x; resamples for which it is not finite make the result refused. NaN in x =
-/// missing.
-/// Refused: fewer than two values, so few that even their range holds the centre less often than the
-/// confidence asks (1 - 2^(1 - n): below 6 values at .95), infinite values, all values equal, all resamples
-/// on one side of the estimate, the same estimate in every resample or without any one value (acceleration
-/// undefined). std::invalid_argument when the confidence is outside (0, 1) or there are fewer than two
-/// resamples.
+/// Resamples the values (seeded; the same on every machine). The statistic must be defined for any sample of
+/// n or n - 1 values drawn from x; the result is refused if it is not finite for a resample. NaN in x =
+/// missing. Refused: fewer than two values; so few that even their range covers the centre less often than
+/// the confidence (1 - 2^(1 - n): below 6 values at .95); infinite values; all values equal; all resamples on
+/// one side of the estimate; the same estimate in every resample or without any one value (acceleration
+/// undefined). std::invalid_argument if the confidence is outside (0, 1) or resamples < 2.
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              const BootstrapOptions& options = {});
 
-/// The same with resamples given as indices into x, one resample after the other, each of x.size() indices.
-/// x must have no missing values (std::invalid_argument), nor an index outside.
+/// The same with given resamples: indices into x, one resample after the other, each of x.size() indices.
+/// std::invalid_argument if x has missing values or an index is out of range.
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              std::span<const int> indices, double confidence = 0.95);
 

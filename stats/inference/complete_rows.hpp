@@ -1,5 +1,5 @@
 #pragma once
-/// Participants by conditions, without those who miss a value.
+/// A table of participants by conditions, without participants who lack a value.
 
 #include <span>
 #include <string>

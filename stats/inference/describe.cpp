@@ -35,14 +35,15 @@ Wide median_of(std::vector<Wide> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) * Wide(0.5);
 }
 
-/// About the median as a double: at a large offset its rounding shows, as in every program that reports it.
+/// Deviations are from the median rounded to double, as in other programs; at a large offset that rounding is
+/// visible.
 double median_absolute_deviation(const std::vector<Wide>& values, double median) {
   std::vector<Wide> deviations;
   for (const auto& v : values) deviations.push_back(abs(v - median));
   return median_of(std::move(deviations)).value();
 }
 
-/// Skewness, kurtosis and lag-1 autocorrelation: ratios, so free of the scale.
+/// Skewness, kurtosis and lag-1 autocorrelation. As ratios they do not depend on the scale.
 void fill_shape(Description& out, const std::vector<Wide>& values, const Moments& m) {
   Wide third, fourth, lagged;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -105,7 +106,7 @@ Result<BoxPlot> box_plot(std::span<const double> values) {
   out.q25 = d->q25;
   out.q75 = d->q75;
   out.n = d->n;
-  // A value on the fence is within: means of whole answers fall on it, but for their rounding.
+  // A value on the fence counts as inside, up to rounding: means of whole answers often fall exactly on it.
   const double rounding =
       16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(d->q25), std::abs(d->q75));
   const double reach = 1.5 * (d->q75 - d->q25) + rounding;

@@ -1,5 +1,5 @@
 #pragma once
-/// What a sample looks like. NaN = missing: dropped and counted.
+/// Descriptive statistics of a sample. NaN = missing: dropped and counted.
 
 #include <cstddef>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace stats {
 
-/// Sums run in double-double about the sample's own level, so an offset of 1e12 or a scale of 1e-150 costs no
-/// digits. Empty fields are not defined for the sample.
+/// Sums are computed in double-double about the sample's own level, so an offset of 1e12 or a scale of 1e-150
+/// costs no digits. Empty fields are undefined for the sample.
 struct Description {
   std::size_t n = 0;          ///< values used
   std::size_t n_missing = 0;  ///< values left out as NaN
@@ -34,7 +34,7 @@ enum class QuantileType {
 };
 
 /// p quantile, 0 <= p <= 1 (std::invalid_argument), by linear interpolation of order statistics (Hyndman and
-/// Fan 1996). Refused as in describe.
+/// Fan 1996). Refused as describe() is.
 Result<double> quantile(std::span<const double> values, double p, QuantileType type = QuantileType::Linear);
 
 /// Points of a box plot: quartiles of type 7, whiskers to the outermost values within 1.5 interquartile

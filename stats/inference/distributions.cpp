@@ -31,8 +31,8 @@ double log_normal_lower(double x) { return gsl_sf_log_erfc(-x / std::numbers::sq
 /// d log P(Z <= x) / dx.
 double normal_lower_slope(double x) { return gsl_sf_hazard(-x); }
 
-/// The integrand of P(t U - ncp >= Z), U = sqrt(chi2(df) / df), over y = log U; `sign` is -1 for the
-/// opposite tail. Its logarithm has one maximum: the slope over U falls strictly.
+/// The integrand of P(t U - ncp >= Z), U = sqrt(chi2(df) / df), over y = log U; `sign` is -1 for the opposite
+/// tail. Its logarithm has a single maximum, since its slope decreases strictly in U.
 class ChiMixture {
  public:
   ChiMixture(double t, double df, double ncp, double sign)
@@ -55,8 +55,8 @@ class ChiMixture {
     return find_root(slope, low, high);
   }
 
-  /// The trapezoidal rule out from the mode. The step resolves both the chi density (width 1/sqrt(2 df) in y)
-  /// and the normal edge (width 1/ncp).
+  /// The trapezoidal rule, outwards from the mode. The step resolves both the chi density (width 1/sqrt(2 df)
+  /// in y) and the normal edge (width 1/ncp).
   double integral() const {
     const double centre = mode();
     const double top = log_value(centre);
@@ -74,8 +74,8 @@ class ChiMixture {
   }
 
  private:
-  /// Log of the density of y at 0: log 2 + (df/2) log(df/2) - df/2 - log G(df/2), with Stirling's part of the
-  /// gamma function cancelled by hand.
+  /// Log of the density of y at 0: log 2 + (df/2) log(df/2) - df/2 - log G(df/2), with the Stirling terms of
+  /// the gamma function cancelled analytically.
   static double log_density_scale(double df) {
     return std::numbers::ln2 + 0.5 * std::log(df / 2) - 0.5 * std::log(2 * std::numbers::pi) -
            std::log(gsl_sf_gammastar(df / 2));
@@ -84,7 +84,7 @@ class ChiMixture {
   double t_, df_, ncp_, sign_, log_scale_;
 };
 
-/// P(T <= t) for ncp >> 1: the trapezoidal rule over the normal variate instead, in which the edge is wide.
+/// P(T <= t) for ncp >> 1: the trapezoidal rule over the normal variate, over which the edge is wide.
 double large_ncp_lower(double t, double df, double ncp) {
   if (t <= 0) return 0;
   constexpr double step = 0.25;
@@ -107,10 +107,11 @@ double large_ncp_upper(double t, double df, double ncp) {
   return sum;
 }
 
-/// log of p / reference, held finite for the root finder where p is zero.
+/// log of p / reference, bounded below so that the root finder gets a finite value where p is zero.
 double log_ratio(double p, double reference) { return std::max(std::log(p / reference), -1e6); }
 
-/// P(T >= |t|). The incomplete beta function of GSL turns to an approximation for large df.
+/// P(T >= |t|). For large df GSL's incomplete beta function is only an approximation, so another method is
+/// used.
 double student_tail(double t, double df) {
   constexpr double largest_for_beta = 5e4;
   t = std::abs(t);
@@ -141,9 +142,9 @@ double student_p(double t, double df, Alternative alternative) {
 
 namespace {
 
-/// p < 0.5.
+/// Requires p < 0.5.
 double solve_upper_quantile(double p, double df) {
-  // On the logarithm of t the logarithm of the tail is nearly straight far out, and smooth everywhere.
+  // Over log t, the log of the tail is nearly linear far out and smooth everywhere.
   const auto excess = [&](double log_t) { return log_ratio(student_tail(std::exp(log_t), df), p); };
   double low = -1, high = 1;
   while (excess(low) < 0) low *= 2;
@@ -159,7 +160,7 @@ double student_upper_quantile(double p, double df) {
   require(p > 0 && p < 1, "a probability must lie between 0 and 1");
   if (p > 0.5) return -student_upper_quantile(1 - p, df);
   if (p == 0.5) return 0;
-  // A table of tests of equally many people asks for the same few intervals again and again.
+  // A small cache: tables of tests with equal numbers of people ask for the same few quantiles.
   struct Known {
     double p = 0, df = 0, value = 0;
   };
@@ -192,7 +193,7 @@ std::array<double, 2> noncentrality_interval(double t, double df, double confide
   require(std::isfinite(t), "t is not finite");
   require(confidence > 0 && confidence < 1, "a confidence must lie between 0 and 1");
   const double tail = (1 - confidence) / 2;
-  // P(T >= t) rises with the noncentrality, from nothing to 1.
+  // P(T >= t) rises from 0 to 1 with the noncentrality.
   const auto bound = [&](auto probability, double direction) {
     const auto excess = [&](double ncp) { return log_ratio(probability(t, df, ncp), tail); };
     double reach = 2 + std::abs(t) / std::sqrt(df);
@@ -213,7 +214,7 @@ std::array<double, 2> noncentrality_interval(double t, double df, double confide
 double hedges_factor(double df) {
   use_gsl_codes();
   require(df > 1, "Hedges' factor needs more than one degree of freedom");
-  // G(x) / (sqrt(x) G(x - 1/2)), with Stirling's parts of both gamma functions cancelled by hand.
+  // G(x) / (sqrt(x) G(x - 1/2)), with the Stirling terms of both gamma functions cancelled analytically.
   const double x = df / 2, below = x - 0.5;
   return std::exp((x - 1) * std::log1p(0.5 / below) - 0.5) * gsl_sf_gammastar(x) / gsl_sf_gammastar(below);
 }

@@ -21,7 +21,7 @@ void require_order(const Margins& margins) {
     throw std::invalid_argument("the low margin must lie below the high one");
 }
 
-/// Both one-sided tests from the t against a difference of zero.
+/// Both one-sided tests, from the t test against a difference of zero.
 EquivalenceTest against(const PairedTTest& test, const Margins& margins, double alpha) {
   EquivalenceTest out;
   out.stderr_estimate = test.stderr_estimate;

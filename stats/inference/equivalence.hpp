@@ -1,6 +1,6 @@
 #pragma once
-/// Equivalence by paired t-tests against margins (Schuirmann 1987; Lakens 2017). Missing
-/// values, refusals and errors as in t_test.hpp.
+/// Equivalence by paired t-tests against margins (Schuirmann 1987; Lakens 2017). Missing values, refusals and
+/// errors are as in t_test.hpp.
 
 #include <array>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace stats {
 
-/// Differences inside (low, high) count as none, in the data's unit. std::invalid_argument unless low < high,
-/// both finite.
+/// Differences inside (low, high) count as equivalent; in the data's unit. std::invalid_argument unless both
+/// are finite and low < high.
 struct Margins {
   double low = -0.5, high = 0.5;
 };
@@ -23,8 +23,8 @@ struct EquivalenceTest {
   double t_upper = 0, p_upper = 0;
   double p = 0;  ///< the larger of the two: equivalence is shown when p < alpha
   std::array<double, 2>
-      ci{};           ///< of the estimate, confidence 1 - 2 alpha: equivalence when inside the margins
-  std::size_t n = 0;  ///< values, pairs, or both groups together
+      ci{};  ///< for the estimate, confidence 1 - 2 alpha; it lies inside the margins if equivalence is shown
+  std::size_t n = 0;  ///< pairs
   std::size_t n_missing = 0;
 };
 

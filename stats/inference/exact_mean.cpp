@@ -10,7 +10,7 @@ namespace stats {
 
 namespace {
 
-constexpr double largest_whole = 0x1p53;  ///< up to here doubles hold every whole number
+constexpr double largest_whole = 0x1p53;  ///< up to here a double represents every whole number exactly
 
 bool has_both(const ExactMean& x, const ExactMean& y) { return !std::isnan(x.sum) && !std::isnan(y.sum); }
 

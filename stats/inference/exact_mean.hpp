@@ -1,6 +1,6 @@
 #pragma once
-/// Means of whole numbers, kept as sum and count. Their differences are compared over a common denominator,
-/// so that equal ones tie: 1 - 2/3 and 4/3 - 1 are equal, and as doubles they are not.
+/// Means of whole numbers, stored as sum and count. Their differences are compared over a common denominator
+/// so that equal ones tie: 1 - 2/3 and 4/3 - 1 are equal, but not as doubles.
 
 #include <cstddef>
 #include <limits>
@@ -11,8 +11,8 @@
 
 namespace stats {
 
-/// value() is the double nearest to the mean, so that equal means are equal doubles; what takes ranks of
-/// means themselves (Friedman, Mann and Whitney) may take those.
+/// value() is the double nearest to the mean, so equal means are equal doubles. Ranks of the means themselves
+/// (as in Friedman's test) can use value().
 struct ExactMean {
   double sum = std::numeric_limits<double>::quiet_NaN();  ///< NaN: missing
   int count = 1;                                          ///< > 0
@@ -20,18 +20,18 @@ struct ExactMean {
   double value() const { return sum / count; }
 };
 
-/// Differences as numerators over one denominator: whole numbers where the sums are whole. Sums that are not
-/// are taken as the doubles they are.
+/// Differences as numerators over one denominator; the numerators are whole if the sums are. Other sums are
+/// taken as the doubles they are.
 struct ExactDifferences {
   std::vector<double> numerators;
   double denominator = 1;
-  std::size_t n_missing = 0;  ///< pairs without one of the two
+  std::size_t n_missing = 0;  ///< pairs that lack a value
 
-  std::vector<double> values() const;  ///< each the double nearest to the difference
+  std::vector<double> values() const;  ///< each rounded to the nearest double
 };
 
-/// x - y, pair by pair. std::invalid_argument unless of equal length with counts above 0. Refused: an
-/// infinite sum; counts without a common denominator that keeps the numerators below 2^53.
+/// x - y, pair by pair. std::invalid_argument unless the lengths are equal and the counts above 0. Refused:
+/// an infinite sum; counts whose common denominator makes the numerators reach 2^53.
 Result<ExactDifferences> exact_differences(std::span<const ExactMean> x, std::span<const ExactMean> y);
 
 }  // namespace stats

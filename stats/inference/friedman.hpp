@@ -10,14 +10,14 @@ namespace stats {
 
 struct Friedman {
   int n = 0;          ///< participants used
-  int n_missing = 0;  ///< participants dropped, because one of their values or more is missing
+  int n_missing = 0;  ///< participants dropped because they lack a value
   int k = 0;          ///< conditions
   double chi2 = 0;    ///< corrected for ties
   int df = 0;
-  double p = 0;          ///< of chi2 (large n)
-  double kendall_w = 0;  ///< concordance of the participants, 0 to 1
-  /// Iman and Davenport 1980: closer to its level in small samples. Infinite, with p = 0, when all
-  /// participants have the same order.
+  double p = 0;          ///< from chi2; accurate for large n
+  double kendall_w = 0;  ///< agreement of the participants, 0 to 1
+  /// Iman and Davenport's (1980) F. Its level is closer to nominal in small samples. Infinite, with p = 0, if
+  /// all participants have the same order.
   double iman_davenport_f = 0;
   double df1 = 0, df2 = 0;
   double iman_davenport_p = 0;

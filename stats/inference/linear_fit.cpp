@@ -20,14 +20,14 @@ Wide dot(const Column& a, const Column& b, std::size_t from) {
   return sum;
 }
 
-/// Reflects `column` at the plane whose normal is `mirror`, both from row `from` on.
+/// Reflects `column` in the plane with normal `mirror`, both from row `from` on.
 void reflect(Column& column, const Column& mirror, Wide mirror_square, std::size_t from) {
   const Wide factor = Wide(2) * dot(column, mirror, from) / mirror_square;
   for (std::size_t i = from; i < column.size(); ++i) column[i] -= factor * mirror[i];
 }
 
-/// Columns whose part beyond the columns before is less than this share of their length depend on them: the
-/// columns themselves are rounded.
+/// A column depends on the columns before it if its part orthogonal to them is less than this share of its
+/// length. The columns themselves are rounded.
 constexpr double dependence = 1e-14;
 
 /// Householder's QR: the columns become R, y becomes Q^T y. False when columns depend on each other.
@@ -60,7 +60,7 @@ std::vector<Column> inverse(const std::vector<Column>& r) {
   return out;
 }
 
-/// Fits scaled columns; exponents bring the results back.
+/// Fits scaled columns; the exponents scale the results back.
 Result<LinearFit> fit(std::vector<Column> columns, const std::vector<int>& exponents, Column y,
                       int y_exponent, bool intercept, std::size_t n_missing) {
   const auto n = y.size(), p = columns.size();
@@ -97,7 +97,7 @@ Result<LinearFit> fit(std::vector<Column> columns, const std::vector<int>& expon
   return out;
 }
 
-/// Rows that lack nothing.
+/// Rows without missing values.
 struct Rows {
   std::vector<std::vector<double>> columns;
   std::vector<double> y;

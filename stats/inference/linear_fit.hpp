@@ -10,21 +10,22 @@
 
 namespace stats {
 
-/// Empty fields need a degree of freedom more than the data have.
+/// A field is empty if the data have too few degrees of freedom for it.
 struct LinearFit {
   std::vector<double> coefficients;     ///< of the columns in their order, the intercept (if any) first
-  std::vector<double> standard_errors;  ///< empty without a degree of freedom
+  std::vector<double> standard_errors;  ///< empty if df = 0
   std::size_t n = 0, n_missing = 0;
   double rss = 0;
   double df = 0;                      ///< n - number of coefficients
   std::optional<double> residual_sd;  ///< sqrt(rss / df)
   std::optional<double> r2;  ///< about the mean with an intercept, about zero without; empty if y is constant
-  std::optional<double> f, f_p;  ///< all slopes zero
+  std::optional<double> f, f_p;  ///< F test that all slopes are zero
 };
 
 /// y on columns of equal length. Householder QR with scaled columns in double-double, so collinear data
-/// (Longley, Wampler) keep their digits. A row with a NaN is missing. std::invalid_argument when lengths
-/// differ. Refused: fewer rows than coefficients, an infinite value, columns that depend on each other.
+/// (Longley, Wampler) keep their digits. A row with a NaN counts as missing. std::invalid_argument when
+/// lengths differ. Refused: fewer rows than coefficients, an infinite value, columns that depend on each
+/// other.
 Result<LinearFit> fit_linear(const std::vector<std::vector<double>>& columns, std::span<const double> y,
                              bool intercept = true);
 }  // namespace stats

@@ -19,14 +19,15 @@ namespace {
 using Vector = std::vector<double>;
 using Lambda = std::array<double, 2>;
 
-/// A column with less than this share of its length beside the others is a combination of them.
+/// A column counts as a combination of the earlier ones if its squared length orthogonal to them is below
+/// this share.
 constexpr double least_new = 1e-10;
-/// Beyond, answers about one thing agree with themselves and leave no residual.
+/// Largest lambda. Beyond it a participant's answers agree so closely that no residual is left.
 constexpr double largest_ratio = 1e3;
-/// A simpler model is as good when its criterion is higher by less.
+/// A simpler model is preferred if its criterion is higher by less than this.
 constexpr double same_criterion = 1e-7;
 
-/// Random effects in the model: participant, participant with thing.
+/// Which random effects the model has: participant, participant with thing.
 using Effects = std::array<bool, 2>;
 
 std::string refusal_of(std::span<const double> y, std::span<const int> participant) {
@@ -40,7 +41,7 @@ std::string refusal_of(std::span<const double> y, std::span<const int> participa
   return "";
 }
 
-/// Whether some participant answered twice about one thing.
+/// True if a participant answered twice about one thing.
 bool any_replicate(std::span<const int> participant, std::span<const int> thing) {
   std::set<std::pair<int, int>> seen;
   for (std::size_t i = 0; i < participant.size(); ++i) {
@@ -49,9 +50,10 @@ bool any_replicate(std::span<const int> participant, std::span<const int> thing)
   return false;
 }
 
-/// Splits the terms into those that are estimated and those that earlier ones make up.
+/// Separates the estimated terms from the terms that are combinations of earlier ones. Returns the columns of
+/// the former.
 std::vector<Vector> independent_columns(std::span<const Predictor> terms, LinearMixedFit& fit) {
-  std::vector<Vector> kept, residuals;  // what is left of a column after those before
+  std::vector<Vector> kept, residuals;  // residuals: columns orthogonal to the columns before them
   for (const Predictor& term : terms) {
     Vector rest = term.values;
     const auto square = [](const Vector& v) {
@@ -60,7 +62,7 @@ std::vector<Vector> independent_columns(std::span<const Predictor> terms, Linear
       return sum;
     };
     const double whole = square(rest);
-    for (int twice = 0; twice < 2; ++twice) {  // Gram and Schmidt once more, against rounding
+    for (int twice = 0; twice < 2; ++twice) {  // Gram-Schmidt, repeated against rounding
       for (const Vector& other : residuals) {
         double dot = 0;
         for (std::size_t i = 0; i < rest.size(); ++i) dot += rest[i] * other[i];
@@ -77,7 +79,7 @@ std::vector<Vector> independent_columns(std::span<const Predictor> terms, Linear
   return kept;
 }
 
-/// lambda of the effects in the model, the others zero.
+/// lambda: x for the effects in the model, zero for the others.
 Lambda spread(std::span<const double> x, Effects effects) {
   Lambda out{};
   std::size_t next = 0;
@@ -87,7 +89,7 @@ Lambda spread(std::span<const double> x, Effects effects) {
   return out;
 }
 
-/// The criterion with sigma at its best.
+/// The criterion, minimised over sigma.
 Objective profiled(const RestrictedLikelihood& likelihood, Effects effects) {
   return [&likelihood, effects](std::span<const double> x, std::span<double> gradient) {
     const auto at = likelihood.at(spread(x, effects));
@@ -107,8 +109,8 @@ struct Best {
   double value = std::numeric_limits<double>::infinity();
 };
 
-/// The criterion's minimum, by the simplest of the models that reach it: an effect whose spread is zero is
-/// not in it.
+/// The criterion's minimum, by the simplest model that reaches it: an effect with a spread of zero is left
+/// out.
 Best minimise_criterion(const RestrictedLikelihood& likelihood, bool replicated) {
   Best best;
   for (const Effects effects : {Effects{false, false}, {true, false}, {false, true}, {true, true}}) {
@@ -127,7 +129,7 @@ Best minimise_criterion(const RestrictedLikelihood& likelihood, bool replicated)
   return best;
 }
 
-/// Half the criterion's Hessian by the lambdas in the model and sigma, inverted: their covariance.
+/// Covariance of the model's lambdas and sigma: the inverse of half the criterion's Hessian.
 std::optional<Vector> parameter_covariance(const RestrictedLikelihood& likelihood, const Best& best,
                                            const RestrictedLikelihood::At& at, double sigma) {
   std::vector<std::size_t> in;
@@ -175,7 +177,7 @@ double form(const Vector& matrix, std::span<const double> w) {
   return sum;
 }
 
-/// Fills in what the minimum says; false where its surroundings are no minimum.
+/// Fills the fit from the minimum. False if the Hessian there is not positive definite.
 bool fill_fit(const RestrictedLikelihood& likelihood, const Best& best, bool replicated,
               LinearMixedFit& fit) {
   const auto at = *likelihood.at(best.lambda);

@@ -23,19 +23,20 @@ struct MixedContrast {
 };
 
 struct LinearMixedFit {
-  std::vector<std::string> terms;        ///< that are estimated
+  std::vector<std::string> terms;        ///< terms that are estimated
   std::vector<std::string> left_out;     ///< terms that are combinations of earlier ones
   std::vector<double> beta, covariance;  ///< of `terms`; row-major
   double sd_participant = 0;
-  std::optional<double>
-      sd_thing;  ///< empty: nobody answered twice about one thing, so it is part of the residual
+  std::optional<double> sd_thing;  ///< empty if no participant answered twice about one thing; the effect is
+                                   ///< then part of the residual
   double sd_residual = 0;
   double criterion = 0;  ///< -2 times the restricted log-likelihood
   int n = 0, participants = 0;
-  /// Empty, or which standard deviation is estimated as zero: the fit then is that of the model without it.
+  /// Which standard deviation is estimated as zero; empty if none is. The fit is then that of the model
+  /// without it.
   std::string singular;
-  /// By the standard deviations that are not zero (over the residual's), then the residual's own: the slopes
-  /// of `covariance`, and their own covariance.
+  /// Derivatives of `covariance` with respect to each nonzero standard deviation (relative to the
+  /// residual's), then the residual's own; and the covariance of these parameters.
   std::vector<std::vector<double>> covariance_slopes;
   std::vector<double> parameter_covariance;
 
@@ -46,7 +47,7 @@ struct LinearMixedFit {
 };
 
 /// All columns have one length (std::invalid_argument); no value is missing. Refused: fewer than two
-/// participants; nobody with two answers; no more answers than terms; answers that leave no scatter; an
+/// participants; no participant with two answers; no more answers than terms; no residual variation; an
 /// infinite value; no convergence.
 Result<LinearMixedFit> fit_linear_mixed(std::span<const double> y, std::span<const Predictor> terms,
                                         std::span<const int> participant, std::span<const int> thing);

@@ -14,14 +14,14 @@ namespace stats {
 
 namespace {
 
-/// Coefficients in ascending powers.
+/// Evaluates a polynomial; coefficients in ascending powers.
 double polynomial(std::span<const double> coefficients, double x) {
   double sum = 0;
   for (std::size_t i = coefficients.size(); i-- > 0;) sum = sum * x + coefficients[i];
   return sum;
 }
 
-/// Weights of the upper half, largest first: the outermost by polynomials, the others from Blom's scores.
+/// Weights of the upper half, largest first: polynomials for the outermost, Blom's scores for the others.
 std::vector<double> weights(std::size_t n) {
   if (n == 3) return {std::numbers::sqrt2 / 2};
   constexpr std::array outermost{0.0, 0.221157, -0.147981, -2.07119, 4.434685, -2.706056};
@@ -58,7 +58,7 @@ double p_value(double one_minus_w, std::size_t n) {
     constexpr std::array mean{0.5440, -0.39978, 0.025054, -6.714e-4};
     constexpr std::array log_sd{1.3822, -0.77857, 0.062767, -0.0020322};
     const double gap = polynomial(bound, size) - y;
-    // W lies below what the approximation allows.
+    // W lies below the range of the approximation.
     if (gap <= 0) return 0;
     return normal_probability((polynomial(mean, size) + std::log(gap)) / std::exp(polynomial(log_sd, size)));
   }

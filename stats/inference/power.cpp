@@ -75,8 +75,8 @@ double tost_power_of(double n, const Equivalence& e) {
   const double df = degrees_of_freedom(n, e.design), error = e.sd * error_per_sd(n, e.design);
   const double low = (e.low - e.difference) / error, high = (e.high - e.difference) / error;
   const double critical = student_upper_quantile(e.alpha, df);
-  // The estimate must lie between the margins, each drawn in by the critical value times the sample's SD
-  // (s times the true one). No room is left for s above `widest`.
+  // The estimate must lie between the margins, each moved inwards by the critical value times the sample's SD
+  // (s times the true one). Beyond s = `widest` they leave no range.
   const double widest = (high - low) / (2 * critical), spread = 12 / std::sqrt(2 * df);
   const double from = std::max(0.0, 1 - spread), to = std::min(widest, 1 + spread);
   if (from >= to) return 0;
@@ -84,7 +84,7 @@ double tost_power_of(double n, const Equivalence& e) {
       [&](double s) {
         if (s <= 0) return 0.0;
         const double a = low + critical * s, b = high - critical * s;
-        // In the tail that has the digits.
+        // Uses the smaller tail, which has more digits.
         const double inside = a > 0 ? normal_probability(-a) - normal_probability(-b)
                                     : normal_probability(b) - normal_probability(a);
         return std::exp(log_chi_density(s, df)) * inside;
@@ -100,8 +100,8 @@ std::string why_no_tost(const Equivalence& e) {
   return e.alpha > 0 && e.alpha <= 0.5 ? "" : "alpha must lie between 0 and 0.5";
 }
 
-/// The significant counts: at most `lower`, or at least `upper`. p falls with the distance from n p0 on
-/// either side, so each end is found by bisection.
+/// The significant counts: at most `lower`, or at least `upper`. p decreases with the distance from n p0 on
+/// either side, so bisection finds each end.
 struct Rejection {
   double lower = -1, upper = 0;
 };
@@ -178,7 +178,7 @@ Result<double> binomial_detectable(int n, double power, double alpha) {
   if (at_one->power < power)
     return Refusal{"too few answers: not even a choice by all is significant at this level"};
   const auto lacking = [&](double p) { return binomial_power(n, p, 0.5, alpha)->power - power; };
-  // It is at its least, alpha or below, where nothing is preferred, and grows from there.
+  // The power is smallest at 0.5 (alpha or less) and increases from there.
   if (lacking(0.5) >= 0) return 0.5;
   return find_root(lacking, 0.5, 1);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// Power of the tests that the study uses, and the smallest effect that a test finds. Exact: no simulation
-/// and no normal approximation.
+/// Power of the study's tests, and the smallest effects they detect. Exact: no simulation and no normal
+/// approximation.
 
 #include <optional>
 
@@ -18,7 +18,7 @@ enum class Design { OneSample, Paired, TwoSample };
 Result<double> t_power(double n, double d, double alpha = 0.05, Design design = Design::Paired,
                        Alternative alternative = Alternative::TwoSided);
 
-/// The smallest d > 0 that the t-test finds with this power. Refused: as t_power, or a power outside
+/// The smallest d > 0 that the t-test detects with this power. Refused: as t_power, or a power outside
 /// (alpha, 1).
 Result<double> t_detectable(double n, double power, double alpha = 0.05, Design design = Design::Paired,
                             Alternative alternative = Alternative::TwoSided);
@@ -40,8 +40,8 @@ Result<double> tost_power(double n, const Equivalence& equivalence);
 /// a one-sided alternative.
 
 struct BinomialPower {
-  double power = 0;         ///< when the true proportion is p1
-  double actual_alpha = 0;  ///< the same when it is p0: at most alpha
+  double power = 0;         ///< if the true proportion is p1
+  double actual_alpha = 0;  ///< the same if it is p0; at most alpha
   /// Smallest k above n p0 and largest k below it that are significant; empty where none is.
   std::optional<int> k_critical_upper{}, k_critical_lower{};
 };
@@ -51,8 +51,8 @@ struct BinomialPower {
 Result<BinomialPower> binomial_power(double n, double p1, double p0 = 0.5, double alpha = 0.05,
                                      Alternative alternative = Alternative::TwoSided);
 
-/// The smallest true proportion above one half from which on the exact two-sided test against one half has
-/// this power. Refused: n < 1, a power or alpha outside (0, 1), n too small for any result to be significant.
+/// The smallest true proportion above one half for which the exact two-sided test against one half has this
+/// power. Refused: n < 1, a power or alpha outside (0, 1), n too small for any result to be significant.
 Result<double> binomial_detectable(int n, double power, double alpha = 0.05);
 
 }  // namespace stats

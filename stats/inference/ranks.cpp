@@ -8,7 +8,7 @@ namespace stats {
 
 namespace {
 
-/// Twice a midrank is whole.
+/// Twice each midrank, which is a whole number.
 std::vector<std::size_t> doubled(std::span<const double> ranks) {
   std::vector<std::size_t> out;
   for (const double r : ranks) out.push_back(static_cast<std::size_t>(std::lround(2 * r)));
@@ -19,7 +19,7 @@ RankSumTails tails(std::span<const double> weights, double sum) {
   const auto at = static_cast<std::size_t>(std::lround(2 * sum));
   RankSumTails out;
   double total = 0;
-  // Rare sums first, from both ends, so that small tails keep their digits.
+  // Adds rare sums first, from both ends, so that small tails keep their digits.
   for (std::size_t s = 0; s < weights.size(); ++s) {
     if (s <= at) out.lower += weights[s];
   }
@@ -55,7 +55,7 @@ RankSumTails signed_rank_tails(std::span<const double> ranks, double sum) {
   std::size_t reached = 0;
   for (const auto step : steps) {
     reached += step;
-    // Halved at each step, so the weights are probabilities at any n.
+    // Halving at each step keeps the weights probabilities for any n.
     for (std::size_t s = reached + 1; s-- > 0;) {
       weights[s] = (weights[s] + (s >= step ? weights[s - step] : 0)) / 2;
     }

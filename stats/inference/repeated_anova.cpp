@@ -11,8 +11,8 @@ namespace stats {
 
 namespace {
 
-/// Participants by conditions: the table as y = origin + scale * value, where value is at most 1, and what is
-/// left of it after the means. long double, because differences may be tiny beside the offset.
+/// The table of participants by conditions as y = origin + scale * value, with |value| at most 1, decomposed
+/// into means and residuals. long double, since differences may be tiny compared with the offset.
 struct Decomposition {
   double origin = 0, scale = 0;
   std::vector<long double> condition_means, subject_means, residuals;
@@ -23,7 +23,7 @@ Decomposition decompose(const CompleteRows& table) {
   Decomposition d;
   const auto k = static_cast<std::size_t>(table.k), n = static_cast<std::size_t>(table.n);
   d.origin = table.values.front();
-  // Halves, because the difference of two doubles may overflow.
+  // Halves, since the difference of two doubles may overflow.
   double half = 0;
   for (const double v : table.values) half = std::max(half, std::abs(v / 2 - d.origin / 2));
   d.scale = half > 0 ? std::ldexp(1.0, std::ilogb(half) + 1) : 1;
@@ -82,7 +82,7 @@ Result<RepeatedAnova> repeated_anova(std::span<const double> rows, int k) {
   const long double conditions = table.n * squares_about(d.condition_means, d.grand_mean);
   const long double subjects = table.k * squares_about(d.subject_means, d.grand_mean);
   const long double error = squares_about(d.residuals, 0);
-  // The values are at most 1 and were exact: less than this is rounding of data and means.
+  // The values are exact and at most 1: a smaller error is rounding of data and means.
   constexpr long double rounding = 4 * std::numeric_limits<double>::epsilon();
   if (error <= static_cast<long double>(d.residuals.size()) * rounding * rounding)
     return Refusal{"no variation within participants is left beside the conditions' means"};

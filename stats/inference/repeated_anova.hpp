@@ -12,17 +12,16 @@ namespace stats {
 
 struct RepeatedAnova {
   int n = 0;          ///< participants used
-  int n_missing = 0;  ///< participants dropped, because one of their values or more is missing
+  int n_missing = 0;  ///< participants dropped because they lack a value
   int k = 0;          ///< conditions
   double ss_conditions = 0, ss_subjects = 0, ss_error = 0;
   double f = 0;
   double df1 = 0, df2 = 0;  ///< before any correction
   double p = 0;             ///< if the differences between conditions have equal variances (sphericity)
   double epsilon_gg = 0;    ///< Greenhouse and Geisser 1959, 1 / (k-1) to 1; 1 means sphericity
-  /// Huynh and Feldt 1976, not capped: may exceed 1. Empty where its denominator is 0 (n = 2).
+  /// Huynh and Feldt 1976, not capped: may exceed 1. Empty if its denominator is 0 (n = 2).
   std::optional<double> epsilon_hf{};
-  /// The one that corrects degrees of freedom: at most 1, since no departure from sphericity is less than
-  /// none.
+  /// The value used to correct degrees of freedom: at most 1, since 1 already means sphericity.
   std::optional<double> epsilon_hf_capped() const {
     return epsilon_hf ? std::optional(std::min(1.0, *epsilon_hf)) : std::nullopt;
   }
@@ -33,10 +32,10 @@ struct RepeatedAnova {
   std::vector<double> means{};   ///< of each condition
 };
 
-/// `rows`: participants by conditions, row after row, each of k values; NaN = missing.
-/// Refused: fewer than two conditions or complete participants, infinite values, no variation left within
-/// participants once the conditions' means are removed (F would divide by zero).
-/// std::invalid_argument when the values do not fill whole rows or k < 1.
+/// `rows`: participants by conditions, row after row, each of k values; NaN = missing. Refused: fewer than
+/// two conditions or complete participants, infinite values, no variation within participants beyond the
+/// conditions' means (F would divide by zero). std::invalid_argument when the values do not fill whole rows
+/// or k < 1.
 Result<RepeatedAnova> repeated_anova(std::span<const double> rows, int k);
 
 }  // namespace stats

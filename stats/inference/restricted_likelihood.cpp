@@ -9,7 +9,7 @@ namespace {
 
 using Vector = std::vector<double>;
 
-/// A residual below this share of y'y is rounding.
+/// A residual below this share of y'y counts as rounding.
 constexpr double least_residual = 1e-12;
 
 /// matrix += factor * v v'.
@@ -22,7 +22,7 @@ void add_outer(Vector& matrix, double factor, const Vector& v) {
   }
 }
 
-/// The first q rows and columns of a matrix of q + 1.
+/// The first q rows and columns of a matrix of size q + 1.
 Vector without_last(const Vector& matrix, std::size_t q) {
   Vector out;
   for (std::size_t i = 0; i < q; ++i) {

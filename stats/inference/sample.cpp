@@ -60,7 +60,7 @@ Moments moments(std::span<const Wide> values) {
   Moments out;
   out.n = values.size();
   if (out.n == 0) return out;
-  // About the first value, so that equal values have squares of exactly 0.
+  // Relative to the first value, so that equal values give squares of exactly 0.
   Wide excess;
   for (const auto& v : values) excess += v - values[0];
   excess = excess / static_cast<double>(out.n);

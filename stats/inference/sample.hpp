@@ -1,5 +1,5 @@
 #pragma once
-/// Samples without their missing values, and their moments to twice double's precision. For the tests in this
+/// Samples without missing values, and their moments to twice double's precision. For the tests in this
 /// folder.
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace stats {
 
-/// The values that are there, all finite, in their order.
+/// The values that are not missing, all finite, in their order.
 struct Sample {
   std::vector<double> values;
   std::size_t n_missing = 0;
@@ -28,13 +28,13 @@ struct PairedSample {
 /// std::invalid_argument when the lengths differ. Refused: an infinite value in a pair that has both sides.
 Result<PairedSample> present_pairs(std::span<const double> x, std::span<const double> y);
 
-/// The exponent that brings the largest magnitude to [0.5, 1) as value * 2^-exponent; 0 for none but zeros.
+/// The exponent for which value * 2^-exponent brings the largest magnitude to [0.5, 1); 0 if all are zero.
 int common_exponent(std::span<const double> a, std::span<const double> b = {});
 
 /// value * 2^-exponent, exact.
 std::vector<Wide> scaled(std::span<const double> values, int exponent);
 
-/// Mean, and sum of squares about it.
+/// Mean, and sum of squared deviations from it.
 struct Moments {
   std::size_t n = 0;
   Wide mean, squares;

@@ -30,7 +30,7 @@ struct Scaled {
   int exponent = 0;
 };
 
-/// Spread that is rounding of the values only has no t.
+/// True if the spread is only rounding of the values; no t is then defined.
 bool essentially_constant(const Scaled& s) { return s.se == 0 || s.se < 10 * eps * s.largest_mean; }
 
 std::array<double, 2> interval(double estimate, double se, double df, const TTestOptions& options) {
@@ -43,7 +43,7 @@ std::array<double, 2> interval(double estimate, double se, double df, const TTes
   return out;
 }
 
-/// Fills the part that all t-tests share; a reason when there is no t.
+/// Fills the fields of every t-test; returns a reason if there is no t.
 std::optional<Refusal> fill(TTest& test, const Scaled& s, const TTestOptions& options) {
   if (essentially_constant(s)) return Refusal{"the values are constant, or differ by rounding only"};
   const Wide null = std::ldexp(options.null_value, -s.exponent);
@@ -70,7 +70,7 @@ std::array<double, 2> effect_interval(const TTest& test, double df, double per_t
 double sd(const Moments& m, int exponent) { return std::ldexp(std::sqrt(m.variance()), exponent); }
 double mean(const Moments& m, int exponent) { return std::ldexp(m.mean.value(), exponent); }
 
-/// 1 - r of two samples, exact where r is 1. Empty when a side is constant.
+/// 1 - r of two samples, exact if r is 1. Empty if a side is constant.
 std::optional<double> one_minus_correlation(const Moments& x, const Moments& y, Wide cross) {
   const Wide product = x.squares * y.squares;
   if (!(product.high > 0)) return std::nullopt;
@@ -97,7 +97,7 @@ void fill_paired_effects(PairedTTest& test, const Moments& x, const Moments& y, 
   test.cohen_drm = test.cohen_dz * std::sqrt(2 * *complement);
 }
 
-/// Two independent groups on one scale.
+/// Two independent groups, scaled alike.
 struct Groups {
   Moments x, y;
   int exponent = 0;
@@ -121,7 +121,7 @@ struct Sizes {
 };
 Sizes sizes(const Groups& g) { return {static_cast<double>(g.x.n), static_cast<double>(g.y.n)}; }
 
-/// Standard error of the difference with one variance for both groups.
+/// Standard error of the difference, with a common variance for both groups.
 double pooled_error(const Groups& g) {
   const auto n = sizes(g);
   const double variance = ((g.x.squares + g.y.squares) / (n.x + n.y - 2)).value();
@@ -142,7 +142,7 @@ void fill_groups(IndependentTTest& test, const Groups& g, const TTestOptions& op
   test.mean_y = mean(g.y, g.exponent);
   if (g.x.n > 1) test.sd_x = sd(g.x, g.exponent);
   if (g.y.n > 1) test.sd_y = sd(g.y, g.exponent);
-  // The effect sizes are those of the pooled test, whichever test was asked for.
+  // The effect sizes are those of the pooled test for both tests.
   const Wide null = std::ldexp(options.null_value, -g.exponent);
   const double difference = (g.x.mean - g.y.mean - null).value();
   const double se = pooled_error(g), df = n.x + n.y - 2, per_t = std::sqrt(1 / n.x + 1 / n.y);
@@ -227,7 +227,8 @@ Result<IndependentTTest> t_test_welch(std::span<const double> x, std::span<const
   if (g->x.n < 2 || g->y.n < 2) return too_few;
   const auto n = sizes(*g);
   const double of_x = g->x.variance() / n.x, of_y = g->y.variance() / n.y, sum = of_x + of_y;
-  // Satterthwaite's degrees of freedom over the groups' shares, whose squares cannot underflow.
+  // Satterthwaite's degrees of freedom from each group's share of the variance, since squared shares cannot
+  // underflow.
   const double share_x = of_x / sum, share_y = of_y / sum;
   const double df = 1 / (share_x * share_x / (n.x - 1) + share_y * share_y / (n.y - 1));
   IndependentTTest test;

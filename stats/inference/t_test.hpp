@@ -3,7 +3,7 @@
 ///
 /// NaN = missing: a pair needs both sides; independent groups drop their own. Means and variances are exact
 /// to double-double, so t depends only on the doubles given, whatever their offset or scale. Refused: too few
-/// values, an infinite value, and data that are constant but for rounding (standard error below 10 eps of the
+/// values, an infinite value, and data that are constant up to rounding (standard error below 10 eps of the
 /// largest mean, as R's t.test does). std::invalid_argument: pairs of different length, confidence outside
 /// (0, 1), null value not finite.
 
@@ -21,19 +21,19 @@ struct TTestOptions {
   Alternative alternative = Alternative::TwoSided;
   double confidence = 0.95;  ///< of `ci` and of the interval of the effect size
   double null_value = 0;     ///< mean (one sample) or difference of means under the null hypothesis
-  /// False leaves out the intervals of effect sizes (they become infinite): they cost a thousand times what
-  /// the test does, which a simulation feels.
+  /// False leaves out the intervals of effect sizes (they become infinite). They take a thousand times as
+  /// long as the test, which matters in simulations.
   bool effect_intervals = true;
 };
 
-/// What all t-tests have.
+/// Fields of every t-test.
 struct TTest {
   double estimate = 0;  ///< mean, or mean(x) - mean(y), in the data's unit
   double stderr_estimate = 0;
   double t = 0;   ///< (estimate - null_value) / stderr_estimate
   double df = 0;  ///< not whole for Welch
   double p = 0;
-  std::array<double, 2> ci{};  ///< of `estimate`; one end infinite for a one-sided alternative
+  std::array<double, 2> ci{};  ///< for `estimate`; one end infinite for a one-sided alternative
   std::size_t n_missing = 0;   ///< values, or pairs, left out
 };
 
@@ -44,7 +44,7 @@ struct OneSampleTTest : TTest {
   std::array<double, 2> cohen_d_ci{};  ///< by the noncentral t; always two-sided
 };
 
-/// Standardised paired differences after Lakens (2013); their null value is the test's.
+/// Standardised paired differences follow Lakens (2013); their null value is that of the test.
 struct PairedTTest : TTest {
   std::size_t n = 0;  ///< pairs
   double mean_x = 0, mean_y = 0, sd_x = 0, sd_y = 0, sd_difference = 0;
@@ -62,7 +62,7 @@ struct IndependentTTest : TTest {
   double mean_x = 0, mean_y = 0;
   std::optional<double> sd_x, sd_y;  ///< empty for a group of one
   double sd_pooled = 0;
-  double cohen_ds = 0;                  ///< difference / pooled sd (zero of both groups is refused)
+  double cohen_ds = 0;                  ///< difference / pooled sd (refused if the pooled sd is zero)
   std::optional<double> hedges_gs;      ///< ds times Hedges' factor; empty with one degree of freedom
   std::optional<double> glass_delta;    ///< difference / sd of y; empty when y is constant
   std::array<double, 2> cohen_ds_ci{};  ///< by the noncentral t; always two-sided
@@ -76,8 +76,8 @@ Result<PairedTTest> t_test_paired(std::span<const double> x, std::span<const dou
 /// Equal variances (Student). Needs one value in each group and three in all.
 Result<IndependentTTest> t_test_independent(std::span<const double> x, std::span<const double> y,
                                             const TTestOptions& options = {});
-/// Variances of their own (Welch 1947, Satterthwaite's df). Needs two values in each group. The effect sizes
-/// are those of the pooled test.
+/// Unequal variances (Welch 1947, Satterthwaite's df). Needs two values in each group. The effect sizes are
+/// those of the pooled test.
 Result<IndependentTTest> t_test_welch(std::span<const double> x, std::span<const double> y,
                                       const TTestOptions& options = {});
 

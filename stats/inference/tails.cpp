@@ -19,10 +19,10 @@ namespace {
 constexpr double smallest = std::numeric_limits<double>::denorm_min();
 const double log_2pi = std::log(2 * std::numbers::pi);
 
-/// ln x! less Stirling's formula for it.
+/// ln x! minus Stirling's approximation of it.
 double stirling_error(double x) {
   if (x <= 15) {
-    int sign = 0;  // lgamma_r: std::lgamma writes a global
+    int sign = 0;  // lgamma_r, since std::lgamma writes a global variable
     return lgamma_r(x + 1, &sign) - (x + 0.5) * std::log(x) + x - log_2pi / 2;
   }
   const double w = 1 / (x * x);
@@ -31,7 +31,7 @@ double stirling_error(double x) {
          x;
 }
 
-/// ln of the smaller of p and 1 - p keeps its digits in itself, that of the larger in the other.
+/// ln p. A small p keeps its digits itself; a large p keeps them in q = 1 - p.
 double log_part(double p, double q) { return p < q ? std::log(p) : std::log1p(-q); }
 
 /// Continued fraction of the incomplete beta function, modified Lentz.
@@ -97,7 +97,7 @@ double beta_quantile(double probability, double a, double b) {
   const auto part = [](double logit) { return 1 / (1 + std::exp(-logit)); };
   const auto miss = [&](double logit) {
     const double x = part(logit), y = part(-logit);
-    // The smaller tail has the digits.
+    // The smaller tail has more digits.
     return probability <= 0.5 ? log_beta_lower(a, b, x, y) - std::log(probability)
                               : std::log1p(-probability) - log_beta_lower(b, a, y, x);
   };

@@ -1,5 +1,5 @@
 #pragma once
-/// Values that are all the same have no spread, and so no t. What they say is tested exactly.
+/// An exact test for values that are all equal, which have no spread and so no t.
 
 #include <cstddef>
 #include <optional>
@@ -11,15 +11,15 @@
 namespace stats {
 
 struct Unanimous {
-  double value = 0;   ///< which all of them are
-  std::size_t n = 0;  ///< two or more
+  double value = 0;   ///< the common value
+  std::size_t n = 0;  ///< number of values, two or more
 
-  /// Exact sign test of value against `null`, which for equal values is the permutation test that turns each
-  /// sign round: 2^-n on the side where all of them lie, 1 on the other; 1 where they equal `null`.
+  /// Exact sign test of the value against `null`. For equal values it is the permutation test that flips the
+  /// sign of each deviation: 2^-n on the side where all of them lie, 1 on the other; 1 if they equal `null`.
   double p(Alternative alternative, double null = 0) const;
 };
 
-/// Empty when two values differ, or for fewer than two. NaN = missing.
+/// Empty if two values differ, or if there are fewer than two. NaN = missing.
 std::optional<Unanimous> unanimous(std::span<const double> values);
 std::optional<Unanimous> unanimous(const ExactDifferences& differences);
 

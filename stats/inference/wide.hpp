@@ -6,7 +6,7 @@
 namespace stats {
 
 /// The unevaluated sum high + low, |low| <= ulp(high)/2: about 32 digits (Dekker 1971; Hida, Li and Bailey
-/// 2001). The range is double's; products lose their low part below 1e-292, so callers scale first.
+/// 2001). The range is double's; products lose their low part below 1e-292, so scale the data first.
 struct Wide {
   double high = 0, low = 0;
 

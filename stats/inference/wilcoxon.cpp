@@ -15,12 +15,12 @@ namespace stats {
 namespace {
 
 constexpr std::size_t largest_exact_n = 1000;
-/// Walsh averages that are held at once (200 MB).
+/// Most Walsh averages held in memory at once (200 MB).
 constexpr double most_pairs = 2.5e7;
 
 double two_sided(const RankSumTails& tails) { return std::min(1.0, 2 * std::min(tails.lower, tails.upper)); }
 
-/// Two-sided p of a statistic `distance` from its mean, moved towards it by `correction`.
+/// Two-sided normal p of a statistic at `distance` from its mean, with a continuity `correction`.
 double normal_p(double distance, double variance, double correction) {
   const double z = std::max(std::abs(distance) - correction, 0.0) / std::sqrt(variance);
   return 2 * normal_probability(-z);
@@ -70,11 +70,11 @@ std::vector<double> walsh_averages(std::span<const double> values) {
 
 struct Cut {
   std::size_t averages = 0;
-  double level = 0;  ///< of the interval that is left
+  double level = 0;  ///< coverage of the remaining interval
 };
 
-/// Largest count of Walsh averages that may be cut off each end: one less than the smallest sum w of
-/// ranks 1..n with P(W <= w) >= tail, and none where even w = 0 is too likely.
+/// Number of Walsh averages to cut off at each end: one less than the smallest sum w of ranks 1..n with P(W
+/// <= w) >= tail; 0 if even w = 0 is too likely.
 Cut averages_to_cut(std::size_t n, double tail) {
   std::vector<double> weights(n * (n + 1) / 2 + 1, 0.0);
   weights[0] = 1;
@@ -84,7 +84,7 @@ Cut averages_to_cut(std::size_t n, double tail) {
   }
   double sum = 0, below = 0;  // P(W <= w) and P(W < w)
   std::size_t w = 0;
-  // The quantile forgives rounding of a sum that equals the tail.
+  // The tolerance allows for rounding of a sum that equals the tail.
   while ((sum += weights[w]) < tail * (1 - 1e-14)) {
     below = sum;
     ++w;

@@ -59,7 +59,7 @@ bool ascending(std::span<const double> thresholds) {
   return std::adjacent_find(thresholds.begin(), thresholds.end(), std::greater_equal<>()) == thresholds.end();
 }
 
-/// The predictors along which the likelihood grows for ever.
+/// Names the predictors along which the likelihood increases without bound.
 std::string separation(std::span<const Predictor> predictors, std::span<const double> step) {
   const std::size_t q = step.size() - predictors.size();
   double largest = 0;
@@ -72,7 +72,7 @@ std::string separation(std::span<const Predictor> predictors, std::span<const do
          ", so that the likelihood has no maximum";
 }
 
-/// Newton's method with halved steps. At a maximum the steps vanish; without one (separation) they keep their
+/// Newton's method with step halving. At a maximum the steps vanish; without one (separation) they keep their
 /// length until the information is singular.
 struct Climb {
   std::vector<double> at, covariance, last_step;

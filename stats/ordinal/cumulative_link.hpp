@@ -17,13 +17,13 @@ struct Predictor {
   std::vector<double> values;
 };
 
-/// Indicator columns of the groups but the reference, in ascending order of their numbers, named
-/// `name` + number. NaN groups are missing. A reference that no group has is std::invalid_argument.
+/// Indicator columns of all groups except the reference, in ascending order of their numbers, named `name` +
+/// number. A NaN group counts as missing. std::invalid_argument if no row has the reference group.
 std::vector<Predictor> indicators(const std::string& name, std::span<const double> groups, double reference);
 
 struct OrdinalFit {
   Link link = Link::Logit;
-  std::vector<double> levels;      ///< scores that occur, ascending; unused ones have no threshold
+  std::vector<double> levels;      ///< scores that occur, ascending; unused scores have no threshold
   std::vector<double> thresholds;  ///< one fewer than levels, ascending
   std::vector<double> beta;        ///< one for each predictor; larger = higher ratings
   std::vector<double> covariance;  ///< of thresholds, then beta; row-major, from the observed information
@@ -37,45 +37,45 @@ struct OrdinalFit {
 
 /// Maximum likelihood by Newton's method on the concave log-likelihood. All columns have one length
 /// (std::invalid_argument). Refused: no rows; one score throughout; a predictor that is constant or a
-/// combination of the others; an infinite value; separation, which is named with its predictors: the ratings
-/// then fall apart so that the likelihood has no maximum (Albert and Anderson 1984).
+/// combination of the others; an infinite value; separation (the reason names its predictors): the predictors
+/// separate the ratings so that the likelihood has no maximum (Albert and Anderson 1984).
 Result<OrdinalFit> fit_cumulative_link(std::span<const double> ratings, std::span<const Predictor> predictors,
                                        Link link = Link::Logit);
 
-/// What a fit does with ratings that are separated.
+/// What a fit does if the ratings are separated.
 enum class Separation {
   Refuse,
   /// Maximise the likelihood times the log-F(1, 1) density of each beta (Greenland and Mansournia 2015, Stat.
-  /// Med. 34, 3133-3143): exp(beta / 2) / (1 + exp(beta)), so that the log-likelihood loses
-  /// log cosh(beta / 2). The maximum is finite whatever is separated. For one log odds ratio this is
-  /// Jeffreys' prior, which Firth (1993, Biometrika 80, 27-38) takes. It needs no information matrix, which
-  /// the mixed model has no closed form of. 95 % of its odds ratios lie between 1/648 and 648.
+  /// Med. 34, 3133-3143): exp(beta / 2) / (1 + exp(beta)), so that the log-likelihood is reduced by log
+  /// cosh(beta / 2). The maximum is finite even under separation. For one log odds ratio this is Jeffreys'
+  /// prior, as used by Firth (1993, Biometrika 80, 27-38). Unlike that prior it needs no information matrix,
+  /// for which the mixed model has no closed form. 95 % of the prior's odds ratios lie between 1/648 and 648.
   Penalise
 };
 
-/// With location x beta + s_p, s_p ~ N(0, sd^2) drawn once for each participant.
+/// A fit with location x beta + s_p, where s_p ~ N(0, sd^2) is drawn once for each participant.
 struct MixedOrdinalFit : OrdinalFit {
-  double sd_participant = 0;  ///< >= 0; 0 = the likelihood is largest without differences between people
+  double sd_participant = 0;  ///< >= 0; 0 = the likelihood is largest if participants do not differ
   int participants = 0;
   int points = 1;             ///< nodes of the quadrature; 1 is Laplace's approximation
-  std::string why_penalised;  ///< the separation; empty: maximum likelihood
-  double log_prior = 0;       ///< of a penalised fit, less that of beta = 0; log_likelihood is without it
-  double objective() const { return log_likelihood + log_prior; }  ///< what was maximised
+  std::string why_penalised;  ///< the separation found; empty: maximum likelihood was used
+  double log_prior = 0;       ///< of a penalised fit, relative to beta = 0; log_likelihood excludes it
+  double objective() const { return log_likelihood + log_prior; }  ///< the value that was maximised
 };
 
 /// Maximum likelihood by adaptive Gauss-Hermite quadrature with `points` nodes over each participant's effect
-/// (Pinheiro and Bates 1995; 1 = Laplace), 1 to 101 (std::invalid_argument). Refused besides: fewer than two
-/// participants; one rating from each, which cannot tell sd_participant from the rating's own scatter; an
-/// sd_participant without bound. Separation::Penalise changes nothing where the ratings are not separated;
-/// beta are then log odds (std::invalid_argument with the probit link), and the covariance is that of the
-/// penalised likelihood.
+/// (Pinheiro and Bates 1995; 1 = Laplace), 1 to 101 (std::invalid_argument). Refused as
+/// fit_cumulative_link(), and also: fewer than two participants; one rating from each, which cannot separate
+/// sd_participant from the scatter of single ratings; an unbounded sd_participant. Separation::Penalise
+/// changes nothing if the ratings are not separated; it requires beta to be log odds (std::invalid_argument
+/// with the probit link), and the covariance is that of the penalised likelihood.
 Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> ratings,
                                                   std::span<const Predictor> predictors,
                                                   std::span<const int> participants, Link link = Link::Logit,
                                                   int points = 15,
                                                   Separation separation = Separation::Refuse);
 
-/// Likelihood-ratio test of nested fits of the same rows.
+/// Likelihood-ratio test of nested fits to the same rows.
 struct LikelihoodRatio {
   double chi2 = 0;  ///< 2 (log L full - log L reduced), at least 0
   int df = 0;

@@ -30,7 +30,7 @@ double link_quantile(Link link, double p) {
 
 CategoryTerm category_term(Link link, double lower, double upper, double location) {
   const auto a = link_value(link, upper - location), c = link_value(link, lower - location);
-  // Above the middle the difference of the upper tails keeps the digits: F(x) = 1 - F(-x).
+  // Above the middle the difference of the upper tails is more accurate: F(x) = 1 - F(-x).
   const double p = lower > location
                        ? link_value(link, location - lower).F - link_value(link, location - upper).F
                        : a.F - c.F;
@@ -40,7 +40,7 @@ CategoryTerm category_term(Link link, double lower, double upper, double locatio
     return t;
   }
   t.log_p = std::log(p);
-  // Derivatives of P over P: n1, n2, n3 by v, then quotients.
+  // Derivatives of P with respect to v, divided by P (n1, n2, n3), then those of log P.
   const double n1 = (c.f - a.f) / p, n2 = (a.f1 - c.f1) / p, n3 = (c.f2 - a.f2) / p;
   t.d1 = n1;
   t.d2 = n2 - n1 * n1;

@@ -1,5 +1,5 @@
 #pragma once
-/// Distributions behind a rating: P(Y <= j) = F(theta_j - location), and the derivatives of log P(Y = j).
+/// Link distributions of ratings: P(Y <= j) = F(theta_j - location), and the derivatives of log P(Y = j).
 
 namespace stats {
 

@@ -13,7 +13,8 @@ namespace stats {
 
 namespace {
 
-/// Beyond, the participants' own thresholds are apart by more than a rating can tell.
+/// Largest sd of the participants' effects; beyond it their thresholds differ by more than ratings can
+/// resolve.
 constexpr double largest_sd = 30;
 
 std::string too_few(const OrdinalRows& rows) {
@@ -25,7 +26,7 @@ std::string too_few(const OrdinalRows& rows) {
   return "";
 }
 
-/// Of log-F(1, 1), by beta: the log density less that at 0.
+/// Log density of log-F(1, 1) at beta, minus that at 0.
 double log_prior(double beta) {
   const double half = std::abs(beta) / 2;
   return -(half + std::log1p(std::exp(-2 * half)) - std::numbers::ln2);  // -log cosh, without overflow
@@ -40,7 +41,7 @@ double log_prior(std::span<const double> standardised_beta, const OrdinalRows& r
   return sum;
 }
 
-/// Minus the log-likelihood of thresholds, beta and sd, or minus the penalised one.
+/// Minus the log-likelihood as a function of thresholds, beta and sd; or minus the penalised one.
 Objective deviance(MixedLikelihood& likelihood, const OrdinalRows& rows, bool penalised) {
   return [&likelihood, &rows, penalised](std::span<const double> at, std::span<double> gradient) {
     const auto q = static_cast<std::size_t>(rows.thresholds()), k = rows.x.size();
@@ -57,7 +58,7 @@ Objective deviance(MixedLikelihood& likelihood, const OrdinalRows& rows, bool pe
   };
 }
 
-/// Thresholds and beta in standardised units, of a fit in the predictors' own.
+/// Thresholds and beta in standardised units, from a fit in the predictors' own units.
 std::vector<double> standardised(const OrdinalFit& fit, const OrdinalRows& rows) {
   std::vector<double> at = fit.thresholds;
   for (std::size_t k = 0; k < fit.beta.size(); ++k) {
@@ -67,7 +68,7 @@ std::vector<double> standardised(const OrdinalFit& fit, const OrdinalRows& rows)
   return at;
 }
 
-/// Where the search begins: the fit without participants, or where there is none, no effects.
+/// Start of the search: the fit without participants, or if there is none, zero effects.
 std::vector<double> start_of(const Result<OrdinalFit>& fixed, const OrdinalRows& rows, Link link) {
   auto start =
       fixed ? standardised(*fixed, rows) : marginal_thresholds(rows.category, rows.thresholds() + 1, link);
@@ -76,7 +77,7 @@ std::vector<double> start_of(const Result<OrdinalFit>& fixed, const OrdinalRows&
   return start;
 }
 
-/// Rows and columns of thresholds and beta, of the inverse of a Hessian that also holds sd.
+/// Rows and columns of thresholds and beta, from the inverse of a Hessian that also includes sd.
 std::vector<double> covariance_of(std::span<const double> hessian, std::size_t p) {
   const auto all = Cholesky::of(hessian)->inverse();
   std::vector<double> out;
@@ -100,7 +101,7 @@ Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> rating
   const auto rows = ordinal_rows(ratings, predictors, participants);
   if (!rows) return Refusal{rows.reason()};
   if (const auto reason = too_few(*rows); !reason.empty()) return Refusal{reason};
-  // Where the ratings are separated without participants, they are so with them.
+  // Ratings that are separated without participants are also separated with them.
   const auto fixed = fit_cumulative_link(ratings, predictors, link);
   const bool penalised = !fixed && separation == Separation::Penalise;
   if (!fixed && !penalised) return Refusal{fixed.reason()};

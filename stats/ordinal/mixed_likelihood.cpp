@@ -110,8 +110,8 @@ double MixedLikelihood::add_group(Group& group, const Place& place, MixedGradien
   if (!std::isfinite(largest)) return -HUGE_VAL;
   for (double& s : share) sum += s = std::exp(s - largest);
   for (double& s : share) s /= sum;
-  // d log L = sum share d g(u_k) + by_slope d g'(mode) + by_curvature d g''(mode), since the mode moves by
-  // d g' / curvature and the scale with g''.
+  // d log L = sum share d g(u_k) + by_slope d g'(mode) + by_curvature d g''(mode), since the mode moves by d
+  // g' / curvature and the scale changes with g''.
   double a = 0, b = 1;
   for (std::size_t k = 0; k < points; ++k) {
     a += share[k] * at[k].d1;

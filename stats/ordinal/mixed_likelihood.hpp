@@ -10,21 +10,21 @@ namespace stats {
 
 /// Derivatives of the log-likelihood.
 struct MixedGradient {
-  std::vector<double> thresholds, location;  ///< by threshold; by row
+  std::vector<double> thresholds, location;  ///< one for each threshold; one for each row
   double sd = 0;
 };
 
 /// Adaptive Gauss-Hermite quadrature (Pinheiro and Bates 1995, section 2.4) about each participant's mode,
 /// scaled by the curvature there; one node is Laplace's approximation. The gradient is that of the
-/// approximation itself: it follows the moving nodes.
+/// approximation itself and accounts for the moving nodes.
 class MixedLikelihood {
  public:
   /// category in [0, levels), participant in [0, participants) for each row; points >= 1.
   MixedLikelihood(std::span<const int> category, std::span<const int> participant, Link link, int points);
 
-  /// Log-likelihood and its gradient; -infinity where a rating has no probability or the thresholds do not
-  /// ascend, and the gradient is then void. Effects are sd u with u ~ N(0, 1); the likelihood is even in sd.
-  /// Not thread-safe: the modes found are the next call's start.
+  /// Log-likelihood and its gradient. -infinity if a rating has probability zero or the thresholds do not
+  /// ascend; the gradient is then invalid. Effects are sd u with u ~ N(0, 1), so the likelihood is even in
+  /// sd. Not thread-safe: each call starts from the modes that the previous call found.
   double evaluate(std::span<const double> thresholds, std::span<const double> location, double sd,
                   MixedGradient& gradient);
 

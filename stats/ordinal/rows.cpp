@@ -29,7 +29,7 @@ std::vector<std::size_t> whole_rows(std::span<const double> ratings, std::span<c
   return rows;
 }
 
-/// Mean 0 and sd 1; the reason when the column cannot be.
+/// Scales a column to mean 0 and sd 1; returns the reason if that is impossible.
 std::string standardise(OrdinalRows& rows, const Predictor& predictor, const std::vector<std::size_t>& kept) {
   std::vector<double> column;
   for (const std::size_t i : kept) column.push_back(predictor.values[i]);

@@ -1,5 +1,5 @@
 #pragma once
-/// What every ordinal fit starts from: whole rows, numbered categories, predictors of mean 0 and sd 1.
+/// Input of every ordinal fit: complete rows, numbered categories, predictors with mean 0 and sd 1.
 
 #include <span>
 #include <vector>
@@ -23,15 +23,15 @@ struct OrdinalRows {
   std::vector<double> location(std::span<const double> beta) const;
 };
 
-/// Refusals of fit_cumulative_link but separation.
+/// Refused as fit_cumulative_link(), except for separation.
 Result<OrdinalRows> ordinal_rows(std::span<const double> ratings, std::span<const Predictor> predictors,
                                  std::span<const int> participants);
 
 /// Thresholds of the ratings without predictors: link_quantile of the cumulative shares.
 std::vector<double> marginal_thresholds(std::span<const int> category, int levels, Link link);
 
-/// Thresholds, beta and covariance for the predictors' own units; `parameters` and `covariance` hold
-/// thresholds and beta of the standardised ones.
+/// Sets thresholds, beta and covariance in the predictors' own units; `parameters` and `covariance` hold
+/// thresholds and beta for the standardised predictors.
 void set_original_units(OrdinalFit& fit, const OrdinalRows& rows, std::span<const double> parameters,
                         std::span<const double> covariance);
 

@@ -38,7 +38,7 @@ Wins checked(std::span<const double> wins, int items) {
   return {wins, items};
 }
 
-/// Items that can be reached from `start` by steps for which `edge` holds.
+/// Items reachable from `start` by steps for which `edge` is true.
 template <class Edge>
 std::vector<bool> reachable(int items, int start, const Edge& edge) {
   std::vector<bool> seen(static_cast<std::size_t>(items), false);
@@ -68,7 +68,7 @@ bool all(const std::vector<bool>& members) {
   return std::find(members.begin(), members.end(), false) == members.end();
 }
 
-/// The smallest set of items that no other item ever beat (or, for `worst`, that beat no other).
+/// The smallest set of items that no other item ever beat (for `worst`: that never beat any other).
 std::vector<bool> unbeaten(const Wins& wins, bool worst) {
   std::vector<bool> best(static_cast<std::size_t>(wins.items), true);
   for (int i = 0; i < wins.items; ++i) {
@@ -162,7 +162,7 @@ void set_errors(BradleyTerry& out, const CoefficientErrors& errors) {
   set_pairs(out, errors, quantile);
 }
 
-/// Errors over people in place of those of independent answers, which stay beside them.
+/// Replaces errors of independent answers by errors over people; the former are stored beside them.
 void set_people(BradleyTerry& out, const CoefficientErrors& errors, const LogitFit& fit) {
   const auto before = out.pairs;
   set_errors(out, errors);
@@ -216,7 +216,7 @@ ConnectionReport connection(std::span<const double> counts, int items) {
 
 namespace {
 
-/// A model and the fit that it was made of.
+/// A model and the fit it was built from.
 struct Fitted {
   BradleyTerry model;
   LogitFit fit;

@@ -12,11 +12,12 @@
 
 namespace stats {
 
-/// Whether the strengths are finite (Ford 1957): each split of the items in two must have wins both ways.
+/// Tells if the strengths are finite (Ford 1957): for each split of the items into two sets, each set must
+/// have a win over the other.
 enum class Connection {
   Strong,     ///< finite maximum of the likelihood
-  Separated,  ///< connected, but some items never lose to the others: infinite
-  None,       ///< two groups of items were never compared
+  Separated,  ///< connected, but some items never lose to the others: infinite strengths
+  None,       ///< two groups of items were never compared with each other
 };
 struct ConnectionReport {
   Connection connection = Connection::Strong;
@@ -28,8 +29,8 @@ ConnectionReport connection(std::span<const double> wins, int items);
 
 enum class BradleyTerryMethod {
   MaximumLikelihood,
-  BiasReduced,  ///< Firth 1993: finite even where items are separated
-  Automatic,    ///< maximum likelihood where it is finite, else bias reduced
+  BiasReduced,  ///< Firth 1993: finite even if items are separated
+  Automatic,    ///< maximum likelihood if it is finite, else bias reduced
 };
 
 struct PairDifference {
@@ -39,7 +40,7 @@ struct PairDifference {
   double se_independent = 0;   ///< as if answers were independent
   std::array<double, 2> ci{};  ///< Wald
   double p = 0;                ///< Wald
-  double probability = 0;      ///< that i is preferred to j
+  double probability = 0;      ///< probability that i is preferred to j
   std::array<double, 2> probability_ci{};
 };
 
@@ -49,22 +50,23 @@ struct BradleyTerry {
   bool bias_reduced = false;
   std::string why_bias_reduced;  ///< the reason when Automatic chose it
   double confidence = 0.95;
-  std::vector<double> lambda_ref1, se_ref1;  ///< the first item has 0
+  std::vector<double> lambda_ref1, se_ref1;  ///< relative to the first item, which has 0
   std::vector<double> covariance_ref1;  ///< items by items, row after row; the first row and column are 0
   std::vector<double> lambda_sum0, se_sum0;    ///< strengths that sum to 0
   std::vector<std::array<double, 2>> ci_sum0;  ///< Wald
   std::vector<double> se_sum0_independent;     ///< as if answers were independent
   std::vector<double> worth;                   ///< exp(lambda), sum 1
-  /// Degrees of freedom of errors over people (people_errors.hpp); empty: errors are of independent answers.
+  /// Degrees of freedom of errors over people (people_errors.hpp). Empty if errors treat answers as
+  /// independent.
   std::optional<double> people_df;
-  std::string why_independent;  ///< why errors are not over people, of single trials
-  /// Wald's test of equal strengths over people, as Hotelling's T2.
+  std::string why_independent;  ///< for single trials: why errors are not over people
+  /// Wald's test of equal strengths with errors over people, as Hotelling's T2.
   struct PeopleTest {
     double f = 0, df1 = 0, df2 = 0, p = 0;
   };
   std::optional<PeopleTest> equal_over_people;
   double log_likelihood = 0;  ///< without binomial coefficients
-  /// Goodness of fit: deviance against one free proportion for each pair; p empty when no df is left.
+  /// Goodness of fit: deviance against one free proportion for each pair; p is empty if no df is left.
   double gof_deviance = 0;
   int gof_df = 0;
   std::optional<double> gof_p;
@@ -76,15 +78,15 @@ struct BradleyTerry {
 };
 
 /// Refused: fewer than two items, no comparison, items never compared, and for MaximumLikelihood an infinite
-/// estimate (the reason names the items). For BiasReduced, tests of likelihood ratio use the bias-reduced
-/// strengths in the ordinary likelihood. std::invalid_argument as for connection(), an entry (i, i) > 0 or a
-/// confidence outside (0, 1).
+/// estimate (the reason names the items). For BiasReduced, likelihood-ratio tests use the bias-reduced
+/// strengths in the ordinary likelihood. std::invalid_argument as for connection(), and for an entry (i, i) >
+/// 0 or a confidence outside (0, 1).
 Result<BradleyTerry> bradley_terry(std::span<const double> wins, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);
 
-/// The same of single trials: strengths and likelihood ratios as of their wins, errors, intervals and Wald
-/// tests over people where they bear it. Penalised strengths keep the errors of independent answers.
+/// The same for single trials: strengths and likelihood ratios as from their wins; errors, intervals and Wald
+/// tests over people where the data allow it. Penalised strengths keep the errors of independent answers.
 Result<BradleyTerry> bradley_terry(std::span<const Comparison> trials, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);

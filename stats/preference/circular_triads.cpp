@@ -29,11 +29,12 @@ int most_circular(int items) {
   return n % 2 == 1 ? (n * n * n - n) / 24 : (n * n * n - 4 * n) / 24;
 }
 
-/// An item that wins s comparisons heads s (s - 1) / 2 triads, and a triad without a head is circular.
+/// An item with s wins beats both others in s (s - 1) / 2 triads; a triad in which no item beats both others
+/// is circular.
 int heads(int wins) { return wins * (wins - 1) / 2; }
 
-/// Share of each number of circular triads among all tournaments, which are run through in Gray code: one
-/// answer turns round at a time.
+/// Share of each number of circular triads among all tournaments. They are enumerated in Gray code, so that
+/// one answer changes at a time.
 Values enumerate(int items) {
   std::vector<std::array<std::size_t, 2>> pairs;
   std::vector<int> score(static_cast<std::size_t>(items), 0);
@@ -132,7 +133,7 @@ Result<GroupTriads> group_triads(std::span<const CircularTriads> participants) {
     for (int i = 0; i < out.participants; ++i) sum = convolve(sum, exact_distribution(out.items));
     out.p = share_up_to(sum, out.triads);
   } else {
-    // Each triad is circular with probability 1/4, any two independently (Moran 1947).
+    // Each triad is circular with probability 1/4, and any two are independent
     const double sd = std::sqrt(0.75 * out.expected);
     out.p = normal_probability((out.triads + 0.5 - out.expected) / sd);
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// Does a participant contradict himself? Circular triads among all pairs: A over B, B over C, C over A
-/// (Kendall and Babington Smith 1940).
+/// Consistency of a participant: circular triads among all pairs: A over B, B over C, C over A (Kendall and
+/// Babington Smith 1940).
 
 #include <span>
 
@@ -10,11 +10,11 @@ namespace stats {
 
 struct CircularTriads {
   int items = 0;
-  int triads = 0;       ///< circular ones
+  int triads = 0;       ///< number of circular triads
   int most = 0;         ///< largest number possible
-  double expected = 0;  ///< of random choices: a quarter of all triads
+  double expected = 0;  ///< for random choices: a quarter of all triads
   double zeta = 0;      ///< consistency, 1 - triads / most: 1 = no contradiction, 0 = as many as possible
-  /// Probability of so few circular triads if every choice is a coin's throw; small = the participant has an
+  /// Probability of so few circular triads under random choices; small if the participant has a consistent
   /// order. Exact up to 7 items, else Kendall's chi-square (1962).
   double p = 0;
   bool exact = true;
@@ -31,11 +31,12 @@ struct GroupTriads {
   int triads = 0;  ///< sum over the participants
   double expected = 0;
   double mean_zeta = 0;
-  double p = 0;  ///< of so small a sum if all choose at random: exact convolution up to 7 items, else normal
+  double p = 0;  ///< of so small a sum under random choices: exact convolution up to 7 items, else normal
   bool exact = true;
 };
 
-/// Of several participants who all judged the same number of items. Refused: none, or different numbers.
+/// Combines several participants who all judged the same number of items. Refused: no participants, or
+/// different numbers of items.
 Result<GroupTriads> group_triads(std::span<const CircularTriads> participants);
 
 }  // namespace stats

@@ -28,7 +28,7 @@ double log_likelihood(std::span<const LogitRow> rows, const Values& beta) {
   double sum = 0;
   for (const auto& row : rows) {
     const double eta = predictor(row, beta), failures = row.trials - row.successes;
-    // 0 times -infinity is none.
+    // 0 times -infinity counts as 0.
     if (row.successes > 0) sum += row.successes * log_logistic(eta);
     if (failures > 0) sum += failures * log_logistic(-eta);
   }
@@ -45,7 +45,8 @@ double deviance(std::span<const LogitRow> rows, const Values& beta) {
   return 2 * sum;
 }
 
-/// Inverse of the information matrix and its log determinant; empty when it is singular.
+/// Inverse of the information matrix, and the latter's log determinant. information() is empty if the matrix
+/// is singular.
 struct Information {
   Values inverse;
   double log_determinant = 0;
@@ -66,7 +67,7 @@ std::optional<Information> information(std::span<const LogitRow> rows, const Val
   if (gsl_linalg_cholesky_decomp1(&view.matrix) != GSL_SUCCESS) return std::nullopt;
   for (std::size_t i = 0; i < k; ++i) {
     const double pivot = out.inverse[i * k + i];
-    // What a column has of its own is rounding.
+    // The column depends on the others up to rounding.
     if (!(pivot * pivot > 1e-12 * diagonal[i])) return std::nullopt;
     out.log_determinant += 2 * std::log(pivot);
   }
@@ -74,7 +75,8 @@ std::optional<Information> information(std::span<const LogitRow> rows, const Val
   return out;
 }
 
-/// The score, with Firth's term: trials of a row weigh its leverage times (1/2 - probability).
+/// The score, with Firth's term: a row's residual gains leverage times trials times variance times (1/2 -
+/// probability).
 Values score(std::span<const LogitRow> rows, const Values& beta, const Values& inverse, LogitBias bias) {
   const std::size_t k = beta.size();
   Values out(k, 0.0);
@@ -92,7 +94,7 @@ Values score(std::span<const LogitRow> rows, const Values& beta, const Values& i
   return out;
 }
 
-/// What Newton's method climbs.
+/// The objective that Newton's method maximises.
 double objective(std::span<const LogitRow> rows, const Values& beta, const Information& at, LogitBias bias) {
   return log_likelihood(rows, beta) + (bias == LogitBias::Reduced ? at.log_determinant / 2 : 0);
 }
@@ -103,7 +105,7 @@ struct Step {
   double objective = 0;
 };
 
-/// beta + step, or with the step halved until the objective does not fall; empty when it always does.
+/// beta + step, with the step halved until the objective does not fall. Empty if it always falls.
 std::optional<Step> climb(std::span<const LogitRow> rows, const Step& from, const Values& step,
                           LogitBias bias) {
   const double rounding = 1e-13 * (1 + std::abs(from.objective));
@@ -137,7 +139,7 @@ Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias) {
   at.information = *start;
   at.objective = objective(rows, at.beta, at.information, bias);
 
-  // A separated likelihood rises for ever, in steps of about 1.
+  // A separated likelihood increases for ever, in steps of about 1.
   constexpr int most_steps = 200;
   constexpr double farthest = 30;
   for (int i = 0; i < most_steps; ++i) {

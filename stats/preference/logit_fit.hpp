@@ -1,5 +1,5 @@
 #pragma once
-/// Logistic regression on small tables: the engine of the preference models.
+/// Logistic regression on small tables, used by the preference models.
 
 #include <cmath>
 #include <span>
@@ -28,11 +28,11 @@ struct LogitFit {
 
 enum class LogitBias {
   AsIs,     ///< maximum likelihood
-  Reduced,  ///< Firth 1993: maximum of the likelihood times Jeffreys' prior; finite under separation
+  Reduced,  ///< Firth 1993: maximises likelihood times Jeffreys' prior; finite under separation
 };
 
-/// Newton's method with halved steps. All rows have the same number of coefficients, one or more.
-/// Refused: coefficients that the rows do not determine, separation (LogitBias::AsIs), no convergence.
+/// Newton's method with step halving. All rows have the same number of coefficients, one or more. Refused:
+/// coefficients that the rows do not determine, separation (LogitBias::AsIs), no convergence.
 Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias = LogitBias::AsIs);
 
 }  // namespace stats

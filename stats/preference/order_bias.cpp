@@ -18,7 +18,7 @@ namespace {
 
 enum class Terms { None, Interval, IntervalAndDrift };
 
-/// Strengths of all items but the first, then the terms.
+/// Rows with the strengths of all items but the first, then the order terms.
 std::vector<LogitRow> rows_with(std::span<const Comparison> trials, int items, Terms terms, double centre) {
   const auto strengths = static_cast<std::size_t>(items - 1);
   auto rows = trial_rows(trials, items, static_cast<std::size_t>(terms));
@@ -34,7 +34,7 @@ struct OrderFit {
   Result<LogitFit> fit;
 };
 
-/// The last coefficient of `with`, tested against the fit without it.
+/// The last coefficient of `with`, tested against `without`, the fit without it.
 OrderTerm last_term(const OrderFit& with, const LogitFit& without, std::span<const Comparison> trials,
                     double confidence) {
   const LogitFit& fit = *with.fit;

@@ -13,7 +13,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// What each person pulls at the coefficients.
+/// Each person's score (gradient of the log-likelihood).
 std::map<int, Values> scores_of_people(const LogitFit& fit, std::span<const LogitRow> rows,
                                        std::span<const Comparison> trials) {
   const std::size_t k = fit.coefficients.size();
@@ -50,13 +50,13 @@ Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const Log
   const auto n = static_cast<double>(people.size());
   CoefficientErrors out{Values(k * k, 0.0), n - 1};
   for (const auto& [person, score] : people) {
-    Values step(k, 0.0);  // how far this person moves the coefficients
+    Values step(k, 0.0);  // how far this person's answers move the coefficients
     for (std::size_t i = 0; i < k; ++i)
       for (std::size_t j = 0; j < k; ++j) step[i] += fit.variance(i, j) * score[j];
     for (std::size_t i = 0; i < k; ++i)
       for (std::size_t j = 0; j < k; ++j) out.covariance[i * k + j] += step[i] * step[j] * n / (n - 1);
   }
-  // Against the errors of independent answers, what is left of people who are all alike is rounding.
+  // If all people answer alike, only rounding remains compared with the errors of independent answers.
   for (std::size_t i = 0; i < k; ++i) {
     if (!(out.covariance[i * k + i] > 1e-10 * fit.variance(i, i)))
       return Refusal{"the participants answered too much alike for errors over people"};

@@ -1,5 +1,5 @@
 #pragma once
-/// Errors that know whose answers they are of: those of one person have something in common.
+/// Errors that allow for dependence between the answers of one person.
 
 #include <optional>
 #include <span>
@@ -22,13 +22,13 @@ struct CoefficientErrors {
   double p(double t) const;                  ///< two-sided
 };
 
-/// As if answers were independent: the inverse information.
+/// Errors as if answers were independent: the inverse information.
 CoefficientErrors independent_errors(const LogitFit& fit);
 
-/// The sandwich with the answers of one person as a cluster (Liang and Zeger 1986), times people / (people -
-/// 1), with Student's t of people - 1 degrees of freedom. `rows` as they were fitted, one for each of
-/// `trials`. Refused: no more people than coefficients, whose answers then do not span them; people whose
-/// answers leave a coefficient without any error.
+/// The sandwich estimator with each person's answers as a cluster (Liang and Zeger 1986), times people /
+/// (people - 1), with Student's t of people - 1 degrees of freedom. `rows` as they were fitted, one for each
+/// of `trials`. Refused: no more people than coefficients, since their answers then do not span the
+/// coefficients; people whose answers leave a coefficient without error.
 Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const LogitRow> rows,
                                         std::span<const Comparison> trials);
 

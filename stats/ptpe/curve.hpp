@@ -1,5 +1,5 @@
 #pragma once
-/// mu(delta) = a exp(b delta) with what the participants determine of it: intervals and bands.
+/// mu(delta) = a exp(b delta), with its intervals and bands over participants.
 
 #include <array>
 #include <span>
@@ -20,11 +20,12 @@ struct Curve {
 /// mu(delta) and an interval for it, frames/s.
 struct BandPoint {
   double delta = 0, mu = 0;
-  std::array<double, 2> pointwise{};     ///< holds the true mu(delta) at this delta
-  std::array<double, 2> simultaneous{};  ///< holds the whole true curve at once
+  std::array<double, 2> pointwise{};     ///< covers the true mu(delta) at this delta
+  std::array<double, 2> simultaneous{};  ///< covers the whole true curve at once
 };
 
-/// A curve's uncertainty by the jackknife over participants (Tukey 1958): leaving each out in turn.
+/// A curve with its uncertainty by the jackknife over participants (Tukey 1958), which leaves out each in
+/// turn.
 struct CurveSpread {
   Curve curve;
   double var_log_a = 0, cov = 0, var_b = 0;
@@ -37,13 +38,13 @@ struct CurveSpread {
   /// Pointwise with Student's t; simultaneous after Working and Hotelling (1929) with Hotelling's T^2 for the
   /// two coefficients.
   BandPoint band(double delta) const;
-  /// Largest half width of the pointwise band over `deltas`, as a share of mu(delta): how far, in parts of
-  /// the threshold frame rate, the participants leave it open.
+  /// Largest half width of the pointwise band over `deltas`, as a share of mu(delta): the relative
+  /// uncertainty of the threshold frame rate.
   double largest_relative_half_width(std::span<const double> deltas) const;
 };
 
-/// From the estimate and those without each participant; both in any units, at least four participants
-/// (std::invalid_argument). `confidence` in (0, 1).
+/// Jackknife from the estimate and the estimates without each participant, both in any units. Needs at least
+/// four participants (std::invalid_argument). `confidence` in (0, 1).
 CurveSpread jackknife_curve(const Curve& estimate, std::span<const Curve> without_one, double confidence);
 
 /// (n-1)/n sum (x_i - mean)(y_i - mean): the jackknife's covariance of two estimates.

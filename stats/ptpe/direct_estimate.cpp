@@ -17,7 +17,7 @@ namespace stats {
 
 namespace {
 
-/// The fits without each participant; the reason when one has none.
+/// The fits without each participant in turn; the reason if one is refused.
 using Fitter = std::function<Result<DirectFit>(std::span<const double>)>;
 Result<std::vector<DirectFit>> leave_one_out(int n, const Fitter& fitter) {
   if (n < least_participants) {
@@ -51,7 +51,7 @@ Result<LackOfFit> lack_of_fit(const DirectFit& fit, const std::vector<DirectFit>
   const double mm = jackknife_covariance(m, m), mq = jackknife_covariance(m, q),
                qq = jackknife_covariance(q, q);
   const double determinant = mm * qq - mq * mq, n = static_cast<double>(m.size());
-  // What is left where people do not differ is rounding (and an F of 1e18).
+  // If people do not differ, only rounding remains (and would give an F of 1e18).
   const auto no_spread = [](double variance, double value) { return !(variance > 1e-18 * value * value); };
   if (no_spread(mm, fit.m) || no_spread(qq, fit.q) || !(determinant > 1e-12 * mm * qq))
     return Refusal{"the participants agree: m and q have no spread"};
@@ -87,7 +87,7 @@ void refuse_spread(DirectEstimate& estimate, const std::string& reason) {
   estimate.form = Refusal{reason};
 }
 
-/// Takes away the settings far above the curve.
+/// Excludes the settings far above the curve.
 void leave_out_far_above(Reach& reach, double level) {
   const auto inner = DirectModel(reach.kept, level).fit();
   if (!inner) return;
@@ -112,13 +112,13 @@ Reach within_reach(std::span<const PilotObservation> observations, double level)
   out.kept.assign(observations.begin(), observations.end());
   const auto whole = DirectModel(observations, level).fit();
   if (!whole) return out;
-  std::map<double, std::array<double, 2>> shown;  // by nominal delta: lowest and highest mean frame rate
+  std::map<double, std::array<double, 2>> shown;  // lowest and highest mean frame rate, by nominal delta
   for (const auto& o : observations) {
     auto& [low, high] = shown.try_emplace(o.nominal_delta, std::array{o.mu, o.mu}).first->second;
     low = std::min(low, o.mu);
     high = std::max(high, o.mu);
   }
-  std::map<double, double> beyond;  // how far outside the curve runs, in log mu
+  std::map<double, double> beyond;  // how far the curve runs outside, in log mu, by nominal delta
   std::vector<double> distances;
   for (const auto& [delta, range] : shown) {
     const double mu = whole->curve.mu(delta);

@@ -12,7 +12,7 @@ namespace stats {
 
 namespace {
 
-/// Of 1, x and d alone.
+/// Sums of products of the terms 1, x and d only.
 template <std::size_t Terms>
 std::array<double, 9> plane_gram(const TermSums<Terms>& sums) {
   std::array<double, 9> gram{};
@@ -24,8 +24,8 @@ std::array<double, 9> plane_gram(const TermSums<Terms>& sums) {
 
 }  // namespace
 
-/// u = x - alpha - beta d with x = log mu - its centre and d = (delta - its centre) / delta_unit; the score
-/// less the level is u (k + m d + q u).
+/// u = x - alpha - beta d, with x = log mu - its centre and d = (delta - its centre) / delta_unit. The score
+/// minus the level is u (k + m d + q u).
 struct DirectModel::Place {
   static constexpr std::size_t terms = DirectModel::terms, parameters = 5;
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
@@ -49,7 +49,7 @@ struct DirectModel::Place {
   Place moved(const std::array<double, 5>& step) const {
     return {alpha + step[0], beta + step[1], k + step[2], m + step[3], q + step[4]};
   }
-  /// The other line on which the score is the level.
+  /// The other line on which the score equals the level.
   Place other() const { return {alpha - k / q, beta - m / q, -k, -m, q}; }
 };
 
@@ -89,7 +89,7 @@ DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
   return out;
 }
 
-/// Ordinary least squares on 1, x and d; empty when the settings do not determine it or the score does not
+/// Ordinary least squares on 1, x and d. Empty if the settings do not determine it or the score does not
 /// depend on x.
 std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const {
   const auto c = solve_positive<3>(plane_gram(sums), {sums.moment[0], sums.moment[1], sums.moment[2]});
@@ -106,7 +106,7 @@ Refusal DirectModel::no_slope(const Sums& sums, const std::string& surface) {
   return {equal ? "all ratings are equal" : "the scores do not depend on the mean frame rate"};
 }
 
-/// Of the two lines on which the score is the level, the one along which it rises with mu.
+/// Chooses, of the two lines on which the score equals the level, the one along which it rises with mu.
 Result<DirectFit> DirectModel::checked(const Sums& sums, const Place& at) const {
   if (at.k < 0 && std::abs(at.q) > 1e-12) {
     if (const auto rising = described(sums, at.other())) return rising;

@@ -1,5 +1,5 @@
 #pragma once
-/// a and b straight from the ratings, without a detour over the contour of their means.
+/// The direct estimate: a and b fitted directly to the ratings, without the contour of their means.
 ///
 ///   E[score] = level + k u + m u delta + q u^2,   u = log mu - log a - b delta
 ///
@@ -21,14 +21,14 @@
 
 namespace stats {
 
-/// frames/s; fits measure delta in this unit, so that every coefficient is of the order 1.
+/// In frames/s. Fits measure delta in this unit, so that every coefficient is of order 1.
 constexpr double delta_unit = 10;
 
 struct DirectFit {
   Curve curve;
   double level = 4;
   double k = 0;  ///< rise of the score with log mu on the curve at delta = 0
-  double m = 0;  ///< its change with delta, per frame/s
+  double m = 0;  ///< change of k with delta, per frame/s
   double q = 0;
   double rss = 0;
   double n = 0;  ///< sum of the weights of the observations
@@ -36,18 +36,18 @@ struct DirectFit {
   double score(double mu, double delta) const;
 };
 
-/// Least squares for any weights of the participants, from sums of monomials that are taken once.
+/// Least squares with any weights of the participants, from sums of monomials that are computed once.
 class DirectModel {
  public:
-  /// Settings as PilotTable::observations gives them; mu > 0 (std::invalid_argument).
+  /// Settings as from PilotTable::observations; mu > 0 (std::invalid_argument).
   DirectModel(std::span<const PilotObservation> observations, double level);
 
   int participants() const { return static_cast<int>(sums_.size()); }
 
-  /// The global minimum by Levenberg's and Marquardt's method from several starts; with `start` only from it
-  /// and the straight form, as resamples do. The level may be met on a second line, where scores fall as mu
-  /// rises; the curve is the one where they rise. Refused: settings that do not determine the surface; scores
-  /// that do not rise with the frame rate all along the curve; a curve outside the settings shown ("no
+  /// The global minimum by the Levenberg-Marquardt method from several starts; with `start` only from it and
+  /// the straight form, as for resamples. Scores may meet the level on a second line, where they fall as mu
+  /// rises; the curve is the line where they rise. Refused: settings that do not determine the surface;
+  /// scores that do not rise with the frame rate all along the curve; a curve outside the settings shown ("no
   /// contour").
   Result<DirectFit> fit(std::span<const double> weights = {}, const DirectFit* start = nullptr) const;
 
@@ -70,7 +70,7 @@ class DirectModel {
   std::array<double, 2> log_mu_range_{}, delta_range_{};  ///< smallest and largest
 };
 
-/// Test of m = q = 0, which says whether the straight form may be used: Hotelling's T^2 of (m, q) with the
+/// Test of m = q = 0, which tells if the straight form may be used: Hotelling's T^2 of (m, q) with the
 /// jackknife's covariance over participants.
 struct LackOfFit {
   double m = 0, q = 0;
@@ -79,49 +79,51 @@ struct LackOfFit {
   double p = 1;
 };
 
-/// The direct estimate and what the participants determine of it.
+/// The direct estimate with its uncertainty over participants and its tests.
 struct DirectEstimate {
   Result<DirectFit> fit = Refusal{"not computed"};
-  std::vector<double> out_of_reach;  ///< nominal deltas whose settings are left out, ascending
-  int far_above = 0;                 ///< settings left out since they lie far above the curve
-  int in_reach = 0;                  ///< deltas at which the curve meets the frame rates shown
+  std::vector<double> out_of_reach;  ///< nominal deltas whose settings are excluded, ascending
+  int far_above = 0;                 ///< number of settings excluded as far above the curve
+  int in_reach = 0;                  ///< number of deltas at which the curve lies among the frame rates shown
   Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
-  Result<FormTest> form = Refusal{"not computed"};  ///< whether log mu is a straight line in delta
+  Result<FormTest> form = Refusal{"not computed"};  ///< test if log mu is a straight line in delta
   Result<DirectFit> straight = Refusal{"not computed"};
   Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
 
-  /// Of these nominal deltas, ascending, those that are not out_of_reach: beyond them the curve is
+  /// The nominal deltas of `deltas` (ascending) that are not out_of_reach. Beyond them the curve is
   /// extrapolated.
   std::vector<double> in_reach_of(std::span<const double> deltas) const;
 };
 
-/// By this factor a curve may run outside the frame rates shown at a delta and still be within reach, so that
-/// a curve that passes through the outermost of them is not left out by the toss of a coin.
+/// A curve is within reach at a delta if it runs outside the frame rates shown by at most this factor.
+/// Without the margin, chance would decide on curves that pass through the outermost frame rate.
 inline constexpr double reach_margin = 1.15;
-/// Settings above this multiple of the curve are left out: towards the top of the scale the scores level off,
+/// Settings above this multiple of the curve are excluded. Near the top of the scale the scores level off,
 /// and a quadratic that follows them there misses the level (a = 18, b = 0.01, 40 people: a's bias falls from
-/// 1.4 to 0.4 frames/s, the intervals hold it in 93 instead of 67 %).
+/// 1.4 to 0.4 frames/s, the intervals cover it in 93 instead of 67 %).
 inline constexpr double far_factor = 2.46;
 
-/// What within_reach found.
+/// The result of within_reach().
 struct Reach {
   std::vector<PilotObservation> kept;
   std::vector<double> left_out;  ///< nominal deltas, ascending
-  int in_reach = 0;              ///< deltas at which the curve lies among the frame rates shown at them
-  int far_above = 0;             ///< settings above far_factor times the curve
+  int in_reach = 0;              ///< number of deltas at which the curve lies among the frame rates shown
+  int far_above = 0;             ///< number of settings above far_factor times the curve
 };
 
-/// Where the curve fitted to all lies outside the frame rates that were shown at a delta, the settings there
-/// say nothing of where it runs and only bend it (b's bias at a = 31, b = 0.035 falls from 12 to 4 %). They
-/// are left out, but for the three nearest deltas, so that there is a fit to look at; and of the others those
-/// far above the curve fitted to them, unless the rest has no fit. Without a fit to all, everything is kept.
+/// Selects the settings that determine the curve. At a delta where the curve fitted to all settings lies
+/// outside the frame rates shown, the settings say nothing about its course and only bend it (without them
+/// b's bias at a = 31, b = 0.035 falls from 12 to 4 %). Such deltas are excluded, except that the three
+/// nearest to the curve always stay, so that a fit remains. Then settings far above the curve fitted to the
+/// rest are excluded, unless no fit remains without them. If the fit to all settings is refused, everything
+/// is kept.
 Reach within_reach(std::span<const PilotObservation> observations, double level);
 
-/// Fit within reach, jackknife-t and expanded percentile bootstrap, both with whole participants
-/// (options.resamples = 0: no bootstrap). Refused with fewer than least_participants, and where leaving a
-/// participant out leaves no fit; the bootstrap beyond largest_failed_share.
+/// Fit within reach, with jackknife-t and expanded percentile bootstrap over whole participants
+/// (options.resamples = 0: no bootstrap). The intervals are refused with fewer than least_participants and if
+/// there is no fit without one of the participants; the bootstrap also beyond largest_failed_share.
 DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
                                const BootstrapOptions& options);
 

@@ -38,7 +38,7 @@ double residual_sum(const Scaled& data, double A, double B) {
   return sum;
 }
 
-/// The best A for a given B is linear least squares.
+/// The best A for a given B, by linear least squares.
 Candidate with_best_amplitude(const Scaled& data, double B) {
   double num = 0, den = 0;
   for (std::size_t i = 0; i < data.u.size(); ++i) {
@@ -49,7 +49,8 @@ Candidate with_best_amplitude(const Scaled& data, double B) {
   return {num / den, B, residual_sum(data, num / den, B)};
 }
 
-/// Slope of log|v| on u over the values of the prevailing sign, each weighted by v^2 (the variance of log v).
+/// Slope of log|v| on u over the values of the more frequent sign, each weighted by v^2 (the variance of log
+/// v).
 double log_linear_rate(const Scaled& data) {
   double balance = 0;
   for (const double v : data.v) balance += v;
@@ -72,7 +73,7 @@ double log_linear_rate(const Scaled& data) {
   return suu > 0 ? sul / suu : 0;
 }
 
-/// Rates beyond this do not come from data on [-1, 1]: exp(2 * 60) is 1e52.
+/// Data on [-1, 1] do not give larger rates: exp(2 * 60) is 1e52.
 constexpr double largest_rate = 60;
 
 /// Local minima of the profile over B on a coarse grid, and the log-linear estimate.
@@ -111,7 +112,7 @@ int jacobian(const gsl_vector* p, void* context, gsl_matrix* J) {
   return GSL_SUCCESS;
 }
 
-/// GSL's solver for one data set, run from any number of starts.
+/// GSL's solver for one data set; can be run from any number of starts.
 class Solver {
  public:
   explicit Solver(Scaled& data) : data_(data) {
@@ -126,7 +127,8 @@ class Solver {
     problem_.params = &data;
   }
 
-  /// Where the solver stops; the caller judges the place. An infinite sum when the solver failed.
+  /// The point where the solver stops, which the caller must check. An infinite sum of squares if the solver
+  /// failed.
   Candidate run(const Candidate& start) {
     double at[2] = {start.A, start.B};
     const auto point = gsl_vector_const_view_array(at, 2);
@@ -134,7 +136,7 @@ class Solver {
     if (gsl_multifit_nlinear_winit(&point.vector, &weights.vector, &problem_, work_.get())) return {};
     int why = 0;
     const int code = gsl_multifit_nlinear_driver(200, 1e-13, 1e-14, 0, nullptr, nullptr, &why, work_.get());
-    // "No progress" is how rounding looks at the minimum.
+    // At the minimum, rounding makes the solver report "no progress".
     if (code != GSL_SUCCESS && code != GSL_ENOPROG && code != GSL_EMAXITER) return {};
     const auto* end = gsl_multifit_nlinear_position(work_.get());
     const double A = gsl_vector_get(end, 0), B = gsl_vector_get(end, 1);
@@ -170,7 +172,7 @@ NormalEquations normal_equations(const Scaled& data, const Candidate& at) {
   return n;
 }
 
-/// Squared length of the residuals' projection on the tangent plane, g^T (J^T W J)^-1 g.
+/// Squared length of the residuals' projection onto the tangent plane, g^T (J^T W J)^-1 g.
 double tangential(const NormalEquations& n) {
   return (n.bb * n.ga * n.ga - 2 * n.ab * n.ga * n.gb + n.aa * n.gb * n.gb) / n.determinant();
 }
@@ -181,7 +183,7 @@ bool is_minimum(const Scaled& data, const Candidate& at) {
   if (!(n.determinant() > 1e-14 * n.aa * n.bb)) return false;
   double total = 0;
   for (std::size_t i = 0; i < data.v.size(); ++i) total += data.w[i] * data.v[i] * data.v[i];
-  // Residuals of rounding alone have no direction.
+  // Residuals that are only rounding have no direction.
   const double rounding = 1e-28 * total;
   return tangential(n) <= 1e-14 * at.rss + rounding;
 }
@@ -224,7 +226,7 @@ std::optional<double> determination(const Scaled& data, double rss) {
   return 1 - rss / total;
 }
 
-/// Back to a = y_scale A exp(-B x_mean / x_scale) and b = B / x_scale, covariance by the chain rule.
+/// Converts back to a = y_scale A exp(-B x_mean / x_scale) and b = B / x_scale; covariance by the chain rule.
 ExponentialFit unscaled(const Scaled& data, const Candidate& best) {
   ExponentialFit fit;
   fit.n = static_cast<int>(data.u.size());

@@ -18,34 +18,33 @@ struct ExponentialFit {
   double a = 0, b = 0;
   int n = 0;       ///< pairs used
   double rss = 0;  ///< weighted residual sum of squares
-  /// Empty with two pairs: no degree of freedom is left.
+  /// Empty with two pairs, which leave no degree of freedom.
   std::optional<ExponentialCovariance> covariance;
   /// 1 - rss / total sum of squares; empty with weights or when all y are equal.
   std::optional<double> r2;
 
   int df() const { return n - 2; }
   double value(double x) const;
-  /// Standard error of value(x) by the delta method; empty when there is no covariance.
+  /// Standard error of value(x) by the delta method; empty without a covariance.
   std::optional<double> value_se(double x) const;
 };
 
 /// Global minimum over a and b with the trust-region solver of GSL (gsl_multifit_nlinear,
-/// Levenberg-Marquardt, analytic Jacobian) from several starts on centred and scaled data; the least residual
-/// sum of squares wins, and it counts only when the residuals are orthogonal to the tangent plane (Bates and
-/// Watts 1981, relative offset), because the driver may report success elsewhere. Pairs with a NaN are
-/// dropped. x, y and weights (empty = all 1; each finite and positive) have equal length
-/// (std::invalid_argument). Refused: fewer than two pairs, infinite values, one x only, y all zero, no finite
-/// minimum, no convergence.
+/// Levenberg-Marquardt, analytic Jacobian) from several starts on centred and scaled data. The smallest
+/// residual sum of squares is taken, but only if the residuals are orthogonal to the tangent plane (Bates and
+/// Watts 1981, relative offset), since the driver may report success elsewhere. Pairs with a NaN are dropped.
+/// x, y and weights (empty = all 1; each finite and positive) have equal length (std::invalid_argument).
+/// Refused: fewer than two pairs, infinite values, one x only, y all zero, no finite minimum, no convergence.
 Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<const double> y,
                                        std::span<const double> weights = {});
 
-/// Profile-likelihood intervals of a and b (Bates and Watts 1988, section 6.1): where the least sum of
-/// squares with the parameter held there exceeds the minimum by t^2 rss / df. An end that is never reached is
-/// infinite.
+/// Profile-likelihood intervals of a and b (Bates and Watts 1988, section 6.1). An interval ends where the
+/// least sum of squares, with the parameter held there, exceeds the minimum by t^2 rss / df. An end that is
+/// never reached is infinite.
 struct ExponentialProfile {
   std::array<double, 2> a{}, b{};
 };
-/// Of the same pairs as the fit. Refused as fit_exponential; with two pairs; and with no residuals.
+/// From the same pairs as the fit. Refused as fit_exponential; also with two pairs or zero residuals.
 Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::span<const double> y,
                                                std::span<const double> weights = {}, double level = 0.95);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Pairs without a NaN, y in units of the largest.
+/// Pairs without NaN; y in units of its largest value.
 struct Pairs {
   std::vector<double> x, y, w;
   double unit = 0;
@@ -49,7 +49,7 @@ double rss_at_b(const Pairs& data, double b, double centre) {
   return rss;
 }
 
-/// Least sum of squares with a = sign exp(log_a) held: Gauss-Newton steps in b, halved until they help.
+/// Least sum of squares with a = sign exp(log_a) held: Gauss-Newton steps in b, halved until they reduce it.
 double rss_at_a(const Pairs& data, double sign, double log_a, double b) {
   const auto sums = [&](double rate, double& slope, double& curvature) {
     double rss = 0;
@@ -82,7 +82,7 @@ double rss_at_a(const Pairs& data, double sign, double log_a, double b) {
   return rss;
 }
 
-/// Where `excess`, negative at `from`, first becomes positive in steps of `stride`.
+/// The first point where `excess`, negative at `from`, becomes positive, in steps of `stride`.
 double end_of(const std::function<double(double)>& excess, double from, double stride) {
   double inside = from;
   for (int i = 0; i < 400; ++i) {
@@ -119,7 +119,7 @@ Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::s
   const double b_step = std::sqrt(fit->covariance->bb);
   const auto at_b = [&](double b) { return rss_at_b(data, b, centre) - limit; };
   out.b = {end_of(at_b, fit->b, -b_step), end_of(at_b, fit->b, b_step)};
-  // On the scale of log |a|, from the rate that keeps the curve at the data's centre.
+  // Searches over log |a|, starting from the rate that keeps the curve unchanged at the data's centre.
   const double sign = fit->a < 0 ? -1 : 1, log_a = std::log(std::abs(fit->a) / data.unit);
   const double a_step = std::min(1.0, std::sqrt(fit->covariance->aa) / std::abs(fit->a));
   const auto at_a = [&](double value) {
@@ -128,7 +128,7 @@ Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::s
   };
   const double near = sign * std::exp(end_of(at_a, log_a, -a_step)) * data.unit;
   const double far = sign * std::exp(end_of(at_a, log_a, a_step)) * data.unit;
-  // An end that this sign does not reach lies beyond zero.
+  // If a has no end with this sign, the interval extends beyond zero.
   const double inner = near == 0 ? -sign * infinity : near;
   out.a = {std::min(inner, far), std::max(inner, far)};
   return out;

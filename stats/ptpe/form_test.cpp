@@ -23,8 +23,8 @@ namespace {
 constexpr std::size_t terms = 9;  // 1, x, e, x e, x^2, e^2, x e^2, e^3, e^4
 using Sums = TermSums<terms>;
 
-/// u = x - alpha - beta e - gamma e^2 with x = log mu - its mean; the score less the level is u (k + m e + q
-/// u).
+/// u = x - alpha - beta e - gamma e^2, with x = log mu - its mean. The score minus the level is u (k + m e +
+/// q u).
 struct Place {
   static constexpr std::size_t terms = stats::terms, parameters = 6;
   double alpha = 0, beta = 0, gamma = 0, k = 0, m = 0, q = 0;
@@ -57,16 +57,16 @@ struct Place {
   bool rises() const { return k - std::abs(m) > 0; }  // at e from -1 to 1
 };
 
-/// The ratings of all participants as sums, and the units in which they were taken.
+/// The ratings of all participants as sums, and the units of those sums.
 struct Ratings {
   std::vector<Sums> people;
   Sums all;
-  double middle = 0, half = 1, centre = 0;  ///< of delta, and of log mu
+  double middle = 0, half = 1, centre = 0;  ///< middle and half range of delta; mean of log mu
 };
 
-/// The settings that say where the curve bends: see form_test().
+/// The settings that determine the bend of the curve: see form_test().
 std::vector<PilotObservation> near_curve(std::span<const PilotObservation> observations, const Curve& curve) {
-  std::map<double, double> highest;  // mean frame rate shown, by nominal delta
+  std::map<double, double> highest;  // highest mean frame rate shown, by nominal delta
   for (const auto& o : observations) {
     double& here = highest[o.nominal_delta];
     here = std::max(here, o.mu);
@@ -102,7 +102,7 @@ std::optional<Ratings> collect(const std::vector<PilotObservation>& observations
   return out;
 }
 
-/// Least squares on 1, x, e and e^2: where the search begins.
+/// Least squares on 1, x, e and e^2: the start of the search.
 std::optional<Place> plane(const Sums& sums) {
   constexpr std::array<std::size_t, 4> used{0, 1, 2, 5};
   std::array<double, 16> gram{};
@@ -123,7 +123,7 @@ Result<Place> checked(const Place& at) {
   return at;
 }
 
-/// The least of the minima reached from several starts.
+/// The smallest of the minima reached from several starts.
 Result<Place> fit(const Sums& sums) {
   const auto start = plane(sums);
   if (!start)
@@ -142,7 +142,7 @@ Result<Place> fit(const Sums& sums) {
   return checked(best);
 }
 
-/// The fits without each participant.
+/// The fits without each participant in turn.
 Result<std::vector<Place>> leave_one_out(const Ratings& ratings, const Place& whole) {
   std::vector<Place> out;
   for (const auto& person : ratings.people) {

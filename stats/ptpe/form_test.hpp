@@ -1,12 +1,12 @@
 #pragma once
-/// Whether the threshold is an exponential: log mu = log a + b delta is tested against a curve with one
-/// parameter more.
+/// Test that the threshold is an exponential: log mu = log a + b delta is tested against a curve with one
+/// more parameter.
 ///
 ///   log mu(delta) = log a + b delta + c (e^2 - 1/2),   e = (delta - middle) / half
 ///
-/// where middle and half are those of the range of the standard deviations shown: 10 and 10 for 0 to 20
-/// frames/s. At c > 0 the curve lies c / 2 above an exponential at both ends, in parts of mu, and c / 2 below
-/// it in the middle. At c < 0 it levels off.
+/// where middle and half are the middle and half width of the range of the standard deviations shown: 10 and
+/// 10 for 0 to 20 frames/s. At c > 0 the curve lies c / 2 above an exponential at both ends, as a share of
+/// mu, and c / 2 below it in the middle. At c < 0 it levels off.
 
 #include <array>
 #include <span>
@@ -36,27 +36,28 @@ struct FormTest {
   int df = 0;
   double p = 1;                ///< two-sided
   std::array<double, 2> ci{};  ///< at FreeCurve::confidence
-  double detectable = 0;       ///< the smallest |c| that this test finds with form_power, were `se` its error
+  double detectable = 0;  ///< the smallest |c| that this test detects with form_power if `se` is its standard
+                          ///< error
   FreeCurve curve;
 
   bool rejected() const;
 };
 
-/// Level of the test, two-sided, and the power of FormTest::detectable.
+/// Two-sided level of the test, and the power of FormTest::detectable.
 inline constexpr double form_level = 0.05;
 inline constexpr double form_power = 0.80;
 
-/// Settings below this part of the curve are left out of the test. Towards the bottom of the scale the scores
-/// level off, and the surface that follows them there bends the curve (of exponentials with a = 30, b = 0.03
-/// .22 were rejected with them).
+/// Settings whose frame rate times this factor is below the curve are excluded from the test. Near the bottom
+/// of the scale the scores level off, and a surface that follows them there bends the curve (with these
+/// settings .22 of exponentials with a = 30, b = 0.03 were rejected).
 inline constexpr double far_below_factor = 2.46;
 
-/// Least squares of ratings as for the direct estimate, E[score] = level + k u + m u e + q u^2 with u =
-/// log mu - log mu(delta) of the free curve. `observations` are within reach (direct_fit.hpp) and `curve` is
-/// the direct estimate. Of them, settings far below the curve are left out, and standard deviations at which
-/// the curve lies above the frame rates shown. Refused: fewer than least_participants, or than three standard
-/// deviations left; settings that do not determine the surface; scores that do not rise with the frame rate
-/// along the curve; participants whose estimates are all the same.
+/// Least squares of ratings as for the direct estimate, E[score] = level + k u + m u e + q u^2 with u = log
+/// mu - log mu(delta) of the free curve. `observations` must be within reach (direct_fit.hpp); `curve` is the
+/// direct estimate. Excludes settings far below the curve, and standard deviations at which the curve lies
+/// above the frame rates shown. Refused: fewer than least_participants; fewer than three standard deviations
+/// left; settings that do not determine the surface; scores that do not rise with the frame rate along the
+/// curve; participants whose estimates are all equal.
 Result<FormTest> form_test(std::span<const PilotObservation> observations, const Curve& curve, double level,
                            double confidence);
 

@@ -18,7 +18,7 @@ namespace stats {
 
 namespace {
 
-/// Ratings as categories, at x = log mu and d = delta / delta_unit less their means.
+/// Ratings as categories, at x = log mu and d = delta / delta_unit, each minus its mean.
 struct Rows {
   std::vector<double> x, d;
   std::vector<int> category, participant;
@@ -33,7 +33,7 @@ double realised(const PilotRating& r, PilotMean mean) {
   return mean == PilotMean::Harmonic ? r.realised_mu : r.realised_mu_arithmetic;
 }
 
-/// Centred at their means, or like `others`.
+/// Centred at their own means, or at those of `others`.
 Rows rows_of(std::span<const PilotRating> ratings, PilotMean mean, const Rows* others = nullptr) {
   Rows rows;
   std::set<double> scores;
@@ -58,8 +58,8 @@ Rows rows_of(std::span<const PilotRating> ratings, PilotMean mean, const Rows* o
   return rows;
 }
 
-/// Thresholds c + t_j, with c such that E[Y] = level at location 0 over the population, and what c's
-/// derivatives need.
+/// Thresholds c + t_j, with c such that E[Y] = level at location 0 over the population, and the terms of c's
+/// derivatives.
 struct Scale {
   std::vector<double> theta, weight;  ///< weight: -dE/dtheta_j
   double total = 0;                   ///< of the weights
@@ -94,7 +94,7 @@ Scale scale_of(std::span<const double> log_gaps, double sd, std::span<const doub
   return out;
 }
 
-/// Order of the parameters after the log gaps of the thresholds.
+/// Order of the parameters that follow the log gaps of the thresholds.
 enum : std::size_t { Alpha, Beta, K, M, Q, Sd, Count };
 
 Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) {
@@ -114,7 +114,7 @@ Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) 
     MixedGradient slopes;
     const double value = likelihood.evaluate(scale.theta, location, p[Sd], slopes);
     std::fill(gradient.begin(), gradient.end(), 0.0);
-    // A shift of every threshold, and those above a gap.
+    // Derivatives for a shift of all thresholds, and of the thresholds above a gap.
     double shift = 0, above = 0, weight_above = 0;
     for (const double g : slopes.thresholds) shift += g;
     for (std::size_t j = gaps; j-- > 0;) {
@@ -137,7 +137,7 @@ Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) 
   };
 }
 
-/// Parameters in the rows' coordinates, and back.
+/// Converts a fit to parameters in the rows' coordinates, and back.
 std::vector<double> parameters_of(const OrdinalPilotFit& fit, const Rows& rows) {
   std::vector<double> out;
   for (std::size_t j = 0; j + 1 < fit.thresholds.size(); ++j)
@@ -166,8 +166,8 @@ OrdinalPilotFit fit_of(const Minimum& best, const Rows& rows, double level) {
   return fit;
 }
 
-/// The direct fit, its residual deviation as the unit of the latent scale, thresholds half way between
-/// scores.
+/// Initial values from the direct fit: its residual deviation is the unit of the latent scale, and thresholds
+/// lie half way between scores.
 Result<OrdinalPilotFit> first_guess(std::span<const PilotRating> ratings, PilotMean mean, double level,
                                     const Rows& rows) {
   const auto observations = PilotTable(ratings).observations(mean);
@@ -195,7 +195,7 @@ bool rises(const OrdinalPilotFit& fit, const Rows& rows) {
   return true;
 }
 
-/// A fit with what the fits without one participant begin from.
+/// A fit, with the values from which the fits without one participant start.
 struct Fitted {
   OrdinalPilotFit fit;
   Rows rows;
@@ -229,8 +229,8 @@ Result<Fitted> fit_all(std::span<const PilotRating> ratings, PilotMean mean, dou
   return Fitted{*fit, std::move(rows), best.x, Cholesky::of(best.hessian)->inverse()};
 }
 
-/// The fit to others of the same ratings: from `whole`, or from its own guess where a score is no longer
-/// given.
+/// A fit to a part of the same ratings: started from `whole`, or from its own first guess if a score no
+/// longer occurs.
 Result<OrdinalPilotFit> fit_part(std::span<const PilotRating> ratings, PilotMean mean, double level,
                                  const Fitted& whole) {
   const auto rows = rows_of(ratings, mean, &whole.rows);
@@ -240,7 +240,7 @@ Result<OrdinalPilotFit> fit_part(std::span<const PilotRating> ratings, PilotMean
                  level);
 }
 
-/// Fits without each participant in turn, in parallel; the first refusal counts.
+/// Fits without each participant in turn, in parallel; returns the first refusal if there is one.
 Result<std::vector<Curve>> leave_one_out(const std::vector<PilotRating>& ratings,
                                          const std::vector<int>& people, PilotMean mean, double level,
                                          const Fitted& whole) {

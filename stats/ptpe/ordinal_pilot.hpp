@@ -2,11 +2,12 @@
 /// a and b by an ordinal mixed model: ratings as ordered categories, people as a random effect, and the same
 /// location as the direct estimate (stats/ptpe/direct_fit.hpp).
 ///
-///   P(Y <= j) = Phi(theta_j - k u - m u delta - q u^2 - s_p),  s_p ~ N(0, sd^2),  u = log mu - log a - b
-///   delta
+///   P(Y <= j) = Phi(theta_j - k u - m u delta - q u^2 - s_p),  s_p ~ N(0, sd^2)
+///   u = log mu - log a - b delta
 ///
-/// with the thresholds held so that E[Y] = level at u = 0 over the population of participants. Scores need
-/// not be equal steps apart, and the ends of the scale need no curvature: they are thresholds.
+/// with the thresholds constrained so that E[Y] = level at u = 0 over the population of participants. Scores
+/// need not be equally spaced, and no curvature is needed at the ends of the scale, since the thresholds
+/// bound it.
 
 #include <span>
 #include <vector>
@@ -27,7 +28,7 @@ struct OrdinalPilotFit {
   int n = 0;
 };
 
-/// Maximum likelihood with adaptive quadrature of `points` nodes (1 = Laplace), begun at the direct fit.
+/// Maximum likelihood with adaptive quadrature of `points` nodes (1 = Laplace), started from the direct fit.
 /// Repeated ratings enter one by one. Refused: no direct fit to start from; one score throughout; the level
 /// not between the lowest and the highest score given; no convergence; scores that do not rise with the frame
 /// rate along the curve.
@@ -37,11 +38,11 @@ Result<OrdinalPilotFit> fit_ordinal_pilot(std::span<const PilotRating> ratings, 
 struct OrdinalPilotEstimate {
   Result<OrdinalPilotFit> fit = Refusal{"not computed"};
   Result<CurveSpread> jackknife = Refusal{"not computed"};
-  std::vector<double> out_of_reach;  ///< nominal deltas left out, by the direct fit's rule
+  std::vector<double> out_of_reach;  ///< nominal deltas excluded by the direct fit's rule
 };
 
 /// The fit within reach and its jackknife over participants: one more fit for each, about 0.1 s in all for
-/// the paper's pilot. `progress` is told after each fit; may be empty.
+/// the paper's pilot.
 OrdinalPilotEstimate estimate_ordinal_pilot(std::span<const PilotRating> ratings, PilotMean mean,
                                             double level, double confidence);
 

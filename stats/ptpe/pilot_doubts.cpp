@@ -34,7 +34,7 @@ std::vector<double> rates_of(const std::vector<Scores>& people) {
   return rates;
 }
 
-/// Points of the scale for each doubling of the frame rate; empty where no delta was shown at two rates.
+/// Points of the scale for each doubling of the frame rate; empty if no delta was shown at two rates.
 std::optional<double> slope_of(const Scores& scores) {
   double xy = 0, xx = 0;
   for (const auto& [delta, row] : scores) {
@@ -52,7 +52,7 @@ std::optional<double> slope_of(const Scores& scores) {
   return xx > 0 ? std::optional(xy / xx) : std::nullopt;
 }
 
-/// Mean score at `high` less that at `low`, over the deltas at which both were shown.
+/// Mean score at `high` minus that at `low`, over the deltas at which both were shown.
 std::optional<double> rise_between(const Scores& scores, double low, double high) {
   double sum = 0;
   int n = 0;
@@ -73,7 +73,7 @@ std::vector<double> over_people(const std::vector<Scores>& people, const Measure
   return values;
 }
 
-/// One-sided p; people who all agree leave no doubt about the sign.
+/// One-sided p. If all people agree, the sign is certain.
 double one_sided_p(const std::vector<double>& values, Alternative alternative) {
   const auto test = t_test_one(values, {.alternative = alternative, .effect_intervals = false});
   if (test) return test->p;
@@ -123,7 +123,7 @@ void doubt_fall(std::vector<PilotDoubt>& doubts, const std::vector<Scores>& peop
                    change, low, high, least < 1e-4 ? "<" : "=", std::max(least, 1e-4), fall_level)});
 }
 
-/// The intervals that an estimator gives a and b, 0 and 1.
+/// An estimator's intervals of a (index 0) and b (index 1).
 struct Intervals {
   const char* name;
   std::array<std::array<double, 2>, 2> of;

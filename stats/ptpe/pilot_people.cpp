@@ -34,7 +34,7 @@ std::map<int, std::vector<const PilotRating*>> by_person(std::span<const PilotRa
   return out;
 }
 
-/// Least squares of the scores on log2 mu with a mean of its own for each standard deviation.
+/// Least squares of the scores on log2 mu, with a separate mean for each standard deviation.
 std::optional<PersonSlope> slope_of(const std::vector<const PilotRating*>& ratings) {
   struct Column {
     double n = 0, x = 0, y = 0;
@@ -80,9 +80,9 @@ std::vector<PersonSlope> slopes_of(std::span<const PilotRating> ratings) {
   return out;
 }
 
-/// Place of a trial in its session, -1/2 to 1/2.
+/// First and last position of each participant's trials.
 std::map<int, std::pair<double, double>> sessions_of(std::span<const PilotRating> ratings) {
-  std::map<int, std::pair<double, double>> out;  // first and last position
+  std::map<int, std::pair<double, double>> out;
   for (const auto& rating : ratings) {
     const double at = rating.position;
     auto& [first, last] = out.try_emplace(rating.participant, at, at).first->second;
@@ -92,6 +92,7 @@ std::map<int, std::pair<double, double>> sessions_of(std::span<const PilotRating
   return out;
 }
 
+/// Place of a trial in its session, -1/2 to 1/2.
 double place_of(const PilotRating& rating, const std::pair<double, double>& session) {
   const double length = session.second - session.first;
   return length > 0 ? (rating.position - session.first) / length - 0.5 : 0;
@@ -109,7 +110,7 @@ Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confi
   const auto sessions = sessions_of(ratings);
   std::vector<double> slopes;
   for (const auto& [person, own] : by_person(ratings)) {
-    std::vector<std::array<double, 2>> points;  // place, score less the others' mean
+    std::vector<std::array<double, 2>> points;  // place in the session; score minus the others' mean
     for (const auto* rating : own) {
       const auto& [n, sum] = settings[setting_of(*rating)];
       if (n < 2) continue;
@@ -132,7 +133,7 @@ Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confi
   return SessionDrift{test->mean, test->t, test->p, static_cast<int>(test->df), test->ci};
 }
 
-/// What is expected of each answer without lapses.
+/// The expected score of each answer without lapses.
 std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
   std::map<Setting, std::vector<double>> settings;
   for (const auto& rating : ratings) settings[setting_of(rating)].push_back(rating.score);
@@ -149,8 +150,8 @@ std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
 }
 
 /// Standard deviation of answers about their expected scores. Only expected scores in the middle half of the
-/// scale count, because answers near its ends scatter less. Residuals beyond `clip` add no more, so that
-/// lapses hardly widen it.
+/// scale count, since answers near its ends scatter less. Residuals are clipped at `clip`, so that lapses
+/// hardly widen it.
 Result<double> spread_about(std::span<const PilotRating> ratings, const std::vector<double>& expected,
                             double lowest, double highest) {
   constexpr double clip = 2.5;

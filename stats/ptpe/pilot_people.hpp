@@ -1,6 +1,6 @@
 #pragma once
-/// How the participants of a pilot used the scale: who rated higher frame rates lower, whether scores drift
-/// over the session, and lapses: answers at the lowest score whatever was shown.
+/// How a pilot's participants used the scale: reverse coders, who rated higher frame rates lower; drift of
+/// the scores over the session; and lapses, that is, answers at the lowest score whatever was shown.
 
 #include <array>
 #include <span>
@@ -11,11 +11,12 @@
 
 namespace stats {
 
-/// What the analysis plan makes of them, fixed before the data are seen. All off: they are reported only.
+/// How the analysis plan treats them, fixed before the data are seen. With all off they are only reported.
 struct PilotRules {
   bool exclude_reverse_coders = false;
-  bool model_drift = false;   ///< the mean drift is taken off the scores
-  bool model_lapses = false;  ///< scores y become (y - rate lowest) / (1 - rate): lapses move no mean
+  bool model_drift = false;   ///< subtract the mean drift from the scores
+  bool model_lapses = false;  ///< replace scores y by (y - rate lowest) / (1 - rate), so that lapses do not
+                              ///< shift means
 };
 
 /// A participant's slope of the scores on log2 of the mean frame rate, within each standard deviation.
@@ -24,12 +25,12 @@ struct PersonSlope {
   double slope = 0;     ///< points for each doubling
   double t = 0;         ///< slope / its error; infinite without residuals
   int df = 0;
-  double p = 1;           ///< one-sided, of a slope below zero
+  double p = 1;           ///< one-sided, for a slope below zero
   bool reversed = false;  ///< p < reverse_level / participants
 };
 
-/// From the first to the last trial of a session, points of the scale: t test of the participants' slopes
-/// over position. A slope is of a participant's scores less the others' mean of the same setting.
+/// Drift from the first to the last trial of a session, in points of the scale: t test of the participants'
+/// slopes over position. Each slope is of a participant's scores minus the others' mean of the same setting.
 struct SessionDrift {
   double change = 0, t = 0, p = 1;
   int df = 0;
@@ -37,16 +38,16 @@ struct SessionDrift {
   bool found() const;
 };
 
-/// Answers at the lowest score where the others' median of the setting, and the person's own median distance
-/// from such medians, make it improbable (below lapse_tail, by a normal distribution). Reverse coders are
-/// left out.
+/// Lapses: answers at the lowest score that are improbable (below lapse_tail, by a normal distribution) given
+/// the others' median of the setting and the person's own median distance from such medians. Reverse coders
+/// are left out.
 struct LapseCount {
-  int at_risk = 0;      ///< answers at whose setting the lowest score is improbable
-  int lapsed = 0;       ///< of them: at the lowest score
-  double expected = 0;  ///< of them without lapses
-  double p = 1;         ///< of so many or more, Poisson
+  int at_risk = 0;      ///< answers for which the lowest score is improbable
+  int lapsed = 0;       ///< of these, answers at the lowest score
+  double expected = 0;  ///< expected number of `lapsed` without lapses
+  double p = 1;         ///< Poisson probability of so many or more
   double rate = 0;      ///< share of answers that are lapses, 0 or more
-  double lowest = 1;    ///< score
+  double lowest = 1;    ///< the lowest score
   bool found() const;
 };
 
@@ -56,18 +57,19 @@ inline constexpr double lapse_tail = 0.005;
 inline constexpr double lapse_level = 0.001;
 
 struct PilotPeople {
-  std::vector<PersonSlope> slopes;  ///< of those with three ratings more than standard deviations
+  std::vector<PersonSlope> slopes;  ///< of participants with at least three more ratings than standard
+                                    ///< deviations
   Result<SessionDrift> drift = Refusal{"not computed"};
   Result<LapseCount> lapses = Refusal{"not computed"};
 
   int reversed() const;
 };
 
-/// Drift is refused where positions are not known. Lapses are refused where the answers do not tell how far
-/// answers scatter about what is expected of them, or the lowest score is improbable nowhere.
+/// Drift is refused if positions are not known. Lapses are refused if the answers do not determine their
+/// scatter about the expected scores, or if the lowest score is nowhere improbable.
 PilotPeople pilot_people(std::span<const PilotRating> ratings, double confidence);
 
-/// The ratings that the rules leave, drift taken off about the middle of the session.
+/// Applies the rules to the ratings; drift is subtracted relative to the middle of the session.
 std::vector<PilotRating> apply_rules(std::span<const PilotRating> ratings, const PilotPeople& people,
                                      const PilotRules& rules);
 

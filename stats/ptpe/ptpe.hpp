@@ -13,17 +13,17 @@ struct PtpeModel {
 };
 
 /// mu(delta) = a exp(b delta): the frame rate that is just satisfactory at a standard deviation delta (both
-/// frames/s).
+/// in frames/s).
 double ptpe_threshold(const PtpeModel& model, double fps_sd);
 
-/// tau = mu - a exp(b delta) in frames per second (Eq. 11); negative means that acceleration is called for.
+/// tau = mu - a exp(b delta) in frames per second (Eq. 11); negative if acceleration is needed.
 double ptpe_tolerance(const PtpeModel& model, double fps_mean, double fps_sd);
 
-/// tau of the frames shown, by the mean that the model was fitted to.
+/// tau of the frames shown, using the kind of mean that the model was fitted to.
 double ptpe_tolerance(const PtpeModel& model, const FpsMoments& shown);
 
 /// beta = exp(2 b tau) with tau clamped to at most 0, so that 0 < beta <= 1 (Algorithm 3, line 8). 1 for b <
-/// 0, whose power would be above 1.
+/// 0, for which beta would exceed 1.
 double activation_floor(const PtpeModel& model, double tolerance);
 
 }  // namespace stats

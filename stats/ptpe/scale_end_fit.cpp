@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t parameters = 5;
 using Values = std::array<double, parameters>;
 
-/// The mean of a rating about x: whole scores within the scale.
+/// The mean of a rating about x, rounded to whole scores within the scale.
 struct EndScale {
   ScaleEnds ends;
   double sd = 1;
@@ -65,7 +65,7 @@ Centre centre_of(std::span<const PilotObservation> observations) {
   return out;
 }
 
-/// Without participant `left_out`; -1: all of them.
+/// Groups without participant `left_out`; -1: with all participants.
 std::vector<Group> groups_of(std::span<const PilotObservation> observations, const Centre& centre,
                              int left_out) {
   std::map<std::pair<double, double>, Group> groups;
@@ -82,14 +82,14 @@ std::vector<Group> groups_of(std::span<const PilotObservation> observations, con
   return out;
 }
 
-/// log mu(delta) less its centre is alpha + beta e.
+/// log mu(delta) minus its centre is alpha + beta e.
 struct CurvePlace {
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
 
   CurvePlace moved(const Values& step) const {
     return {alpha + step[0], beta + step[1], k + step[2], m + step[3], q + step[4]};
   }
-  /// Predicted mean score of a group and its derivatives by the parameters.
+  /// Predicted mean score of a group, and its derivatives with respect to the parameters.
   double predict(const Group& group, const EndScale& scale, Values* slopes = nullptr) const {
     const double root = 2 * std::exp((alpha + beta * group.e) / 2), u = group.root - root;
     const double x = scale.x_of_level + u * (k + m * group.e + q * u);
@@ -105,7 +105,8 @@ struct CurvePlace {
   }
 };
 
-/// Weighted squares of the means about the prediction; those within groups do not depend on the place.
+/// Weighted squared deviations of the group means from the prediction. The squares within groups do not
+/// depend on the parameters.
 double squares(const std::vector<Group>& groups, const EndScale& scale, const CurvePlace& at) {
   double sum = 0;
   for (const Group& group : groups) {
@@ -134,7 +135,7 @@ Normal normal_equations(const std::vector<Group>& groups, const EndScale& scale,
   return out;
 }
 
-/// Damped Gauss-Newton steps (Marquardt 1963) until they vanish; empty where they do not.
+/// Damped Gauss-Newton steps (Marquardt 1963) until they vanish; empty if they do not.
 std::optional<CurvePlace> descend(const std::vector<Group>& groups, const EndScale& scale, CurvePlace at) {
   double value = squares(groups, scale, at), damping = 1e-3;
   for (int iteration = 0; iteration < 200; ++iteration) {
@@ -156,14 +157,14 @@ std::optional<CurvePlace> descend(const std::vector<Group>& groups, const EndSca
       damping = std::max(damping / 100, 1e-12);
       moved = true;
     }
-    // No step is better: a minimum to rounding, where the matrix has an inverse.
+    // No step is better: this is a minimum up to rounding if the matrix is invertible.
     if (!moved)
       return solve_positive<parameters>(normal.matrix, normal.right) ? std::optional(at) : std::nullopt;
   }
   return std::nullopt;
 }
 
-/// The standard deviation of a rating about its setting's mean, without the rounding.
+/// The standard deviation of a rating about its setting's mean, excluding rounding.
 Result<double> error_sd(std::span<const PilotObservation> observations, const ScaleEnds& ends) {
   struct Setting {
     double n = 0, sum = 0, squares = 0;

@@ -12,17 +12,17 @@
 
 namespace stats {
 
-/// What is known at one setting.
+/// The data of one setting.
 struct GridNode {
   double score = 0;  ///< mean over participants
-  double mu = 0;     ///< where the setting really lay: mean frame rate and its standard deviation, frames/s
+  double mu = 0;     ///< mean and standard deviation of the frame rate as shown, frames/s
   double delta = 0;
 };
 
-/// The settings by their nominal values: rows are means, columns are standard deviations.
-/// The surface is the isoparametric bilinear patch over each cell whose four nodes are there: score, mu and
-/// delta are interpolated alike, so nodes that lie slightly off their nominal place bend the lines and lose
-/// nothing, and nodes at their nominal place give plain bilinear interpolation.
+/// The settings by their nominal values: rows are means, columns are standard deviations. The surface is the
+/// isoparametric bilinear patch over each cell with all four nodes: score, mu and delta are interpolated
+/// alike. Nodes slightly off their nominal place only bend the lines; nodes at their nominal place give plain
+/// bilinear interpolation.
 struct ScoreGrid {
   std::vector<double> mu, delta;               ///< nominal, ascending, frames/s
   std::vector<std::optional<GridNode>> nodes;  ///< row-major, mu.size() x delta.size()
@@ -41,23 +41,23 @@ struct Contour {
   double level = 0;
   std::vector<ContourPoint> points;  ///< by line, then by ascending mu
   int lines = 0;                     ///< sampled lines that have at least two neighbouring scores
-  int crossed = 0;                   ///< of them: with at least one crossing
-  int crossed_twice = 0;             ///< with two or more: the scores are not monotone in mu
-  int below_grid = 0;                ///< every score above the level: the contour lies below the smallest mu
-  int above_grid = 0;                ///< every score below the level: it lies above the largest mu
-  int on_node = 0;                   ///< the level is met at a setting itself and nowhere crossed
+  int crossed = 0;                   ///< of these, lines with at least one crossing
+  int crossed_twice = 0;             ///< lines with two or more crossings: the scores are not monotone in mu
+  int below_grid = 0;  ///< lines with every score above the level: the contour lies below the smallest mu
+  int above_grid = 0;  ///< lines with every score below the level: the contour lies above the largest mu
+  int on_node = 0;     ///< lines that meet the level at a setting without crossing it
 };
 
-/// Crossings are strict: one score above, one below the level. A score equal to the level (to 1e-12) is no
-/// crossing; the line is then counted in on_node.
-/// Where the grid's edges cross the level, by ascending delta, then mu: the sparse contour.
+/// Crossings are strict: one score above, one below the level. A score equal to the level (to 1e-12) is not a
+/// crossing; its line is counted in on_node. Returns the sparse contour: points where the grid's edges cross
+/// the level, by ascending delta, then mu.
 std::vector<ContourPoint> edge_crossings(const ScoreGrid& grid, double level);
-/// Crossings along the lines given; those outside the grid's columns are passed over.
+/// Crossings along the given lines; lines outside the grid's columns are skipped.
 Contour column_crossings(const ScoreGrid& grid, double level, std::span<const double> line_deltas);
 /// Nominal lines at every whole frame/s from the first column to the last, and at the last.
 std::vector<double> contour_lines(const ScoreGrid& grid);
 
-/// mu = a exp(b delta) through the contour's points. Refused: no point, or fewer than three.
+/// Fits mu = a exp(b delta) to the contour's points. Refused: no point, or fewer than three.
 Result<ExponentialFit> fit_contour(std::span<const ContourPoint> points);
 
 }  // namespace stats

@@ -1,5 +1,5 @@
 #pragma once
-/// Positive definite systems whose size is known when compiling: thousands of fits solve them.
+/// Solves positive definite systems of a size known at compile time; thousands of fits use it.
 
 #include <array>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace stats {
 
-/// x with A x = b for a row-major A; empty unless A is positive definite beyond rounding.
+/// Solves A x = b for a row-major A. Empty unless A is positive definite beyond rounding.
 template <std::size_t N>
 std::optional<std::array<double, N>> solve_positive(std::array<double, N * N> a, std::array<double, N> b) {
   for (std::size_t c = 0; c < N; ++c) {

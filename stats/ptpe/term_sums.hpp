@@ -1,6 +1,7 @@
 #pragma once
 /// Least squares of a surface that is a sum of fixed terms, whose coefficients depend on fewer parameters.
-/// The sums over the ratings are taken once; each fit then costs the same for any number of ratings.
+/// The sums over the ratings are computed once; the cost of each fit then does not depend on the number of
+/// ratings.
 
 #include <algorithm>
 #include <array>
@@ -14,11 +15,11 @@ namespace stats {
 template <std::size_t Terms>
 struct TermSums {
   std::array<double, Terms * Terms> gram{};  ///< sums of products of two terms, row-major
-  std::array<double, Terms> moment{};        ///< of a term and the value
-  double squares = 0;                        ///< of the values
+  std::array<double, Terms> moment{};        ///< sums of products of a term and the value
+  double squares = 0;                        ///< sum of squares of the values
   double n = 0;
 
-  /// One rating: its terms and its value.
+  /// Adds one rating: its terms and its value.
   void add(const std::array<double, Terms>& row, double y) {
     for (std::size_t i = 0; i < Terms; ++i) {
       moment[i] += row[i] * y;
@@ -28,7 +29,7 @@ struct TermSums {
     n += 1;
   }
 
-  /// Other sums, counted `weight` times.
+  /// Adds other sums, counted `weight` times.
   void add(const TermSums& other, double weight) {
     for (std::size_t i = 0; i < gram.size(); ++i) gram[i] += weight * other.gram[i];
     for (std::size_t i = 0; i < Terms; ++i) moment[i] += weight * other.moment[i];
@@ -48,7 +49,7 @@ struct TermSums {
   }
 };
 
-/// A local minimum after Marquardt (1963): damped Gauss-Newton steps until they vanish. The type Place
+/// A local minimum by Marquardt's (1963) method: damped Gauss-Newton steps until they vanish. The type Place
 /// provides `terms`, `parameters`, coefficients(), jacobian() (one row for each parameter) and moved(step).
 template <class Place>
 Place descend(const TermSums<Place::terms>& sums, Place at) {
@@ -57,7 +58,7 @@ Place descend(const TermSums<Place::terms>& sums, Place at) {
   for (int iteration = 0; iteration < 200; ++iteration) {
     const auto c = at.coefficients();
     const auto J = at.jacobian();
-    std::array<double, T> slope{};  // half the gradient by coefficients
+    std::array<double, T> slope{};  // half the gradient with respect to the coefficients
     for (std::size_t i = 0; i < T; ++i) {
       slope[i] = -sums.moment[i];
       for (std::size_t j = 0; j < T; ++j) slope[i] += sums.gram[i * T + j] * c[j];

@@ -25,14 +25,14 @@ class HeadsetRuns : public ::testing::Test {
     all.insert(all.end(), arguments.begin(), arguments.end());
     return run_any(all, environment);
   }
-  /// Any program on a runtime.
+  /// Runs any program on the simulated runtime.
   Ended run_program_in_headset(const std::vector<std::string>& all, const std::string& profile) {
     return run_any(all, {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}});
   }
   Ended run_any(const std::vector<std::string>& all, const Environment& environment) {
     return run_program(all, [&] { prepare(environment); });
   }
-  /// In the child that becomes the program.
+  /// Runs in the child before the program is loaded.
   void prepare(const Environment& environment) const {
     for (const char* name :
          {"XR_RUNTIME_JSON", "VIP_OPENXR_LOADER", "XR_API_LAYER_PATH", "XR_ENABLE_API_LAYERS", "DISPLAY"})
@@ -40,34 +40,34 @@ class HeadsetRuns : public ::testing::Test {
     ::setenv("VIP_XR_LOG", log().c_str(), 1);
     ::setenv("VIP_XR_DUMP", folder_.path().c_str(), 1);
     ::setenv("XR_LOADER_DEBUG", "none", 1);
-    // Rates and settled water that another run kept would let this one skip its measuring.
+    // Stored rates and settled water of another run would let this one skip its measurements.
     ::setenv("VIP_CACHE_DIR", (folder_ / "cache").c_str(), 1);
     for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
   }
-  /// The simulated headset of this profile.
+  /// The environment of the simulated headset with this profile.
   Environment simulated(const std::string& profile) const {
     return {{"XR_RUNTIME_JSON", bin + "/simulated_headset.json"}, {"VIP_XR_PROFILE", profile}};
   }
-  /// vip-study headset on a runtime whose caller must keep the specification.
+  /// vip-study headset on a runtime that checks its caller against the specification.
   Ended on(const std::string& profile, std::vector<std::string> arguments = {}) {
     arguments.insert(arguments.begin(), "headset");
     return study(profile, arguments);
   }
-  /// vip-study likewise.
+  /// The same for any command of vip-study.
   Ended study(const std::string& profile, const std::vector<std::string>& arguments) {
     std::filesystem::remove(log());
     Ended ended = run(arguments, simulated(profile));
     EXPECT_THAT(calls(), ::testing::Not(::testing::HasSubstr("BREACH")));
     return ended;
   }
-  /// Particles of a small dam that breaks.
+  /// Bakes particles of a small dam break.
   void bake_dam(const std::string& out, int frames) {
     const auto baked =
         run_program({bin + "/vip-study", "bake", "data/scenes/single_dam.toml", "--method", "HiRes",
                      "--n-star", "64", "--frames", std::to_string(frames), "--out", out});
     ASSERT_EQ(baked.exit_code, 0) << baked.err;
   }
-  /// For tests that open the headset in their own process.
+  /// For tests that use the headset in their own process.
   void use_here(const std::string& profile) const {
     ::setenv("XR_RUNTIME_JSON", (bin + "/simulated_headset.json").c_str(), 1);
     ::setenv("XR_LOADER_DEBUG", "none", 1);
@@ -77,7 +77,7 @@ class HeadsetRuns : public ::testing::Test {
   }
   std::string log() const { return folder_ / "calls.log"; }
   std::string calls() const { return std::filesystem::exists(log()) ? base::read_file(log(), 1 << 24) : ""; }
-  /// What a frame that the profile dumps showed to an eye, "left" or "right".
+  /// The image of a dumped frame for an eye, "left" or "right".
   sim::Image picture(long frame, const std::string& eye) const {
     std::string number = std::to_string(frame);
     number.insert(0, 6 - number.size(), '0');

@@ -1,5 +1,5 @@
 #pragma once
-/// A strict reader of the report's HTML: what is printed, and within which elements.
+/// A strict reader of the report's HTML: the printed texts, and the elements around them.
 
 #include <map>
 #include <stdexcept>
@@ -18,7 +18,7 @@ struct Text {
   std::string words;
   std::vector<Element> around;
 
-  /// Of the innermost element that has it; "" = none.
+  /// Value in the innermost element that has the attribute; "" = none.
   std::string attribute(const std::string& name) const {
     for (auto at = around.rbegin(); at != around.rend(); ++at) {
       const auto found = at->attributes.find(name);
@@ -66,11 +66,11 @@ inline Element tag_of(const std::string& tag) {
   return element;
 }
 
-/// std::runtime_error where tags do not nest.
+/// std::runtime_error if tags do not nest.
 inline Page read(const std::string& html) {
   Page page;
   std::vector<Element> open;
-  std::size_t at = html.find('>') + 1;  // behind the document type
+  std::size_t at = html.find('>') + 1;  // after the document type
   while (at < html.size()) {
     const auto start = html.find('<', at);
     const std::string words = plain(html.substr(at, start - at));

@@ -1,5 +1,5 @@
 #pragma once
-/// Studies of Task 1 and Task 2 as a database would give them, made up in memory.
+/// Studies of Task 1 and Task 2, made in memory in the form that a database gives.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ inline const std::vector<std::string> methods{"LoRes", "FovFluid", "Ours", "Ours
 inline const std::vector<std::string> scenes{"data/scenes/single_dam.toml", "data/scenes/jet_impact.toml",
                                              "data/scenes/faucet.toml"};
 inline const std::vector<std::string> items{"disorientation", "unrealism", "dizziness", "confusion"};
-/// How good each method is, points.
+/// Quality of each method, points.
 inline const std::vector<double> quality{-1.5, -0.5, 0.5, 0.8, 0.4};
 
 inline study::Question scale(const std::string& id, int min, int max) {
@@ -55,7 +55,7 @@ inline int rounded(double value, int min, int max) {
   return std::clamp(static_cast<int>(std::lround(value)), min, max);
 }
 
-/// Asked on a page, kept as personal data.
+/// Questions on a page whose answers are personal data.
 inline std::vector<study::Question> questions_about_people() {
   study::Question age = scale("age", 10, 110), gender;
   age.kind = study::AnswerKind::Number;
@@ -68,7 +68,8 @@ inline std::vector<study::Question> questions_about_people() {
   return {age, gender};
 }
 
-/// Half female, half male, but that the first gave another answer; of 20 to 31 years. The last gave none.
+/// Half female, half male, except for another answer of the first; 20 to 31 years old. The last gave no
+/// answers.
 inline std::vector<study::PersonalEntry> about_people(int participants) {
   std::vector<study::PersonalEntry> out;
   for (int person = 0; person + 1 < participants; ++person) {
@@ -146,7 +147,7 @@ inline study::TaskProtocol task2(int participants, const std::string& gaze = "tr
   return out;
 }
 
-/// Pages of the SSQ before and after, and eleven answers on the FMS that rise.
+/// SSQ pages before and after, and eleven rising answers on the FMS.
 inline std::vector<study::SicknessSession> sickness(int participants, unsigned seed = 3) {
   std::mt19937_64 generator(seed);
   std::exponential_distribution<double> skewed(1.5);

@@ -1,5 +1,5 @@
 #pragma once
-/// What the [measured] part of a made-up setting file says.
+/// A setting file with a made-up [measured] part.
 
 #include "apps/common/setting_file.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Databases of finished pilots, answered by any function of what was shown.
+/// Databases of finished pilots, with answers from any function of what was shown.
 
 #include <filesystem>
 #include <functional>
@@ -14,7 +14,7 @@ namespace testing_pilot {
 
 using Score = std::function<int(const study::Question&, const study::Occasion&)>;
 
-/// A showing exactly at the cell's nominal setting.
+/// Verdict of a showing exactly at the cell's nominal setting.
 inline study::TimingVerdict shown_exactly(const study::FpsSetting& setting) {
   study::TimingVerdict verdict;
   verdict.verdict = study::Verdict::Pass;

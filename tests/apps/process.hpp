@@ -1,5 +1,5 @@
 #pragma once
-/// A program under test: started, read line by line, killed, waited for.
+/// A program under test: starts it, reads it line by line, kills it, waits for it.
 
 #include <fcntl.h>
 #include <signal.h>
@@ -19,7 +19,7 @@ namespace apps::test {
 
 /// How a program ended.
 struct Ended {
-  int exit_code = -1;  ///< -1 when a signal ended it
+  int exit_code = -1;  ///< -1 if a signal ended it
   int signal = 0;
   std::string out, err;
 };
@@ -56,7 +56,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// The next whole line of stdout; none at its end.
+  /// The next whole line of stdout; none at the end.
   std::optional<std::string> read_line() {
     std::string line;
     if (!out_) return {};
@@ -76,7 +76,7 @@ class Process {
   }
   pid_t pid() const { return pid_; }
   void send(int signal) { ::kill(pid_, signal); }
-  /// Reads what is left and waits.
+  /// Reads the rest and waits for the end.
   Ended wait() {
     while (read_line()) {
     }
@@ -104,7 +104,7 @@ inline Ended run_program(const std::vector<std::string>& arguments,
   return Process(arguments, prepare).wait();
 }
 
-/// A command line as a user types it; stdout and stderr both come in `out`.
+/// Runs a command line in a shell; `out` gets stdout and stderr.
 inline Ended run_shell(const std::string& line) { return run_program({"/bin/sh", "-c", line + " 2>&1"}); }
 
 }  // namespace apps::test

@@ -1,6 +1,6 @@
 #pragma once
-/// A program in a terminal of its own, as an experimenter has it: keys go in, lines come out, and the
-/// terminal can be taken away.
+/// Runs a program in its own terminal, as an experimenter does: keys go in, lines come out, and the terminal
+/// can be closed.
 
 #include <poll.h>
 #include <pty.h>
@@ -40,7 +40,7 @@ class PseudoTerminal {
     if (::write(terminal_, keys.data(), keys.size()) != static_cast<ssize_t>(keys.size()))
       throw std::runtime_error("the terminal takes no keys");
   }
-  /// Reads until the program has written `words`; false when it ends, or is silent for a minute, before that.
+  /// Reads until the program has written `words`; false if it ends, or is silent for a minute, before that.
   bool wait_for(const std::string& words) {
     while (seen_.find(words) == std::string::npos) {
       pollfd input{terminal_, POLLIN, 0};
@@ -54,7 +54,7 @@ class PseudoTerminal {
   }
   const std::string& seen() const { return seen_; }
   void send(int signal) { ::kill(pid_, signal); }
-  /// The window is closed.
+  /// Closes the terminal.
   void hang_up() {
     ::close(terminal_);
     terminal_ = -1;

@@ -1,5 +1,5 @@
 #pragma once
-/// The report's prose: paragraphs, list items, captions and descriptions, with the values that they quote.
+/// The report's prose: paragraphs, list items, captions and descriptions, with the values they quote.
 
 #include <string>
 #include <vector>
@@ -13,13 +13,13 @@ namespace report_blocks {
 struct Block {
   std::string words;                ///< as printed
   std::string form;                 ///< the same with "#" for each value
-  std::vector<std::string> fields;  ///< the values' places in the results
+  std::vector<std::string> fields;  ///< paths of the values in the results
 };
 
-/// What stands between two tags of a block.
+/// Parses the content between two tags of a block.
 inline Block block_of(const std::string& html) {
   Block out;
-  bool value = false;  // within a span that quotes one
+  bool value = false;  // inside a span that quotes a value
   for (std::size_t at = 0; at < html.size();) {
     if (html[at] != '<') {
       const auto end = std::min(html.find('<', at), html.size());

@@ -1,6 +1,6 @@
 #pragma once
-/// A sentence of the report, "#" for what it quotes and "*" for any words, with results in which it is true
-/// and such in which it is false.
+/// A sentence of the report, with "#" for quoted values and "*" for any words, and changes of the results
+/// that make it true and false.
 
 #include <functional>
 #include <string>
@@ -14,9 +14,9 @@ using Json = base::Json;
 using Change = std::function<void(Json&)>;
 
 struct Case {
-  std::string pattern;  ///< as fnmatch() takes it
+  std::string pattern;  ///< as for fnmatch()
   Change make_false;
-  Change make_true = [](Json&) {};  ///< of a study with a pilot and both tasks, which comes first
+  Change make_true = [](Json&) {};  ///< applied to a study with a pilot and both tasks, before make_false
 };
 
 inline Change set(const std::string& pointer, Json value) {
@@ -44,7 +44,7 @@ inline Json bundle() {
           {"differences", {"protocol task2 was not preregistered"}}};
 }
 
-/// Cost and error of each method in a sweep that holds all settings but the first.
+/// The results' facts about a sweep.
 inline Json sweep() {
   return {{"file", "sweep.db"},
           {"errors", {{"front_pct", "front, %"}}},

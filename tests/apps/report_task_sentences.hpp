@@ -1,11 +1,11 @@
 #pragma once
-/// What the report says about the pilot and the tasks.
+/// The report's sentences about the pilot and the tasks.
 
 #include "tests/apps/report_sentence.hpp"
 
 namespace report_sentences {
 
-/// What foam is worth over none, as the results tell it where effects are a factor.
+/// The effect of foam over none, as the results give it if effects are a factor.
 inline Json preference_factor() {
   return {{"factor", "effects"}, {"a", "none"},      {"b", "foam"},
           {"participants", 16},  {"n", 32},          {"k", 10},
@@ -13,7 +13,7 @@ inline Json preference_factor() {
           {"ci", {0.2, 0.4}},    {"t", -2.5},        {"df", 15},
           {"p", 0.024},          {"p_holm", 0.024},  {"reason", ""}};
 }
-/// The test of a pair over people, some of whom answered it more than once.
+/// The test of a pair over people, some of whom answered more than once.
 inline Json by_person() {
   return {{"participants", 9}, {"share", 0.6}, {"ci", {0.4, 0.8}}, {"ci_name", "of people"}, {"p", 0.03}};
 }
@@ -34,7 +34,7 @@ inline Json score_factor() {
           {"reason", ""}};
 }
 
-/// A pilot whose threshold is no exponential, as its results tell it.
+/// A pilot whose threshold is not exponential, as its results give it.
 inline Json other_form() {
   return {{"rejected", true},
           {"text", "c = -0.2, it levels off"},
@@ -95,7 +95,7 @@ inline std::vector<Case> pilot() {
 inline std::vector<Case> task1() {
   const Change no_task = refused("/task1"), no_pairs = set("/task1/comparisons", Json::array());
   const Change secondary = in_each("/task1/scores", "primary", false);
-  // Also in words: a p below .05 and no t.
+  // Also in words: p below .05 without t.
   const Change unanimous =
       all({set("/task1/comparisons/0/t", nullptr), set("/task1/comparisons/0/stars", "*"),
            set("/task1/comparisons/0/test", "exact sign test")});

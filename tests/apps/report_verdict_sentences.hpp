@@ -1,5 +1,5 @@
 #pragma once
-/// The report's sentences about sickness, hypotheses, the bundle and where the numbers come from.
+/// The report's sentences about sickness, hypotheses, the bundle and the source of the numbers.
 
 #include "tests/apps/report_sentence.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The report's page against its JSON: every number that is printed stands there.
+/// Compares the report's page with its JSON: every printed number must be in it.
 
 #include <algorithm>
 #include <cctype>
@@ -14,7 +14,7 @@ namespace report_walk {
 
 using Json = base::Json;
 
-/// Digits behind the point.
+/// Number of decimals.
 inline int decimals(const std::string& text) {
   const auto point = text.find('.');
   if (point == std::string::npos) return 0;
@@ -23,7 +23,7 @@ inline int decimals(const std::string& text) {
   return n;
 }
 
-/// Formulas of the results' texts as the page sets them.
+/// Formats formulas in the results' texts as the page does.
 inline std::string as_set(std::string text) {
   const auto letter = [&](std::size_t at) {
     return at < text.size() && std::isalpha(static_cast<unsigned char>(text[at]));
@@ -40,7 +40,7 @@ inline std::string as_set(std::string text) {
   return text;
 }
 
-/// Whether what is printed is the value, rounded to the digits printed.
+/// True if the printed text is the value, rounded to the printed digits.
 inline bool says(std::string text, const Json& value, bool percent) {
   if (value.is_boolean()) return text == (value.get<bool>() ? "yes" : "no");
   if (value.is_string()) {
@@ -64,7 +64,7 @@ inline bool says(std::string text, const Json& value, bool percent) {
   return std::abs(printed - number) <= 0.5 * std::pow(10.0, -decimals(text)) * (1 + 1e-9);
 }
 
-/// The page's texts; what italics part of one value is one text.
+/// The page's texts; parts of one value that italics separate are joined.
 inline std::vector<html_reader::Text> texts_of(const html_reader::Page& page, const Json& json) {
   std::vector<html_reader::Text> out;
   for (const auto& text : page.texts) {
@@ -84,7 +84,7 @@ inline std::vector<html_reader::Text> texts_of(const html_reader::Page& page, co
   return out;
 }
 
-/// Fields of the page that do not say what the JSON says.
+/// Fields of the page that differ from the JSON.
 inline std::vector<std::string> wrong_fields(const html_reader::Page& page, const Json& json) {
   std::vector<std::string> wrong;
   for (const auto& text : texts_of(page, json)) {
@@ -97,7 +97,7 @@ inline std::vector<std::string> wrong_fields(const html_reader::Page& page, cons
   return wrong;
 }
 
-/// The document, and behind it those that stand apart.
+/// The document, then the separate ones inside it.
 inline std::vector<const Json*> documents(const Json& json) {
   std::vector<const Json*> out{&json};
   if (json.contains("apart"))
@@ -105,7 +105,7 @@ inline std::vector<const Json*> documents(const Json& json) {
   return out;
 }
 
-/// Reasons that stand in the results, as the page sets them: what they say is in the JSON word by word.
+/// Adds the reasons in the results, formatted as on the page; the JSON has their words.
 inline void add_reasons(const Json& json, std::vector<std::string>& out) {
   for (const auto& [key, value] : json.items()) {
     const bool reason = json.is_object() && (key == "refused" || key.ends_with("reason"));
@@ -115,20 +115,20 @@ inline void add_reasons(const Json& json, std::vector<std::string>& out) {
   }
 }
 
-/// Texts with a digit that is neither marked with its place in the JSON nor part of a name or definition.
+/// Texts with a digit that has no path into the JSON and is not part of a name or definition.
 inline std::vector<std::string> unmarked_numbers(const html_reader::Page& page, const Json& json) {
   std::vector<std::string> known{"Task 1",   "Task 2",   "Fig. 6",    "Fig. 9",         "Fig. 10", "(1993)",
                                  "< .05",    "< .01",    "below .05", ".05 after Holm", "< .001",  "SHA-256",
                                  "H1 to H6", "H1 to H3", "p95, ms",   "at most 1"};
   for (const Json* document : documents(json)) {
     for (const auto& protocol : document->at("study").at("protocols")) {
-      // Sessions are counted by these words of theirs, which are the results' own.
+      // Sessions are counted under these texts, which come from the results.
       for (const char* by : {"displays", "angles", "mixed_pictures"})
         for (const auto& [words, sessions] : protocol.at(by).items()) known.push_back(words);
     }
   }
   add_reasons(json, known);
-  // A longer one may hold a shorter one.
+  // Longer texts first, since they may contain shorter ones.
   std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   std::vector<std::string> out;
   for (const auto& text : page.texts) {
@@ -148,7 +148,7 @@ inline std::vector<std::string> unmarked_numbers(const html_reader::Page& page, 
   return out;
 }
 
-/// Sessions that the flows of the page count, those that are set aside with them.
+/// Number of sessions in the page's flows, including those set aside.
 inline int sessions_in_flows(const Json& json) {
   int out = 0;
   std::vector<std::string> counted;  // a protocol with several questions has a flow for each

@@ -1,5 +1,5 @@
 #pragma once
-/// A small study whose stimuli are shown, live or from bakes, on the virtual clock.
+/// A small study with stimuli shown live or from bakes, on the virtual clock.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 namespace apps::test {
 
-/// The protocol that a test writes, and what the programs make of it in pictures of `size`.
+/// Runs the programs on a protocol that the test writes, with pictures of `size`.
 class ShownStudy : public ::testing::Test {
  protected:
   ShownStudy(const std::string& name, std::string size)
@@ -30,7 +30,7 @@ class ShownStudy : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_program(arguments);
   }
-  /// Of the last session.
+  /// The stimulus recorded for the last session.
   std::string stimulus() const {
     return study::sqlite::Connection(database_, study::sqlite::Open::Read)
         .text("SELECT stimulus FROM session ORDER BY session_id DESC LIMIT 1");

@@ -1,5 +1,5 @@
 #pragma once
-/// A pilot answered by the simulated observer, as a database would give it: realised = nominal timing.
+/// A pilot answered by the simulated observer, in the form that a database gives: realised = nominal timing.
 
 #include <cstdint>
 #include <string>
@@ -19,7 +19,7 @@ inline study::TaskShowing showing(double mu, double delta) {
   return out;
 }
 
-/// The paper's 21 settings rated once by each participant: sessions "p0", "p1" ... by one observer.
+/// The paper's 21 settings, rated once by each participant: sessions "p0", "p1" ... of one observer.
 inline study::TaskProtocol simulated_pilot(const std::string& observer, int participants,
                                            std::uint64_t seed) {
   const study::PtpeObserver responder(study::parse_ptpe_observer(observer));

@@ -2,7 +2,7 @@
 
 namespace apps::test {
 
-/// A scene's text: a small dam that breaks at once, seen from near. Nothing settles.
+/// Text of a scene: a small dam that breaks at once, seen from near. Nothing settles.
 inline constexpr const char* small_dam = R"(format = 1
 name = "SmallDam"
 gravity_m_s2 = 9.81

@@ -1,5 +1,5 @@
 #pragma once
-/// A sweep of a few cells that never ran, for tests of what is read out of one.
+/// A made-up sweep of a few cells, for tests of its evaluation.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace apps::test {
 
-/// Two samples that lie this far from zero.
+/// A run of two samples with these values.
 inline CellRun run_with(double front, double kinetic, double ms, double density = 0.001) {
   CellRun out;
   for (const double time : {0.1, 0.2}) {
@@ -23,7 +23,7 @@ inline CellRun run_with(double front, double kinetic, double ms, double density 
   return out;
 }
 
-/// On "a machine", of SingleDam's file.
+/// Stored as run on "a machine" with SingleDam's file.
 inline StoredCell stored(const SolverSetting& setting, int seed, const CellRun& run) {
   static const std::string sha256 = scenes_of("SingleDam").front().scene.sha256;
   return {{setting, seed}, {"a machine", "0.1.0 abc", sha256}, run};
@@ -33,7 +33,7 @@ inline SolverSetting hires_at(std::int64_t n_star) {
   return usual_setting("SingleDam", sim::MethodKind::HiRes, n_star);
 }
 
-/// The reference with its second start, HiRes as usual from two, and with twice the projections.
+/// The reference with two seeds, HiRes with default settings and with twice the projections, two seeds each.
 inline std::vector<StoredCell> small_sweep(std::int64_t n_star = 512) {
   const auto reference = reference_setting("SingleDam", n_star);
   auto eight = hires_at(n_star);

@@ -1,5 +1,5 @@
 #pragma once
-/// What the end-to-end tests of vip-study share: a folder, a short protocol, a look into a database.
+/// Helpers for end-to-end tests of vip-study: a folder, a short protocol, readers of a database.
 
 #include <map>
 #include <set>
@@ -24,7 +24,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// The pilot with six settings, no pause before them and trials of `duration_s`.
+/// The pilot with six settings, without the pause before them, and with trials of `duration_s`.
 inline std::string short_protocol(const std::string& duration_s) {
   std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
   text = replaced(text, "name = \"ptpe_pilot\"", "name = \"short\"");
@@ -65,7 +65,7 @@ inline std::int64_t count_in(const std::string& database, const std::string& sql
   return study::sqlite::Connection(database, study::sqlite::Open::Read).integer(sql);
 }
 
-/// (participant, position) of every unit that the database says is done.
+/// (participant, position) of every unit that the database lists as done.
 using Units = std::set<std::pair<std::string, int>>;
 
 inline Units done_in(const std::string& database) {
@@ -79,7 +79,7 @@ inline Units done_in(const std::string& database) {
   return units;
 }
 
-/// What the program said it had committed: the lines "done P01 3 stimulus attempt 1".
+/// The units that the program reported as committed, from lines such as "done P01 3 stimulus attempt 1".
 inline std::vector<std::pair<std::string, int>> acknowledged(const std::string& out) {
   std::vector<std::pair<std::string, int>> all;
   std::size_t at = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What tests of vip-bench's tables share.
+/// Helpers for tests of vip-bench's tables.
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@
 
 namespace apps::test {
 
-/// One line of a CSV file by its head.
+/// One line of a CSV file by the header's names.
 using Row = std::map<std::string, std::string>;
 
-/// Makes a folder for VIP_SHARE_DIR: the shipped files, but water that settles for 120 frames before a run
-/// settles for 4. Settling takes nearly all the time of a run of few frames.
+/// Makes a folder for VIP_SHARE_DIR: the shipped files, but scenes whose water settles for 120 frames settle
+/// for 4. Settling takes nearly all the time of a run of few frames.
 inline void make_quick_share(const std::filesystem::path& share) {
   namespace fs = std::filesystem;
   const fs::path shipped = base::resource(""), scenes = fs::path("data") / "scenes";
@@ -45,13 +45,13 @@ inline void make_quick_share(const std::filesystem::path& share) {
   }
 }
 
-/// Small runs of programs on one thread, without a display or kept states; water settles for few frames.
+/// Runs programs on one thread, without a display or stored states; water settles for few frames.
 class TableTest : public ::testing::Test {
  protected:
   TableTest() { make_quick_share(share.path()); }
   /// The shell command that runs a program of the build with these arguments. The program reads scenes from
-  /// the share. It takes the lock of timed runs in a folder of the test's own, so it does not wait for other
-  /// tests; no test asserts a time.
+  /// the share. It locks timed runs in the test's own folder, so it does not wait for other tests; no test
+  /// asserts a time.
   std::string line_of(const std::string& program_and_arguments) const {
     return "cd " + share.path().string() +
            " && exec env -u DISPLAY -u WAYLAND_DISPLAY OMP_NUM_THREADS=1 VIP_CACHE_DIR= VIP_LOCK_DIR=. "
@@ -80,7 +80,7 @@ class TableTest : public ::testing::Test {
     }
     return out;
   }
-  /// Without what a clock gave.
+  /// The rows without columns that depend on a clock.
   std::vector<Row> timeless(const std::string& name) const {
     auto out = rows(name);
     for (auto& row : out) {

@@ -18,7 +18,7 @@ struct Trial {
   int visit = 1, position = 0;
   std::string scene, n_star, first;
   std::optional<std::string> second;
-  std::map<std::string, int> answers;  ///< by question; none: never shown
+  std::map<std::string, int> answers;  ///< by question; empty: never shown
 };
 
 inline int cell_of(const study::Protocol& protocol, const Trial& trial, const std::string& method) {
@@ -31,8 +31,8 @@ inline int cell_of(const study::Protocol& protocol, const Trial& trial, const st
   throw std::invalid_argument("the protocol shows no " + method + " in " + trial.scene);
 }
 
-/// Sessions of people by participant and visit, in the order of `trials`; each of these is a unit of the
-/// first block that shows stimuli.
+/// Sessions by participant and visit, in the order of `trials`; each trial is a unit of the first block that
+/// shows stimuli.
 inline std::vector<study::SessionPlan> sessions(const study::Protocol& protocol,
                                                 const std::vector<Trial>& trials) {
   int block = 0;
@@ -59,7 +59,7 @@ inline std::vector<study::SessionPlan> sessions(const study::Protocol& protocol,
   return out;
 }
 
-/// Every showing passes.
+/// Stores a showing that passes the timing check.
 inline void show(study::Store& store, std::int64_t session, const study::OpenUnit& unit, int interval,
                  int cell) {
   const auto id = store.begin_presentation(session, unit.trial_id, 1, interval, cell, 0);

@@ -1,7 +1,7 @@
 #pragma once
-/// The rules of BIDS 1.11 that hold for data sets of behaviour and gaze, from the schema of the specification
-/// (bids-specification, src/schema: rules/files, rules/sidecars, rules/tabular_data and rules/checks). The
-/// public validator accepts anything in the fields of an eye recording.
+/// Rules of BIDS 1.11 for data sets of behaviour and gaze, from the specification's schema
+/// (bids-specification, src/schema: rules/files, rules/sidecars, rules/tabular_data and rules/checks). They
+/// are checked here because the public validator accepts anything in the fields of an eye recording.
 
 #include <regex>
 
@@ -11,7 +11,7 @@ namespace test {
 
 class BidsRules {
  public:
-  /// What a data set does against the rules, a line each.
+  /// The rules that a data set breaks, one line each.
   static std::vector<std::string> broken_by(const std::filesystem::path& folder) {
     BidsRules rules(folder);
     rules.check_description();

@@ -1,5 +1,5 @@
 #pragma once
-/// Folders of exports as tests read them: their files, tables and JSON.
+/// Readers for exported folders: their files, tables and JSON.
 
 #include <zlib.h>
 
@@ -24,7 +24,7 @@ inline std::set<std::string> files_below(const std::filesystem::path& folder) {
   return files;
 }
 
-/// Null where there is none or it cannot be read.
+/// Null if the file is missing or cannot be parsed.
 inline base::Json json_at(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return nullptr;
   return base::parse_json(base::read_file(path, 1u << 24));
@@ -39,7 +39,7 @@ inline std::string unzipped(const std::filesystem::path& path) {
   return text;
 }
 
-/// Lines of a TSV file, which knows no quotes.
+/// Rows of a TSV file, which has no quotes.
 inline Rows tsv_rows(const std::string& text) {
   Rows rows;
   std::istringstream lines(text);
@@ -55,7 +55,7 @@ inline Rows tsv_rows(const std::string& text) {
   return rows;
 }
 
-/// Lines of a CSV file by RFC 4180.
+/// Rows of a CSV file by RFC 4180.
 inline Rows csv_rows(const std::string& text) {
   Rows rows(1, {""});
   bool quoted = false;

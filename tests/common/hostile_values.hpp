@@ -1,5 +1,5 @@
 #pragma once
-/// Values that nobody means, put behind every key of a TOML text.
+/// Puts unreasonable values behind every key of a TOML text.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,21 +16,21 @@
 
 namespace test {
 
-/// The name of the changed texts.
+/// File name of the changed texts.
 inline constexpr const char* hostile_name = "hostile.toml";
 
-/// A TOML text that is sound as it is.
+/// A valid TOML text.
 struct SoundText {
   std::string name, bytes;
 };
 
-/// Bytes of a value.
+/// Byte range of a value.
 struct ValuePlace {
   std::size_t begin, end;
 };
 
-/// "key = value" anywhere, and the first elements of lists; by "[table] key", the table of the header before
-/// it.
+/// Places of the values in "key = value" and of the first elements of lists, by "[table] key" with the
+/// preceding table header.
 inline std::map<std::string, std::vector<ValuePlace>> value_places(const std::string& text) {
   static const std::regex entry(
       R"((?:^|\n)(\[[^\n]*\])|([a-zA-Z0-9_]+) = ("""[\s\S]*?"""|"(?:[^"\\\n]|\\.)*"|\[[^\]\[]*\]|[^\s,}\]\[{"#]+))");
@@ -88,9 +88,9 @@ inline const std::vector<std::string>& hostile_values() {
   return values;
 }
 
-/// Puts each hostile value behind each key, once for each table, and calls `use` with what became of the
-/// text. What `use` throws must be a base::Error with a mend; one that `parse` throws must also begin with
-/// "FILE:line:column: ", FILE being hostile_name. Returns the keys that were tried.
+/// Puts each hostile value behind each key, once per table, and calls `use` with the parsed result. Errors
+/// must be base::Error with a remedy; errors of `parse` must also begin with "FILE:line:column: ", where FILE
+/// is hostile_name. Returns the keys that were tried.
 template <class Parse, class Use>
 std::set<std::string> try_hostile_values(const std::vector<SoundText>& texts, Parse parse, Use use) {
   std::set<std::string> tried, names;

@@ -1,5 +1,5 @@
 #pragma once
-/// A process that is killed when its work is done: what it holds is not put away.
+/// Runs work in a process that is killed at its end, so that no destructor runs.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,8 +10,7 @@
 
 namespace test {
 
-/// Does `work` in a child, up to its kill_here(), before which no destructor runs. A failure of the test when
-/// it does not come there.
+/// Runs `work` in a child until it calls kill_here(). The test fails if it does not get there.
 template <class Work>
 void killed(const Work& work) {
   const pid_t child = ::fork();
@@ -29,7 +28,7 @@ void killed(const Work& work) {
   EXPECT_TRUE(WIFSIGNALED(status)) << "ended with exit status " << WEXITSTATUS(status);
 }
 
-/// The end of that work.
+/// Ends the work of killed().
 inline void kill_here() { ::kill(::getpid(), SIGKILL); }
 
 }  // namespace test

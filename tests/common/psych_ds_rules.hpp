@@ -1,5 +1,5 @@
 #pragma once
-/// The rules of Psych-DS that are errors in its schema 1.5.1 (psych-DS, schema_model/versions).
+/// The rules of Psych-DS whose violation is an error in its schema 1.5.1 (psych-DS, schema_model/versions).
 
 #include <regex>
 
@@ -7,7 +7,7 @@
 
 namespace test {
 
-/// What a data set does against them, a line each.
+/// The rules that a data set breaks, one line each.
 inline std::vector<std::string> psych_ds_broken_by(const std::filesystem::path& folder) {
   std::vector<std::string> broken;
   const auto require = [&](bool kept, const std::string& rule) {

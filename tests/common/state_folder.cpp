@@ -1,5 +1,5 @@
-/// A register of exports of each test program's own, for itself and the programs that it starts: tests never
-/// write into the home of whoever runs them.
+/// Gives each test program, and the programs it starts, its own register of exports: tests never write into
+/// the user's home.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -12,7 +12,7 @@ class StateFolder {
  public:
   StateFolder() { ::setenv("VIP_STATE_DIR", folder_->path().c_str(), 0); }
   ~StateFolder() {
-    if (::getpid() == maker_) delete folder_;  // the end of a child leaves it to its parent
+    if (::getpid() == maker_) delete folder_;  // an exiting child leaves it to its parent
   }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Tables of text as exports write them.
+/// Reads tables of text as exports write them.
 
 #include <filesystem>
 #include <map>
@@ -10,10 +10,10 @@
 
 namespace test {
 
-/// One map from the header's names to the values for each line.
+/// For each line, a map from the header's names to the values.
 using NamedRows = std::vector<std::map<std::string, std::string>>;
 
-/// Split at `separator` outside quotes; the quotes go.
+/// Splits at `separator` outside quotes and removes the quotes.
 inline NamedRows read_table(const std::filesystem::path& path, char separator) {
   std::vector<std::vector<std::string>> lines{{""}};
   bool quoted = false;

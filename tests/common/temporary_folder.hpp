@@ -10,13 +10,13 @@
 
 namespace test {
 
-/// Where files are never written to a disk, for tests that write thousands of them; else where others lie.
+/// A folder in memory for tests that write thousands of files, or else the usual temporary folder.
 inline std::filesystem::path memory_folder() {
   const std::filesystem::path memory = "/dev/shm";
   return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
 }
 
-/// Made empty in `where`, and removed with everything in it, read-only or not.
+/// Made empty in `where`; the destructor removes it with its contents, even if read-only.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const std::filesystem::path& where = std::filesystem::temp_directory_path()) {

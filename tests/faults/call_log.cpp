@@ -60,7 +60,7 @@ void CallLog::add(Call::Kind kind, std::uint64_t file, std::int64_t at, std::str
     if (!part.empty()) std::memcpy(out, part.data(), part.size());
     out += part.size();
   }
-  // A kill in between leaves the call out, which had been done: it was the last.
+  // A kill before this line leaves out the last call, although it was done.
   memory_->used = static_cast<std::size_t>(out - memory_->bytes);
 }
 

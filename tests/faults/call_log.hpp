@@ -1,5 +1,6 @@
 #pragma once
-/// What a program did to its files, in order: written by a child into memory that outlives it.
+/// The changes that a program made to its files, in order: a child writes them into shared memory that
+/// outlives it.
 
 #include <atomic>
 #include <cstdint>
@@ -9,22 +10,22 @@
 
 namespace faults {
 
-/// One change, or words between them. Files are known by their inode.
+/// One change, or a text between changes. Files are identified by their inode.
 struct Call {
   enum class Kind : std::uint32_t {
     Create,    ///< `path` is a new file
-    Write,     ///< `bytes` at `at`
-    Truncate,  ///< to `at` bytes, or longer with zeros
+    Write,     ///< `bytes` at offset `at`
+    Truncate,  ///< to `at` bytes, filled with zeros if longer
     Sync,      ///< the file is on the disk
     SyncFolder,
     Rename,    ///< `path` becomes `to`
-    Exchange,  ///< `path` and `to` change places
-    Link,      ///< `to` is one more name of the file
+    Exchange,  ///< `path` and `to` swap names
+    Link,      ///< `to` is another name of the file
     Unlink,
     Mkdir,
     Rmdir,
-    Words,  ///< `bytes`
-    Ended   ///< the command ended by itself; `bytes`: its error, empty for none
+    Words,  ///< a text in `bytes`
+    Ended   ///< the command ended by itself; `bytes`: its error, empty if none
   };
   Kind kind = Kind::Words;
   std::uint64_t file = 0;
@@ -40,7 +41,7 @@ class CallLog {
   CallLog& operator=(const CallLog&) = delete;
 
   void clear();
-  /// From one thread at a time. Ends the program where the memory is full.
+  /// Call from one thread at a time. Ends the program if the memory is full.
   void add(Call::Kind kind, std::uint64_t file, std::int64_t at, std::string_view path, std::string_view to,
            std::string_view bytes);
   std::vector<Call> read() const;

@@ -15,7 +15,7 @@ namespace faults {
 namespace {
 
 constexpr unsigned longest_s = 60;
-constexpr const char* broken = "!";  // before what is no base::Error
+constexpr const char* broken = "!";  // prefix of errors that are not base::Error
 
 [[noreturn]] void work(const CallPlan& plan, const std::function<void()>& command) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);

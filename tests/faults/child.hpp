@@ -1,5 +1,5 @@
 #pragma once
-/// A command of the library in a process of its own, under a plan of file_calls.hpp.
+/// Runs a command of the library in its own process, under a plan of file_calls.hpp.
 
 #include <functional>
 #include <string>
@@ -16,12 +16,12 @@ struct Ended {
     Done,
     Refused,  ///< base::Error
     Killed,   ///< by its plan
-    Broken    ///< by anything else: another exception, a signal, a minute without end
+    Broken    ///< by anything else: another exception, a signal, a timeout of one minute
   };
   How how = How::Broken;
-  std::string problem;      ///< Refused, Broken: what it said
-  std::vector<Call> calls;  ///< what it did and said; the calls where the plan records them
-  long counted = 0;         ///< calls of a command that was not killed
+  std::string problem;      ///< Refused, Broken: the message
+  std::vector<Call> calls;  ///< what it recorded; includes calls if the plan records them
+  long counted = 0;         ///< number of calls of a command that was not killed
 };
 
 /// `plan.log` is emptied first and must be set.

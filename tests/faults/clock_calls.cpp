@@ -1,4 +1,4 @@
-/// Stands in for the calls of libc that tell the time of day.
+/// Replaces the libc calls that return the time of day.
 #include <dlfcn.h>
 #include <sys/time.h>
 

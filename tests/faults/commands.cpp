@@ -30,7 +30,7 @@ void allow(const fs::path& database, const Person& person, bool allowed) {
   check_cleaned(database, done.left);
 }
 
-/// May have been done already, as far as the command got.
+/// Works also if the command got so far that the withdrawal is already done.
 void withdraw(const fs::path& database, const Person& person, bool export_was_cut = false) {
   check_cleaned(database, study::withdraw(database, person.code).beside.left, export_was_cut);
 }
@@ -44,7 +44,7 @@ void export_all(const fs::path& database) {
 
 void prepare_north(const fs::path& folder) { play(at(folder, "north"), north); }
 
-/// A plan that was ready and not yet kept stands after all: the error says what to do.
+/// If the plan was stored although an error came, resumes as the error says.
 void play_or_resume(const fs::path& database) {
   try {
     play(database, north);
@@ -54,7 +54,7 @@ void play_or_resume(const fs::path& database) {
   }
 }
 
-/// With exports, and a backup as an upgrade makes it.
+/// With exports, and a backup like that of an upgrade.
 void prepare_withdrawal(const fs::path& folder) {
   prepare_north(folder);
   const fs::path database = at(folder, "north");
@@ -63,7 +63,7 @@ void prepare_withdrawal(const fs::path& folder) {
   study::sqlite::Statement(file, "VACUUM INTO ?").bind_all(database.string() + ".v5-then.bak").run();
 }
 
-/// "all" holds the north as it was before Ben withdrew and Anna refused gaze there.
+/// "all" has the north's data from before Ben withdrew and Anna refused gaze there.
 void prepare_merge(const fs::path& folder) {
   prepare_north(folder);
   play(at(folder, "south"), south);
@@ -77,7 +77,7 @@ void merge_all(const fs::path& folder) {
   check_cleaned(at(folder, "all"), done.beside.left);
 }
 
-/// Ben withdrew and Anna refused gaze after the backup that is put back.
+/// Ben withdrew and Anna refused gaze after the backup that is restored was made.
 void prepare_restored(const fs::path& folder) {
   prepare_north(folder);
   const fs::path database = at(folder, "north"), kept = folder / "kept.db";

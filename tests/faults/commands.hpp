@@ -1,6 +1,6 @@
 #pragma once
-/// Each command that keeps data, small enough to try every state that a power cut may leave of it. Each works
-/// in stations: folders with a database "s.db" and all that stands beside it.
+/// Each command that stores data, small enough to try every state that a power cut may leave. Each works in
+/// stations: folders with a database "s.db" and the files beside it.
 
 #include <filesystem>
 #include <functional>
@@ -19,21 +19,21 @@ struct Command {
   Work prepare;  ///< into an empty folder
   Work act;
   Work again;  ///< what a user types after a fault; null: act
-  Work other;  ///< what may come instead of it: another command; null: resume in each station
-  std::vector<std::string> stations;  ///< which are looked at afterwards
-  /// Who has withdrawn once it is done, by station.
+  Work other;  ///< another command that may follow instead; null: resume in each station
+  std::vector<std::string> stations;  ///< stations to check afterwards
+  /// People who have withdrawn when it is done, by station.
   std::map<std::string, std::vector<Person>> gone{};
-  /// Likewise once `other` is done; what holds in any case is found in tombstones.
+  /// People who have withdrawn when `other` is done; people with tombstones always count.
   std::map<std::string, std::vector<Person>> gone_by_other{};
-  /// Whose permission the command gives; until it is settled, either answer holds.
+  /// People whose permission the command grants; until the database is settled, both answers are valid.
   std::set<std::string> allowed{};
-  bool refuses = false;  ///< the command must be refused, and nothing changed
-  bool is_read = true;   ///< exports can be made of the stations before the command is given again
+  bool refuses = false;  ///< the command must be refused and change nothing
+  bool is_read = true;   ///< exports can be made from the stations before the command is repeated
 };
 
 const std::vector<Command>& all_commands();
 
-/// Takes part in all of them.
+/// The people who take part in the commands.
 extern const Person anna, ben, cleo, dora;
 
 }  // namespace faults

@@ -36,7 +36,7 @@ Lines select(const fs::path& path, const std::string& sql) {
 
 bool is_time(const std::string& column) { return column == "utc" || column.ends_with("_utc"); }
 
-/// Lines that name a moment or the place of the folder differ from one run to the next.
+/// Drops lines with a time or the folder's path, which differ between runs.
 std::string without_moments(const std::string& text) {
   std::istringstream in(text);
   std::string out;
@@ -63,7 +63,7 @@ Lines session_content(const fs::path& database) {
              "(PARTITION BY unit_id, question_id) FROM response r JOIN unit USING (unit_id) "
              "JOIN session USING (session_id) JOIN question USING (question_id) "
              "ORDER BY participant, visit, position, question.code") +
-         // The showing that was judged: the last one, whole.
+         // The judged showing: the last one, which is complete.
          select(database,
                 "SELECT 'shown', participant, visit, t.position, p.interval, p.state, p.verdict, p.frames, "
                 "p.mean_fps, p.sd_fps, (SELECT count(*) FROM frame f WHERE f.presentation_id = "

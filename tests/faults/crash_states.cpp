@@ -27,7 +27,7 @@ bool is_name(Kind kind) {
          kind != Kind::Words && kind != Kind::Ended;
 }
 
-/// Moves what stands under a name, with all below it, in a map by paths.
+/// Moves a name, with everything below it, in a map by path.
 template <class Value>
 void move_names(std::map<std::string, Value>& names, const std::string& from, const std::string& to) {
   std::map<std::string, Value> moved;
@@ -48,7 +48,7 @@ void erase_names(std::map<std::string, Value>& names, const std::string& path) {
                 [&](const auto& one) { return one.first == path || one.first.starts_with(path + '/'); });
 }
 
-/// Until where each file and folder was synced: index of the last sync behind which nothing is sure.
+/// How far each file and folder was synced: index of the last sync, after which nothing is certain.
 struct Synced {
   std::map<std::uint64_t, std::size_t> files;
   std::map<std::string, std::size_t> folders;
@@ -71,11 +71,11 @@ struct Synced {
   }
 };
 
-/// Which calls each call on a name builds on.
+/// The calls on which each call on a name depends.
 std::vector<std::vector<std::size_t>> foundations(const std::vector<Call>& calls, std::size_t count) {
   std::vector<std::vector<std::size_t>> all(count);
-  std::map<std::string, std::size_t> maker;                 // of the name as it stands
-  std::map<std::string, std::vector<std::size_t>> emptied;  // calls that took names out of a folder
+  std::map<std::string, std::size_t> maker;                 // of the current name
+  std::map<std::string, std::vector<std::size_t>> emptied;  // calls that removed names from a folder
   for (std::size_t i = 0; i < count; ++i) {
     const Call& call = calls[i];
     if (!is_name(call.kind)) continue;
@@ -192,7 +192,7 @@ class Crash {
     if (kept || sure)
       tree_.files[call.file].resize(static_cast<std::size_t>(call.at));
     else if (model_ == Model::Ext4)
-      torn_off_.insert(call.file);  // what follows went into new blocks, which no durable size has
+      torn_off_.insert(call.file);  // later data went into new blocks, which no durable size includes
   }
 
   void change_name(const Call& call) {
@@ -232,7 +232,7 @@ class Crash {
   std::mt19937 random_;
   const Synced synced_;
   std::vector<bool> names_;    // kept calls on names
-  std::size_t committed_ = 0;  // Ext4: calls on names before it are durable
+  std::size_t committed_ = 0;  // Ext4: earlier calls on names are durable
   std::set<std::uint64_t> ends_, torn_off_;
 };
 
@@ -251,7 +251,7 @@ Tree read_tree(const fs::path& folder) {
 
 void write_tree(const Tree& tree, const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
-  for (const auto& [path, name] : tree.names) {  // folders come before what is in them
+  for (const auto& [path, name] : tree.names) {  // folders precede their content
     if (name.folder) {
       fs::create_directories(path);
       fs::permissions(path, fs::perms::owner_all);

@@ -1,16 +1,16 @@
 #pragma once
-/// What may stand on the disk when the power goes after so many calls of a command.
+/// States of the disk after the power fails at some call of a command.
 ///
-/// Two models of what a file system keeps of calls that were not synced:
+/// Two models of what a file system keeps of unsynced calls:
 ///
-/// Ext4 (data=ordered): names, and sizes that shrink, become durable in their order; a sync of anything makes
-/// all names before it durable. A file grows by no bytes that were not written. Bytes written over others
-/// are durable by sectors of 512, in any order, until their file is synced. Renaming a file that was not
-/// synced may leave it empty (noauto_da_alloc).
+/// Ext4 (data=ordered): names, and sizes that shrink, become durable in order; any sync makes all earlier
+/// names durable. A file never grows by bytes that were not written. Overwritten bytes become durable in
+/// sectors of 512, in any order, until their file is synced. Renaming a file that was not synced may leave it
+/// empty (noauto_da_alloc).
 ///
-/// Posix, with btrfs' promises: any call may be lost or kept, whatever came before or after. A sync of a file
-/// makes its bytes and the name that it has then durable; a sync of a folder makes the names in it durable,
-/// also those that went. A rename is whole or not there. A call that builds on another one is not kept
+/// Posix, with btrfs' guarantees: any call may be lost or kept, independent of those before and after it. A
+/// sync of a file makes its bytes and its current name durable; a sync of a folder makes its names durable,
+/// including removals. A rename is kept whole or not at all. A call that depends on another one is not kept
 /// without it.
 ///
 /// The index of SQLite's log (-shm) is never on a disk.
@@ -25,7 +25,7 @@
 
 namespace faults {
 
-/// Files and folders below one folder, by their whole paths.
+/// Files and folders below one folder, by full path.
 struct Tree {
   struct Name {
     std::uint64_t file = 0;
@@ -36,22 +36,22 @@ struct Tree {
 };
 
 Tree read_tree(const std::filesystem::path& folder);
-/// What stood below the folder is gone.
+/// Replaces the folder's content.
 void write_tree(const Tree& tree, const std::filesystem::path& folder);
-/// Equal for equal names and bytes.
+/// Equal for trees with equal names and bytes.
 std::size_t hash_of(const Tree& tree);
 
 enum class Model { Ext4, Posix };
 const char* name_of(Model model);
 
-/// Which of the calls that may be lost are.
+/// Which of the losable calls are kept.
 enum class Kept {
-  Least,  ///< all of them
-  Most,   ///< none
-  Some    ///< by chance, from a seed; writes by sectors
+  Least,  ///< none of them
+  Most,   ///< all of them
+  Some    ///< a random choice from a seed; writes by sectors
 };
 
-/// The disk after the first `count` calls that `before` went through.
+/// The disk after the first `count` calls, starting from `before`.
 Tree crash_state(const Tree& before, const std::vector<Call>& calls, std::size_t count, Model model,
                  Kept kept, unsigned seed = 0);
 

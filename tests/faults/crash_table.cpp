@@ -13,7 +13,7 @@ namespace {
 
 using Say = std::function<void(const std::string&)>;
 
-/// Every state in turn; each worker tries its share of them.
+/// Tries every state; each worker takes its share.
 void try_each(const CrashOptions& options, int worker, Crashes& crashes, const Say& tried) {
   long states = 0;
   const auto attempt = [&](const CrashTry& one) {
@@ -35,7 +35,7 @@ void try_each(const CrashOptions& options, int worker, Crashes& crashes, const S
   }
 }
 
-/// Kills at random calls: the power goes with each, under both models.
+/// Kills at random calls; each is also a power cut under both models.
 void try_kills(const CrashOptions& options, int worker, Crashes& crashes, const Say& tried) {
   for (long i = worker; i < options.kills; i += options.jobs) {
     std::mt19937 random(options.seed * 100'003 + static_cast<unsigned>(i));
@@ -57,7 +57,7 @@ struct Row {
   long calls = 0, ext4 = 0, posix = 0, failed = 0;
 };
 
-/// What a failure says, without its place: the same cause is counted once.
+/// The message without its place, so that equal causes are counted once.
 std::string cause_of(const std::string& line) {
   std::string cause;
   std::string said = line.substr(std::min(line.size(), line.find("): ") + 3), 160);

@@ -28,7 +28,7 @@ void take_acknowledged(const std::vector<Call>& calls, std::size_t count,
 Crashes::Crashes(const Command& command, const fs::path& folder)
     : command_(command), now_(folder / "now"), peek_(folder / "peek") {
   fs::create_directories(now_);
-  // The register of exports is a file like the others: a power cut may take it back.
+  // The register of exports is a file like others: a power cut may undo its changes.
   ::setenv("VIP_STATE_DIR", (now_ / "state").c_str(), 1);
   const Ended prepared = run(command.prepare);
   if (prepared.how != Ended::How::Done)
@@ -81,7 +81,7 @@ void Crashes::check(const When& when, const Gone& gone, Problems& problems) {
     Problems found;
     const fs::path station = now_ / name;
     DatabaseFacts facts = read_facts(station / "s.db", peek_, found);
-    // Exports obey the journal, which may be ahead of the database.
+    // Exports follow the journal, which may be ahead of the database.
     if (!when.settled)
       for (const std::string& key : command_.allowed)
         if (facts.sessions.contains(key)) facts.sessions[key].gaze = facts.sessions[key].sharing = {};
@@ -91,7 +91,7 @@ void Crashes::check(const When& when, const Gone& gone, Problems& problems) {
     std::set<std::pair<std::string, int>> here;
     for (const auto& one : acknowledged_)
       if (one.first.ends_with("@" + name)) here.insert(one);
-    const bool restored = command_.refuses;  // what was put back lacks what came after it
+    const bool restored = command_.refuses;  // the restored database lacks later changes
     if (!restored && (facts.there || !here.empty()))
       add(check_acknowledged(facts, station / "s.db", here, when.settled));
     if (facts.there) {
@@ -137,7 +137,7 @@ void Crashes::try_again(Problems& problems) {
 Problems Crashes::go_on() {
   Problems problems;
   write_tree(state_, now_);
-  // Exports may be made at once. What a commit ended is not yet cleaned up beside the database.
+  // Exports may be made at once, although a commit's cleanup beside the database is not finished.
   Gone none = command_.refuses ? command_.gone : Gone{};
   check({"at once", command_.is_read, false}, none, problems);
   write_tree(state_, now_);

@@ -1,7 +1,7 @@
 #pragma once
-/// The states that a kill or a power cut may leave of a command: each is made, looked at, and gone on from in
-/// two ways, by another command and by the same one. The invariants must hold throughout, and in the end all
-/// must be as without the fault.
+/// Tries the states that a kill or a power cut may leave of a command: each is made, checked, and continued
+/// in two ways, by another command and by the same one. The invariants must hold throughout, and the final
+/// state must equal that without a fault.
 
 #include <filesystem>
 #include <optional>
@@ -16,9 +16,9 @@
 
 namespace faults {
 
-/// What is tried.
+/// One state to try.
 struct CrashTry {
-  std::size_t count = 0;  ///< calls that were made
+  std::size_t count = 0;  ///< number of calls made before the fault
   Model model = Model::Ext4;
   Kept kept = Kept::Least;
   unsigned seed = 0;
@@ -27,18 +27,18 @@ struct CrashTry {
 
 class Crashes {
  public:
-  /// Prepares the command in `folder`, which is this object's alone, and records its calls.
+  /// Prepares the command in `folder`, which only this object may use, and records its calls.
   Crashes(const Command& command, const fs::path& folder);
 
-  /// What is wrong without any fault.
+  /// Problems without any fault.
   const Problems& at_first() const { return at_first_; }
-  /// Calls that the command makes, and words between them.
+  /// Number of recorded calls and texts.
   std::size_t calls() const { return recorded_.calls.size(); }
-  /// What was done last before a try, for messages.
+  /// The last call before a fault, for messages.
   std::string last_call(const CrashTry& one) const;
-  /// Makes the state. False where an earlier one was the same.
+  /// Makes the state. False if an earlier one was equal.
   bool make(const CrashTry& one);
-  /// Goes on from the state that was made last.
+  /// Continues from the state that was made last.
   Problems go_on();
 
  private:
@@ -46,7 +46,7 @@ class Crashes {
   Ended run(const std::function<void(const fs::path&)>& work);
   struct When {
     std::string name;
-    bool exports = true;  ///< may be made now
+    bool exports = true;  ///< exports may be made now
     bool settled = true;  ///< as in check_acknowledged()
   };
   void check(const When& when, const Gone& gone, Problems& problems);
@@ -64,19 +64,19 @@ class Crashes {
   std::unordered_set<std::size_t> seen_;
 };
 
-/// "done <key> <position>" of small_study.hpp.
+/// Collects the units of the records "done <key> <position>" (small_study.hpp).
 void take_acknowledged(const std::vector<Call>& calls, std::size_t count,
                        std::set<std::pair<std::string, int>>& all);
 
 struct CrashOptions {
   std::vector<std::string> commands;  ///< empty: all
   int jobs = 1;
-  long every = 1;  ///< of the calls, so many-th
-  int seeds = 2;   ///< states by chance for each call and model
-  long kills = 0;  ///< 0: every call; else so many, each with one state of each model
+  long every = 1;  ///< tries only every n-th call
+  int seeds = 2;   ///< random states for each call and model
+  long kills = 0;  ///< 0: every call; otherwise this many random calls, each with one state of each model
   unsigned seed = 1;
 };
-/// Prints a table, and what failed; returns the number of failures.
+/// Prints a table and the failures; returns the number of failures.
 long try_crashes(const CrashOptions& options);
 
 }  // namespace faults

@@ -11,9 +11,9 @@ using study::sqlite::Statement;
 
 namespace {
 
-/// What holds now: 0 where a change that no later one supersedes refuses, as stations that did not know of
-/// each other may have said both; in schemas that do not say so, the last change. Without changes, the last
-/// answer on the consent page.
+/// The decision in force: 0 if a refusal is not superseded by a later change, because stations that did not
+/// know of each other may have recorded both; the last change in schemas without that column. Without
+/// changes, the last answer on the consent page.
 std::string decision_sql(Connection& database, const std::string& what, const std::string& question) {
   const bool says_which_holds =
       database.integer(

@@ -1,9 +1,9 @@
 #pragma once
-/// Who decided what, as far as each station knows: what a study with no faults and one clock would come to.
+/// A model of people's decisions as each station knows them: the result of a study without faults and with
+/// one clock.
 ///
-/// A decision is made at one station, after all that this station knows. Stations that are merged know all
-/// that each of them knew. A refusal holds until a consent that was recorded after it, at a station that knew
-/// of it.
+/// A decision is made at one station, after all decisions known to it. Merged stations know all that each of
+/// them knew. A refusal holds until a consent that was recorded after it, at a station that knew of it.
 
 #include <map>
 #include <set>
@@ -20,12 +20,12 @@ class Decisions {
  public:
   using Known = std::set<std::size_t>;
 
-  /// Recorded after `known`, which it is added to.
+  /// Adds a decision made after those in `known`, and adds it to `known`.
   void decide(Known& known, const std::string& person, What what, bool yes) {
     all_.push_back({person, what, yes, known});
     known.insert(all_.size() - 1);
   }
-  /// Whether it is allowed; refused where there is nothing.
+  /// True if allowed; refused if nothing is known.
   bool allows(const Known& known, const std::string& person, What what) const {
     bool any = false;
     for (const std::size_t one : known) {
@@ -35,7 +35,7 @@ class Decisions {
     }
     return any;
   }
-  /// Whether it was ever refused, at any station.
+  /// True if it was ever refused, at any station.
   bool was_refused(const std::string& person, What what) const {
     for (std::size_t one = 0; one < all_.size(); ++one)
       if (concerns(one, person, what) && !all_[one].yes) return true;

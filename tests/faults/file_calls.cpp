@@ -30,7 +30,7 @@ struct State {
   std::recursive_mutex turn;
 };
 
-/// Outlives every destructor of the program.
+/// Never destroyed, because it must outlive every destructor of the program.
 State& state() {
   static State* const one = new State;
   return *one;
@@ -61,7 +61,7 @@ std::string path_of(int fd) {
   return n <= 0 ? std::string() : std::string(path, static_cast<std::size_t>(n));
 }
 
-/// Whole path, or empty where calls on it do not count.
+/// Full path, or empty if calls on it do not count.
 std::string watched_at(int folder, const char* path) {
   if (!state().active) return {};
   std::filesystem::path whole = path;
@@ -94,7 +94,7 @@ void record(Done kind, std::uint64_t file, std::int64_t at, std::string_view pat
   if (state().plan.record) state().plan.log->add(kind, file, at, path, to, bytes);
 }
 
-/// Counts a call; does not return where the program is to end before it.
+/// Counts a call; does not return if the program is to be killed before it.
 Act count(Need need) {
   State& now = state();
   const CallPlan& plan = now.plan;
@@ -109,7 +109,7 @@ Act count(Need need) {
   return Act::Fail;
 }
 
-/// For calls that are done whole or not at all.
+/// For calls that are done completely or not at all.
 bool refuse(Need need) {
   const Act act = count(need);
   if (act == Act::Half) die();

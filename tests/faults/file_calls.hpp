@@ -1,14 +1,14 @@
 #pragma once
-/// A layer between a program and its files, clock and life: every call of libc that changes a file below one
-/// folder is counted; the k-th one fails, or is the last; all of them are recorded with their data, so that
-/// what a power cut leaves can be made afterwards (crash_states.hpp). It serves all code of the program
+/// A layer between a program and its files, clock and life. It counts every libc call that changes a file
+/// below one folder, lets the k-th one fail or be the last, and records all of them with their data, so that
+/// the states after a power cut can be made later (crash_states.hpp). It covers all code of the program
 /// alike: SQLite, the standard library, the journal, personal data, exports, chores and locks.
 ///
-/// Two ways to use one source: compiled into a test program, which arms it in a child, or as a library for
-/// LD_PRELOAD, which reads its plan from the environment (file_calls_environment.cpp).
+/// The source is used in two ways: compiled into a test program, which arms it in a child, or as a library
+/// for LD_PRELOAD, which reads its plan from the environment (file_calls_environment.cpp).
 ///
-/// Counted are open for writing, write, sync, truncate, rename, link, remove, mkdir and the same of stdio;
-/// not what is written through a mapping (the index of SQLite's log, which every opening makes anew).
+/// It counts open for writing, write, sync, truncate, rename, link, remove, mkdir and their stdio
+/// equivalents, but not writes through a mapping (the index of SQLite's log, which every opening rebuilds).
 
 #include <cstdint>
 #include <string>
@@ -17,31 +17,31 @@ namespace faults {
 
 class CallLog;
 
-/// What happens to the calls of a program.
+/// The fault to inject into a program's calls.
 struct CallPlan {
   enum class Kind {
     None,
     Kill,   ///< SIGKILL before the call
-    Tear,   ///< SIGKILL in the call, which writes half of its bytes where it is a write
+    Tear,   ///< SIGKILL during the call; a write writes half of its bytes
     Error,  ///< EIO
-    Full    ///< ENOSPC: the call that needs room, or the next that does
+    Full    ///< ENOSPC: this call, or the next one that needs space
   };
   std::string folder;  ///< calls on files below it count; absolute, without links; empty: none
   Kind kind = Kind::None;
-  bool from_then_on = false;       ///< Error, Full: so do all that follow
+  bool from_then_on = false;       ///< Error, Full: all later calls fail too
   long at = 0;                     ///< number of the call, from 1
   std::int64_t clock_ahead_s = 0;  ///< added to the time of day
-  CallLog* log = nullptr;          ///< where words are recorded; none: they are not
-  bool record = false;             ///< calls and their data as well
+  CallLog* log = nullptr;          ///< where texts are recorded; null: nowhere
+  bool record = false;             ///< also records calls and their data
 };
 
-/// Counts from 0 again. Not while another thread changes files.
+/// Starts counting from 0. Do not call it while another thread changes files.
 void arm_calls(const CallPlan& plan);
 /// Calls since then.
 long counted_calls();
-/// From now on no two names change places in this process, as on network file systems (EINVAL).
+/// From now on, swapping two names fails in this process, as on network file systems (EINVAL).
 void refuse_exchanges();
-/// Records words between the calls, e.g. that an answer was acknowledged. Nothing without a log.
+/// Records a text between the calls, e.g. that an answer was acknowledged. Does nothing without a log.
 void record_words(const std::string& words);
 
 }  // namespace faults

@@ -1,8 +1,9 @@
-/// The plan of file_calls.hpp for a whole program (LD_PRELOAD):
+/// Reads the plan of file_calls.hpp for a whole program (LD_PRELOAD) from the environment:
 ///
 ///   VIP_FAULT_FOLDER  calls on files below it are counted, from 1; absolute, without links
-///   VIP_FAULT         "kill:K", "tear:K", "eio:K", "eio+:K", "enospc:K", "enospc+:K" (+: and all that
-///   follow) VIP_FAULT_COUNT   file that gets the number of calls when the program ends by itself
+///   VIP_FAULT         "kill:K", "tear:K", "eio:K", "eio+:K", "enospc:K", "enospc+:K" (+: and all later
+///   calls)
+///   VIP_FAULT_COUNT   file that gets the number of calls if the program ends by itself
 #include <fcntl.h>
 #include <unistd.h>
 

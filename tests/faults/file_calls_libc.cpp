@@ -1,4 +1,4 @@
-/// Stands in for the calls of libc that change files.
+/// Replaces the libc calls that change files.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/types.h>
@@ -49,7 +49,7 @@ std::int64_t place_of(int fd) {
   return ::lseek(fd, 0, SEEK_CUR);
 }
 
-/// What stands in a file that may be open for writing alone.
+/// Bytes of a file that may be open only for writing.
 std::string bytes_at(int fd, std::int64_t at, std::size_t size) {
   char link[40];
   std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
@@ -61,7 +61,7 @@ std::string bytes_at(int fd, std::int64_t at, std::size_t size) {
   return bytes;
 }
 
-/// `half`: does half of the work, before the program ends.
+/// `half`: does half of the work before the program is killed.
 template <class Half, class Whole>
 ssize_t write_with(int fd, std::int64_t at, Half half, Whole whole) {
   if (!watched(fd)) return whole();
@@ -84,14 +84,14 @@ int sync_with(const char* name, int fd) {
   const auto call = next<int (*)(int)>(name);
   if (!watched(fd)) return call(fd);
   const Turn turn;
-  if (refuse(Need::Room)) return -1;  // a late allocation fails here
+  if (refuse(Need::Room)) return -1;  // a delayed allocation fails here
   const int done = call(fd);
   const struct stat found = look(fd);
   if (done == 0) record(S_ISDIR(found.st_mode) ? Done::SyncFolder : Done::Sync, found.st_ino, 0, path_of(fd));
   return done;
 }
 
-/// errno, or 0.
+/// Returns errno, or 0.
 template <class Work>
 int resize_with(int fd, Need need, Work work) {
   if (!watched(fd)) return work();
@@ -102,7 +102,7 @@ int resize_with(int fd, Need need, Work work) {
   return done;
 }
 
-/// A name that is made or goes.
+/// Adds, changes or removes a name.
 template <class Work>
 int change_name(Done kind, const std::string& from, const std::string& to, Need need, Work work) {
   if (from.empty() && to.empty()) return work();
@@ -194,7 +194,7 @@ int fdatasync(int fd) { return sync_with("fdatasync", fd); }
 VIP_TRUNCATE(ftruncate)
 VIP_TRUNCATE(ftruncate64)
 
-// These return what is wrong instead of setting errno.
+// These return the error instead of setting errno.
 #define VIP_ALLOCATE(name)                                                                                  \
   int name(int fd, off_t at, off_t size) {                                                                  \
     const int done =                                                                                        \
@@ -222,7 +222,7 @@ VIP_GOES(rmdir, (const char* path), (path), AT_FDCWD)
 VIP_FOLDER(mkdir, (const char* path, mode_t mode), (path, mode), AT_FDCWD)
 VIP_FOLDER(mkdirat, (int at, const char* path, mode_t mode), (at, path, mode), at)
 
-/// Its folder is made within libc.
+/// libc makes its folder internally.
 char* mkdtemp(char* path) noexcept {
   const auto call = next<char* (*)(char*)>("mkdtemp");
   if (watched_at(AT_FDCWD, path).empty()) return call(path);

@@ -1,5 +1,5 @@
 #pragma once
-/// How the calls of libc (file_calls_libc.cpp) are counted, failed and recorded.
+/// Counting, failing and recording of the libc calls in file_calls_libc.cpp.
 
 #include <sys/stat.h>
 
@@ -12,11 +12,11 @@
 
 namespace faults::calls {
 
-enum class Need { Room, Nothing };  ///< whether a full disk makes the call fail
+enum class Need { Room, Nothing };  ///< whether the call fails on a full disk
 enum class Act { Go, Half, Fail };
 using Done = Call::Kind;
 
-/// Calls that are recorded take turns, so that they stand in their order.
+/// Makes recorded calls take turns, so that they are recorded in order.
 class Turn {
  public:
   Turn();
@@ -27,22 +27,22 @@ class Turn {
 
 [[noreturn]] void die();
 std::string path_of(int fd);
-/// Whole path, or empty where calls on it do not count.
+/// Full path, or empty if calls on it do not count.
 std::string watched_at(int folder, const char* path);
 bool watched(int fd);
 struct stat look(int fd);
 struct stat look(const std::string& path);
-/// False of a file that is not there.
+/// False for a file that does not exist.
 inline bool stands(const struct stat& found) { return found.st_nlink > 0; }
 bool records();
-bool exchanges();  ///< whether two names may change places
+bool exchanges();  ///< false if swapping two names must fail
 std::int64_t clock_ahead_s();
-/// Nothing where calls are not recorded.
+/// Does nothing if calls are not recorded.
 void record(Done kind, std::uint64_t file, std::int64_t at, std::string_view path, std::string_view to = {},
             std::string_view bytes = {});
-/// Counts a call; does not return where the program is to end before it.
+/// Counts a call; does not return if the program is to be killed before it.
 Act count(Need need);
-/// For calls that are done whole or not at all.
+/// For calls that are done completely or not at all.
 bool refuse(Need need);
 
 }  // namespace faults::calls

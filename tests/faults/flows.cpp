@@ -11,7 +11,7 @@ namespace faults {
 
 namespace {
 
-/// Noted on somebody who withdraws: they must stand nowhere afterwards.
+/// Note on a person who withdraws: it must be nowhere afterwards.
 constexpr const char* secret = "zebra-of-the-north";
 
 void call(const Arguments& arguments) {
@@ -47,7 +47,7 @@ Arguments resume_arguments(const fs::path& folder, const std::string& database) 
   return vip_study({"resume", "--db", folder / database, "--events"});
 }
 
-/// Two of the three sessions are over; the third was killed within a trial.
+/// Two of the three sessions are finished; the third was killed during a trial.
 void cut_session(const fs::path& folder) {
   write_protocol(folder);
   apps::test::Process program(run_arguments(folder, "s.db", {"P01", "P02"}));
@@ -56,7 +56,7 @@ void cut_session(const fs::path& folder) {
   program.wait();
 }
 
-/// A note on P02.
+/// Adds the secret as a note on P02.
 void note_secret(const fs::path& database) {
   const auto session = study::sqlite::Connection(database, study::sqlite::Open::Read)
                            .integer("SELECT session_id FROM session WHERE participant = 'P02'");
@@ -66,7 +66,7 @@ void note_secret(const fs::path& database) {
 void prepare_withdrawal(const fs::path& folder) {
   run_whole(folder, "s.db", {"P01", "P02", "P03"});
   note_secret(folder / "s.db");
-  // Registered where the command that is tried looks for its exports.
+  // Registered in the folder in which the tested command looks for exports.
   Arguments all{"/usr/bin/env", "VIP_STATE_DIR=" + (folder / "state").string()};
   const Arguments made = vip_study({"export", "--db", folder / "s.db", "--csv", folder / "csv", "--words"});
   all.insert(all.end(), made.begin(), made.end());
@@ -80,7 +80,8 @@ Lines withdrawal_content(const fs::path& folder) {
   return all;
 }
 
-/// Two stations that gave the same codes, one of whom withdrew at one of them after an earlier merge.
+/// Two stations with equal participant codes; a person with one of them withdrew at one station after an
+/// earlier merge.
 void prepare_merge(const fs::path& folder) {
   run_whole(folder, "north.db", {"P01", "P02"}, "north");
   run_whole(folder, "south.db", {"P01", "P03"}, "south");
@@ -122,13 +123,13 @@ Arguments bake_arguments(const fs::path& folder) {
                     "cpu", "--frames", "4", "--out", folder / "dam.bake"});
 }
 
-/// What stands under the bake's name is whole.
+/// Verifies an existing bake, which must be complete; otherwise bakes again.
 Arguments bake_or_verify(const fs::path& folder) {
   if (!fs::exists(folder / "dam.bake")) return bake_arguments(folder);
   return vip_study({"bake", "--verify", folder / "dam.bake"});
 }
 
-/// A database cut in half; its journal is whole.
+/// Cuts a database in half; its journal is whole.
 void prepare_salvage(const fs::path& folder) {
   run_whole(folder, "s.db", {"P01", "P02"});
   fs::resize_file(folder / "s.db", fs::file_size(folder / "s.db") / 2);
@@ -138,7 +139,7 @@ Arguments salvage_arguments(const fs::path& folder) {
   return vip_study({"salvage", "--db", folder / "s.db", "--into", folder / "new.db"});
 }
 
-/// What stands under the new name is whole.
+/// Reads an existing new database, which must be complete; otherwise salvages again.
 Arguments salvage_or_look(const fs::path& folder) {
   if (!fs::exists(folder / "new.db")) return salvage_arguments(folder);
   return vip_study({"status", "--db", folder / "new.db"});
@@ -146,7 +147,7 @@ Arguments salvage_or_look(const fs::path& folder) {
 
 Lines salvage_content(const fs::path& folder) {
   Lines all{base::sha256_hex(base::read_file(folder / "s.db", 1u << 30))};
-  // What stood on the pages that were cut off is in the journal, but for the frames.
+  // The journal has the content of the lost pages, except frames.
   for (const std::string& line : session_content(folder / "new.db")) {
     if (!line.starts_with("shown|")) all.push_back(line);
   }
@@ -168,14 +169,14 @@ Lines backed_up_answers(const fs::path& backup) {
   return all;
 }
 
-/// The database, and the answers that its backup holds.
+/// The database's content, and the answers in its backup.
 Lines upgraded_content(const fs::path& folder) {
   Lines backup;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    // There may be several of the same.
+    // There may be several equal backups.
     if (entry.path().extension() == ".bak") backup = backed_up_answers(entry.path());
   }
-  // One session is shown on the real clock.
+  // Timing lines are left out, because one session uses the real clock.
   Lines all;
   for (const std::string& line : session_content(folder / "s.db")) {
     if (!line.starts_with("shown|")) all.push_back(line);

@@ -1,6 +1,5 @@
 #pragma once
-/// The commands of vip-study that faults are tried on, each with what it starts from and what it must come
-/// to.
+/// The commands of vip-study to try faults on, each with its initial state and its required result.
 
 #include <filesystem>
 #include <functional>
@@ -15,28 +14,28 @@ using Arguments = std::vector<std::string>;
 
 struct Flow {
   std::string name;
-  /// Puts into an empty folder all that the command starts from.
+  /// Puts the command's initial files into an empty folder.
   std::function<void(const fs::path& folder)> prepare;
-  /// The command that faults fall into.
+  /// The command to inject faults into.
   std::function<Arguments(const fs::path& folder)> command;
-  /// What a user types after a fault; asked anew after each.
+  /// What a user types after a fault; called again after each fault.
   std::function<Arguments(const fs::path& folder)> again;
-  /// What must be the same in the end, with a fault and without.
+  /// Content that must be the same at the end, with or without a fault.
   std::function<Lines(const fs::path& folder)> content;
-  /// Databases of the folder that are healthy before and must open whatever happens.
+  /// Databases of the folder that are healthy before and must always open.
   std::vector<std::string> healthy;
-  /// Database whose sessions the command plays, and whose answers it acknowledges; empty: none.
+  /// Database whose sessions the command plays and whose answers it acknowledges; empty: none.
   std::string played;
 };
 
-/// Folder of the programs under test: that of this program.
+/// Folder of this program, which has the programs under test.
 fs::path program_folder();
 Arguments vip_study(const Arguments& more);
 
-/// All of them, in the order of the table.
+/// All flows, in the order of the table.
 const std::vector<Flow>& all_flows();
 
-/// A short study with pages, personal data, words, practice and trials.
+/// A short study with pages, personal data, free text, practice and trials.
 std::string short_protocol();
 
 }  // namespace faults

@@ -15,7 +15,7 @@ using Kind = Step::Kind;
 using Fault = Step::Fault;
 using Say = std::function<void(const std::string&)>;
 
-/// About as many calls as the command makes.
+/// Approximate number of calls that the command makes.
 long calls_of(Kind kind) {
   switch (kind) {
     case Kind::Session:
@@ -29,7 +29,7 @@ long calls_of(Kind kind) {
   }
 }
 
-/// "refused", "tombstone" and the like, and the words behind it without numbers and names.
+/// "refused", "tombstone" and the like, with the following text without numbers and names.
 std::string kind_of(const std::string& problem) {
   std::string kind;
   for (std::size_t i = 0; i < problem.size() && kind.size() < 90; ++i) {
@@ -43,7 +43,7 @@ std::string kind_of(const std::string& problem) {
   return kind;
 }
 
-/// The same, or as good as.
+/// True if both first problems are of the same kind.
 bool is_alike(const Problems& one, const Problems& other) {
   return !one.empty() && !other.empty() && kind_of(one.front()) == kind_of(other.front());
 }
@@ -82,11 +82,11 @@ std::vector<Step> make_history(unsigned seed, long number) {
     step.yes = below(2) == 0 || (step.kind == Kind::Session && below(2) == 0);
     step.other = below(2) == 0;
     if (below(3) == 0) step.fault = static_cast<Fault>(1 + below(7));
-    // What is committed is committed by the first calls; cleaning up takes most of them.
+    // The first calls commit; cleaning up makes most of the calls, so early ones are preferred.
     step.at = 1 + below(1 + below(static_cast<unsigned>(calls_of(step.kind))));
     step.seed = static_cast<unsigned>(random());
     step.wait_s = 1 + below(below(2) == 0 ? 100'000 : 3);
-    // Clocks are set, and are wrong by days.
+    // Clocks jump, and are wrong by days.
     if (below(4) == 0) step.jump_s = static_cast<std::int64_t>(below(600'000)) - 300'000;
     steps.push_back(step);
   }

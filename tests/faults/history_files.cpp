@@ -1,4 +1,4 @@
-/// Commands of a history that go about whole databases.
+/// Commands of a history that work on whole databases.
 #include <algorithm>
 
 #include "libstudy/store/merge.hpp"
@@ -30,7 +30,7 @@ void HistoryRun::merge(const Step& step) {
     check_cleaned(database(), done.beside.left, export_was_cut_);
   };
   if (restored) {
-    // It is refused, or nobody who withdrew comes back by it; there is no telling what else it brings.
+    // It must be refused, or bring back nobody who withdrew; other content cannot be predicted.
     const Ended ended = stations_.perform(step, station_, false, work);
     std::set<std::string> gone = here().withdrawn;
     for (const std::size_t i : from)
@@ -77,7 +77,7 @@ void HistoryRun::back_up() {
   stations_.copies.push_back({station_, copy, here().exports});
 }
 
-/// An export that the copy does not know of could never be found again.
+/// Restores only a copy that knows all exports, because others could never be found again.
 void HistoryRun::restore(const Step& step) {
   std::vector<KeptCopy> fit;
   for (const KeptCopy& copy : stations_.copies)
@@ -90,7 +90,7 @@ void HistoryRun::restore(const Step& step) {
   here().restored = true;
 }
 
-/// As the error of a writer says; the result takes the place of what was damaged.
+/// Does what a writer's error message says; the result replaces the damaged database.
 void HistoryRun::salvage(const Step& step) {
   if (!stations_.has_database(station_)) return;
   told_ += "salvage";

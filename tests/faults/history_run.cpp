@@ -53,19 +53,19 @@ bool HistoryRun::command(const Step& step, bool always, const Work& work) {
     ended = open();
     if (ended.how != How::Done && !here().restored) wrong("cannot be opened after a fault: " + ended.problem);
     if (here().restored && ended.how != How::Done) return false;
-    here().restored = false;  // it is as the journal has it
+    here().restored = false;  // opening made it equal to the journal
   }
   if (!always && !step.other) return false;
   here().ahead_s += recovery_s;
   ended = stations_.perform(step, station_, false, work);
   told_ += ", given again";
-  // A plan that was kept stands; the session was finished above.
+  // A stored plan remains; the session was finished above.
   if (ended.problem.find("continue with vip-study resume") != std::string::npos) return true;
   if (ended.how != How::Done) wrong("given again: " + ended.problem);
   return ended.how == How::Done;
 }
 
-/// What the consent pages were answered that the model does not know of yet.
+/// Adds answers on consent pages that the model does not know yet.
 void HistoryRun::learn() {
   for (const auto& [key, one] : facts().sessions) {
     if (one.station != here().name || here().people.contains(key) || here().withdrawn.contains(key)) continue;
@@ -76,7 +76,7 @@ void HistoryRun::learn() {
   }
 }
 
-/// A code that nobody at this station has or had.
+/// A participant code that was never used at this station.
 std::string HistoryRun::free_code(const std::string& start) {
   std::set<std::string> taken;
   for (const auto& [key, one] : facts().sessions) taken.insert(one.participant);
@@ -88,7 +88,7 @@ std::string HistoryRun::free_code(const std::string& start) {
 
 void HistoryRun::session(const Step& step) {
   if (!here().records) return;
-  // Some codes are given at several stations.
+  // Several stations use some of the same codes.
   const std::string start = step.choice % 3 == 0 ? "P" : here().name.substr(0, 1) + "Q";
   const Person person{free_code(start), here().name, step.yes, step.seed % 4 != 0};
   stations_.persons[person.key()] = person;

@@ -1,5 +1,5 @@
 #pragma once
-/// One history as it goes on.
+/// The execution of one history.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace faults {
 
-/// Goes through a history step by step.
+/// Runs a history step by step.
 class HistoryRun {
  public:
   explicit HistoryRun(const fs::path& folder) : stations_(folder) {}
@@ -21,8 +21,8 @@ class HistoryRun {
  private:
   using Work = std::function<void()>;
 
-  /// With the fault; where that stopped it, the station is opened again, and the command is given again where
-  /// `always` or the step says so. True: it is done.
+  /// Runs `work` with the step's fault. If the fault stops it, opens the station again, and repeats the
+  /// command if `always` or the step says so. Returns true if it is done.
   bool command(const Step& step, bool always, const Work& work);
   void session(const Step& step);
   void consent(const Step& step);
@@ -39,7 +39,7 @@ class HistoryRun {
   void wrong(const std::string& problem) { problems_.push_back(problem); }
   Station& here() { return stations_[station_]; }
   fs::path database() const { return stations_.database_of(station_); }
-  /// Somebody whom the station knows; none: empty.
+  /// A person whom the station knows; empty if none.
   std::string somebody(const Step& step);
   DatabaseFacts facts() { return stations_.facts_of(station_, problems_); }
 

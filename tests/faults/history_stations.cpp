@@ -41,7 +41,7 @@ Stations::Stations(const fs::path& folder)
     fs::create_directories(root_ / name);
   }
   fs::create_directories(kept_);
-  // The register of exports is a file like the others: a power cut may take it back.
+  // The register of exports is a file like others: a power cut may undo its changes.
   ::setenv("VIP_STATE_DIR", (root_ / "state").c_str(), 1);
 }
 
@@ -126,7 +126,7 @@ Problems Stations::check(std::size_t index, bool exports) {
   }
   if (exports) {
     for (auto& [key, one] : facts.sessions) {
-      // What holds is what people decided, whatever a database that was put back says.
+      // People's decisions count, whatever a restored database says.
       if (one.gaze && !decisions.allows(station.known, key, What::Gaze)) one.gaze = false;
       if (one.sharing && !decisions.allows(station.known, key, What::Sharing)) one.sharing = false;
     }

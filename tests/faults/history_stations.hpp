@@ -1,5 +1,5 @@
 #pragma once
-/// The stations of a history: their folders, their clocks, and the decisions that each one has learned of.
+/// The stations of a history: their folders, their clocks, and the decisions known to each.
 
 #include <map>
 #include <set>
@@ -12,19 +12,19 @@
 
 namespace faults {
 
-/// What a station is to know.
+/// What the model expects of a station.
 struct Station {
   std::string name;
-  bool records = true;  ///< people take part here; else it is made of merges alone
+  bool records = true;  ///< people take part here; otherwise it has only merged data
   std::int64_t ahead_s = 0;
   Decisions::Known known;
   std::set<std::string> people, withdrawn;             ///< Person::key()
-  std::set<std::pair<std::string, int>> acknowledged;  ///< answered here
+  std::set<std::pair<std::string, int>> acknowledged;  ///< units answered here
   std::set<std::string> exports;                       ///< folders
-  bool restored = false;  ///< an older database was put back: writers refuse until it is salvaged
+  bool restored = false;  ///< an older database was restored: writers must refuse until it is salvaged
 };
 
-/// A copy of a database alone, kept elsewhere.
+/// A copy of a database file alone, stored elsewhere.
 struct KeptCopy {
   std::size_t station = 0;
   fs::path file;
@@ -46,16 +46,16 @@ class Stations {
   Decisions decisions;
   std::map<std::string, Person> persons;  ///< by Person::key()
   std::vector<KeptCopy> copies;
-  bool lost_gaze = false;  ///< a salvage made do with a journal, which has no gaze
+  bool lost_gaze = false;  ///< a salvage used only a journal, which has no gaze
 
-  /// Runs it in a process of its own by the station's clock, with the fault of `step`; a power cut is over by
-  /// then, and what was acknowledged is noted.
+  /// Runs the command in its own process with the station's clock and the fault of `step`. Applies the power
+  /// cut, if any, and notes the acknowledged units.
   Ended perform(const Step& step, std::size_t station, bool with_fault, const std::function<void()>& command);
   std::vector<Person> people_of(const std::set<std::string>& keys) const;
-  /// Who takes part at this station.
+  /// The people who take part at this station.
   std::vector<Person> own_people(std::size_t station) const;
   DatabaseFacts facts_of(std::size_t station, Problems& problems) const;
-  /// Whether the files of a station agree with what it is to know.
+  /// Checks that the files of a station agree with the model.
   Problems check(std::size_t station, bool exports);
 
  private:

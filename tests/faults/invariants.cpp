@@ -31,7 +31,7 @@ std::string shortest(double number) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
-/// As SQLite stores a number.
+/// The number in SQLite's storage format.
 std::string stored(double number) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &number, sizeof bits);
@@ -60,7 +60,7 @@ std::string inflated(const fs::path& path) {
   return all;
 }
 
-/// "sub-P01" or "subject-P01", and not sub-P012.
+/// True for "sub-P01" or "subject-P01", but not sub-P012.
 bool names_subject(const std::string& text, const std::string& participant) {
   std::string label;
   std::copy_if(participant.begin(), participant.end(), std::back_inserter(label),
@@ -74,7 +74,7 @@ bool names_subject(const std::string& text, const std::string& participant) {
   return false;
 }
 
-/// The last line of each row of a journal: responses as DatabaseFacts has them, and units.
+/// Responses, as in DatabaseFacts, and units, each from the last line of its row in a journal.
 std::set<std::string> journal_responses(const std::string& bytes) {
   std::map<std::int64_t, std::string> last;
   for (std::size_t at = 0, end; (end = bytes.find('\n', at)) != std::string::npos; at = end + 1) {
@@ -190,7 +190,7 @@ Problems check_unchanged(const std::map<std::string, std::string>& before, const
   auto after = bytes_of_folder(folder);
   for (const auto& [name, bytes] : before) {
     const auto found = after.find(name);
-    // An empty log holds nothing.
+    // An empty log has no data.
     if (found == after.end() ? !bytes.empty() : found->second != bytes)
       problems.push_back("unchanged: " + name + " was changed by a command that was refused");
     if (found != after.end()) after.erase(found);

@@ -1,17 +1,16 @@
 #pragma once
-/// What must hold of a study's files after any command and any fault, looked at with SQL of its own and byte
-/// by byte, so that no code of the store is trusted with it:
+/// Invariants of a study's files after any command and any fault, checked with separate SQL and byte by byte,
+/// so that no code of the store is trusted:
 ///
-/// - refused: who refused gaze has no row of gaze, head or gaze_validation, and none in any export; who
-/// refused
-///   sharing is in no public export.
-/// - tombstone: no byte of who withdrew stands in any file of the station, nor in any export.
-/// - acknowledged: an answer that was acknowledged stands in the database and in its journal, and what is
-///   personal in the file of personal data.
-/// - "refused": a command that says that it changed nothing left every file as it was.
-/// - merged twice means merged once, in whatever order (the caller compares describe() of both).
+/// - refused: people who refused gaze have no row of gaze, head or gaze_validation, and none in any export;
+///   people who refused sharing are in no public export.
+/// - tombstone: no byte of people who withdrew is in any file of the station, or in any export.
+/// - acknowledged: an acknowledged answer is in the database and in its journal, and personal answers are in
+///   the file of personal data.
+/// - "refused": a command that says that it changed nothing left every file unchanged.
+/// - merging twice equals merging once, in any order (the caller compares describe() of both).
 ///
-/// Each check returns what is wrong, one line each; nothing: it holds.
+/// Each check returns the problems, one line each; empty if it holds.
 
 #include <filesystem>
 #include <map>
@@ -26,7 +25,7 @@ namespace faults {
 
 using Problems = std::vector<std::string>;
 
-/// A session as its rows say.
+/// A session as its rows describe it.
 struct SessionFacts {
   std::string person, participant, code, station, state;
   std::optional<bool> gaze, sharing;          ///< the last decision; none: not answered yet
@@ -37,43 +36,43 @@ struct SessionFacts {
   std::string key() const { return code + "@" + station; }
 };
 
-/// An answer as it stands in the database.
+/// An answer in the database.
 struct Response {
   std::string key;  ///< Person::key()
   int position = 0;
   std::string row;  ///< "response_id score words"
 };
 
-/// What stands in a database, read from a copy of it and of its log.
+/// Content of a database, read from a copy of it and its log.
 struct DatabaseFacts {
   bool there = false;                            ///< it is a database with the tables of a study
   std::map<std::string, SessionFacts> sessions;  ///< by Person::key()
-  std::set<std::string> withdrawn;               ///< likewise, from tombstones
+  std::set<std::string> withdrawn;               ///< people with tombstones, by Person::key()
   std::vector<Response> responses;
   std::set<std::string> personal;  ///< answers in the file of personal data
 };
-/// `peek`: a folder for the copy, emptied. What cannot be read is a problem.
+/// `peek`: a folder for the copy, emptied first. Data that cannot be read are a problem.
 DatabaseFacts read_facts(const fs::path& database, const fs::path& peek, Problems& problems);
 
-/// Sessions, decisions, answers, gaze and tombstones of all people, comparable between databases.
+/// Sessions, decisions, answers, gaze and tombstones of all people, for comparing databases.
 std::vector<std::string> describe(const DatabaseFacts& facts);
 
 Problems check_refused(const DatabaseFacts& facts);
 
-/// Makes each export from a copy of the station's folder, in a process of its own, and looks through them.
-/// `gone`: people who withdrew as far as this station knows.
+/// Makes each export from a copy of the station's folder, in its own process, and searches it. `gone`: people
+/// who withdrew as far as this station knows.
 Problems check_exports(const DatabaseFacts& facts, const fs::path& station, const fs::path& peek,
                        const std::vector<Person>& gone);
 
 Problems check_withdrawn(const fs::path& station, const std::vector<Person>& gone);
 
-/// acknowledged: Person::key() and position of each unit that was answered at this station. Those who
-/// withdrew do not count. settled: the database was opened for writing since the last fault, so that its
-/// journal has every answer, also those of a merge or an upgrade.
+/// acknowledged: Person::key() and position of each unit answered at this station. People who withdrew do not
+/// count. settled: the database was opened for writing since the last fault, so that its journal has every
+/// answer, also those of a merge or an upgrade.
 Problems check_acknowledged(const DatabaseFacts& facts, const fs::path& database,
                             const std::set<std::pair<std::string, int>>& acknowledged, bool settled);
 
-/// Name and bytes of every file below a folder but the index of logs.
+/// Name and bytes of every file below a folder, except log indexes.
 std::map<std::string, std::string> bytes_of_folder(const fs::path& folder);
 Problems check_unchanged(const std::map<std::string, std::string>& before, const fs::path& folder);
 

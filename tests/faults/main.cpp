@@ -1,6 +1,6 @@
-/// vip-faults: kills, failing calls and power cuts in every command that keeps data, with a check after each
-/// that nothing is lost, doubled, changed or refused, and that what people decided is obeyed. Exit status 1
-/// when something is wrong.
+/// vip-faults: injects kills, failing calls and power cuts into every command that stores data, and checks
+/// after each that no data are lost, doubled, changed or wrongly refused, and that people's decisions are
+/// respected. Exit status 1 on any failure.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -33,7 +33,7 @@ bool chosen(const Options& options, const std::string& name) {
   return options.flows.empty() || std::count(options.flows.begin(), options.flows.end(), name) > 0;
 }
 
-/// Outcomes of one row of the table.
+/// Outcomes in one row of the table.
 struct Row {
   long tries = 0, kills = 0;
   std::map<How, long> ended;
@@ -56,7 +56,7 @@ class Table {
   }
   long kills() const { return kills_; }
   long failures() const { return failures_; }
-  /// Nothing where nothing was killed or failed.
+  /// Prints nothing if the table is empty.
   void print() const {
     if (rows_.empty()) return;
     std::printf("%-34s %7s %9s %9s %9s %7s %7s\n", "command, fault", "tries", "went on", "refused", "stopped",
@@ -102,7 +102,7 @@ void side_by_side(int jobs, Table& table, Work work) {
   for (auto& thread : threads) thread.join();
 }
 
-/// Every k-th call of each command, with each kind of fault.
+/// Tries every k-th call of each command, with each kind of fault.
 void try_each(const Options& options, const fs::path& folder, Table& table) {
   for (const Flow& flow : all_flows()) {
     if (!chosen(options, flow.name)) continue;
@@ -114,7 +114,7 @@ void try_each(const Options& options, const fs::path& folder, Table& table) {
       const long step = options.every, points = (bench.calls() + step - 1) / step;
       for (long i; (i = next++) < points * static_cast<long>(kinds.size());) {
         const Kind kind = kinds[static_cast<std::size_t>(i / points)];
-        // The kinds fall on different calls where not all are tried.
+        // If not all calls are tried, different kinds fall on different calls.
         const long k = 1 + (i % points) * step + (i / points) * step / static_cast<long>(kinds.size());
         table.add(flow.name + ", " + name_of(kind), bench.attempt({kind, k, 0}));
       }
@@ -122,7 +122,7 @@ void try_each(const Options& options, const fs::path& folder, Table& table) {
   }
 }
 
-/// Kills at random calls and instants, and full disks among them, until there were so many kills.
+/// Tries kills at random calls and instants, and some full disks, until the number of kills is reached.
 void try_kills(const Options& options, const fs::path& folder, Table& table) {
   const bool disks = small_disks_can_be_made(folder / "disk");
   if (!disks) std::printf("no small file systems here (not root): full disks are injected calls alone\n");
@@ -162,7 +162,7 @@ void try_kills(const Options& options, const fs::path& folder, Table& table) {
   });
 }
 
-/// First starts on new databases, two to four at a time, and looks beside running sessions.
+/// Tries first starts on new databases, two to four in parallel, and reads beside running sessions.
 void try_together(const Options& options, const fs::path& folder, Table& table) {
   std::atomic<long> starts{0}, refused{0}, looks{0};
   side_by_side(options.jobs, table, [&](int worker) {
@@ -186,7 +186,8 @@ void try_together(const Options& options, const fs::path& folder, Table& table) 
       starts.load(), refused.load(), looks.load());
 }
 
-/// Power cuts in single commands, and histories of many: these call the library in children of their workers.
+/// Adds power cuts in single commands, and histories of many: these call the library in children of their
+/// workers.
 void add_library_commands(CLI::App& app, std::function<long()>& run) {
   auto crashes = std::make_shared<CrashOptions>();
   CLI::App& cuts = *app.add_subcommand("crashes", "What a power cut may leave of each command, call by call");

@@ -102,7 +102,7 @@ kind = "text"
 text = "Anything else?"
 )";
 
-/// Looks at one point and holds the head at one place.
+/// A gaze and a head pose that do not move.
 class Still final : public GazeSource, public SlotSource {
  public:
   Still(double place, const Clock& clock) : place_(place), clock_(clock) {}
@@ -162,7 +162,7 @@ void play_session(Store& store, PersonalFile& personal, const Protocol& protocol
   run_session(protocol, session, parts, hooks);
 }
 
-/// Whom the database knows, whatever became of them.
+/// People whom the database knows, in any state.
 std::set<std::string> known(const fs::path& database) {
   std::set<std::string> all;
   std::error_code none;
@@ -185,7 +185,7 @@ void play_open(const fs::path& database, Store& store, const Protocol& protocol,
     for (const OpenRun& run : store.open_runs()) {
       for (const OpenSession& session : run.sessions) {
         for (const Person& person : people) {
-          // After a merge the code may be another one, and the station is not.
+          // A merge may change the code, but not the station.
           if (person.station == session.plan.station && session.plan.participant.starts_with(person.code))
             play_session(store, personal, protocol, session, person, units);
         }

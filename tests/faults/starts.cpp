@@ -29,7 +29,7 @@ void prepare(const fs::path& folder) {
   base::write_file_atomically(folder / "short.toml", short_protocol());
 }
 
-/// What is missing of the whole session of one participant; empty: nothing.
+/// The part of one participant's session that is missing; empty if complete.
 std::string missing_of(const fs::path& folder, const std::string& code) {
   int answers = 0;
   for (const std::string& line : session_content(folder / "s.db")) {
@@ -41,7 +41,7 @@ std::string missing_of(const fs::path& folder, const std::string& code) {
   for (const std::string& line : personal_content(folder / "s.db")) {
     if (line.find("|" + code + "|") != std::string::npos) ++answers;
   }
-  // Consent, age, five trials of two questions, a remark.
+  // Consent, age, five trials with two questions each, a remark.
   return answers == 13 ? ""
                        : code + " ended well, and " + std::to_string(answers) + " of 13 answers are there";
 }
@@ -88,11 +88,11 @@ Together look_beside(const fs::path& folder) {
   Together all;
   prepare(folder);
   Arguments arguments = run_of(folder, "P1");
-  // Enough for the log to be copied back into the file while it goes on.
+  // Enough sessions for the log to be copied back into the file meanwhile.
   for (int i = 2; i <= 24; ++i) arguments.insert(arguments.end(), {"--participant", "P" + std::to_string(i)});
   arguments.push_back("--events");
   Process session(arguments);
-  session.read_line();  // the plan stands
+  session.read_line();  // the plan is stored
   std::atomic<bool> running{true};
   Ended ended;
   std::thread waiting([&] {

@@ -1,5 +1,5 @@
 #pragma once
-/// Programs beside each other on one database.
+/// Runs programs in parallel on one database.
 
 #include <filesystem>
 #include <string>
@@ -9,16 +9,17 @@ namespace faults {
 namespace fs = std::filesystem;
 
 struct Together {
-  long programs = 0;    ///< started beside another
-  long refused = 0;     ///< of which with one clear error
-  std::string problem;  ///< what was lost or refused without need; empty: nothing
+  long programs = 0;    ///< started in parallel with another
+  long refused = 0;     ///< of these, refused with one clear error
+  std::string problem;  ///< lost data or an unneeded refusal; empty: none
 };
 
-/// `count` first starts at one time on a new database in `folder`, each with a participant of its own: who
-/// ends well has their whole session in it, and who was refused can do it again.
+/// Starts `count` programs at one time on a new database in `folder`, each with its own participant. A
+/// program that ends well must have its whole session in the database, and one that was refused must be able
+/// to retry.
 Together start_together(const fs::path& folder, int count);
 
-/// A session with `vip-study status` again and again beside it.
+/// Runs a session and, repeatedly in parallel, `vip-study status`.
 Together look_beside(const fs::path& folder);
 
 }  // namespace faults

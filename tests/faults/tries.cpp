@@ -30,7 +30,7 @@ Lines lines_of(const std::string& out, const std::string& word) {
   return all;
 }
 
-/// The command with what its faults are told by. `folder`: the one whose files count.
+/// The command with the environment for its faults. `folder`: counts calls on its files.
 Arguments with_faults(const Arguments& command, const fs::path& folder, const Fault& fault,
                       const fs::path& count) {
   Arguments all{"/usr/bin/env", "OMP_WAIT_POLICY=passive", "OMP_NUM_THREADS=1",
@@ -63,7 +63,7 @@ std::string told(const Ended& ended) {
          ended.err.substr(0, 400);
 }
 
-/// One error with a mend.
+/// True for one error with a remedy.
 bool is_clear(const Ended& ended) {
   return ended.exit_code == 1 && ended.err.find("error: ") != std::string::npos &&
          ended.err.find("mend: ") != std::string::npos;
@@ -111,7 +111,7 @@ Bench::Bench(const Flow& flow, const fs::path& folder)
     : flow_(flow), start_(folder / "start"), now_(folder / "now"), peek_(folder / "peek") {
   fs::remove_all(folder);
   for (const fs::path& made : {start_, now_, peek_}) fs::create_directories(made);
-  // Prepared where it is tried: exports are known by their whole path.
+  // Prepared in the folder where it is tried, because exports are known by their full path.
   flow.prepare(now_);
   fs::copy(now_, start_, fs::copy_options::recursive);
   const auto begun = std::chrono::steady_clock::now();
@@ -149,7 +149,7 @@ void Bench::restore(const Fault& fault) {
 Outcome Bench::attempt(const Fault& fault) {
   Outcome outcome;
   ++tries_;
-  // What stands there is looked at in a copy, so that the next command finds the files as they were left.
+  // Looks at a copy, so that the next command finds the files as they were left.
   const auto peek = [&](auto look) {
     if (flow_.played.empty()) return Lines{};
     fs::remove_all(peek_);
@@ -200,7 +200,7 @@ Outcome Bench::attempt(const Fault& fault) {
     if (tries_ % 2 == 0) check_open("afterwards,");
     const auto give_again = [&] { return run_with(with_faults(flow_.again(now_), now_, {}, {}), {}); };
     Ended last = give_again();
-    // A plan that was ready and not yet kept stands after all: the error says what to do.
+    // If a plan was stored although an error came, resumes as the error says.
     if (last.err.find("continue with vip-study resume") != std::string::npos) last = give_again();
     need(last.exit_code == 0, "the command given again: " + told(last));
     for (const std::string& unit : lines_of(last.out, "begins"))

@@ -1,5 +1,5 @@
 #pragma once
-/// One fault in one command: what becomes of it, and whether all is there in the end.
+/// Injects one fault into one command and checks its outcome and the final content.
 
 #include <filesystem>
 #include <functional>
@@ -9,52 +9,52 @@
 
 namespace faults {
 
-/// What is done to a program.
+/// A fault in a program.
 struct Fault {
   enum class Kind {
     None,
     Kill,      ///< SIGKILL before a call
     Tear,      ///< SIGKILL in the middle of a write
-    Instant,   ///< SIGKILL after a time
+    Instant,   ///< SIGKILL after a delay
     Error,     ///< EIO, once
     ErrorsOn,  ///< EIO from then on
     Full,      ///< ENOSPC, once
     FullOn,    ///< ENOSPC from then on
-    SmallDisk  ///< a file system of its own, which fills
+    SmallDisk  ///< a small file system of its own that fills up
   };
   Kind kind = Kind::None;
-  long at = 0;    ///< number of the call, from 1; Instant: microseconds; SmallDisk: bytes that are free
-  int again = 0;  ///< Kill, Instant: so many commands afterwards are killed as well
+  long at = 0;    ///< number of the call, from 1; Instant: microseconds; SmallDisk: free bytes
+  int again = 0;  ///< Kill, Instant: number of following commands to kill as well
 };
 
 const char* name_of(Fault::Kind kind);
 bool kills(Fault::Kind kind);
 
-/// How a try ended.
+/// The outcome of a try.
 struct Outcome {
   enum class How {
-    WentOn,   ///< the command did not meet the fault, or overcame it
+    WentOn,   ///< the command did not meet the fault, or recovered from it
     Refused,  ///< one clear error
     Stopped,  ///< killed
     Failed
   };
   How how = How::WentOn;
   int kills = 0;
-  std::string problem;  ///< Failed: what is wrong
+  std::string problem;  ///< Failed: the reason
 };
 
-/// A flow in a folder, where it is tried again and again from the same start.
+/// A flow in a folder, tried repeatedly from the same initial state.
 class Bench {
  public:
-  /// base folder: emptied, and used by this alone. Runs the flow without a fault.
+  /// `folder` is emptied, and only this object may use it. Runs the flow once without a fault.
   Bench(const Flow& flow, const fs::path& folder);
   ~Bench();
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  /// Calls that the command makes on its files.
+  /// Number of calls that the command makes on its files.
   long calls() const { return calls_; }
-  /// Time that the command takes.
+  /// Duration of the command.
   long microseconds() const { return microseconds_; }
   Outcome attempt(const Fault& fault);
 
@@ -70,7 +70,7 @@ class Bench {
   bool mounted_ = false;
 };
 
-/// True where a file system of a given size can be made (as root).
+/// True if a file system of a given size can be made (needs root).
 bool small_disks_can_be_made(const fs::path& folder);
 
 }  // namespace faults

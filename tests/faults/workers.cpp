@@ -24,7 +24,7 @@ namespace {
     std::string line = text;
     for (char& c : line) c = c == '\n' ? ' ' : c;
     line += '\n';
-    // Whole lines of less than PIPE_BUF do not mix.
+    // Lines shorter than PIPE_BUF are written as a whole.
     if (line.size() > 4000) line = line.substr(0, 3999) + '\n';
     if (::write(out, line.data(), line.size()) < 0) ::_exit(2);
   };
@@ -37,8 +37,8 @@ namespace {
   ::_exit(0);
 }
 
-/// Fills the process's cache of schemas, one for each version, before children are forked and share it.
-/// Without this each child spends half of its time on building them.
+/// Fills the process's cache of schemas, one per version, before children are forked and share it. Otherwise
+/// each child would spend half of its time on building them.
 void make_schemas() {
   const auto steps = study::read_schema_steps();
   for (std::size_t version = 1; version <= steps.size(); ++version) {

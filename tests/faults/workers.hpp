@@ -1,6 +1,6 @@
 #pragma once
-/// Work spread over processes: each command of the library runs in a child of its worker, which must have one
-/// thread.
+/// Spreads work over processes. Each command of the library runs in a child of its worker, so a worker must
+/// have one thread.
 
 #include <functional>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace faults {
 
-/// Calls work(worker, say) in `jobs` processes; each line that is said comes to `take` in this one, one at a
-/// time. Returns whether all of them ended well.
+/// Calls work(worker, say) in `jobs` processes; passes each line given to `say` to `take` in this process,
+/// one at a time. Returns true if all of them ended well.
 bool spread(int jobs, const std::function<void(int, const std::function<void(const std::string&)>&)>& work,
             const std::function<void(const std::string&)>& take);
 

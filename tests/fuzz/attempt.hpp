@@ -1,11 +1,11 @@
 #pragma once
-/// What the entry points share.
+/// Helper of the entry points.
 
 #include "stats/base/error.hpp"
 
 namespace fuzz {
 
-/// Runs `action`; its base::Error is an end as good as any, all else a finding.
+/// Runs `action`; a base::Error is a valid result, any other failure is a finding.
 template <class Action>
 void attempt(Action action) {
   try {

@@ -1,4 +1,4 @@
-/// Bake files: the whole file, and its parts without the checksums that would keep most damage from them.
+/// Any bytes as a bake file: the whole file, and its parts without the checksums that detect most damage.
 
 #include <cstdint>
 

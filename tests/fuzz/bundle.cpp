@@ -1,5 +1,5 @@
-/// A preregistration bundle with one file of any bytes, whose hash is right: read and compared, or refused
-/// with base::Error. The first byte chooses the file.
+/// A preregistration bundle in which one file has any bytes and the right hash: it is read and compared, or
+/// refused with base::Error. The first byte chooses the file.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -17,7 +17,7 @@ using Json = base::Json;
 
 constexpr const char* names[] = {"about.json", "hypotheses.json", "plan.toml", "MANIFEST.sha256"};
 
-/// A bundle, and what its files hold as they were frozen.
+/// A bundle and the frozen content of its files.
 struct Frozen {
   Frozen() {
     apps::report::freeze_bundle({{base::resource("protocols/task2.toml")}, {}, {}}, path);

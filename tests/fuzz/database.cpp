@@ -1,4 +1,4 @@
-/// Any bytes as a database: opened for reading, then for writing; both end in data or in a base::Error.
+/// Any bytes as a database, opened for reading and then for writing: both give data or a base::Error.
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::attempt([&] { study::read_status(file); });
   fuzz::attempt([&] { study::read_tasks(file); });
   fuzz::attempt([&] { study::read_sickness(file); });
-  // Reading leaves the file as it was.
+  // Reading must not change the file.
   if (base::read_file(file, size + 1) != bytes) std::abort();
   fuzz::attempt([&] { study::Store(file, study::sqlite::Open::Write).open_runs(); });
   return 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// A spoilt database under every command that opens one: refused or right, and nothing outside of its folder
-/// changes.
+/// Runs every command that opens a database on a spoilt one: it must be refused or handled correctly, and no
+/// file outside its folder may change.
 
 #include <cstdio>
 #include <cstdlib>
@@ -28,7 +28,7 @@ namespace fuzz {
 
 namespace fs = std::filesystem;
 
-/// What a command came to: taken, or refused with a message.
+/// Result of a command: accepted, or refused with a message.
 struct Outcome {
   bool taken = false;
   std::string message;
@@ -43,7 +43,7 @@ inline Outcome outcome_of(const std::function<void()>& command) {
   }
 }
 
-/// Bytes, by path, of everything in a folder but for one folder in it.
+/// Bytes of all files in a folder, by path, except those of one subfolder.
 inline std::map<std::string, std::string> files_in(const fs::path& folder, const fs::path& but) {
   std::map<std::string, std::string> all;
   for (auto at = fs::recursive_directory_iterator(folder); at != fs::recursive_directory_iterator(); ++at) {
@@ -53,7 +53,7 @@ inline std::map<std::string, std::string> files_in(const fs::path& folder, const
   return all;
 }
 
-/// The schema as SQLite lists it, asked without any code of ours.
+/// The schema as SQLite lists it, read without this project's code.
 inline std::string schema_text(const fs::path& path) {
   sqlite3* database = nullptr;
   sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READWRITE, nullptr);
@@ -70,8 +70,8 @@ inline std::string schema_text(const fs::path& path) {
   return text;
 }
 
-/// Spoils a copy of `sound` in `folder`/box by what the bytes choose, and tries everything with it. Returns
-/// what is wrong; empty: nothing.
+/// Spoils a copy of `sound` in `folder`/box as the bytes choose, and tries all commands on it. Returns the
+/// failures; empty if none.
 inline std::vector<std::string> attack(const fs::path& folder, const fs::path& sound,
                                        const std::uint8_t* bytes, std::size_t size) {
   const fs::path box = folder / "box", study = box / "study.db";

@@ -1,6 +1,6 @@
 #pragma once
-/// SQL that spoils the database of a study, out of a stream of choices: tables, columns, views, triggers,
-/// indexes and rows, sound and unsound. The same bytes make the same SQL.
+/// Generates SQL that spoils a study's database from a stream of choices: tables, columns, views, triggers,
+/// indexes and rows, valid and invalid. The same bytes give the same SQL.
 
 #include <sqlite3.h>
 
@@ -13,7 +13,7 @@
 
 namespace fuzz {
 
-/// Bytes as choices; when they are used up, each choice is the first.
+/// Bytes as choices; after the last byte, every choice is the first option.
 class Choices {
  public:
   Choices(const std::uint8_t* bytes, std::size_t size) : at_(bytes), end_(bytes + size) {}
@@ -202,7 +202,7 @@ inline std::vector<std::string> statements_of(const std::uint8_t* bytes, std::si
   return all;
 }
 
-/// Runs them as whoever makes such a file does: with no check on, and whatever fails is passed over.
+/// Runs the statements without any checks, and ignores failures.
 inline void spoil(const std::filesystem::path& path, const std::vector<std::string>& statements) {
   sqlite3* database = nullptr;
   sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READWRITE, nullptr);

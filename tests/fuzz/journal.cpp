@@ -1,5 +1,5 @@
-/// Any bytes as the journal of answers: alone, it is salvaged from or refused; beside a whole database,
-/// opening that for writing settles the two or refuses. Both leave the answers of the database as they were.
+/// Any bytes as the journal of answers. Alone, it is salvaged or refused; beside a whole database, opening
+/// that for writing reconciles the two or refuses. Neither loses answers of the database.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +22,7 @@ void write(const fs::path& path, const std::string& bytes) {
   }
 }
 
-/// A database of today's schema with answers, whose upgrade is not made again for each input.
+/// A database of the current schema with answers, upgraded only once for all inputs.
 std::string whole_database() {
   const test::TemporaryFolder folder(test::memory_folder());
   const fs::path path = folder / "s.db";

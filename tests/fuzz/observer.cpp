@@ -1,5 +1,5 @@
-/// Any bytes as the specification of a simulated observer: refused with base::Error, or an observer whose own
-/// words make the same one.
+/// Any bytes as the specification of a simulated observer: refused with base::Error, or read as an observer
+/// whose own specification makes the same one.
 #include "libstudy/observer/observer.hpp"
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// Any bytes as the file of personal data beside a database: read, added to, renamed in and deleted from, or
+/// Any bytes as the file of personal data beside a database: read, extended, renamed in and deleted from, or
 /// refused with base::Error.
 #include "libstudy/store/personal.hpp"
 

@@ -1,4 +1,4 @@
-/// Protocol files: any bytes either parse or give base::Error, and what parses can be planned.
+/// Any bytes as a protocol file: parsed and planned, or refused with base::Error.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-/// Any bytes as a PTPE file: refused with base::Error, or read to what writes and reads back the same.
+/// Any bytes as a PTPE file: refused with base::Error, or read so that it writes and reads back the same.
 
 #include <cstdint>
 #include <cstdlib>

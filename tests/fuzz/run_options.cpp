@@ -1,5 +1,5 @@
-/// Any bytes as the options of a run that a database holds: refused with base::Error, or read to what writes
-/// and reads back the same.
+/// Any bytes as a run's options in a database: refused with base::Error, or read so that they write and read
+/// back the same.
 #include "apps/study/run_options.hpp"
 
 #include <cstdint>

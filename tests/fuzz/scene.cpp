@@ -1,4 +1,4 @@
-/// Any bytes as a scene file: parsed or refused with base::Error, nothing else.
+/// Any bytes as a scene file: parsed, or refused with base::Error.
 
 #include <cstdint>
 #include <string_view>

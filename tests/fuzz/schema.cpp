@@ -1,5 +1,5 @@
-/// Any bytes as choices of SQL that spoils a database (database_grammar.hpp): every command refuses it or is
-/// right.
+/// Any bytes as choices of SQL that spoils a database (database_grammar.hpp): every command refuses it or
+/// handles it correctly.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

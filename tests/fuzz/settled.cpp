@@ -1,5 +1,5 @@
-/// Any bytes as a settled state, with and without the checksum that would keep most damage from the reader:
-/// nothing, or particles whose every number is finite.
+/// Any bytes as a settled state, with and without the right checksum: the result is nothing, or particles
+/// with only finite numbers.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-/// Actions: made, bound, and attached to the session once.
+/// Actions: creation, bindings, and the one attachment to the session.
 
 #include <cstring>
 

@@ -1,5 +1,5 @@
-/// Programs that break the specification, each in one way: the runtime says so, and gives the code that the
-/// specification names.
+/// Programs that break the specification, each in one way: the runtime reports it and returns the code that
+/// the specification names.
 #include <gmock/gmock.h>
 
 #include <future>
@@ -19,7 +19,7 @@ class BreachGl : public ::testing::Test {
   void SetUp() override { client.frames_until(XR_SESSION_STATE_FOCUSED); }
   void TearDown() override { EXPECT_THAT(client.lines("BREACH"), ElementsAre("BREACH " + expected)); }
 
-  /// A frame with one fault.
+  /// Runs a frame with one fault.
   void spoilt(const Spoil& spoil, XrResult result, const std::string& text) {
     EXPECT_EQ(client.frame(spoil), result);
     expected = "xrEndFrame: " + text;
@@ -237,7 +237,7 @@ TEST_F(BreachGl, RateThatIsNotListed) {
   expected = "xrRequestDisplayRefreshRateFB: a rate that is not listed";
 }
 
-// What the specification allows is said too, and is no breach.
+// Suspicious but allowed use is noted and is not a breach.
 TEST(NoteGl, WhatTheSpecificationAllows) {
   Client client("at=5:render/0");
   client.frames_until(XR_SESSION_STATE_FOCUSED);

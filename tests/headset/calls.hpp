@@ -1,6 +1,6 @@
 #pragma once
-/// How a function of the runtime is called: one at a time, and refused by an exception that its entry turns
-/// into the result.
+/// Wrapper of the runtime's functions: one call at a time; a function refuses by an exception, which the
+/// wrapper turns into the result.
 
 #include <algorithm>
 #include <map>
@@ -12,25 +12,25 @@
 
 namespace simulated {
 
-/// Held in every call. xrWaitFrame gives it up while it waits.
+/// Held during every call. xrWaitFrame releases it while it waits.
 std::mutex& lock();
-/// The function of OpenXR that is running on this thread.
+/// Name of the OpenXR function that is running on this thread.
 const char*& current_call();
 
 /// Appends a line to the file that VIP_XR_LOG names.
 void log_line(const std::string& text);
-/// The caller broke the specification.
+/// Logs that the caller broke the specification.
 void breach(const std::string& text);
-/// The caller did what the specification allows and hardly anyone means.
+/// Logs something that the specification allows but that is probably a mistake.
 void note(const std::string& text);
 
 /// Ends a call early.
 struct Refusal {
   XrResult result;
 };
-/// Ends the call with a failure that is no fault of the caller's.
+/// Ends the call with a failure that is not the caller's fault.
 [[noreturn]] inline void fail(XrResult result) { throw Refusal{result}; }
-/// Ends the call with the failure that the specification names for the caller's fault.
+/// Logs the caller's fault and ends the call with the failure that the specification names for it.
 [[noreturn]] inline void refuse(XrResult result, const std::string& text) {
   breach(text);
   fail(result);
@@ -47,7 +47,7 @@ struct Name {
   constexpr Name(const char (&name)[n]) { std::copy_n(name, n, text); }
   char text[n];
 };
-/// Calls of every frame would fill the log: the frame's own line stands for them.
+/// How calls are logged. Those made every frame share the frame's own line.
 enum class Logged { each_call, frame_line };
 
 template <Name name, Logged logged, auto function>
@@ -71,13 +71,13 @@ void add(Functions& functions) {
   functions[name.text] = reinterpret_cast<PFN_xrVoidFunction>(Entry<name, logged, function>::call);
 }
 
-/// Breach unless a structure says that it is what it should be.
+/// Refuses a structure that is null or has another type.
 template <class T>
 void need_type(const T* structure, XrStructureType type) {
   need(structure && structure->type == type, XR_ERROR_VALIDATION_FAILURE,
        "a structure of another type, or none");
 }
-/// The same where a null pointer stands for the structure.
+/// The same, but null is allowed.
 template <class T>
 void need_type_or_null(const T* structure, XrStructureType type) {
   if (structure) need_type(structure, type);
@@ -91,10 +91,10 @@ T* find_chained(const void* next, XrStructureType type) {
   return nullptr;
 }
 
-/// Breach when the chain holds a structure of an extension that is not enabled.
+/// Refuses a chain with a structure of an extension that is not enabled.
 void need_chain(const void* next);
 
-/// Gives an array by OpenXR's two calls. `write`: (index, value).
+/// Returns an array by OpenXR's two-call idiom. `write`: (index, value).
 template <class T, class Write>
 XrResult give_array(const std::vector<T>& values, std::uint32_t capacity, std::uint32_t* count, Write write) {
   need(count, XR_ERROR_VALIDATION_FAILURE, "no place for the count");

@@ -1,6 +1,6 @@
 #pragma once
-/// A program that uses the headset as the specification wants it, on the simulated runtime through the real
-/// loader. Tests spoil one thing of it at a time.
+/// A program that uses the headset correctly, on the simulated runtime through the real loader. Tests change
+/// one thing at a time to be wrong.
 
 #include <array>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace simulated {
 
-/// What a frame is ended with.
+/// The arguments of xrEndFrame.
 struct Drawing {
   XrFrameEndInfo end{};
   XrCompositionLayerProjection projection{};
@@ -24,7 +24,7 @@ struct Drawing {
 };
 using Spoil = std::function<void(Drawing&)>;
 
-/// A structure of OpenXR with its type.
+/// An OpenXR structure with its type set.
 template <class T>
 T blank(XrStructureType type) {
   T out{};
@@ -34,8 +34,8 @@ T blank(XrStructureType type) {
 
 class Client {
  public:
-  /// Connects and makes a session with two swapchains. `profile`: VIP_XR_PROFILE; small images unless it says
-  /// otherwise. `binding`: of a context of OpenGL that is current; null makes one with EGL.
+  /// Connects and makes a session with two swapchains. `profile`: VIP_XR_PROFILE, with small images by
+  /// default. `binding`: graphics binding of the current OpenGL context; null makes an EGL context.
   explicit Client(const std::string& profile = "", const void* binding = nullptr);
   ~Client();
   Client(const Client&) = delete;
@@ -44,31 +44,31 @@ class Client {
   void make_session();
   void make_swapchains(std::int64_t format = GL_SRGB8_ALPHA8, std::uint32_t array = 1);
 
-  /// All events that are there, and what a program does about them: begins, ends, destroys.
+  /// Handles all waiting events as a program must: begins, ends, destroys.
   void poll();
-  /// One frame, after its events. The result of xrEndFrame, or of the first call that failed.
+  /// Handles events and runs one frame. Returns the result of xrEndFrame, or of the first call that failed.
   XrResult frame(const Spoil& spoil = {});
-  /// Frames until the session has that state; at most 100.
+  /// Runs frames until the session has that state; at most 100.
   void frames_until(XrSessionState state);
 
   XrResult wait() { return call<PFN_xrWaitFrame>("xrWaitFrame")(session, nullptr, &state); }
   XrResult begin() { return call<PFN_xrBeginFrame>("xrBeginFrame")(session, nullptr); }
-  /// Draws both eyes where the frame asks for it, and ends the frame.
+  /// Draws both eyes if the frame should render, and ends the frame.
   XrResult end(const Spoil& spoil = {});
-  /// Acquires, waits for and releases the eye's image, which is filled with a colour.
+  /// Acquires, waits for and releases the eye's image, filled with a colour.
   void draw(int eye, const std::array<float, 4>& colour = {0.25f, 0.5f, 0.75f, 1});
   XrResult locate(std::array<XrView, 2>& views, XrViewState& view_state);
   XrSpaceLocation locate(XrSpace what, XrSpace from, XrTime time, void* next = nullptr);
   XrSpace make_space(XrReferenceSpaceType type);
 
-  /// A function of the runtime; null where it has none of that name.
+  /// A function of the runtime; null if it has none of that name.
   template <class F>
   F call(const char* name) const {
     return reinterpret_cast<F>(find(name));
   }
 
   std::string log() const;
-  /// The lines that begin like this, in order.
+  /// The log lines with this prefix, in order.
   std::vector<std::string> lines(const std::string& start) const;
   std::filesystem::path folder() const { return folder_.path(); }
 
@@ -82,8 +82,8 @@ class Client {
   std::uint32_t width = 0, height = 0;
   XrFrameState state = blank<XrFrameState>(XR_TYPE_FRAME_STATE);
   XrSessionState session_state = XR_SESSION_STATE_UNKNOWN;
-  std::vector<XrSessionState> states;     ///< all that were told
-  std::vector<XrEventDataBuffer> events;  ///< all others
+  std::vector<XrSessionState> states;     ///< all that were reported
+  std::vector<XrEventDataBuffer> events;  ///< all other events
   bool running = false;
 
  private:

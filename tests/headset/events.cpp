@@ -1,4 +1,4 @@
-/// The session's states and the queue of events.
+/// The session's states and the event queue.
 
 #include "tests/headset/parts.hpp"
 
@@ -6,7 +6,7 @@ namespace simulated {
 
 namespace {
 
-/// Polling is how a program waits for a headset that is off.
+/// A program waits by polling while the headset is off, so polling advances time.
 void wait_a_period() {
   Runtime& all = runtime();
   const bool running = !all.sessions.empty() && all.sessions.begin()->second.running;

@@ -1,4 +1,4 @@
-/// The frame loop: waiting for a slot of the display, beginning and ending a frame.
+/// The frame loop: waits for a slot of the display, begins and ends a frame.
 
 #include <thread>
 #include <utility>
@@ -16,7 +16,7 @@ Session& need_running(XrSession session) {
   return found;
 }
 
-/// A wait lasts until the frame before has begun.
+/// A wait returns only after the previous frame has begun.
 void await_begin(XrSession session) {
   const auto over = [&] {
     const auto found = runtime().sessions.find(number_of(session));
@@ -39,7 +39,7 @@ XrTime next_slot() {
   return slot;
 }
 
-/// The same of every run, between -1 and 1.
+/// Pseudo-random between -1 and 1, equal in every run.
 double noise(long index) {
   const auto mixed = static_cast<std::uint32_t>(index) * 2654435761u;
   return (mixed >> 8) / 8388608.0 - 1;
@@ -74,7 +74,7 @@ XrResult wait_frame(XrSession session, const XrFrameWaitInfo* info, XrFrameState
   if (const double seconds = std::exchange(all.hang_seconds, 0); seconds > 0) hang(seconds);
   need_running(session);
   Frame frame = next_frame(index);
-  Session& found = need_running(session);  // again: it may have ended meanwhile
+  Session& found = need_running(session);  // again, because it may have ended meanwhile
   if (held_up) all.clock.last_end = now();
   step_state(session);
   const bool seen = found.state == XR_SESSION_STATE_VISIBLE || found.state == XR_SESSION_STATE_FOCUSED;
@@ -117,7 +117,8 @@ void check_end(const Session& session, const XrFrameEndInfo* info) {
     note("layers although shouldRender was false (allowed)");
 }
 
-/// Frames of a running session come at every period, unless the script held the program up.
+/// Notes a frame that ends too late: a running session's frames must come every period, unless the script
+/// delayed the program.
 void note_starving() {
   Clock& clock = runtime().clock;
   const XrTime time = now();

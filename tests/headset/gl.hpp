@@ -1,17 +1,17 @@
 #pragma once
-/// The session's context on the calling thread. The specification (XR_KHR_opengl_enable, on threads) lets a
-/// runtime take it in xrCreateSession, xrDestroySession, xrBeginFrame, xrEndFrame and the functions of
-/// swapchains, and in no other.
+/// Makes the session's context current on the calling thread. The specification (XR_KHR_opengl_enable, on
+/// threads) allows a runtime to do so only in xrCreateSession, xrDestroySession, xrBeginFrame, xrEndFrame and
+/// the functions of swapchains.
 
 #include "tests/headset/state.hpp"
 
 namespace simulated {
 
-/// Current while the object lives; then the profile says what is: what was current before, as runtimes ought
-/// to leave it, or no context or one of the runtime's own, as some do.
+/// Current while the object lives. Afterwards the profile decides: the previous context, as runtimes should
+/// leave it, or no context or one of the runtime's own, as some do.
 class SessionContext {
  public:
-  /// Refuses when the context is current on another thread.
+  /// Refuses if the context is current on another thread.
   explicit SessionContext(const Graphics& graphics);
   ~SessionContext();
   SessionContext(const SessionContext&) = delete;
@@ -27,7 +27,7 @@ class SessionContext {
   GLXDrawable drawable_;
 };
 
-/// The runtime's own context, where the profile asks for one.
+/// Makes and destroys the runtime's own context, if the profile asks for one.
 void make_other_context(Graphics& graphics);
 void destroy_other_context(Graphics& graphics);
 

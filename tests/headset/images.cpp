@@ -1,4 +1,4 @@
-/// What the frames showed: as files, and as numbers in the log.
+/// Images of the frames: as files, and as hashes in the log.
 
 #include <png.h>
 
@@ -12,7 +12,7 @@ namespace simulated {
 
 namespace {
 
-/// 8 bits a channel, RGBA, sRGB; row 0 is the top.
+/// RGBA, 8 bits per channel, sRGB; row 0 is the top.
 struct Picture {
   std::uint32_t width, height;
   std::vector<std::uint8_t> rgba;
@@ -24,7 +24,7 @@ std::uint8_t encode(float linear) {
   return static_cast<std::uint8_t>(std::lround(255 * y));
 }
 
-/// Rows of the texture from the bottom up. Textures that are not sRGB hold linear light.
+/// Rows of the texture from the bottom up. Textures that are not sRGB hold linear values.
 template <class T>
 std::vector<T> read_texture(const XrSwapchainSubImage& part, GLenum type) {
   const Swapchain& swapchain = runtime().swapchains.at(number_of(part.swapchain));

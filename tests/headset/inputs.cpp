@@ -1,4 +1,4 @@
-/// What the participant does: synchronised, and read by action.
+/// Input of the participant: synchronised, and read by action.
 
 #include "tests/headset/parts.hpp"
 
@@ -13,7 +13,7 @@ const Action& need_action(const Session& session, XrAction handle) {
   return action;
 }
 
-/// What the script does to a part of the right controller. The left one is not there.
+/// The script's value for a part of the right controller. The left one is absent.
 Input::Value value_of(const std::string& source) {
   const auto knob = [](const char* name) { return runtime().knobs.at(name); };
   const auto ends = [&](const char* part) { return source.ends_with(part); };
@@ -65,7 +65,7 @@ XrResult sync(XrSession session, const XrActionsSyncInfo* info) {
   return success(found);
 }
 
-/// What the sources of an action come to: the largest of them.
+/// Combined state of an action's sources: the largest value.
 struct Sum {
   bool active = false, changed = false;
   Input::Value value{};

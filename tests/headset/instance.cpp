@@ -1,4 +1,4 @@
-/// Instance and system: what can be asked before there is a picture.
+/// Instance and system: queries before there is a session.
 
 #include <openxr/openxr_reflection.h>
 

@@ -1,4 +1,4 @@
-/// What a frame shows, checked against the specification.
+/// Checks the layers of a frame against the specification.
 
 #include <cstdio>
 
@@ -47,7 +47,8 @@ void check_fov(const XrFovf& fov) {
     need(std::fabs(angle) < right_angle, XR_ERROR_VALIDATION_FAILURE, "a field of view beyond 90 degrees");
   need(fov.angleLeft != fov.angleRight && fov.angleUp != fov.angleDown, XR_ERROR_VALIDATION_FAILURE,
        "a field of view that is empty");
-  // The specification takes it and flips the picture. No program that shows what it located means it.
+  // The specification allows it and flips the picture, but a program that submits located views never means
+  // it.
   if (fov.angleLeft > fov.angleRight || fov.angleDown > fov.angleUp)
     breach("a field of view that is flipped");
 }
@@ -64,7 +65,8 @@ bool same(const XrFovf& a, const XrFovf& b) {
          near(a.angleDown, b.angleDown);
 }
 
-/// The views come in the order in which they were located. A held image keeps the pose that it was drawn for.
+/// The views must be in the order in which they were located. A held image keeps the pose that it was drawn
+/// for.
 void check_eye(const Session& session, const XrCompositionLayerProjection& layer, std::size_t eye) {
   const XrCompositionLayerProjectionView& view = layer.views[eye];
   std::array<bool, 2> pose_of{}, fov_of{};

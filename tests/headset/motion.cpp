@@ -1,4 +1,4 @@
-/// The scripted head.
+/// The scripted head motion.
 
 #include "tests/headset/parts.hpp"
 

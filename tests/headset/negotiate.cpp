@@ -1,5 +1,5 @@
-/// How the loader finds the runtime's functions. Debian's headers lack the structures of the negotiation;
-/// they are those of the loader's specification ("Loader Design", runtime interface version 1).
+/// Negotiation by which the loader finds the runtime's functions. Debian's headers lack its structures; they
+/// are those of the loader's specification ("Loader Design", runtime interface version 1).
 
 #include "tests/headset/parts.hpp"
 

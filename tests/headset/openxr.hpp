@@ -1,5 +1,5 @@
 #pragma once
-/// OpenXR's declarations as the project sees them, and those of the binding to Xlib.
+/// OpenXR's declarations as the project uses them, and those of the Xlib binding.
 
 // epoxy first: it replaces the headers of EGL, GL and GLX.
 #include <epoxy/egl.h>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the parts of the runtime do for each other, by file.
+/// Functions that the runtime's source files share, by file.
 
 #include "tests/headset/state.hpp"
 
@@ -16,24 +16,24 @@ void queue_event(T event, XrStructureType type) {
 }
 const char* name_of(XrSessionState state);
 void enter(XrSession session, XrSessionState state);
-/// One step towards the state that the script wants; down all at once.
+/// Takes one step up towards the script's state, or all steps down at once.
 void step_state(XrSession session);
-/// READY, when the headset is on the head and the session waits for it.
+/// Enters READY if the headset is worn and the session waits for it.
 void offer_ready();
 
 // script.cpp
-/// What the profile says happens at this frame.
+/// Runs the profile's events for this frame.
 void play_script(XrSession session, long frame);
 
 // rates.cpp
 void change_rate(float hertz);
-/// Changes to the rate that was asked for.
+/// Changes to the requested rate.
 void take_wanted_rate();
 
 // time.cpp
 XrTime now();
 XrDuration period();
-/// Waits until then: at once on the virtual clock. Gives up the lock meanwhile.
+/// Waits until `time`, or sets the virtual clock to it. Releases the lock meanwhile.
 void wait_until(XrTime time);
 
 // layers.cpp
@@ -42,12 +42,12 @@ struct Shown {
   const XrSwapchainSubImage* part;
   std::string name;  ///< "left", "right" or "quad", with the layer's number unless that is 0
 };
-/// Refuses a frame that breaks the specification; gives the images it shows, and `text` for the log.
+/// Refuses a frame that breaks the specification; returns its images, and `text` for the log.
 std::vector<Shown> check_layers(const Session& session, const XrFrameEndInfo& info, std::string& text);
 
 // images.cpp
-/// Writes the frame's images where the profile asks for it, and gives what they hold for the log.
-/// The session's context is current.
+/// Writes the frame's images if the profile asks for it, and returns their content for the log. The session's
+/// context must be current.
 std::string look_at(const std::vector<Shown>& images, long frame);
 
 // motion.cpp
@@ -72,16 +72,16 @@ constexpr const char* eyes = "/user/eyes_ext";
 constexpr const char* gaze_profile = "/interaction_profiles/ext/eye_gaze_interaction";
 constexpr const char* gaze_source = "/user/eyes_ext/input/gaze_ext/pose";
 const std::string& text_of(XrPath path);
-/// Refuses what is no part of the interaction profile.
+/// Refuses a source that is not part of the interaction profile.
 void need_source(const std::string& profile, const std::string& source);
 
 // actions.cpp
-/// The path's text, "" for none; refuses those that the action was not made with.
+/// The path's text, "" for none; refuses paths that the action was not made with.
 std::string subaction_of(const Action& action, XrPath path);
 
 // inputs.cpp
 std::string controller_profile();
-/// What moves an action now; empty while it is not active.
+/// Sources that move an action now; empty while it is not active.
 std::vector<std::string> sources_of(const Session& session, std::uint64_t action,
                                     const std::string& subaction);
 
@@ -93,7 +93,7 @@ struct Gaze {
 };
 Gaze gaze_at(XrTime time);
 Pose hand_at(XrTime time);
-/// Whether the hand presses what it points at on the page.
+/// True if the hand presses the target that it points at on the page.
 bool presses_page();
 void see_page(const std::vector<const XrCompositionLayerQuad*>& quads);
 

@@ -1,4 +1,4 @@
-/// Paths, and the interaction profiles that they may belong to.
+/// Paths, and the interaction profiles that they belong to.
 
 #include <cstring>
 
@@ -31,7 +31,7 @@ XrResult path_to_string(XrInstance instance, XrPath path, std::uint32_t capacity
   return give_values(std::vector<char>(text.c_str(), text.c_str() + text.size() + 1), capacity, count, out);
 }
 
-/// What each controller has, behind "/user/hand/left/" or "/user/hand/right/".
+/// Parts of each controller, below "/user/hand/left/" or "/user/hand/right/".
 const std::map<std::string, std::vector<std::string>> controllers{
     {"/interaction_profiles/khr/simple_controller",
      {"input/select/click", "input/menu/click", "input/grip/pose", "input/aim/pose", "output/haptic"}},
@@ -40,7 +40,7 @@ const std::map<std::string, std::vector<std::string>> controllers{
       "input/squeeze/value", "input/trigger/value", "input/trigger", "input/thumbstick", "input/thumbstick/x",
       "input/thumbstick/y", "input/thumbstick/click", "input/grip/pose", "input/aim/pose", "output/haptic"}},
 };
-/// Profiles of the specification whose parts are not looked at.
+/// Profiles of the specification whose parts are not checked.
 const std::set<std::string> other_controllers{
     "/interaction_profiles/google/daydream_controller",  "/interaction_profiles/htc/vive_controller",
     "/interaction_profiles/microsoft/motion_controller", "/interaction_profiles/oculus/go_controller",

@@ -1,4 +1,4 @@
-/// Where head, eyes, hand and gaze are, and what the participant does.
+/// Poses of head, eyes, hand and gaze, and the participant's input.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// The actions of a program that is answered by ray, thumbstick and eyes.
+/// The actions of a program that takes answers by ray, thumbstick and eyes.
 struct Actions {
   explicit Actions(Client& of) : client(of) {
     auto set_info = blank<XrActionSetCreateInfo>(XR_TYPE_ACTION_SET_CREATE_INFO);
@@ -105,7 +105,7 @@ struct Actions {
   mutable XrResult result = XR_SUCCESS;
 };
 
-/// Focused, with actions attached.
+/// A focused client with attached actions.
 struct Participant : Client {
   explicit Participant(const std::string& profile) : Client(profile), actions(*this) {
     actions.suggest_all();
@@ -200,7 +200,7 @@ TEST(PlaceGl, GazeComesOnItsOwnGridWithBlinksAndPoorSamples) {
       EXPECT_NEAR(place.pose.orientation.y, std::sin(5 * radians_per_degree), 1e-6);
     }
   }
-  // 2 s of 50 samples, of which a tenth is blinks.
+  // 2 s at 50 samples per second, a tenth of them during blinks.
   EXPECT_NEAR(static_cast<double>(times.size()), 90, 5);
   for (const XrTime time : times) EXPECT_EQ((time - *times.begin()) % 20'000'000, 0);
   EXPECT_GT(flags[0], 10);

@@ -1,4 +1,4 @@
-/// The scripted hand and eyes: where they point, and what they point at on a page.
+/// The scripted hand and eyes, and the targets that they point at on a page.
 
 #include "tests/headset/parts.hpp"
 
@@ -9,7 +9,7 @@ namespace {
 double knob(const char* name) { return runtime().knobs.at(name); }
 double seconds(XrDuration duration) { return 1e-9 * static_cast<double>(duration); }
 
-/// Turned so that -z, forwards, goes from one place to another.
+/// A pose whose forward direction, -z, points from one place to another.
 Pose aimed(Vector from, Vector to) {
   const Vector way = to + -1.0 * from;
   const double level = std::sqrt(way.x * way.x + way.z * way.z);
@@ -17,7 +17,7 @@ Pose aimed(Vector from, Vector to) {
   return {turned(yaw / radians_per_degree, pitch / radians_per_degree, 0), from};
 }
 
-/// How many targets the page has seen before, and how much of the present one's time is over.
+/// Number of targets finished on this page, and the elapsed fraction of the current one's time.
 struct Turn {
   std::size_t target;
   double part;
@@ -29,7 +29,7 @@ Turn turn_at(XrTime time) {
   return {static_cast<std::size_t>(whole) % all.profile.targets.size(), turns - whole};
 }
 
-/// The present target on the page that is shown, in the runtime's own frame.
+/// The current target on the shown page, in the runtime's frame.
 Vector target_at(XrTime time) {
   const Runtime& all = runtime();
   const auto [u, v] = all.profile.targets[turn_at(time).target];
@@ -57,7 +57,7 @@ bool presses_page() {
 
 Gaze gaze_at(XrTime time) {
   const Runtime& all = runtime();
-  // The newest sample of a grid of its own that can have been taken.
+  // The newest available sample of the eye tracker's own time grid.
   const double rate = knob("gaze_rate");
   const auto age = static_cast<XrDuration>(1e6 * knob("gaze_age"));
   const XrDuration since = std::min(time, now()) - age - all.clock.start - 3'100'000;

@@ -1,5 +1,5 @@
 #pragma once
-/// Rigid motions: x to the right, y up, z backwards; metres.
+/// Rigid motions: x right, y up, z backwards; metres.
 
 #include <cmath>
 
@@ -16,7 +16,7 @@ inline Vector cross(Vector a, Vector b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// A rotation: a quaternion of length 1.
+/// A rotation as a unit quaternion.
 struct Rotation {
   double w = 1;
   Vector v;
@@ -32,7 +32,7 @@ inline Vector turn(Rotation q, Vector a) {
 inline Rotation inverse(Rotation q) { return {q.w, -1.0 * q.v}; }
 
 constexpr double radians_per_degree = 0.017453292519943295;
-/// Heading to the left, then looking up, then leaning to the left; degrees.
+/// Yaw to the left, then pitch upwards, then roll to the left; degrees.
 inline Rotation turned(double yaw, double pitch, double roll) {
   const auto about = [](double degrees, Vector axis) {
     const double half = 0.5 * degrees * radians_per_degree;
@@ -60,7 +60,7 @@ inline Pose from_xr(const XrPosef& a) {
   return {{d(a.orientation.w), {d(a.orientation.x), d(a.orientation.y), d(a.orientation.z)}},
           {d(a.position.x), d(a.position.y), d(a.position.z)}};
 }
-/// Whether the specification takes it: a quaternion within 1 % of length 1, and finite places.
+/// True if the specification accepts the pose: a quaternion within 1 % of length 1, and a finite position.
 inline bool is_valid(const XrPosef& a) {
   const Pose pose = from_xr(a);
   const Vector v = pose.q.v;

@@ -134,7 +134,7 @@ const std::map<std::string, std::function<void(Profile&, Text)>> keys{
     {"hash", [](Profile& p, Text value) { p.hash = yes(value); }},
 };
 
-/// What the script may change, and what holds before it does. README.md says what each means.
+/// Values that the script may change, with their defaults. README.md explains them.
 const std::map<std::string, double> knobs{
     {"x", 0},
     {"y", 1.6},
@@ -170,7 +170,7 @@ const std::map<std::string, double> knobs{
     {"blink_every", 0},
     {"blink_length", 0.15},
 };
-/// What else the script may say.
+/// Other events of the script.
 const std::vector<std::string> happenings{"focus",         "shown",  "off",     "lost",       "lost_now",
                                           "instance_lost", "exit",   "unknown", "recentre",   "rate",
                                           "drop",          "repeat", "hang",    "events_lost"};

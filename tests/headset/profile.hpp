@@ -1,5 +1,5 @@
 #pragma once
-/// What a test says about the simulated headset: VIP_XR_PROFILE, "key=value;key=value". README.md lists the
+/// A test's settings of the simulated headset: VIP_XR_PROFILE, "key=value;key=value". README.md lists the
 /// keys.
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace simulated {
 
-/// Something that happens when a frame is waited for.
+/// An event during the wait for a frame.
 struct ScriptedEvent {
-  long frame = 0;  ///< counted over the whole process, the first is 0
+  long frame = 0;  ///< counted over the whole process, from 0
   std::string name;
   double value = 1;
 };
 
-/// What the headset and the runtime are like.
+/// Properties of the headset and the runtime.
 struct Profile {
   std::string runtime_name = "Simulated runtime";
   std::string headset_name = "Simulated headset";
@@ -28,26 +28,26 @@ struct Profile {
   std::string look = "fixed";          ///< the eyes: "fixed", "sweep" or "page"
   std::string point = "fixed";         ///< the hand: "fixed" or "page"
   std::string controller = "khr/simple_controller";
-  std::vector<std::pair<double, double>> targets;  ///< on a page, from its left and its top, in parts of it
+  std::vector<std::pair<double, double>> targets;  ///< on a page, fractions from left and top
   std::uint32_t width = 2064, height = 2208;       ///< px, recommended for each eye
   std::vector<std::string> extensions;
-  std::vector<float> rates{72, 80, 90, 120};  ///< Hz, in the order in which they are told
-  float rate = 90;                            ///< Hz, now
+  std::vector<float> rates{72, 80, 90, 120};  ///< Hz, in the order in which they are listed
+  float rate = 90;                            ///< Hz, current
   std::vector<std::int64_t> formats;          ///< GL internal formats, the preferred one first
-  std::int64_t broken_format = 0;             ///< listed, and cannot be made
+  std::int64_t broken_format = 0;             ///< listed, but cannot be made
   std::vector<double> fov{-52, 42, 46, -50};  ///< degrees left, right, up, down of the left eye
-  std::vector<long> dumps;                    ///< frames whose images are written
-  std::map<std::string, double> knobs;        ///< what the script may change, by name
+  std::vector<long> dumps;                    ///< frames whose images are written to files
+  std::map<std::string, double> knobs;        ///< values that the script may change, by name
   std::vector<ScriptedEvent> script;
   bool gaze = true;    ///< supportsEyeGazeInteraction
-  bool opaque = true;  ///< blend mode offered beside additive
+  bool opaque = true;  ///< this blend mode is offered besides additive
   bool stereo = true;
-  bool positive = false;     ///< calls that may succeed with a positive code do
+  bool positive = false;     ///< calls that may return a positive success code do so
   bool leave_error = false;  ///< calls that may use GL leave a GL error behind
-  bool hash = false;         ///< the frame log tells what images hold
+  bool hash = false;         ///< the frame log has hashes of the images
 };
 
-/// Reads VIP_XR_PROFILE; std::invalid_argument for a key or value that is not known.
+/// Reads VIP_XR_PROFILE; std::invalid_argument for an unknown key or value.
 Profile read_profile();
 
 }  // namespace simulated

@@ -20,7 +20,7 @@ XrResult get_rate(XrSession session, float* out) {
   return success(found);
 }
 
-/// Taken up by the next frame, or at once while none comes.
+/// Takes effect at the next frame, or at once if no frames run.
 XrResult request_rate(XrSession session, float hertz) {
   const Session& found = need_session(session);
   const auto& rates = runtime().profile.rates;

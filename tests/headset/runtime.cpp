@@ -1,4 +1,4 @@
-/// The one runtime of a process, its log, and what every call checks.
+/// The one runtime of a process, its log, and the checks of every call.
 
 #include <cstdlib>
 #include <fstream>

@@ -1,4 +1,4 @@
-/// What the profile says happens at stated frames.
+/// Runs the profile's events at their frames.
 
 #include "tests/headset/parts.hpp"
 

@@ -1,4 +1,4 @@
-/// Sessions: their graphics binding, their beginning and end.
+/// Sessions: their graphics binding, begin and end.
 
 #include "tests/headset/gl.hpp"
 #include "tests/headset/parts.hpp"

@@ -77,7 +77,7 @@ TEST(SimulatedSessionGl, FramesAreWaitedForOnAThreadOfTheirOwn) {
     waits.join();
     EXPECT_EQ(client.begin(), XR_SUCCESS);
     XrFrameState state = client.state;
-    std::thread ahead([&] { EXPECT_EQ(client.wait(), XR_SUCCESS); });  // while this one is drawn
+    std::thread ahead([&] { EXPECT_EQ(client.wait(), XR_SUCCESS); });  // while this frame is drawn
     ahead.join();
     std::swap(state, client.state);
     EXPECT_EQ(client.end(), XR_SUCCESS);
@@ -99,7 +99,7 @@ TEST(SimulatedSessionGl, APositiveCodeIsASuccess) {
 TEST(SimulatedSessionGl, AStarvedLoopIsNoted) {
   Client client("clock=real");
   client.frames_until(focused);
-  const std::size_t before = client.lines("note").size();  // a slow machine starves too
+  const std::size_t before = client.lines("note").size();  // a slow machine starves as well
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
   client.frame();
   ASSERT_GT(client.lines("note").size(), before);
@@ -127,7 +127,7 @@ TEST(SimulatedSessionGl, ImagesAreWrittenAsTheyAreShown) {
   };
   while (client.lines("frame").size() < 7) frames(client, 1);
   look("000006_left", {64, 128, 191});
-  client.make_swapchains(GL_RGBA16F, 2);  // of light, of which sRGB is made
+  client.make_swapchains(GL_RGBA16F, 2);  // with linear values, which are converted to sRGB
   frames(client, 1);
   look("000007_right", {137, 188, 225});
   const std::array<float, 4> white{1, 1, 1, 1};

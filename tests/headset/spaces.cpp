@@ -1,4 +1,4 @@
-/// Spaces, and where they are. The runtime's own frame is STAGE: its origin lies on the floor.
+/// Spaces and their poses. The runtime's own frame is STAGE, whose origin is on the floor.
 
 #include "tests/headset/parts.hpp"
 
@@ -66,7 +66,7 @@ bool is_gaze(const Space& space) {
 
 Placed to_placed(const Pose& pose, bool moves) {
   const auto& knobs = runtime().knobs;
-  // What is not valid holds nothing that could be used.
+  // An invalid pose has no usable values.
   if (moves && knobs.at("orientation") == 0) return {0, {}};
   XrSpaceLocationFlags flags = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT |
                                XR_SPACE_LOCATION_POSITION_VALID_BIT |
@@ -109,7 +109,7 @@ Placed locate(const Space& what, const Space& from, XrTime time) {
   if (!is_gaze(what)) return to_placed(pose, what.action || from.action || what.type != from.type);
   const Gaze gaze = gaze_at(time);
   if (!gaze.valid) return {0, {}};
-  // VALID without TRACKED is how a runtime tells a sample of less than its usual quality.
+  // VALID without TRACKED marks a sample of lower quality.
   return {valid_bits | (gaze.tracked ? tracked_bits : 0), to_xr(pose)};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Everything that the simulated runtime knows.
+/// The state of the simulated runtime.
 
 #include <array>
 #include <condition_variable>
@@ -14,7 +14,7 @@
 
 namespace simulated {
 
-/// The session's OpenGL context, by either binding.
+/// The session's OpenGL context, for either binding.
 struct Graphics {
   EGLDisplay egl_display = EGL_NO_DISPLAY;
   EGLConfig egl_config = nullptr;
@@ -24,7 +24,7 @@ struct Graphics {
   GLXContext glx_context = nullptr;
 };
 
-/// Both eyes as xrLocateViews gave them once.
+/// Both eyes as one call of xrLocateViews returned them.
 struct Located {
   XrSpace space = XR_NULL_HANDLE;
   std::array<XrPosef, 2> poses;
@@ -37,7 +37,7 @@ struct Frame {
   bool should_render = false;
 };
 
-/// A part of a controller, as the last xrSyncActions found it.
+/// A part of a controller, as of the last xrSyncActions.
 struct Input {
   using Value = std::array<double, 2>;
   Value value{}, before{};
@@ -48,33 +48,33 @@ struct Session {
   Graphics graphics;
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
   bool running = false;
-  bool exiting = false;  ///< goes on to EXITING when it has ended
+  bool exiting = false;  ///< enters EXITING after it has ended
   long lost_at = -1;     ///< frame from which every call fails
-  long frames = 0;       ///< ended since xrBeginSession
-  bool waited = false;   ///< a frame was waited for and not begun
-  bool begun = false;    ///< a frame was begun and not ended
+  long frames = 0;       ///< frames ended since xrBeginSession
+  bool waited = false;   ///< a frame was waited for and has not begun
+  bool begun = false;    ///< a frame has begun and not ended
   Frame waiting, drawing;
   std::set<std::uint64_t> attached, synced;  ///< action sets
   std::map<std::string, Input> inputs;
   bool told_profiles = false;   ///< interaction profiles are current
-  std::deque<Located> located;  ///< the newest last
+  std::deque<Located> located;  ///< newest last
 };
 
 struct Swapchain {
   std::uint64_t session = 0;
   XrSwapchainCreateInfo info;
   std::vector<GLuint> images;
-  std::deque<std::uint32_t> acquired;  ///< the oldest first
-  bool waited = false;                 ///< for the oldest
+  std::deque<std::uint32_t> acquired;  ///< oldest first
+  bool waited = false;                 ///< the oldest acquired image was waited for
   std::uint32_t next = 0;
-  long shown = -1;  ///< the image that was released last
+  long shown = -1;  ///< index of the image released last
 };
 
 struct Space {
   std::uint64_t session = 0;
   XrReferenceSpaceType type = XR_REFERENCE_SPACE_TYPE_LOCAL;
   Pose offset;
-  std::uint64_t action = 0;  ///< of a space of an action
+  std::uint64_t action = 0;  ///< for a space of an action
   std::string subaction;
 };
 
@@ -93,7 +93,7 @@ struct Binding {
   std::string source;
 };
 
-/// The quad that lies on top.
+/// The topmost quad layer.
 struct Page {
   Space space;
   Pose pose;
@@ -101,27 +101,27 @@ struct Page {
   XrTime since;
 };
 
-/// LOCAL is turned to the left from a time on.
+/// LOCAL turns to the left at a time.
 struct LocalTurn {
   XrTime from;
   double degrees;
 };
 
-/// Time as the runtime tells it. It is no clock of the system: XrTime less `ahead_of_monotonic` is.
+/// The runtime's time. It is not a system clock; XrTime minus `ahead_of_monotonic` is CLOCK_MONOTONIC.
 struct Clock {
   bool real = false;
   XrTime start = 0;
   XrTime now = 0;             ///< on the virtual clock
-  XrTime last_slot = 0;       ///< the newest one that was given out
-  XrTime last_predicted = 0;  ///< the same as it was told
+  XrTime last_slot = 0;       ///< the newest slot that was returned
+  XrTime last_predicted = 0;  ///< the time that was predicted for it
   XrTime last_end = 0;        ///< when the newest frame of a running session ended
 };
 constexpr XrTime ahead_of_monotonic = 1'000'000'000'000;
 
-/// Everything of one process.
+/// All state of one process.
 struct Runtime {
   Profile profile;
-  std::map<std::string, double> knobs;  ///< what the script has changed
+  std::map<std::string, double> knobs;  ///< as changed by the script
   std::set<std::string> enabled;        ///< extensions of the instance
   std::map<std::uint64_t, bool> instances;
   std::map<std::uint64_t, Session> sessions;
@@ -130,27 +130,27 @@ struct Runtime {
   std::map<std::uint64_t, ActionSet> action_sets;
   std::map<std::uint64_t, Action> actions;
   std::map<std::string, std::vector<Binding>> suggested;  ///< by interaction profile
-  std::vector<std::string> paths;                         ///< an XrPath is the place in it, plus 1
+  std::vector<std::string> paths;                         ///< an XrPath is an index into it, plus 1
   std::optional<Page> page;
-  float wanted_rate = 0;  ///< Hz, asked for and not yet there
+  float wanted_rate = 0;  ///< Hz, requested but not yet in force
   std::deque<XrEventDataBuffer> events;
   Clock clock;
   std::uint64_t next_handle = 1;
-  long frames = 0;              ///< waited for in this process
+  long frames = 0;              ///< frames waited for in this process
   long instance_lost_at = -1;   ///< frame from which every call fails
   bool asked_graphics = false;  ///< xrGetOpenGLGraphicsRequirementsKHR was called
   bool asked_system = false;
-  XrSessionState aim = XR_SESSION_STATE_FOCUSED;  ///< state that a running session goes to
-  XrTime worn_from = 0;                           ///< the headset is off until then
-  int dropped = 0;                                ///< slots that the next wait leaves out
+  XrSessionState aim = XR_SESSION_STATE_FOCUSED;  ///< state towards which a running session goes
+  XrTime worn_from = 0;                           ///< time until which the headset is off
+  int dropped = 0;                                ///< number of slots that the next wait skips
   bool repeats = false;                           ///< the next wait predicts the last time again
-  double hang_seconds = 0;                        ///< for which the next wait does not return
-  std::vector<LocalTurn> local_turns;             ///< of LOCAL, by recentring
+  double hang_seconds = 0;                        ///< duration for which the next wait hangs
+  std::vector<LocalTurn> local_turns;             ///< of LOCAL, from recentring
 };
 Runtime& runtime();
-/// Forgets everything if the profile or the log is another one than before.
+/// Forgets everything if the profile or the log file has changed.
 void restart();
-/// Woken when a frame begins or a session ends.
+/// Notified when a frame begins or a session ends.
 std::condition_variable_any& frame_begun();
 
 constexpr XrSystemId the_system = 7;
@@ -168,7 +168,7 @@ template <class Handle>
 Handle as_handle(std::uint64_t number) {
   return reinterpret_cast<Handle>(number);
 }
-/// A handle that was never given before.
+/// A handle that was never used before.
 template <class Handle, class T>
 Handle new_handle(std::map<std::uint64_t, T>& living, T object) {
   const std::uint64_t number = runtime().next_handle++ << 4;
@@ -182,19 +182,19 @@ T& find(std::map<std::uint64_t, T>& living, Handle handle, const char* what) {
   return found->second;
 }
 
-/// Each refuses what is not alive, and fails when it is lost.
+/// Each refuses handles that do not exist, and fails if they are lost.
 void need_instance(XrInstance instance);
 void need_system(XrInstance instance, XrSystemId system);
 Session& need_session(XrSession session);
 void need_session_number(std::uint64_t session);
-/// Refuses views that are not listed.
+/// Refuses a view configuration that is not offered.
 void need_views(XrViewConfigurationType kind);
-/// Refuses while the extension is not enabled.
+/// Refuses if the extension is not enabled.
 void need_enabled(const char* extension);
-/// XR_SUCCESS, or what else the runtime says when it succeeds.
+/// XR_SUCCESS, or another success code of the runtime.
 XrResult success(const Session& session);
 
-/// Forgets a session and what belongs to it.
+/// Forgets a session and the objects that belong to it.
 void end_session_objects(std::uint64_t session);
 
 }  // namespace simulated

@@ -1,4 +1,4 @@
-/// Swapchains: textures of the session's context, taken and given back in the specification's order.
+/// Swapchains: textures of the session's context, acquired and released in the specification's order.
 
 #include "tests/headset/gl.hpp"
 #include "tests/headset/parts.hpp"

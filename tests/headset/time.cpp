@@ -1,4 +1,4 @@
-/// The clock, and its relation to the system's.
+/// The runtime's clock, and its relation to the system's.
 
 #include <cmath>
 #include <thread>

@@ -1,4 +1,4 @@
-/// What a profile can make happen, as the program sees it.
+/// Faults that a profile can cause, as the program sees them.
 #include <gmock/gmock.h>
 
 #include <thread>
@@ -19,7 +19,7 @@ constexpr XrDuration period = 11111111;  // ns at 90 Hz
 
 class TroubleGl : public ::testing::Test {
  protected:
-  /// Frames up to that number, and what was predicted for each.
+  /// Runs that many frames; returns the predicted time of each.
   std::vector<XrTime> frames(Client& client, std::size_t count) {
     std::vector<XrTime> out;
     while (out.size() < count && client.frame() == XR_SUCCESS)

@@ -1,4 +1,4 @@
-/// Where the eyes are.
+/// Poses of the eyes.
 
 #include "tests/headset/parts.hpp"
 
@@ -21,7 +21,7 @@ XrResult locate_views(XrSession session, const XrViewLocateInfo* info, XrViewSta
   const XrResult result = give_array(eyes, capacity, count, [&](std::size_t i, int eye) {
     need_type(&views[i], XR_TYPE_VIEW);
     const Placed place = locate_eye(eye, space, info->displayTime);
-    state->viewStateFlags = place.flags;  // the bits are those of a space's location
+    state->viewStateFlags = place.flags;  // with the bits of a space's location
     views[i].pose = located.poses[i] = place.pose;
     views[i].fov = located.fovs[i] = fov_of(eye);
   });

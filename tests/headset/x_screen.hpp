@@ -1,5 +1,5 @@
 #pragma once
-/// A screen of X without a monitor, and an OpenGL context on it.
+/// An X screen without a monitor, and an OpenGL context on it.
 
 #include <string>
 
@@ -7,10 +7,10 @@
 
 namespace simulated {
 
-/// Xvfb while the object lives; its context is current on the thread that made it.
+/// Runs Xvfb while the object lives; its context is current on the thread that made it.
 class XScreen {
  public:
-  /// size: "640x480". std::runtime_error when there is no Xvfb, or no OpenGL 4.5 on it.
+  /// size: "640x480". std::runtime_error if there is no Xvfb, or no OpenGL 4.5 on it.
   explicit XScreen(const std::string& size = "64x48");
   ~XScreen();
   XScreen(const XScreen&) = delete;

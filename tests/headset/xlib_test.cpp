@@ -1,5 +1,5 @@
-/// Sessions by the binding to Xlib, which is the one that Khronos' validation layer takes, and what that
-/// layer says.
+/// Sessions with the Xlib binding, the only one that Khronos' validation layer accepts, and the layer's
+/// messages.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 
 constexpr const char* layer = "XR_APILAYER_LUNARG_core_validation";
 
-/// The validation layer on, for the instances that are made meanwhile.
+/// Turns the validation layer on for instances that are made while it lives.
 struct Validation {
   Validation() {
     ::setenv("XR_ENABLE_API_LAYERS", layer, 1);
@@ -79,7 +79,7 @@ TEST(XlibGl, TheValidationLayerSpeaksOnAStaleHandle) {
   EXPECT_THAT(validation.says(), HasSubstr("xrEndFrame]: Invalid XrSpace handle"));
 }
 
-/// vip-study on a runtime without EGL, watched by the validation layer.
+/// vip-study on a runtime without EGL, checked by the validation layer.
 class XlibProgramGl : public ::testing::Test {
  protected:
   apps::test::Ended run(const std::string& profile, std::vector<std::string> arguments) {
@@ -104,7 +104,7 @@ TEST_F(XlibProgramGl, ShowsATestSceneAndTheValidationLayerIsSilent) {
   const auto ended = run("", {"headset", "--show", "1"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("frames      92, 91 with pictures"));
-  EXPECT_THAT(ended.err, HasSubstr("Core Validation"));  // it was there
+  EXPECT_THAT(ended.err, HasSubstr("Core Validation"));  // the layer was active
   EXPECT_THAT(read_text(log()), ::testing::Not(HasSubstr("BREACH")));
   EXPECT_FALSE(std::filesystem::exists(validation_.file())) << validation_.says();
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// What the tests of the fluid share: runs of small scenes and measurements on the host, independent of the
-/// solver's own.
+/// Helpers for tests of the fluid: runs of small scenes, and measurements on the host that are independent of
+/// the solver's own.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace fluid_test {
 
 using sim::ParticleState;
 
-/// A scene of a tank with a block of water, without a file.
+/// A tank with a block of water, made without a scene file.
 inline sim::Scene tank(sim::Vec3d size, sim::Vec3d water, int settle_frames = 0) {
   sim::Scene scene;
   scene.name = "test tank";
@@ -36,7 +36,7 @@ using sim::cases::centre_height;
 using sim::cases::outside;
 using sim::cases::rms_speed;
 
-/// What reading this scene complains of; "no error" when it does not.
+/// The error of reading this scene; "no error" if there is none.
 inline std::string scene_error(const std::string& text) {
   try {
     sim::parse_scene(text, "scene.toml");
@@ -51,7 +51,7 @@ inline std::vector<int> neighbour_counts(const std::vector<ParticleState>& state
   const auto at = [&](float x) {
     return static_cast<std::int64_t>(std::floor(static_cast<double>(x) / radius_m));
   };
-  // Rooms of at most 2^20 cells a side.
+  // Room for at most 2^20 cells a side.
   const auto key = [](std::int64_t x, std::int64_t y, std::int64_t z) { return (x << 42) + (y << 21) + z; };
   std::unordered_map<std::int64_t, std::vector<int>> cells;
   for (std::size_t i = 0; i < state.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of splitting and merging share.
+/// Helpers for tests of splitting and merging.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ inline constexpr double gravity = 9.81;
 
 inline sim::TargetRegion everywhere(int level) { return {{0, 0, 0}, far_m, level, level}; }
 
-/// Options for a block of 8 n_* particles of level 0 whose targets the test gives.
+/// Options for a block of 8 n_* particles of level 0 with targets given by the test.
 inline sim::SimulationOptions options_for(Backend backend, std::int64_t n_star, sim::TargetRegion targets) {
   sim::SimulationOptions out;
   out.method = sim::MethodKind::Ours;
@@ -54,7 +54,7 @@ inline double share_at(const sim::FrameReport& report, std::size_t level) {
          static_cast<double>(report.mass_units);
 }
 
-/// The ledger closes, the mass is what it was, ids are unique.
+/// The particle counts add up, the mass is unchanged, and ids are unique.
 inline void expect_sound(sim::Simulation& fluid, std::int64_t start, std::int64_t mass) {
   const auto report = fluid.report();
   const auto state = fluid.read_state();
@@ -72,7 +72,7 @@ inline void expect_sound(sim::Simulation& fluid, std::int64_t start, std::int64_
   EXPECT_EQ(ids.size(), state.size());
 }
 
-/// Tank of 10 x 12 x 10 finest spacings of settled water, twice as high, and its state.
+/// Settled water of 12 x 16 x 12 finest spacings in a tank 30 spacings high, and its state.
 struct Settled {
   sim::Scene scene = fluid_test::tank({12 * d, 30 * d, 12 * d}, {12 * d, 16 * d, 12 * d}, 60);
   static constexpr std::int64_t n_star = 288;  // 2,304 particles
@@ -88,7 +88,7 @@ struct Settled {
 
 using sim::cases::kinetic_energy;
 
-/// Potential and kinetic, over m_*, m2/s2.
+/// Potential and kinetic energy over m_*, m2/s2.
 inline double energy(const std::vector<ParticleState>& state) {
   return gravity * sim::cases::centre_height(state) * static_cast<double>(mass_units(state)) +
          kinetic_energy(state);

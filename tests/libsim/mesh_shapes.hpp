@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes whose distances and masses are known.
+/// Meshes with known distances and masses.
 
 #include <cmath>
 #include <numbers>
@@ -9,7 +9,7 @@
 
 namespace mesh_test {
 
-/// A box from its low to its high corner, of six quads, as OBJ.
+/// A box between two corners as OBJ, made of six quads.
 inline std::string box_text(const std::array<double, 3>& low, const std::array<double, 3>& high) {
   std::string out;
   for (int corner = 0; corner < 8; ++corner) {
@@ -21,7 +21,7 @@ inline std::string box_text(const std::array<double, 3>& low, const std::array<d
   return out + "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n";
 }
 
-/// A ball of meridians and parallels, as OBJ.
+/// A sphere of meridians and parallels as OBJ.
 inline std::string ball_text(double radius, int parallels = 40) {
   const int round = 2 * parallels;
   std::string out = "v 0 " + std::to_string(radius) + " 0\n";

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of obstacles share: their makers, scene files that list them, options of small runs.
+/// Helpers for tests of obstacles: the obstacles, scene files that list them, options of small runs.
 
 #include <memory>
 #include <string>
@@ -45,7 +45,7 @@ inline Obstacle free_one(Obstacle out, double density) {
 }
 inline double mass_of(const Obstacle& o) { return o.density_kg_m3 * sim::volume_m3(o); }
 
-/// A tank whose water lies low in a corner, away from what is tested.
+/// A tank with low water in one corner, away from the tested obstacles.
 inline sim::Scene dry(const std::vector<Obstacle>& obstacles) {
   auto scene = fluid_test::tank({2, 2, 2}, {0.5, 0.25, 0.5}, 0);
   scene.v_ref_m_s = 3;
@@ -60,7 +60,7 @@ inline sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKin
   return out;
 }
 
-/// The text of SingleDam with a table of an obstacle.
+/// The text of SingleDam with a table for an obstacle.
 inline std::string dam_with(const std::string& obstacle, const std::string& format = "2") {
   std::string text = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
   const std::string old = "format = 1";

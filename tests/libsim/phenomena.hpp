@@ -1,5 +1,6 @@
 #pragma once
-/// What must appear in the scenes, measured on particles: cavities, rings, crowns, dry spots, ripples.
+/// Measures phenomena that must appear in the scenes on particles: cavities, rings, crowns, dry spots,
+/// ripples.
 
 #include <array>
 
@@ -9,7 +10,7 @@ namespace phenomena {
 
 using fluid_test::ParticleState;
 
-/// Cells in two directions, water or air.
+/// A 2D grid of cells, water or air.
 struct Slice {
   int nx, ny;
   std::vector<char> water;
@@ -27,7 +28,7 @@ struct Slice {
   }
 };
 
-/// Fills the air that is joined to (x, y) with water and returns its cells.
+/// Fills the air connected to (x, y) with water and returns its number of cells.
 inline int fill_air(Slice& slice, int x, int y) {
   std::vector<std::pair<int, int>> open{{x, y}};
   int cells = 0;
@@ -43,7 +44,7 @@ inline int fill_air(Slice& slice, int x, int y) {
   return cells;
 }
 
-/// Cells of the largest pocket of air that has no way to the open top. The top row must be air.
+/// Number of cells of the largest pocket of air not connected to the open top. The top row must be air.
 inline int largest_cavity(Slice slice) {
   for (int x = 0; x < slice.nx; ++x) fill_air(slice, x, slice.ny - 1);
   int largest = 0;
@@ -53,8 +54,8 @@ inline int largest_cavity(Slice slice) {
   return largest;
 }
 
-/// Water seen along z, in slices as thick as a cell: a cell holds water where a particle of its slice lies
-/// within 0.9 d of its centre (a lattice's planes leave no point further than 0.87 d).
+/// Water seen along z, in slices one cell thick: a cell holds water if a particle of its slice lies within
+/// 0.9 d of its centre (every point is within 0.87 d of a lattice's planes).
 inline std::vector<Slice> water_slices(const std::vector<ParticleState>& state, const sim::Vec3d& size,
                                        double edge, double spacing) {
   double top = size[1];
@@ -71,7 +72,7 @@ inline std::vector<Slice> water_slices(const std::vector<ParticleState>& state, 
   return out;
 }
 
-/// Share of the z slices with a cavity of at least `cells` cells of `edge`.
+/// Fraction of the z slices with a cavity of at least `cells` cells of `edge`.
 inline double share_with_cavity(const std::vector<ParticleState>& state, const sim::Vec3d& size, double edge,
                                 double spacing, int cells) {
   const auto slices = water_slices(state, size, edge, spacing);
@@ -88,14 +89,14 @@ struct Axis {
   }
 };
 
-/// A vortex ring round an axis.
+/// A vortex ring around an axis.
 struct Ring {
-  double circulation_m2_s = 0;  ///< positive where the water turns as a downward jet rolls up
-  double core_r_m = 0;          ///< where the swirl is strongest
+  double circulation_m2_s = 0;  ///< positive in the direction in which a downward jet rolls up
+  double core_r_m = 0;          ///< position of the strongest swirl
   double core_y_m = 0;
 };
 
-/// Flow in the half plane (r, y), averaged round an axis in square cells.
+/// Flow in the half plane (r, y), averaged around an axis in square cells.
 class Meridian {
  public:
   Meridian(const std::vector<ParticleState>& state, Axis axis, double r_max, double y_max, double cell)
@@ -107,7 +108,7 @@ class Meridian {
       const int j = static_cast<int>(static_cast<double>(p.y_m) / cell);
       if (i >= nr_ || j < 0 || j >= ny_ || r <= 0) continue;
       auto& sum = cells_[static_cast<std::size_t>(j * nr_ + i)];
-      // A ring of water counts by its section.
+      // Weighted by 1 / r, so that a ring of water counts by its cross-section.
       sum.weight += 1 / r;
       sum.out += ((static_cast<double>(p.x_m) - axis.x) * static_cast<double>(p.vx_m_s) +
                   (static_cast<double>(p.z_m) - axis.z) * static_cast<double>(p.vz_m_s)) /
@@ -116,7 +117,7 @@ class Meridian {
     }
   }
 
-  /// 2 pi R times the mean speed along the circle of radius R round (r, y), over the cells that it meets.
+  /// 2 pi R times the mean speed along the circle of radius R around (r, y), over the cells that it meets.
   double circulation(double r, double y, double radius) const {
     double weights = 0;
     double along = 0;
@@ -134,8 +135,8 @@ class Meridian {
     return weights > 0 ? 2 * 3.14159265358979 * radius * along / weights : 0;
   }
 
-  /// Mean sine of the angle from the way to a cell to its velocity, over the cells within `reach` of (r, y):
-  /// 1 at the centre of a pure swirl (Graftieaux, Michard and Grosjean 2001, Gamma_1).
+  /// Mean sine of the angle between the direction to a cell and its velocity, over the cells within `reach`
+  /// of (r, y): 1 at the centre of a pure swirl (Graftieaux, Michard and Grosjean 2001, Gamma_1).
   double swirl(double r, double y, double reach) const {
     int cells = 0;
     double sines = 0;
@@ -154,7 +155,7 @@ class Meridian {
     return cells ? sines / cells : 0;
   }
 
-  /// Largest circulation of a circle of this radius, and the centre of the strongest swirl of this reach;
+  /// Largest circulation along a circle of this radius, and the centre of the strongest swirl of this reach;
   /// both lie within the water between the axis and the walls.
   Ring ring(double radius) const {
     Ring out;
@@ -181,7 +182,7 @@ class Meridian {
   std::vector<Cell> cells_;
 };
 
-/// Height of the water over rings of `width` round the axis, m: the particles' volume over the area.
+/// Height of the water over rings of `width` around the axis, m: the particles' volume over the area.
 inline std::vector<double> ring_depths(const std::vector<ParticleState>& state, Axis axis, double r_max,
                                        double width, double spacing) {
   std::vector<double> out(static_cast<std::size_t>(r_max / width), 0.0);

@@ -1,5 +1,5 @@
 #pragma once
-/// The commands that keep data, short enough to try a fault at each call of SQLite.
+/// The commands that store data, in versions short enough to try a fault at each call of SQLite.
 
 #include <filesystem>
 #include <functional>
@@ -12,14 +12,14 @@ namespace study::test {
 namespace fs = std::filesystem;
 using faults::Lines;
 
-/// What faults are tried on. `act` does the work, and when given again what is left of it.
+/// One command to try faults on. `act` does the work; called again, it does the rest.
 struct Flow {
   const char* name;
   std::function<void(const fs::path&)> prepare;
   std::function<void(const fs::path&)> act;
   std::function<Lines(const fs::path&)> content;
-  std::vector<const char*> healthy;  ///< databases that open before and must open afterwards
-  const char* played = nullptr;      ///< whose answers are acknowledged in the file "said"
+  std::vector<const char*> healthy;  ///< databases that open before and must still open afterwards
+  const char* played = nullptr;      ///< database whose acknowledged answers are listed in the file "said"
 };
 
 /// Sessions, resumes, withdrawals, changes of consent, merges, exports, salvages, upgrades.

@@ -1,6 +1,6 @@
 #pragma once
-/// A layer between SQLite and the file system, for tests: counts SQLite's calls, and lets one of them fail or
-/// be the last, as SQLite's own tests do. While it lives it serves every connection of this process.
+/// A layer between SQLite and the file system for tests: counts SQLite's calls, and lets one of them fail or
+/// end the process, as SQLite's own tests do. While it lives it serves all connections of this process.
 
 #include <cstdint>
 #include <functional>
@@ -9,30 +9,30 @@ struct sqlite3_vfs;
 
 namespace study::test {
 
-/// What becomes of the k-th call.
+/// The fault at one call.
 struct VfsFault {
   enum class Kind {
     None,
-    Error,     ///< it fails with its SQLITE_IOERR_..., once
-    ErrorsOn,  ///< so do all calls after it
+    Error,     ///< the call fails with its SQLITE_IOERR_..., once
+    ErrorsOn,  ///< this call and all later ones fail
     Full,      ///< the next write fails with SQLITE_FULL, once
-    FullOn,    ///< so do all writes after it
-    Stop,      ///< the process ends, without a word
-    PowerCut,  ///< likewise, and what was not synced by then is lost
-    TornCut    ///< likewise, and of what was not synced any sectors may be on the disk
+    FullOn,    ///< this write and all later ones fail
+    Stop,      ///< the process ends without cleaning up
+    PowerCut,  ///< the same, and unsynced data are lost
+    TornCut    ///< the same, and any unsynced sectors may be on the disk
   };
   Kind kind = Kind::None;
-  long at = 0;  ///< from 1
+  long at = 0;  ///< number of the call, from 1
 };
 
 /// Exit status of a process that Stop, PowerCut or TornCut ended.
 inline constexpr int stopped_status = 77;
 
-/// Registered as SQLite's default until it is destroyed. Without a fault it changes nothing.
+/// SQLite's default VFS until it is destroyed. Without a fault it changes nothing.
 ///
-/// A power cut is modelled by sectors of 512 bytes: each that was written since its file was last synced has
-/// its old bytes again (PowerCut), or by chance its old or its new ones (TornCut, from a fixed seed). Files
-/// that were made or deleted stay so. The index of the log (-shm) is never on a disk.
+/// A power cut is modelled by sectors of 512 bytes: each sector written since its file was last synced gets
+/// its old bytes back (PowerCut), or at random its old or new ones (TornCut, from a fixed seed). Files that
+/// were made or deleted stay so. The log's index (-shm) is never on a disk.
 class FaultVfs {
  public:
   FaultVfs();
@@ -40,12 +40,12 @@ class FaultVfs {
   FaultVfs(const FaultVfs&) = delete;
   FaultVfs& operator=(const FaultVfs&) = delete;
 
-  /// Counts from 0 again.
+  /// Starts counting from 0 again.
   void arm(const VfsFault& fault);
   void disarm() { arm({}); }
   /// Calls since arm().
   long calls() const;
-  /// What is done before each call from now on, but those that it makes itself. Without: nothing.
+  /// Runs `work` before each call from now on, except for the calls that `work` makes. Empty: nothing.
   void before_each(std::function<void()> work);
 
  private:

@@ -1,12 +1,11 @@
 #pragma once
-/// A study with where two people looked, for tests: an eye tracker's samples of one, the mouse's of the
-/// other.
+/// A study with gaze of two people, for tests: samples of an eye tracker for one, of the mouse for the other.
 
 #include "tests/libstudy/permission_fixture.hpp"
 
 namespace study::test {
 
-/// At a screen of 520 mm, from 600 mm.
+/// With a screen 520 mm wide, seen from 600 mm.
 inline std::filesystem::path make_gaze_study(const TemporaryFolder& folder) {
   const std::filesystem::path path = folder / "gaze.db";
   Store store(path, sqlite::Open::Create);

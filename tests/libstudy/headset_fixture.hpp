@@ -1,5 +1,5 @@
 #pragma once
-/// What a headset brings in, for tests.
+/// Data of a headset, for tests.
 
 #include <string>
 #include <utility>
@@ -24,7 +24,7 @@ inline HeadsetFacts headset_facts() {
   return facts;
 }
 
-/// Place and turn are told by `number`.
+/// A pose that differs by `number`.
 inline HeadPose head_at(double number) {
   return {{number, 1.5, -0.25}, {0, 0.6, 0, 0.8}, true, true, true, false};
 }
@@ -33,12 +33,12 @@ inline SlotRecord slot_at(std::int64_t predicted_ns, double ipd_mm = 63, double 
   return {predicted_ns, 11'111'111, true, head_at(head), ipd_mm};
 }
 
-/// One ray ahead and to the right.
+/// A ray ahead and to the right.
 inline GazeSample ray_sample(std::int64_t sampled_ns, double x = 0.6) {
   return {sampled_ns, sampled_ns, true, GazePoint{0.25, 0.5}, false, GazeRay{{0, 0, 0.01}, {x, 0, -0.8}}};
 }
 
-/// A slot every 10 ms of the clock; the distance between the eyes is what ipd_of says at a time.
+/// One slot every 10 ms of the clock; ipd_of gives the distance between the eyes at a time.
 class SlotEvery10ms final : public SlotSource {
  public:
   explicit SlotEvery10ms(const Clock& clock) : clock_(clock) {}
@@ -69,7 +69,7 @@ class SlotEvery10ms final : public SlotSource {
   std::int64_t next_ns_ = 0;
 };
 
-/// Everything that a headset brings in, of presentation and session `id`.
+/// Adds everything that a headset delivers to presentation and session `id`.
 inline void add_headset_rows(Store& store, std::int64_t id, double telling = 0.5) {
   store.add_headset(id, headset_facts());
   store.add_ipd(id, 7, 63);

@@ -1,5 +1,5 @@
 #pragma once
-/// Databases as a stranger would make them: each a sound study with one thing that vip-study never writes.
+/// Databases with malicious content: each is a valid study with one thing that vip-study never writes.
 
 #include <filesystem>
 #include <functional>
@@ -12,21 +12,21 @@ namespace study::test {
 struct HostileFile {
   const char* name;
   const char* kind;
-  /// Spoils the sound study at the path; `other` is a study that has nothing to do with it.
+  /// Spoils the valid study at the path; `other` is an unrelated study.
   std::function<void(const std::filesystem::path& path, const std::filesystem::path& other)> spoil;
-  const char* reason;    ///< part of the message that refuses it
-  bool salvaged = true;  ///< salvage finds all answers in it
+  const char* reason;    ///< part of the error message that rejects it
+  bool salvaged = true;  ///< salvage recovers all answers
 };
 
 const std::vector<HostileFile>& hostile_files();
 
-/// Runs SQL on a file with every protection of SQLite off, as the maker of such a file does.
+/// Runs SQL on a file with all of SQLite's protections off.
 void spoil_with(const std::filesystem::path& path, const std::string& sql);
 
-/// Bytes, by path, of everything in a folder.
+/// Bytes of all files in a folder, by path.
 std::map<std::string, std::string> everything_in(const std::filesystem::path& folder);
 
-/// Ends the process, and so the test, where the scope takes more than so many seconds of processor time.
+/// Ends the process, and so the test, if the scope takes more than this many seconds of processor time.
 class ProcessorTime {
  public:
   explicit ProcessorTime(int seconds);

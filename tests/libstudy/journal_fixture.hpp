@@ -1,5 +1,5 @@
 #pragma once
-/// A small study with something of everything that counts, and what the journal must say of it.
+/// A small study with every kind of row that matters to the journal, and readers to compare both.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ inline const OpenUnit& unit_at(const OpenSession& session, int position) {
   throw std::logic_error("the unit is done");
 }
 
-/// Two people under pairs(): pages and trials answered, a trial cut, one repeated, one excluded, notes; P02
-/// stopped.
+/// Two people under pairs(): answered pages and trials, an interrupted trial, a repeated one, an excluded
+/// one, notes; P02 stopped early.
 inline void write_small_study(const std::filesystem::path& path) {
   Store store(path, sqlite::Open::Create);
   store.add_run(run_plan(pairs(), {"P01", "P02"}));
@@ -54,7 +54,7 @@ inline void write_small_study(const std::filesystem::path& path) {
   }
 }
 
-/// All lines that the database calls for.
+/// All lines that the journal should have for the database.
 inline std::vector<std::string> lines_of(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
@@ -64,7 +64,7 @@ inline std::vector<std::string> lines_of(const std::filesystem::path& path) {
   return lines;
 }
 
-/// What the journal beside it says, once it was kept.
+/// The lines of the journal beside the database that were committed.
 inline std::vector<std::string> kept_lines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   for (const auto& [key, row] : read_journal(journal_beside(path)).kept) lines.push_back(row.line);
@@ -77,7 +77,7 @@ inline void expect_journal_equals(const std::filesystem::path& path) {
   EXPECT_TRUE(read_journal(journal_beside(path)).pending.empty());
 }
 
-/// Every answer in words: participant, place, question, value, response time, when.
+/// Every answer as text: participant, position, question, value, response time, time of day.
 inline std::vector<std::string> answers_of(const std::filesystem::path& path) {
   std::vector<std::string> all;
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());

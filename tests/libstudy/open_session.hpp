@@ -1,5 +1,5 @@
 #pragma once
-/// The one open session of a store, as tests of the store go about it.
+/// Helpers to access the one open session of a store.
 
 #include <stdexcept>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// A study that asks its participants for permission, for tests.
+/// A study that asks its participants for permissions, for tests.
 
 #include <optional>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace study::test {
 
-/// A pilot of two settings with a consent page; asks gaze_kept, data_shared, both or neither.
+/// A pilot of two settings with a consent page that asks gaze_kept, data_shared, both or neither.
 inline Protocol asking_protocol(bool gaze = true, bool sharing = true) {
   std::string text = R"(
 format = 2
@@ -76,13 +76,13 @@ scale = [1, 7]
   return parse_protocol(text, "asking.toml");
 }
 
-/// What somebody says on the consent page; none: the page is not answered.
+/// Answers of a person on the consent page; none: not answered.
 struct Says {
   std::string participant;
   std::optional<int> gaze, sharing;
 };
 
-/// Answers the consent page of a session with what its protocol asks.
+/// Answers a session's consent page with what its protocol asks.
 inline void answer_consent(Store& store, const OpenSession& session, const Says& says) {
   std::vector<KeptAnswer> kept{{"take_part", {score(1), 1}}};
   if (says.gaze) kept.push_back({gaze_question, {score(*says.gaze), 1}});
@@ -90,7 +90,7 @@ inline void answer_consent(Store& store, const OpenSession& session, const Says&
   if (kept.size() > 1) store.answer(session.id, session.units.at(0), 0, kept, true, 900);
 }
 
-/// Adds sessions of these people, answers their consent pages and shows them their first trial.
+/// Adds sessions of these people, answers their consent pages and shows each their first trial.
 inline void add_people(Store& store, const Protocol& protocol, const std::vector<Says>& people,
                        int visit = 1) {
   RunPlan run = run_plan(protocol, {});
@@ -107,7 +107,7 @@ inline void add_people(Store& store, const Protocol& protocol, const std::vector
   }
 }
 
-/// One column of a database as text, one line a row; "~" is empty.
+/// One column of a query's result as text, one line per row; "~" for null.
 inline std::vector<std::string> column(const std::filesystem::path& path, const std::string& sql) {
   const auto database = open_database(path, sqlite::Open::Read, read_schema_steps());
   std::vector<std::string> out;
@@ -115,14 +115,14 @@ inline std::vector<std::string> column(const std::filesystem::path& path, const 
   return out;
 }
 
-/// "P01 gaze 1", ... with ~ where the protocol does not ask.
+/// "P01 gaze 1", ... with ~ for what the protocol does not ask.
 inline std::vector<std::string> permissions_of(const std::filesystem::path& path) {
   return column(path,
                 "SELECT participant || ' ' || what || ' ' || coalesce(granted, '~') FROM permission "
                 "JOIN session USING (session_id) ORDER BY participant, visit, what");
 }
 
-/// P01 and P02 allow all and have one gaze sample each; P01 has a second visit.
+/// P01 and P02 allow everything and have one gaze sample per visit; P01 has a second visit.
 inline std::filesystem::path gaze_of_two(const TemporaryFolder& folder, double x = 0.5) {
   Store store(folder / "study.db", sqlite::Open::Create);
   add_people(store, asking_protocol(), {{"P01", 1, 1}, {"P02", 1, 1}});
@@ -134,7 +134,7 @@ inline std::filesystem::path gaze_of_two(const TemporaryFolder& folder, double x
   return folder / "study.db";
 }
 
-/// Codes, once for each sample.
+/// Participant codes, one for each gaze sample.
 inline std::vector<std::string> gaze_of(const std::filesystem::path& path) {
   return column(path,
                 "SELECT participant FROM gaze JOIN presentation USING (presentation_id) "

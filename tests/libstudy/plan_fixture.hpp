@@ -1,5 +1,5 @@
 #pragma once
-/// What tests of plans share.
+/// Helpers for tests of plans.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ inline study::BlockKind kind_of(const Protocol& protocol, int block) {
   return protocol.blocks.at(static_cast<std::size_t>(block)).kind;
 }
 
-/// The trials of the design alone.
+/// The trials of the design, without practice.
 inline std::vector<PlannedTrial> design_trials(const Protocol& protocol, const Plan& plan) {
   std::vector<PlannedTrial> out;
   for (const auto& trial : plan.trials) {
@@ -39,7 +39,7 @@ inline std::vector<int> order_of(const Plan& plan) {
   return order;
 }
 
-/// chi-square of counts against their mean, in standard deviations from `freedom` degrees.
+/// Chi-square of counts against their mean, standardised: (chi2 - freedom) / sqrt(2 freedom).
 inline double chi_square_z(const std::vector<int>& counts, double freedom, double scale = 1) {
   const double expected = std::accumulate(counts.begin(), counts.end(), 0.0) / double(counts.size());
   double chi2 = 0;

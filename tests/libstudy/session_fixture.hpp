@@ -1,5 +1,5 @@
 #pragma once
-/// Sessions on the virtual clock without pictures, for tests: what they need and who answers.
+/// Sessions on the virtual clock without pictures, for tests, with scripted participants.
 
 #include <cmath>
 #include <filesystem>
@@ -18,7 +18,7 @@
 
 namespace study::test {
 
-/// One stimulus without pictures for all cells; tells which were asked for.
+/// One stimulus without pictures for all cells; records the methods asked for.
 class NullStimuli final : public StimulusSource {
  public:
   explicit NullStimuli(double content_step_s) : stimulus_(content_step_s) {}
@@ -32,7 +32,7 @@ class NullStimuli final : public StimulusSource {
   NullStimulus stimulus_;
 };
 
-/// What a session needs on the virtual clock.
+/// The parts that a session on the virtual clock needs.
 struct Desk {
   explicit Desk(const Protocol& protocol) : stimuli(protocol.content.content_step_s) {}
   SessionParts parts(Participant& participant, Store& store) {
@@ -48,7 +48,7 @@ inline std::unique_ptr<Observer> ptpe_observer() {
   return make_observer("ptpe:a=31,b=0.035", features);
 }
 
-/// A participant of pages told beforehand: question -> answer, everything else 1.
+/// A participant with scripted answers: question -> answer, 1 for every other question.
 class Scripted final : public Participant {
  public:
   std::optional<std::string> simulated() const override { return "scripted"; }
@@ -91,13 +91,13 @@ class Scripted final : public Participant {
     return !decides || decides(offer);
   }
 
-  std::function<bool(Offer)> decides;  ///< none: yes to all
+  std::function<bool(Offer)> decides;  ///< empty: accepts every offer
   std::map<std::string, Answer> says;
   std::vector<std::string> seen;
   std::vector<Occasion> occasions;
 
  private:
-  /// " 0.5"; nothing for no time.
+  /// " 0.5"; empty for 0 s.
   static std::string in_seconds(double seconds) {
     std::ostringstream text;
     if (seconds > 0) text << ' ' << seconds;
@@ -110,7 +110,7 @@ class Scripted final : public Participant {
   }
 };
 
-/// pairs() at one frame rate for all, shown by its own clock, with a rest within each trial; `policy`: its
+/// pairs() at one frame rate for all, shown by its own clock, with a rest within each trial. `policy`: its
 /// on_interruption; `more`: further blocks.
 inline Protocol paced_pairs(const std::string& policy = "", const std::string& more = "") {
   std::string text = pairs_toml + more;
@@ -123,7 +123,7 @@ inline Protocol paced_pairs(const std::string& policy = "", const std::string& m
   return parse_protocol(text, "pairs.toml");
 }
 
-/// One session of a protocol in a database of its own.
+/// One session of a protocol in its own database.
 struct OneSession {
   explicit OneSession(const Protocol& asked) : protocol(asked), desk(asked) {
     store.add_run(run_plan(protocol, {"P01"}));
@@ -150,7 +150,7 @@ struct OneSession {
   Scripted person;
 };
 
-/// Wishes for the first showings of trials: the wish at frame 5 of each.
+/// Makes the wish at frame 5 of each of the first `showings` showings.
 inline SessionHooks wish_at_frame_5(Wish wish, int showings) {
   auto frame = std::make_shared<std::int64_t>(-1);
   auto left = std::make_shared<int>(showings);

@@ -47,7 +47,7 @@ inline RunPlan run_plan(const Protocol& protocol, const std::vector<std::string>
   return run;
 }
 
-/// A task of pairs with a practice block, several questions, words and something personal.
+/// A protocol of pairs with a practice block, several questions, free text and a personal question.
 inline constexpr const char* pairs_toml = R"(
 format = 2
 name = "pairs"
@@ -146,7 +146,7 @@ inline TimingVerdict verdict() {
   return verdict;
 }
 
-/// Frames of 20 ms from start_ns on, with everything known that a display can know.
+/// Frames of 20 ms from start_ns on, with all the facts that a display can report.
 inline std::vector<FrameRecord> frames(std::int64_t start_ns, std::int64_t count) {
   std::vector<FrameRecord> all;
   for (std::int64_t i = 0; i < count; ++i) {
@@ -166,7 +166,7 @@ inline std::vector<FrameRecord> frames(std::int64_t start_ns, std::int64_t count
   return all;
 }
 
-/// Shows what a trial shows, once more: attempt after the showings so far.
+/// Shows a trial's stimuli once more; returns the number of the new attempt.
 inline int show(Store& store, const OpenSession& session, const OpenUnit& unit, std::int64_t count = 40) {
   const std::int64_t start_ns = 1'000'000'000'000;
   const int attempt = unit.attempts + 1;
@@ -183,7 +183,7 @@ inline int show(Store& store, const OpenSession& session, const OpenUnit& unit, 
 inline Answer words(const std::string& text) { return {{}, text}; }
 inline Answer score(int value) { return {value, {}}; }
 
-/// Shows the unit where it is a trial, and answers one question, which ends it.
+/// Shows the unit if it is a trial, and answers one question, which ends it.
 inline void answer_one(Store& store, const OpenSession& session, const OpenUnit& unit,
                        const std::string& question, const Answer& answer) {
   const int attempt = unit.trial ? show(store, session, unit) : 0;
@@ -191,7 +191,7 @@ inline void answer_one(Store& store, const OpenSession& session, const OpenUnit&
   store.answer(session.id, unit, attempt, {&kept, 1}, true, 900);
 }
 
-/// Goes through all that is open of a session of the pilot, every trial with the same score.
+/// Finishes all open units of a pilot's session, every trial with the same score.
 inline void finish_pilot(Store& store, const OpenSession& session, int satisfaction) {
   for (const OpenUnit& unit : session.units) {
     if (unit.trial)

@@ -1,5 +1,5 @@
 #pragma once
-/// The trials of a study as the analyses see them, for tests that look for one.
+/// The trials of a study as the analyses see them.
 
 #include <filesystem>
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace study::test {
 
-/// Of a session.
+/// A trial with its session's participant and observer.
 struct TrialOf {
   std::string participant, observer;
   TaskTrial trial;
 
-  /// To its first question.
+  /// The score of its first question.
   std::optional<int> score() const { return trial.answers.at(0).score; }
 };
 
-/// Every planned trial, shown or not, in the order of read_tasks().
+/// All planned trials, shown or not, in the order of read_tasks().
 inline std::vector<TrialOf> trials_of(const std::filesystem::path& database) {
   std::vector<TrialOf> out;
   for (const TaskProtocol& protocol : read_tasks(database).protocols) {

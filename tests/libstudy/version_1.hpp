@@ -8,8 +8,8 @@
 
 namespace study::test {
 
-/// Participants P01, with every trial answered, and `second`, with one of two trials answered and one cut
-/// short.
+/// Two participants: P01 answered every trial; `second` answered one of two trials, and the other one was
+/// interrupted.
 inline void write_version_1(const std::filesystem::path& path, const std::string& second = "P02") {
   const auto database = open_database(path, sqlite::Open::Create, {read_schema_steps().front()});
   database->execute(
@@ -28,7 +28,7 @@ inline void write_version_1(const std::filesystem::path& path, const std::string
       "INSERT INTO trial VALUES (2, 1, 1, 0, 0, 10, 0, 10, 9, 'answered');"
       "INSERT INTO trial VALUES (3, 2, 0, 0, 1, 10, 0, 10, 11, 'answered');"
       "INSERT INTO trial VALUES (4, 2, 1, 1, 0, 20, 5, 10, 12, 'planned');");
-  // Trial 1 was cut and shown again; the cut of trial 4 ended the session.
+  // Trial 1 was interrupted and shown again; the interruption of trial 4 ended the session.
   const std::string moments = "10, 20, 20.5, 5, 80, 90, 15, 0.5, 1, 2.5";
   database->execute(
       "INSERT INTO presentation VALUES (1, 1, 1, 'interrupted', 't', 5, " +

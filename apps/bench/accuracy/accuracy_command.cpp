@@ -1,4 +1,4 @@
-/// vip-bench accuracy: what a millisecond buys.
+/// vip-bench accuracy: error and time of settings, and the effect of each knob.
 
 #include <omp.h>
 
@@ -41,7 +41,7 @@ struct AccuracyOptions {
   std::vector<std::string> shards;
 };
 
-/// Of "240x135", or "none".
+/// Parses "240x135"; empty for "none".
 std::string kept_size(const std::string& words) {
   if (words == "none") return "";
   const auto size = parse_picture_size(words, "--pictures");
@@ -51,7 +51,7 @@ std::string kept_size(const std::string& words) {
   return size_words(size);
 }
 
-/// The water is measured every 1/30 s, and runs of all rates end with a measurement.
+/// Rounds to 1/30 s, the interval of measurements, so that runs at all rates end with one.
 double whole_samples(double seconds) { return std::round(30 * seconds) / 30; }
 
 SweepPlan plan_of(const AccuracyOptions& options) {
@@ -80,7 +80,7 @@ struct Job {
   std::string key(const SweepCell& cell) const { return key_of(cell, origin.scene_sha256, origin.program); }
 };
 
-/// What times depend on besides the program.
+/// The part of the environment that affects times.
 std::string machine(sim::Backend backend) {
   const std::string device = sim::device_name(backend);
   return fmt::format("{}; {}, {} threads", processor(), device.empty() ? "cpu" : device,
@@ -116,7 +116,7 @@ void run_one(const Job& job, const AccuracyOptions& options) {
   if (!file.keys(job.origin.machine).contains(options.cell)) file.add(run(job, *found));
 }
 
-/// Each cell is kept when it is done: a run that is cut short goes on with the rest.
+/// Stores each finished cell, so that an interrupted run can continue.
 void run_missing(const Job& job, SweepFile& file, const std::vector<SweepCell>& cells) {
   const auto done = file.keys(job.origin.machine);
   std::vector<SweepCell> missing;
@@ -131,7 +131,7 @@ void run_missing(const Job& job, SweepFile& file, const std::vector<SweepCell>& 
   }
 }
 
-/// What is not there, also because another machine ran it, leaves tables and choices smaller.
+/// Reports missing cells, including those that only another machine has run: tables and choices lack them.
 void tell_missing(const Job& job, SweepFile& file) {
   const auto done = file.keys(job.origin.machine);
   const auto there = std::count_if(job.cells.begin(), job.cells.end(),
@@ -153,7 +153,7 @@ void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& option
   if (!options.html.empty()) base::write_file_atomically(options.html, accuracy_page(list, job.plan));
 }
 
-/// The setting that is chosen is run anew.
+/// Chooses a setting; candidates are run again.
 void run_budget(const Job& job, const AccuracyOptions& options) {
   BudgetWish wish{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
                   job.scene.scene.tank_size_m[0]};
@@ -194,7 +194,7 @@ void run_accuracy(const AccuracyOptions& options) {
 }
 
 void merge_shards(const AccuracyOptions& options) {
-  // All are looked at before the first is taken over.
+  // Checks all files before merging the first.
   for (const auto& shard : options.shards) SweepFile(shard, Open::Read);
   SweepFile file(options.database, Open::Create);
   std::int64_t added = 0;
@@ -214,7 +214,7 @@ void add_accuracy_command(CLI::App& app) {
                        ->add_option("--db", options->database,
                                     "Sweep file, made when missing; cells in it are not run again")
                        ->check([](const std::string& path) {
-                         // What is only read may lie where nothing can be written.
+                         // A file that is only read may be in a read-only place.
                          return std::filesystem::is_regular_file(path) ? "" : output_file()(path);
                        });
   command->add_option("--scene", options->scene, "SingleDam, JetImpact or Faucet")->capture_default_str();

@@ -54,7 +54,7 @@ std::string floor_of(const PriceList& prices, SweepError error) {
       floor, convergence(prices, error));
 }
 
-/// Errors that the sweep has.
+/// The errors that the sweep has measured.
 std::vector<SweepError> errors_in(const PriceList& prices) {
   std::vector<SweepError> out;
   for (std::size_t e = 0; e < sweep_error_count; ++e)

@@ -19,7 +19,7 @@ std::string named(const SolverSetting& setting) {
   return sim::method_name(setting.method) + ", " + in_words(setting);
 }
 
-/// Runs a setting from starts that the sweep has not seen.
+/// Runs a setting from starts that the sweep has not used.
 std::vector<StoredCell> run_afresh(const SolverSetting& setting, const std::vector<StoredCell>& cells,
                                    const SweepPlan& plan,
                                    const std::function<StoredCell(const SweepCell&)>& run) {
@@ -38,7 +38,7 @@ std::vector<double> frame_ms(const std::vector<StoredCell>& cells) {
   return out;
 }
 
-/// The sweep with more starts of a setting, which stand behind those it has.
+/// The sweep with additional starts of a setting, placed after its existing ones.
 std::vector<StoredCell> joined(std::vector<StoredCell> cells, const std::vector<StoredCell>& more) {
   const std::string text = to_text(more.front().cell.setting);
   const auto last = std::find_if(cells.rbegin(), cells.rend(), [&](const auto& cell) {
@@ -86,7 +86,7 @@ bool wished(const SolverSetting& setting, const BudgetWish& wish) {
          (!wish.frames_per_s || setting[SolverKnob::Rate] == *wish.frames_per_s);
 }
 
-/// The settings of the list that are wished and have the error.
+/// The settings that meet the wishes and have the error.
 std::vector<SettingResult> candidates(const PriceList& list, const BudgetWish& wish) {
   const auto e = static_cast<std::size_t>(wish.error);
   std::vector<SettingResult> out;

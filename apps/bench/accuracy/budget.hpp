@@ -1,5 +1,5 @@
 #pragma once
-/// The setting of least error whose frames keep a budget of time.
+/// Finds the setting with the smallest error whose frames keep a time budget.
 
 #include <functional>
 #include <optional>
@@ -11,15 +11,16 @@
 
 namespace apps {
 
-/// Milliseconds from "11.1ms". base::Error that names --budget.
+/// Parses milliseconds from "11.1ms". base::Error that names --budget.
 double parse_budget(const std::string& words);
 /// "front", "centre" and so on, in SweepError's order: columns without their unit.
 const std::vector<std::string>& sweep_error_names();
-/// Of one of these names.
+/// `word` must be one of these names.
 SweepError parse_sweep_error(const std::string& word);
 
-/// Settings whose 95th percentile is within the budget, in the order in which to try them: the least error
-/// first; of those whose error's range meets the least one's range, the cheapest. Places in `settings`.
+/// Settings whose 95th percentile is within the budget, as indices in `settings`, in the order in which to
+/// try them: smallest error first, but the cheapest among those whose error range overlaps that of the
+/// smallest.
 std::vector<std::size_t> within_budget(const std::vector<SettingResult>& settings, double budget_ms,
                                        SweepError error);
 
@@ -28,16 +29,16 @@ struct BudgetWish {
   double budget_ms = 0;
   SweepError error = SweepError::Centre;
   double tank_length_m = 0;
-  // Only settings of these, where they are given.
+  // Only settings with these values, if given.
   std::optional<sim::MethodKind> method = {};
   std::optional<std::int64_t> n_star = {};
   std::optional<double> frames_per_s = {};
 };
 
-/// Tries the settings of `cells` that keep the budget: each is run from two fresh starts, and the first that
-/// keeps it again is the choice. Its error is over all starts, its milliseconds are of the fresh ones.
-/// `said` hears of each that is tried and does not. base::Error where none keeps the budget: what comes
-/// nearest, and what it lacks.
+/// Tries the settings of `cells` that keep the budget: runs each from two fresh starts and chooses the first
+/// that keeps it again. Its error is over all starts, its milliseconds over the fresh ones. Calls `said` for
+/// each setting that fails when tried. base::Error if none keeps the budget, with the nearest one and how
+/// much it misses.
 SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
                            const BudgetWish& wish, const std::function<StoredCell(const SweepCell&)>& run,
                            const std::function<void(const std::string&)>& said);

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* mend = "name a folder of this machine that its users may write to: VIP_LOCK_DIR";
 
-/// The same for every user, so it goes by the folder's rights and not by the user's.
+/// The same folder for every user, so it depends on the folder's permissions and not on the user's.
 fs::path lock_folder() {
   if (const char* named = std::getenv("VIP_LOCK_DIR"); named && *named) return named;
   for (const fs::path folder : {"/run/lock", "/tmp"}) {
@@ -38,21 +38,21 @@ fs::path lock_folder() {
   throw base::Error(path.string(), step + ": " + std::strerror(errno), mend);
 }
 
-/// Reading is enough for flock(). In a folder such as /tmp the kernel may refuse O_CREAT on a file of another
-/// user (fs.protected_regular), so that a file which is there is opened without it.
+/// flock() needs only read access. In a folder such as /tmp the kernel may refuse O_CREAT on another user's
+/// file (fs.protected_regular), so an existing file is opened without it.
 int open_lock(const fs::path& path) {
   constexpr int flags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
   int fd = ::open(path.c_str(), flags);
   if (fd < 0 && errno == ENOENT) {
     fd = ::open(path.c_str(), flags | O_CREAT | O_EXCL, 0644);
-    if (fd >= 0) ::fchmod(fd, 0644);  // whatever the umask is
+    if (fd >= 0) ::fchmod(fd, 0644);  // independent of the umask
     if (fd < 0 && errno == EEXIST) fd = ::open(path.c_str(), flags);
   }
   if (fd < 0) fail(path, "cannot be opened");
   return fd;
 }
 
-/// As flock(): 0, or -1 with errno.
+/// Returns 0, or -1 with errno, as flock().
 int lock(int fd, int how) {
   int done = ::flock(fd, how);
   while (done != 0 && errno == EINTR) done = ::flock(fd, how);

@@ -14,7 +14,7 @@ namespace apps {
 
 struct PictureKeeper::State {
   const sim::Scene& scene;
-  std::optional<sim::GlContext> context;  // outlives what is drawn in it
+  std::optional<sim::GlContext> context;  // must outlive the objects drawn in it
   Onlooker eye;
 
   State(const sim::Scene& of, const PictureSize& size, bool context_is_current)

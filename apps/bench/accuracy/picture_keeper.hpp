@@ -1,5 +1,5 @@
 #pragma once
-/// Takes the pictures that a cell of a sweep keeps.
+/// Takes the pictures that a cell of a sweep stores.
 
 #include <memory>
 
@@ -10,17 +10,17 @@
 
 namespace apps {
 
-/// Draws the water apart from what is timed and keeps the picture.
+/// Draws and stores pictures of the water outside the timing.
 class PictureKeeper {
  public:
-  /// In the current context if there is one, which must outlive this, else in one of its own.
+  /// Uses the current context if there is one, which must outlive this object, or else its own.
   PictureKeeper(const sim::Scene& scene, const PictureSize& size, bool context_is_current);
   ~PictureKeeper();
 
   /// At the middle of the picture.
   double pixels_per_degree() const;
-  /// `frame` is the run's. With `masks` those of the gaze's fovea (the tuned half angle) and of what is most
-  /// salient beyond it; this sorts the particles.
+  /// `frame` is the run's. With `masks`, also stores the masks of the gaze's fovea (the tuned half angle) and
+  /// of the most salient part outside it; this sorts the particles.
   KeptPicture keep(sim::Simulation& fluid, int frame, double frame_dt_s, bool masks);
 
  private:

@@ -26,7 +26,7 @@ std::unique_ptr<sim::Simulation> start(const SweepCell& cell, const sim::Scene& 
   return sim::make_simulation(scene, options);
 }
 
-/// Of the samples: pairs of neighbours.
+/// True for two of three samples: pairs of successive ones.
 bool keeps_picture(std::size_t sample) { return sample % 3 != 2; }
 
 std::unique_ptr<RenderTimer> pictures(const SweepCell& cell, const sim::Scene& scene) {
@@ -104,7 +104,7 @@ CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend ba
     if (keeper && keeps_picture(sample)) {
       const bool masks = is_reference(cell.setting) && sample % 3 == 0;
       out.pictures.push_back(keeper->keep(*fluid, frame, 1.0 / rate, masks));
-      // GL's buffers of the timed picture come back into use before the next timed frame.
+      // The timed picture's GL buffers are used again before the next timed frame.
       if (pictures_of_cell) pictures_of_cell->draw(*fluid);
     }
     const auto report = fluid->report();

@@ -10,7 +10,7 @@ namespace apps {
 
 WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water);
 
-/// base::Error when the water breaks. The state is measured between frames, which is not timed.
+/// base::Error if the simulation becomes unstable. Measurements are made between frames, outside the timing.
 CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend);
 
 }  // namespace apps

@@ -37,7 +37,7 @@ std::string polygon(svg::Point at, const std::vector<svg::Point>& corners, const
   return svg::path(moves + "Z", attributes);
 }
 
-/// A shape for each method, so that no colour is needed.
+/// A shape per method, so that colour is not needed.
 std::string mark(sim::MethodKind method, const char* colour, svg::Point at) {
   const std::string fill = svg::attribute("fill", colour) + svg::attribute("stroke", "#fff");
   switch (method) {
@@ -63,11 +63,11 @@ struct Diagram {
     return {left_px + x.share(ms) * plot_width_px, bottom_px - y.share(value) * plot_height_px};
   }
   svg::Point at(const SettingResult& one) const { return at(one.ms_mean, one.errors[error].mean); }
-  /// Of a seed that has no error at all the axis' end.
+  /// Clamps to the axis, for seeds without any error.
   double within(double value) const { return std::clamp(value, y.low, y.high); }
 };
 
-/// Those that can be drawn.
+/// Settings that can be drawn.
 std::vector<SettingResult> drawable(const PriceList& list, std::size_t error) {
   std::vector<SettingResult> out;
   for (const auto& one : list.settings)

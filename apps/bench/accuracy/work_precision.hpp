@@ -1,5 +1,5 @@
 #pragma once
-/// A work-precision diagram: error over milliseconds, both logarithmic, a line a method.
+/// A work-precision diagram: error over milliseconds, both logarithmic, one line per method.
 
 #include <optional>
 
@@ -8,9 +8,9 @@
 
 namespace apps {
 
-/// Each setting is a mark of its method's shape, with a stroke from its least seed to its largest; a line
-/// joins those that no other of the method beats, a ring marks those that none of any method beats. What has
-/// no error cannot be drawn on the axis and is left out; none where nothing is left.
+/// Each setting is a mark with its method's shape, with a stroke from its smallest to its largest seed. A
+/// line joins the settings that no other of the method beats; a ring marks those that none of any method
+/// beats. Settings without an error above 0 cannot be drawn and are left out; none if no setting is left.
 std::optional<svg::Picture> work_precision(const PriceList& list, SweepError error);
 
 }  // namespace apps

@@ -45,7 +45,7 @@ XrAction make_action(const SessionHandle& session, XrActionSet set, XrActionType
   return action;
 }
 
-/// False: the runtime does not know this kind of device.
+/// False if the runtime does not know this kind of device.
 bool suggest_profile(const SessionHandle& session, const std::string& profile,
                      const std::vector<Binding>& bindings) {
   std::vector<XrActionSuggestedBinding> suggested;
@@ -83,7 +83,7 @@ Actions::Actions(const SessionHandle& session, RuntimeClock& clock, bool eye_gaz
 Actions::~Actions() {
   gaze_space_.reset();
   aims_.clear();
-  session_.destroy<PFN_xrDestroyActionSet>("xrDestroyActionSet", set_);  // takes its actions with it
+  session_.destroy<PFN_xrDestroyActionSet>("xrDestroyActionSet", set_);  // also destroys its actions
 }
 
 void Actions::make_actions(bool eye_gaze) {
@@ -99,7 +99,7 @@ void Actions::suggest(bool eye_gaze) const {
   struct Device {
     std::string profile, select, menu, stick;
   };
-  // The simple controller is every runtime's; it has no stick.
+  // Every runtime has the simple controller, which has no stick.
   for (const Device& device : std::vector<Device>{
            {"khr/simple_controller", "/input/select/click", "/input/menu/click", ""},
            {"oculus/touch_controller", "/input/trigger/value", "", "/input/thumbstick"},
@@ -113,7 +113,7 @@ void Actions::suggest(bool eye_gaze) const {
       if (!device.menu.empty()) bindings.push_back({menu_, hand + device.menu});
       if (!device.stick.empty()) bindings.push_back({stick_, hand + device.stick});
     }
-    if (device.menu.empty()) {  // its hands differ; the left one's menu may be the system's
+    if (device.menu.empty()) {  // hands have different buttons, and the system may own the left menu
       bindings.push_back({menu_, "/user/hand/left/input/y/click"});
       bindings.push_back({menu_, "/user/hand/right/input/b/click"});
     }

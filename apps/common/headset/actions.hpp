@@ -1,5 +1,5 @@
 #pragma once
-/// OpenXR's actions behind HeadsetInput.
+/// Reads HeadsetInput through OpenXR's actions.
 
 #include <memory>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace apps {
 
-/// Made once a session. The order is the specification's: actions, suggested bindings, attachment, spaces;
-/// then they are synchronised while the session is focused.
+/// Made once per session, in the specification's order: actions, suggested bindings, attachment, spaces.
+/// Afterwards the actions are synchronised while the session is focused.
 class Actions {
  public:
   Actions(const SessionHandle& session, RuntimeClock& clock, bool eye_gaze);
@@ -19,7 +19,7 @@ class Actions {
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
 
-  /// Gaze and hands at `time` in `world`; call while focused.
+  /// Reads gaze and hands at `time` in `world`; call while focused.
   void read(const Space& world, XrTime time, HeadsetInput& out);
 
  private:

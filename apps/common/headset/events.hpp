@@ -1,5 +1,5 @@
 #pragma once
-/// What happens to a headset's session.
+/// States and events of a headset's session.
 
 #include <cstdint>
 
@@ -10,12 +10,12 @@ enum class HeadsetState {
   Unknown,
   Idle,
   Ready,         ///< frames begin
-  Synchronized,  ///< frames run, nothing is seen
-  Visible,       ///< seen, and without the controllers and the eyes
+  Synchronized,  ///< frames run, but nothing is seen
+  Visible,       ///< pictures are seen, but there is no input from controllers and eyes
   Focused,
-  Stopping,     ///< frames end: the headset was taken off, or the session leaves
-  LossPending,  ///< the session must be made anew
-  Exiting,      ///< the session must end, and none must follow by itself
+  Stopping,     ///< frames end: the headset was taken off, or the session is about to end
+  LossPending,  ///< the session must be made again
+  Exiting,      ///< the session must end, and no new one may start by itself
 };
 
 /// "focused".
@@ -24,17 +24,17 @@ const char* name_of(HeadsetState state);
 struct HeadsetEvent {
   enum class Kind {
     State,        ///< `state` was entered
-    RuntimeEnds,  ///< the whole runtime goes away at `at_ns`
-    Refresh,      ///< the display went from one rate to another, Hz
-    Recentred,    ///< the world's origin is another from `at_ns` on
-    EventsLost,   ///< some events never came
+    RuntimeEnds,  ///< the whole runtime shuts down at `at_ns`
+    Refresh,      ///< the display changed its rate, Hz
+    Recentred,    ///< the world's origin moves at `at_ns`
+    EventsLost,   ///< some events were dropped
     Lost,         ///< the session is gone; no slots come until MadeAnew
-    MadeAnew,     ///< another session stands in for one that was lost
+    MadeAnew,     ///< a new session replaces a lost one
   };
   Kind kind = Kind::State;
   HeadsetState state = HeadsetState::Unknown;
   double from_hz = 0, to_hz = 0;
-  std::int64_t at_ns = -1;  ///< the session's clock; -1: not told
+  std::int64_t at_ns = -1;  ///< the session's clock; -1: not reported
 };
 
 }  // namespace apps

@@ -18,13 +18,13 @@ namespace {
 
 constexpr std::chrono::seconds most_idle{30};
 constexpr std::chrono::milliseconds slot_wait{100};
-/// A picture that is on for so long was left behind by a program that hangs: it fades away, so that nobody
-/// stays in a world that stands still.
+/// A picture shown for longer than this was left by a program that hangs: it fades out, so that the person is
+/// not left in a frozen world.
 constexpr double most_held_s = 2, fade_s = 0.3;
 
 std::int64_t system_ns() { return study::RealClock().now_ns(); }
 
-/// Of the display; 0 before any slot.
+/// Refresh period of the display; 0 before any slot.
 std::int64_t period_of(const LoopFacts& facts) {
   const auto hz = facts.rate.measured_hz;
   return hz ? std::llround(1e9 / *hz) : facts.last.period_ns;
@@ -91,7 +91,7 @@ void FrameLoop::make_session() {
   changed_.notify_all();
 }
 
-/// The runtime lost the session.
+/// Replaces a session that the runtime lost.
 void FrameLoop::make_anew() {
   std::unique_ptr<HeadsetSession> lost;
   const SessionFacts before = session();
@@ -101,7 +101,7 @@ void FrameLoop::make_anew() {
     running_ = false;
     facts_.state = HeadsetState::LossPending;
     facts_.rate = {};
-    facts_.last.runtime_time = facts_.last.index = 0;  // the next session counts anew
+    facts_.last.runtime_time = facts_.last.index = 0;  // the next session counts from 0
     ++facts_.world;
     moves_ns_.clear();
     black_out(study::CutCause::SessionLost);
@@ -115,7 +115,7 @@ void FrameLoop::make_anew() {
   events_.push_back({.kind = HeadsetEvent::Kind::MadeAnew});
 }
 
-/// The thread's. The session lives and ends on it, in its context.
+/// Runs on the thread. The session lives and ends on it, in its context.
 void FrameLoop::run() {
   try {
     const study::RealTimeScheduling real_time;
@@ -144,7 +144,7 @@ void FrameLoop::draw_slots() {
   }
 }
 
-/// False where frames must not come now.
+/// Returns false if no frames must be run now.
 bool FrameLoop::turn_slot() {
   try {
     if (poll()) {
@@ -161,14 +161,14 @@ bool FrameLoop::turn_slot() {
   return false;
 }
 
-/// Whether frames must come.
+/// Returns true if frames must be run.
 bool FrameLoop::poll() {
   const std::vector<HeadsetEvent> events = session_->poll();
   const std::lock_guard held(mutex_);
   events_.insert(events_.end(), events.begin(), events.end());
   for (const HeadsetEvent& event : events) {
     using Kind = HeadsetEvent::Kind;
-    // Among events that never came may have been a move; at_ns of -1 is before all slots.
+    // Lost events may have included a move; at_ns of -1 is before all slots.
     if (event.kind == Kind::Recentred || event.kind == Kind::EventsLost) moves_ns_.push_back(event.at_ns);
     runtime_ends_ |= event.kind == Kind::RuntimeEnds;
   }
@@ -176,26 +176,26 @@ bool FrameLoop::poll() {
   return running_ = session_->running();
 }
 
-/// A move of the world's origin comes into force with the first slot that is seen at its time or later.
+/// A move of the world's origin takes effect at the first slot whose predicted time has reached it.
 void FrameLoop::follow_world(std::int64_t predicted_ns) {
   if (std::erase_if(moves_ns_, [&](std::int64_t at_ns) { return at_ns <= predicted_ns; }) == 0) return;
   ++facts_.world;
   black_out(study::CutCause::Recentred);
 }
 
-/// What was placed in another world would jump.
+/// Pictures and pages placed in the old world would jump.
 void FrameLoop::black_out(study::CutCause cause) {
   if (picture_turns_.shows() || picture_turns_.waits()) note_cut(unseen_, cause);
   picture_turns_.drop();
   page_turns_.drop();
 }
 
-/// What the slot shows.
+/// Records the slot and returns its layers.
 HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   const HeadsetSlot& slot = record.slot;
   const RateMeter& meter = session_->meter();
   HeadsetRate rate{facts_.rate.told_hz, meter.hz()};
-  // The runtime's word may lie before the rate has settled.
+  // The rate that the runtime reports may be wrong before the measured rate has settled.
   if (rate.measured_hz && !facts_.rate.measured_hz) rate = session_->rate();
   HeadsetLayers out;
   {
@@ -261,7 +261,7 @@ void FrameLoop::turn() {
   if (drive_ == SlotDrive::Caller) {
     const auto since = std::chrono::steady_clock::now();
     while (!turn_slot()) {
-      if (!events_.empty()) return;  // one may say that no slot comes any more
+      if (!events_.empty()) return;  // an event may explain why no slot comes any more
       if (std::chrono::steady_clock::now() - since > most_idle)
         throw base::Error("headset", "nobody wears it", "put it on; vip-study resume continues a session");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -270,7 +270,7 @@ void FrameLoop::turn() {
   }
   std::unique_lock held(mutex_);
   changed_.wait_for(held, slot_wait, [this, before = slots_] { return slots_ > before || error_; });
-  // Events that came before say better what happened.
+  // Events that came before explain the error better.
   if (error_ && events_.empty()) std::rethrow_exception(error_);
 }
 
@@ -313,7 +313,7 @@ EyeViews FrameLoop::ask_views(AskViews ask, std::int64_t at_ns) {
   try {
     return (session_.get()->*ask)(last.runtime_time + at_ns - last.predicted_ns);
   } catch (const HeadsetLost&) {
-    return {};  // the next slot tells
+    return {};  // the next slot reports the loss
   }
 }
 
@@ -340,7 +340,7 @@ HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
     const std::lock_guard held(mutex_);
     if (picture_turns_.shows() && !picture_turns_.waits()) return came_on_;
     if (picture_turns_.waits() && running_ && !error_) continue;
-    // It is not seen: the headset is off, or all went black.
+    // The picture is not seen: the headset is off, or it was dropped.
     picture_turns_.clear();
     if (!running_) note_cut(unseen_, study::CutCause::TakenOff);
     if (running_ && !unseen_) unseen_ = study::CutCause::NotDrawn;

@@ -1,5 +1,5 @@
 #pragma once
-/// The slots of a headset, one after the other, whatever the program does meanwhile.
+/// Runs the slots of a headset one after the other, independently of the rest of the program.
 
 #include <condition_variable>
 #include <cstdint>
@@ -21,32 +21,32 @@
 
 namespace apps {
 
-/// Who turns the slots. Caller: whoever asks for the next one, for runtimes whose time stands still
-/// meanwhile. Thread: one that does nothing else, so that none is missed while the program computes, writes
-/// and waits.
+/// Who runs the slots. Caller: the code that asks for the next one, for runtimes whose time stops in between.
+/// Thread: a thread that does nothing else, so that no slot is missed while the program computes, writes and
+/// waits.
 enum class SlotDrive { Caller, Thread };
 
-/// What a picture was drawn from.
+/// The eye views that a picture was drawn from.
 struct HeldViews {
   EyeViews views;
   bool in_head = false;  ///< see HeadsetLayers
 };
 
-/// What a slot brought in.
+/// What one slot delivered.
 struct HeadsetRecord {
   HeadsetSlot slot;
   EyeViews views;  ///< where the eyes will be at slot.predicted_ns
   HeadsetInput input;
-  int world = 0;                     ///< of its poses: another one where the origin moved
-  std::optional<HeldViews> shown{};  ///< the picture that is on; none: black
+  int world = 0;                     ///< number of the world of its poses; changes when the origin moves
+  std::optional<HeldViews> shown{};  ///< the picture on show; none: black
 };
 
-/// How the session stood when its last slot was over.
+/// The session's state at the end of its last slot.
 struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
   HeadsetRate rate;
-  bool trusted = false;  ///< times convert, go forward and keep to their grid
-  int world = 0;         ///< counts the moves of its origin
+  bool trusted = false;  ///< times convert, go forward and stay on their grid
+  int world = 0;         ///< number of moves of the world's origin
   HeadsetSlot last;
   EyeViews views;  ///< of the last slot
 };
@@ -57,62 +57,61 @@ struct SeenNow {
   EyeViews eyes;         ///< where the eyes were then
 };
 
-/// Owns the session. Its pictures are drawn on the thread that made the loop, where its context is current;
-/// all calls but those of an onlooker come from there. They throw what went wrong with the session:
-/// base::Error, HeadsetLost.
+/// Owns the session. Draw its pictures on the thread that made the loop, where its context is current; all
+/// calls except the onlooker's come from that thread. They throw the session's errors: base::Error,
+/// HeadsetLost.
 ///
-/// A session that the runtime loses is made anew, as SessionMaker has it: events tell so, and no slots come
-/// meanwhile. What is on when it is lost, or when the world's origin moves, gives way to black until
-/// something else is shown.
+/// If the runtime loses the session, SessionMaker makes a new one: events report this, and no slots come in
+/// between. When the session is lost or the world's origin moves, the picture on show turns black until
+/// another one is shown.
 class FrameLoop {
  public:
-  /// Of records that nobody takes; a minute's and more.
+  /// Limit of records that were not taken; more than a minute's worth.
   static constexpr std::size_t most_records = 20000;
 
-  /// Connects.
+  /// Connects to the headset.
   FrameLoop(const HeadsetChoice& choice, SlotDrive drive);
   ~FrameLoop();
   FrameLoop(const FrameLoop&) = delete;
   FrameLoop& operator=(const FrameLoop&) = delete;
 
-  /// The newest one's.
+  /// Facts of the newest session.
   SessionFacts session() const;
   LoopFacts facts() const;
-  /// When what is posted now would be seen: the next slot, on the session's clock. While no slots come it
-  /// goes on with the system's clock.
+  /// When a picture posted now would be seen: the next slot's time on the session's clock. If a thread runs
+  /// the slots and none come, it advances with the system's clock.
   std::int64_t next_ns() const;
-  /// The same, and going on between two slots with the system's clock where a thread turns them.
+  /// The same; if a thread runs the slots, it also advances with the system's clock between two slots.
   std::int64_t now_ns() const;
-  /// Turns a slot; with a thread, waits for one, or a tenth of a second where none comes.
+  /// Runs a slot; with a thread, waits for one, a tenth of a second at most.
   void turn();
-  /// Of the display, ns; 0 before any slot.
+  /// Refresh period of the display, ns; 0 before any slot.
   std::int64_t period_ns() const;
-  /// Where the eyes will be, on the session's clock; in the world, or in the head's own space. Not valid
-  /// while no slots come for want of a session.
+  /// Where the eyes will be, at a time of the session's clock; in the world, or in the head's own space. Not
+  /// valid while there is no session.
   EyeViews views_at(std::int64_t at_ns);
   EyeViews views_in_head(std::int64_t at_ns);
 
-  /// To draw both eyes' picture into, as HeadsetLayers has it; ask again for each picture.
+  /// The canvas for both eyes' picture, arranged as in HeadsetLayers; call it again for each picture.
   const sim::Offscreen& canvas();
-  /// Shows the canvas as it was drawn, from the slot that is the nearest to due_ns or the next one after
-  /// that, until another picture is shown or clear(). Waits until it is on; returns its slot.
+  /// Shows the canvas from the slot nearest to due_ns, or the next slot after that, until another picture is
+  /// shown or clear() is called. Waits until the picture is on; returns its slot.
   HeadsetSlot show(const HeldViews& from, std::int64_t due_ns);
   void clear();
-  /// The same of the page.
+  /// The same for the page.
   const sim::Offscreen& page();
   void show_page(const HeadsetPage& place);
   void hide_page();
 
-  /// What happened, and what the slots that are over brought in, since the last call; of records that nobody
-  /// takes the oldest go.
+  /// Events, and records of finished slots, since the last call; too many records drop the oldest.
   std::vector<HeadsetEvent> take_events();
   std::vector<HeadsetRecord> take_records();
-  /// Why, since the last call, a slot in which a picture was on could not be seen; none: all were.
+  /// Why a slot with a picture could not be seen since the last call; none if all were seen.
   std::optional<study::CutCause> take_unseen();
 
-  /// For one who looks on from another thread: a context that shares the pictures, current nowhere.
+  /// Makes a context for an onlooker on another thread; it shares the pictures and is not current.
   sim::GlContext admit_onlooker();
-  /// The onlooker's. Its pictures stay as they are until the next call or look_away().
+  /// For the onlooker. The pictures stay unchanged until its next call or look_away().
   SeenNow look();
   void look_away();
 
@@ -138,31 +137,31 @@ class FrameLoop {
   std::optional<sim::GlContext> slots_gl_;  ///< of the thread; shares objects with gl_
   SlotDrive drive_;
   std::optional<SessionMaker> maker_;
-  std::mutex asking_;  ///< of session_, where another thread asks: taken before mutex_, and to replace it
-  std::unique_ptr<HeadsetSession> session_;  ///< none: it was lost, and the next one is being made
+  std::mutex asking_;                        ///< guards session_ against other threads; lock it before mutex_
+  std::unique_ptr<HeadsetSession> session_;  ///< null: it was lost, and the next one is being made
   PictureSize page_size_;                    ///< 0: no pages
-  std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< as PictureTurns counts them
+  std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< indexed by PictureTurns
   bool onlooker_ = false;
 
-  mutable std::mutex mutex_;  ///< for everything below
+  mutable std::mutex mutex_;  ///< guards everything below
   std::condition_variable changed_;
   PictureTurns picture_turns_, page_turns_;
   HeldViews shown_from_, waiting_from_;
   HeadsetPage shown_place_, waiting_place_;
-  std::int64_t due_ns_ = 0;                ///< of the picture that waits
-  HeadsetSlot came_on_;                    ///< of the picture that is shown
+  std::int64_t due_ns_ = 0;                ///< of the waiting picture
+  HeadsetSlot came_on_;                    ///< slot in which the shown picture came on
   std::optional<study::CutCause> unseen_;  ///< why a picture that was on was not seen
   bool running_ = false, stopping_ = false;
   bool doubted_ = false;       ///< times repeated or left their grid
   bool runtime_ends_ = false;  ///< no session can be made anew
   SessionFacts told_;
-  std::vector<std::int64_t> moves_ns_;  ///< when the world's origin will move
+  std::vector<std::int64_t> moves_ns_;  ///< times at which the world's origin will move
   LoopFacts facts_;
-  std::int64_t slots_ = 0;           ///< that were begun
-  std::int64_t last_system_ns_ = 0;  ///< when the last of them was
+  std::int64_t slots_ = 0;           ///< number of slots begun
+  std::int64_t last_system_ns_ = 0;  ///< when the last slot began, on the system's clock
   std::vector<HeadsetEvent> events_;
   std::vector<HeadsetRecord> records_;
-  std::exception_ptr error_;  ///< of the thread
+  std::exception_ptr error_;  ///< thrown on the thread
   std::thread thread_;
 };
 

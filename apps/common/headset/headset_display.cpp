@@ -18,10 +18,10 @@ namespace apps {
 namespace {
 
 constexpr std::chrono::seconds most_idle_waiting{30};
-/// Slots in which a headset that is worn should have been ready, and a rate settled.
+/// Number of slots within which a worn headset should be ready, and a rate should settle.
 constexpr int most_slots = 3000;
 
-/// A rate is kept when it is met within this share.
+/// Relative tolerance of a rate.
 constexpr double same_rate = 0.02;
 bool near_rate(double a_hz, double b_hz) { return std::abs(a_hz - b_hz) <= same_rate * b_hz; }
 
@@ -36,15 +36,15 @@ HeadsetChoice with_rate(HeadsetChoice choice, const study::HeadsetRules& rules) 
   return choice;
 }
 
-/// Why a picture is not seen in a state that is not focused.
+/// Why a picture is not seen in a state other than focused.
 study::CutCause cause_of(HeadsetState state) {
   if (state == HeadsetState::LossPending) return study::CutCause::SessionLost;
   return state == HeadsetState::Visible ? study::CutCause::Focus : study::CutCause::TakenOff;
 }
 
-/// The same eyes with a margin around what they see.
+/// Widens both eyes' fields of view by a margin.
 void widen(EyeViews& views, double margin_deg) {
-  constexpr float most = 1.55f;  // a plane ends before a right angle
+  constexpr float most = 1.55f;  // rad; a plane cannot reach a right angle
   const auto margin = static_cast<float>(margin_deg * std::numbers::pi / 180);
   for (EyeView& eye : views) {
     eye.fov.left = std::max(eye.fov.left - margin, -most);
@@ -62,17 +62,17 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
         "put it on, and close what lies before this program");
   await([this] { return (refresh_hz_ = met_hz().value_or(0)) > 0; }, rate_problem(rules), rate_mend);
   if (drive == SlotDrive::Caller) check_time_stands_still();
-  spoilt_.reset();  // a rate that was asked for has come
+  spoilt_.reset();  // a requested rate has come
 }
 
-/// The rate once it has settled, where the rules have it, as schedules count it.
+/// The settled rate as schedules count it, if it meets the rules; none otherwise.
 std::optional<double> HeadsetDisplay::met_hz() const {
   const auto [told_hz, measured_hz] = facts().rate;
   if (!measured_hz || (rules_.refresh_hz && !near_rate(*measured_hz, *rules_.refresh_hz))) return {};
   return study::nominal_refresh(*measured_hz, told_hz.value_or(0));
 }
 
-/// A session that was made anew counts once its rate is known: trials are compiled for it.
+/// Accepts a new session once its rate is known, because trials are compiled for a rate.
 void HeadsetDisplay::settle_new_session() {
   const auto hz = met_hz();
   if (!hz) {
@@ -86,7 +86,7 @@ void HeadsetDisplay::settle_new_session() {
   note_cut(spoilt_, study::CutCause::Rate);
 }
 
-/// A runtime whose time goes on by itself would drop slots while the program computes.
+/// Refuses a runtime whose time runs on by itself: it would drop slots while the program computes.
 void HeadsetDisplay::check_time_stands_still() {
   turn();
   const std::int64_t before_ns = facts().last.predicted_ns;
@@ -127,7 +127,7 @@ std::int64_t HeadsetDisplay::lead_ns() const {
   return slots_by_thread_ ? draw_ns_ + draw_ns_ / 2 + loop_.period_ns() : 0;
 }
 
-/// What happened to the session.
+/// Processes the session's events.
 void HeadsetDisplay::heed() {
   using Kind = HeadsetEvent::Kind;
   for (const HeadsetEvent& event : loop_.take_events()) {
@@ -143,7 +143,7 @@ void HeadsetDisplay::heed() {
     if (event.kind == Kind::Lost && playing_) note_cut(spoilt_, study::CutCause::SessionLost);
     if (event.kind == Kind::Refresh && !new_session_) {
       refresh_hz_ = study::nominal_refresh(event.to_hz);
-      // Also between pictures: the trial that has begun goes by the intervals of the rate before.
+      // Also between pictures: the current trial uses the intervals of the old rate.
       note_cut(spoilt_, study::CutCause::Rate);
     }
     if (state && event.state != HeadsetState::Focused && playing_) note_cut(spoilt_, cause_of(event.state));
@@ -186,10 +186,10 @@ std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
   return take_records();
 }
 
-/// Both eyes into the canvas, as they will be at at_ns; none where the runtime does not know.
+/// Draws both eyes into the canvas, as they will be at at_ns; none if their poses are unknown.
 std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   const auto begun = std::chrono::steady_clock::now();
-  const sim::Offscreen& canvas = loop_.canvas();  // first: should the world move now, it never comes on
+  const sim::Offscreen& canvas = loop_.canvas();  // taken first: if the world moves now, it is never shown
   EyeViews views = loop_.views_at(at_ns);
   if (!can_be_shown(views)) return {};
   widen(views, rules_.hold_margin_deg);
@@ -209,7 +209,7 @@ void HeadsetDisplay::render(study::Stimulus& stimulus) {
   pending_ = &stimulus;
   if (playing_) return;
   if (!focused()) note_cut(spoilt_, cause_of(new_session_ ? HeadsetState::LossPending : facts().state));
-  // The first picture of a presentation takes longest, and tells how early the others must begin.
+  // The first picture of a presentation takes longest, and its time tells how early the others must start.
   if (slots_by_thread_) draw(loop_.next_ns());
 }
 
@@ -233,7 +233,7 @@ study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Cl
 
 void HeadsetDisplay::hold(std::int64_t until_ns, study::Clock&) {
   if (rules_.hold != study::Hold::State || !playing_) return;
-  // What cannot be drawn in time would hold up the next picture.
+  // A picture that cannot be drawn in time would delay the next one.
   while (!spoilt_ && loop_.next_ns() < until_ns - lead_ns() - loop_.period_ns() / 2) {
     const std::int64_t at_ns = loop_.next_ns() + draw_ns_;
     const auto from = draw(at_ns);

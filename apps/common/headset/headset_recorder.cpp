@@ -15,7 +15,7 @@ Triple wide(const std::array<float, 3>& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-/// Right, up and back parts of a direction of the room as this pose has them.
+/// Right, up and back components of a room direction in this pose's frame.
 Triple into(const HeadsetPose& pose, const Triple& direction) {
   const auto axes = axes_of(pose);
   Triple out{};
@@ -25,7 +25,7 @@ Triple into(const HeadsetPose& pose, const Triple& direction) {
   return out;
 }
 
-/// Where a direction of the room meets an eye's picture; none where it is behind the eye.
+/// Where a room direction meets an eye's picture; none if it is behind the eye.
 std::optional<study::GazePoint> point_of(const EyeView& eye, const Triple& direction) {
   const Triple d = into(eye.pose, direction);
   if (!eye.pose.turn_valid || !(d[2] < 0)) return {};
@@ -52,7 +52,7 @@ study::EyeFacts facts_of(const EyeView& eye) {
           degrees(eye.fov.right), degrees(eye.fov.up), degrees(eye.fov.down)};
 }
 
-/// The pose whose direction is followed; none: it is not known.
+/// The pose whose direction is followed; null if unknown.
 const HeadsetPose* followed(const HeadsetRecord& record, bool eyes) {
   const bool seen = record.input.gaze && record.input.gaze->ray.turn_valid;
   if (eyes) return seen ? &record.input.gaze->ray : nullptr;
@@ -78,7 +78,7 @@ study::GazeSample gaze_of(const HeadsetRecord& record, study::GazeOrigin origin)
   sample.tracked = pose->turn_tracked;
   study::GazeRay& ray = sample.ray.emplace();
   ray.direction = into(head, direction);
-  // As the picture was drawn: it may have a margin, and the head has moved since.
+  // In the picture as it was drawn: it may have a margin, and the head has moved since.
   if (record.shown)
     sample.point = point_of(record.shown->views[0], record.shown->in_head ? ray.direction : direction);
   if (pose->place_valid && head.place_valid)
@@ -114,7 +114,7 @@ void HeadsetRecorder::add_gaze(const HeadsetRecord& record) {
     last_told_ns_ = *sample.device_ns;
     lag_ns_ = std::max(lag_ns_, record.slot.predicted_ns - last_told_ns_);
   } else if (!sample.valid) {
-    // Also where the runtime goes on telling the last sample's time: the eyes are lost.
+    // Also if the runtime still reports the last sample's time: the eyes are lost.
     sample.device_ns.reset();
     sample.sampled_ns = std::max(record.slot.predicted_ns - lag_ns_, last_ns_);
   }

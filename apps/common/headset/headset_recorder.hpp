@@ -1,5 +1,5 @@
 #pragma once
-/// A headset as a session records it, and as its fluid follows it.
+/// A headset as a source of gaze and slots for a session's record and for the fluid.
 
 #include <array>
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace apps {
 
-/// Takes the records of the display while a presentation is on; outlived by it. As a source of gaze it is the
-/// eye tracker, or the direction of the head where that stands in. Of a tracker nothing is used before
-/// start() and after stop(), which enclose what the participant allows: the fluid then follows the head.
+/// Takes the records of the display while a presentation is on; the display must outlive it. The gaze is that
+/// of the eye tracker, or the head's direction as a substitute. Tracker data are used only between start()
+/// and stop(), which enclose what the participant allows; otherwise the fluid follows the head.
 ///
-/// A sample is taken for each time that the runtime tells, and for each slot where it tells none. Those of
-/// eyes that are lost, for which no time is told, lie before their slots by the greatest age that was told,
-/// and never before the last sample: so they stand in order with those that follow.
+/// Makes one sample for each sample time that the runtime reports, and one per slot if it reports none.
+/// Samples of lost eyes have no reported time: they lie before their slots by the largest lag reported so
+/// far, but never before the last sample, so that samples stay in order.
 class HeadsetRecorder final : public study::GazeSource, public study::SlotSource {
  public:
   /// origin: Tracker, for a display that asked for one, or Head.
@@ -38,7 +38,7 @@ class HeadsetRecorder final : public study::GazeSource, public study::SlotSource
   std::optional<double> ipd_mm() override;
   std::vector<std::string> take_news() override { return display_.take_news(); }
 
-  /// Where one looks, or the head, in the newest slot that is over, in the scene's metres; none: not known.
+  /// Ray of the gaze, or of the head, in the newest finished slot, in the scene's metres; none if unknown.
   std::optional<RoomRay> ray();
 
  private:
@@ -51,15 +51,15 @@ class HeadsetRecorder final : public study::GazeSource, public study::SlotSource
   std::vector<study::GazeSample> gaze_;
   std::vector<study::SlotRecord> slots_;
   std::optional<HeadsetRecord> newest_;
-  std::int64_t last_told_ns_ = 0, lag_ns_ = 0;  ///< the last time that was told; most before its slot
-  std::int64_t last_ns_ = 0;                    ///< of the last sample
+  std::int64_t last_told_ns_ = 0, lag_ns_ = 0;  ///< last reported time; largest lag before its slot
+  std::int64_t last_ns_ = 0;                    ///< time of the last sample
 };
 
-/// One sample as a slot brought it in, in the head's frame; nothing of it is valid where the eyes, or the
-/// head's turn, are not. Its point is on the left eye's picture that was on; none in black.
+/// The gaze sample of a slot, in the head's frame; not valid if the eyes, or the head's orientation, are not.
+/// Its point is on the left eye's picture that was on; none in black.
 study::GazeSample gaze_of(const HeadsetRecord& record, study::GazeOrigin origin);
 
-/// Between the eyes' places, mm; none where they are not valid.
+/// Distance between the eyes, mm; none if they are not valid.
 std::optional<double> ipd_of(const EyeViews& views);
 
 }  // namespace apps

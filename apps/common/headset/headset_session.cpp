@@ -16,10 +16,10 @@ namespace apps {
 
 namespace {
 
-/// The one that is chosen, and its name.
+/// The chosen mode and its name.
 constexpr XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 constexpr const char* blend_name = "opaque";
-/// Share of a rate within which a measured one is the one that an event told.
+/// Relative difference below which a measured rate equals the rate of an event.
 constexpr double told_well = 0.04;
 
 HeadsetSystem read_opaque_system(const XrConnection& xr) {
@@ -40,7 +40,7 @@ std::vector<PictureSize> picture_sizes(const HeadsetSystem& system, const Headse
 
 }  // namespace
 
-/// In the order in which they are made; they go in the opposite one.
+/// Members in order of construction; they are destroyed in reverse order.
 struct HeadsetSession::Parts {
   Parts(const sim::GlContext& gl, const HeadsetChoice& choice)
       : patience(static_cast<std::int64_t>(choice.patience_s * 1e9)),
@@ -66,11 +66,11 @@ struct HeadsetSession::Parts {
   RefreshControl refresh;
   Space world, head;
   Actions actions;
-  std::vector<PictureSize> sizes;                      ///< left, right and, where one is asked for, the page
-  std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< the same
+  std::vector<PictureSize> sizes;                      ///< left, right and, if asked for, the page
+  std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< in the same order
   RateMeter meter;
-  double told_hz = 0;                    ///< by the last event; 0: none came
-  std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event told
+  double told_hz = 0;                    ///< from the last event; 0: none came
+  std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event reported
   std::int64_t next_index = 0;
   WatchedThread watched;
 
@@ -87,7 +87,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
   const auto answer = std::make_shared<Answer>();
   answer->frame.type = XR_TYPE_FRAME_STATE;
   const auto call = xr.function<PFN_xrWaitFrame>("xrWaitFrame");
-  // The runtime touches no GL context in this call, so that it may come from another thread.
+  // The runtime does not touch a GL context in this call, so it may run on another thread.
   const bool back = watched.run(
       [answer, call, handle = session.get()] {
         XrFrameWaitInfo info{};

@@ -11,12 +11,12 @@ namespace apps {
 
 namespace {
 
-/// Near where the lenses of headsets put their picture.
+/// About the distance at which the lenses of headsets focus.
 constexpr double distance_m = 2;
 constexpr double size_deg = 1, dot_share = 0.2;
-/// Nobody reads a page in less.
+/// If check() takes longer, another page was shown and read.
 constexpr std::int64_t most_checking_ns = 200'000'000;
-constexpr int most_turns = 200;  ///< for a head whose pose is known
+constexpr int most_turns = 200;  ///< to find a head with a known pose
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
@@ -91,7 +91,7 @@ void HeadsetTargets::draw() {
 std::vector<study::TargetSample> HeadsetTargets::look_at(double azimuth_deg, double elevation_deg,
                                                          double settle_s, double sample_s,
                                                          const std::function<void()>& check) {
-  // Anew where it was not seen: another page stood before it, the headset was off, or the world moved.
+  // Repeats if the target was not seen: another page was in front, the headset was off, or the world moved.
   for (;;) {
     if (world_ != display_.facts().world && display_.focused()) begin();
     const HeadsetPage page = target_page(middle_, azimuth_deg, elevation_deg);
@@ -120,7 +120,7 @@ std::optional<std::vector<study::TargetSample>> HeadsetTargets::look_once(
     for (const HeadsetRecord& record : display_.take_for_record()) {
       if (record.slot.predicted_ns < from_ns) continue;
       const auto told_ns = record.input.gaze ? record.input.gaze->sampled_ns : std::nullopt;
-      if (told_ns && *told_ns <= last_ns) continue;  // the same one again
+      if (told_ns && *told_ns <= last_ns) continue;  // the same sample again
       last_ns = told_ns.value_or(last_ns);
       samples.push_back(sample_of(record, page.pose));
     }

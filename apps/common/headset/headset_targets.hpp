@@ -1,14 +1,14 @@
 #pragma once
 #include <optional>
 #include <vector>
-/// Targets that stand in the world of a headset, on its page, for the validation of its eye tracker.
+/// Targets for the validation of a headset's eye tracker, shown on its page at fixed places of the world.
 
 #include "apps/common/headset/headset_display.hpp"
 #include "libstudy/display/gaze_targets.hpp"
 
 namespace apps {
 
-/// Needs a display with a page and an eye tracker, and outlives neither.
+/// Needs a display with a page and an eye tracker, which must outlive it.
 class HeadsetTargets final : public study::GazeTargets {
  public:
   explicit HeadsetTargets(HeadsetDisplay& display) : display_(display) {}
@@ -20,17 +20,17 @@ class HeadsetTargets final : public study::GazeTargets {
 
  private:
   void draw();
-  /// None where it was not seen all the time.
+  /// None if the target was not visible all the time.
   std::optional<std::vector<study::TargetSample>> look_once(const HeadsetPage& page, double settle_s,
                                                             double sample_s,
                                                             const std::function<void()>& check);
 
   HeadsetDisplay& display_;
-  HeadsetPose middle_;  ///< the head as it was at begin(), or when the world's origin had moved
-  int world_ = 0;       ///< of it
+  HeadsetPose middle_;  ///< the head's pose at begin(), or after the world's origin moved
+  int world_ = 0;       ///< number of the world of middle_
 };
 
-/// Where a target at these angles from straight ahead of a head stands, facing it.
+/// The page for a target at these angles from straight ahead of a head, facing the head.
 HeadsetPage target_page(const HeadsetPose& head, double azimuth_deg, double elevation_deg);
 
 }  // namespace apps

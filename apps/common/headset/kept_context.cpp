@@ -1,4 +1,4 @@
-// Before the headers of GL.
+// Must precede the headers of GL.
 #include <epoxy/gl.h>
 #include <epoxy/glx.h>
 
@@ -28,7 +28,7 @@ void KeptContext::take_back_egl() const {
     eglMakeCurrent(eglGetCurrentDisplay(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
-/// False where no context is current.
+/// False if no context is current.
 bool KeptContext::take_back_glx() const {
   const auto context = static_cast<GLXContext>(x_context_);
   if (glXGetCurrentContext() == context && glXGetCurrentDrawable() == x_drawable_) return context;
@@ -44,7 +44,7 @@ KeptContext::~KeptContext() {
   if (!on_x_) take_back_egl();
   const bool current = on_x_ ? take_back_glx() : context_ != EGL_NO_CONTEXT;
   if (!current) return;
-  // Bounded: a context that is lost tells so for ever.
+  // Bounded, because a lost context returns errors forever.
   for (int i = 0; i < 64 && glGetError() != GL_NO_ERROR; ++i) {
   }
 }

@@ -1,15 +1,15 @@
 #pragma once
-/// The GL context of the calling thread, as it was before a call into the runtime.
+/// Restores the calling thread's GL context after a call into the runtime.
 
 #include "apps/common/headset/openxr.hpp"
 
 namespace apps {
 
-/// Runtimes make contexts of their own current and leave GL errors behind. When this object goes, the context
-/// that was current when it came is current again and its errors are forgotten.
+/// Runtimes make their own contexts current and leave GL errors behind. The destructor makes the context
+/// current that was current at construction, and clears its errors.
 class KeptContext {
  public:
-  /// on_x: a context of GLX, else of EGL.
+  /// on_x: the context is GLX's; otherwise EGL's.
   explicit KeptContext(bool on_x);
   ~KeptContext();
   KeptContext(const KeptContext&) = delete;

@@ -55,7 +55,7 @@ void Lifecycle::enter(XrSessionState state, std::vector<HeadsetEvent>& out) {
     running_ = false;
     session_.call<PFN_xrEndSession>("xrEndSession", session_.get());
   }
-  // The session is destroyed next; no frame must be waited for any more.
+  // The session is destroyed next, so no frame may be waited for.
   if (state_ == HeadsetState::LossPending || state_ == HeadsetState::Exiting) running_ = false;
   out.push_back({.kind = HeadsetEvent::Kind::State, .state = state_});
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// The states of a session, as the runtime's events tell them.
+/// The states of a session, from the runtime's events.
 
 #include <string>
 #include <vector>
@@ -10,17 +10,16 @@
 
 namespace apps {
 
-/// Begins and ends the session where the specification has it so.
+/// Begins and ends the session at the states that the specification names.
 class Lifecycle {
  public:
   Lifecycle(const SessionHandle& session, RuntimeClock& clock);
   HeadsetState state() const { return state_; }
-  /// Between READY and STOPPING: frames must come.
+  /// True between READY and STOPPING: frames must be run.
   bool running() const { return running_; }
-  /// Takes in all events that wait; those that are not known are ignored. Not between begin and end of a
-  /// frame.
+  /// Processes all waiting events and ignores unknown ones. Do not call it between begin and end of a frame.
   std::vector<HeadsetEvent> poll();
-  /// Asks for STOPPING, and EXITING behind it. Only while running.
+  /// Asks for STOPPING and then EXITING. Does nothing unless running.
   void request_exit() const;
 
  private:

@@ -23,7 +23,8 @@ std::string name_of(XrResult result) {
   }
 }
 
-/// $VIP_OPENXR_LOADER, else the system's. Stays open: runtimes leave threads behind.
+/// Opens $VIP_OPENXR_LOADER, or else the system's loader. It stays open, because runtimes leave threads
+/// behind.
 PFN_xrGetInstanceProcAddr open_loader() {
   const char* other = std::getenv("VIP_OPENXR_LOADER");
   const std::string library = other && *other ? other : "libopenxr_loader.so.1";

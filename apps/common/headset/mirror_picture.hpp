@@ -1,15 +1,15 @@
 #pragma once
-/// What the middle of a headset's left eye sees, as one picture: for those who look on.
+/// The middle of a headset's left eye's view as one picture, for onlookers.
 
 #include "apps/common/headset/frame_loop.hpp"
 #include "libsim/render/gl_program.hpp"
 
 namespace apps {
 
-/// Needs a context that shares the headset's pictures, always.
+/// Needs a current context that shares the headset's pictures, at every call.
 class MirrorPicture {
  public:
-  /// Degrees from edge to edge: a page is legible then, and the edges of most fields of view are cut.
+  /// Degrees from edge to edge: a page is legible, and the edges of most fields of view are cut off.
   static constexpr double field_deg = 60;
   static constexpr int side_px = 720;
 
@@ -18,9 +18,9 @@ class MirrorPicture {
   MirrorPicture(const MirrorPicture&) = delete;
   MirrorPicture& operator=(const MirrorPicture&) = delete;
 
-  /// with_picture: else what a stimulus drew is black. False, and nothing is drawn, where all is.
+  /// with_picture: if false, the stimulus is black. Returns false and draws nothing if all is black.
   bool draw(const SeenNow& seen, bool with_picture) const;
-  /// Waits until it is drawn.
+  /// Waits until the drawing is done.
   sim::Image read() const { return drawn_.read(); }
 
  private:

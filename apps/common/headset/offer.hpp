@@ -1,5 +1,5 @@
 #pragma once
-/// What a headset and its runtime offer, as far as a study cares.
+/// The properties of a headset and its runtime that matter to a study.
 
 #include <cstdint>
 #include <optional>
@@ -15,26 +15,26 @@ struct EyePicture {
 };
 
 struct HeadsetOffer {
-  std::string runtime, runtime_version;  ///< the version as the runtime counts it
+  std::string runtime, runtime_version;  ///< the version in the runtime's own numbering
   std::string headset;
   std::vector<std::string> extensions;  ///< ascending
   std::vector<EyePicture> eyes;         ///< two
-  bool opaque = false;                  ///< the world can be hidden behind the picture
-  bool position = false;                ///< the head's place is followed, not its direction alone
+  bool opaque = false;                  ///< the picture can hide the real world
+  bool position = false;                ///< the head's position is tracked, not only its direction
   bool eye_gaze = false;                ///< an eye tracker answers through XR_EXT_eye_gaze_interaction
-  bool time_converts = false;           ///< the runtime's times are told on the system's clock
-  /// What only a session knows; nothing where none could be made, then `no_session` says why.
+  bool time_converts = false;           ///< the runtime's times convert to the system's clock
+  /// Known only in a session; none if no session could be made, and `no_session` says why.
   struct InSession {
-    std::vector<double> refresh_hz;     ///< ascending; empty: the runtime does not say
-    std::optional<double> refresh_now;  ///< Hz; read only where several rates are listed
+    std::vector<double> refresh_hz;     ///< ascending; empty: not reported
+    std::optional<double> refresh_now;  ///< Hz; read only if several rates are listed
     std::vector<std::int64_t> formats;  ///< GL internal formats in the runtime's order of preference
   };
   std::optional<InSession> session;
   std::string no_session;
 };
 
-/// Connects, asks and leaves. base::Error: no loader, no runtime, no headset, no pair of views, and calls
-/// that fail.
+/// Connects, asks and disconnects. base::Error: no loader, no runtime, no headset, no pair of views, and
+/// failed calls.
 HeadsetOffer read_headset_offer();
 
 }  // namespace apps

@@ -1,6 +1,6 @@
 #pragma once
-/// OpenXR's declarations with what this project uses of them: OpenGL through EGL, and functions by pointer,
-/// since the loader is opened at run time.
+/// OpenXR's declarations for OpenGL through EGL, with functions by pointer, because the loader is opened at
+/// run time.
 
 // epoxy first: it replaces the headers of EGL and GL.
 #include <epoxy/egl.h>

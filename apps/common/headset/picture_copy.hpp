@@ -1,5 +1,5 @@
 #pragma once
-/// Our pictures, which hold sRGB values, into images of whatever format a runtime offers.
+/// Copies pictures with sRGB values into images of any format that a runtime offers.
 
 #include <cstdint>
 #include <string>
@@ -10,38 +10,38 @@
 
 namespace apps {
 
-/// The formats of a list that can take a picture, the best first: 8-bit sRGB, then linear ones fine enough
-/// for all 256 levels, then the others. Depths are left out.
+/// The formats that can take a picture, best first: 8-bit sRGB, then linear formats fine enough for all 256
+/// levels, then the others. Depth formats are left out.
 std::vector<std::int64_t> picture_formats(const std::vector<std::int64_t>& offered);
-/// Each of the 256 levels of an sRGB picture arrives within one.
+/// True if each of the 256 levels of an sRGB picture arrives within one level.
 bool keeps_levels(std::int64_t format);
-/// "GL_SRGB8_ALPHA8" or the number in hex.
+/// "GL_SRGB8_ALPHA8", or the number in hex.
 std::string gl_format_name(std::int64_t format);
 
-/// What of a picture is copied, and how bright.
+/// The part of a picture to copy, and its brightness.
 struct PicturePart {
-  int x_px = 0;     ///< where it begins, from the left
-  float light = 1;  ///< its levels are multiplied by it, [0, 1]
+  int x_px = 0;     ///< left edge of the part
+  float light = 1;  ///< factor of its levels, [0, 1]
 };
 struct CopyTarget {
   unsigned texture = 0;
-  unsigned framebuffer = 0;  ///< that has the texture as its colour
+  unsigned framebuffer = 0;  ///< has the texture as its colour attachment
   int width_px = 0, height_px = 0;
 };
 
-/// Copies pictures into textures of one format. Needs a current context always.
+/// Copies pictures into textures of one format. Needs a current context at every call.
 class PictureCopy {
  public:
   explicit PictureCopy(std::int64_t format);
   ~PictureCopy();
   PictureCopy(const PictureCopy&) = delete;
   PictureCopy& operator=(const PictureCopy&) = delete;
-  /// As many pixels as the target has. Values arrive as they are when the image is shown as what its format
+  /// Copies as many pixels as the target has. Levels arrive unchanged if the image is shown as its format
   /// says.
   void copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const;
 
  private:
-  bool same_words_;  ///< the format keeps the pictures' own words, so that nothing need be drawn
+  bool same_words_;  ///< the format stores pixels as the pictures do, so that copying needs no drawing
   sim::GlProgram program_;
   unsigned vertices_ = 0;
 };

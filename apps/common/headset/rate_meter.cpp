@@ -11,17 +11,17 @@ namespace {
 
 constexpr int first_steps = 8;
 constexpr std::size_t window = 16;
-constexpr double multiple = 0.2;  // periods beside a whole number of them
+constexpr double multiple = 0.2;  // largest deviation from a whole number of periods
 constexpr double most = 0.7;
-constexpr double same_rate_share = 0.04;  // share of a period within which two measures are of one rate
+constexpr double same_rate_share = 0.04;  // relative difference of two measures of one rate
 constexpr double on_grid = 0.1;           // periods
 
 double whole_periods(std::int64_t step_ns, double period_ns) {
   return std::max(1.0, std::round(static_cast<double>(step_ns) / period_ns));
 }
 
-/// The shortest step of which most others are whole multiples, as far as jitter lets them: where many slots
-/// are left out the usual step holds several periods.
+/// The shortest step of which most others are whole multiples, within jitter: if many slots are left out, the
+/// usual step has several periods.
 std::int64_t typical_step(std::vector<std::int64_t> steps_ns) {
   std::sort(steps_ns.begin(), steps_ns.end());
   for (const std::int64_t candidate_ns : steps_ns) {
@@ -62,8 +62,8 @@ std::optional<RateChange> RateMeter::settle() {
   const double period_ns = period_of_latest();
   if (period_ns_ != 0) {
     if (same(period_ns, period_ns_)) return {};
-    // Old and new steps are mixed: the new rate is told when it has settled. What they seemed to be beside
-    // the old one says nothing.
+    // Old and new steps are mixed, so the new rate is reported once it has settled. Counts relative to the
+    // old rate are meaningless.
     for (const Step& step : latest_) {
       dropped_ -= step.dropped;
       off_grid_ -= step.off_grid;

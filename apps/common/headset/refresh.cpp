@@ -28,7 +28,7 @@ std::optional<double> RefreshControl::told_hz() const {
 }
 
 void RefreshControl::request(double hz) const {
-  // Listed as 32-bit numbers: 71.928 of a file is their nearest.
+  // Rates are listed as 32-bit floats, so 71.928 from a file is compared with a tolerance.
   const auto found =
       std::find_if(rates_.begin(), rates_.end(), [&](double rate) { return std::abs(rate - hz) < 0.01; });
   if (found == rates_.end()) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The display's refresh rate, as far as XR_FB_display_refresh_rate tells and changes it.
+/// Reads and changes the display's refresh rate through XR_FB_display_refresh_rate.
 
 #include <optional>
 #include <vector>
@@ -11,12 +11,11 @@ namespace apps {
 class RefreshControl {
  public:
   explicit RefreshControl(const SessionHandle& session);
-  /// Hz, ascending; empty: the runtime does not say.
+  /// Hz, ascending; empty: not reported.
   const std::vector<double>& rates() const { return rates_; }
-  /// The present rate. Only where several rates are listed: some runtimes answer with a rate that they do not
-  /// have while they list one.
+  /// The current rate. None unless several rates are listed: some runtimes that list one rate report another.
   std::optional<double> told_hz() const;
-  /// Asks for a listed rate; the display takes it later, if at all. base::Error for a rate that is not
+  /// Asks for a listed rate; the display may take it later, or never. base::Error for a rate that is not
   /// listed.
   void request(double hz) const;
 

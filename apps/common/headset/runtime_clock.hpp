@@ -1,5 +1,5 @@
 #pragma once
-/// The runtime's times on the session's clock.
+/// Converts the runtime's times to the session's clock.
 
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace apps {
 
-/// Nanoseconds of CLOCK_MONOTONIC, by XR_KHR_convert_timespec_time. Where that is not offered, the relation
-/// between the clocks is guessed once: the first time asked for is now, or earliest_ns where that is later.
+/// Nanoseconds of CLOCK_MONOTONIC, by XR_KHR_convert_timespec_time. If this is not offered, the offset
+/// between the clocks is guessed once: the first converted time is now, or earliest_ns if that is later.
 class RuntimeClock {
  public:
   explicit RuntimeClock(const XrConnection& xr, std::int64_t earliest_ns = 0);

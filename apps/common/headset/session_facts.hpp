@@ -1,5 +1,5 @@
 #pragma once
-/// What of a session must stay as it was when another one stands in for it.
+/// Facts of a session, some of which must not change when a new session replaces a lost one.
 
 #include <string>
 
@@ -7,17 +7,17 @@
 
 namespace apps {
 
-/// What a session is; another one may stand in for one that is lost.
+/// Facts of one session.
 struct SessionFacts {
   std::string description;  ///< headset, picture and format
   HeadsetNames names;
   bool times_convert = false, eye_gaze = false;
-  PictureSize picture;  ///< both eyes beside each other
+  PictureSize picture;  ///< size of both eyes' pictures side by side
 };
 
 SessionFacts facts_of(const HeadsetSession& session);
 
-/// Throws base::Error where a loop and its program cannot go on with the one that stands in.
+/// Throws base::Error if a loop and its program cannot go on with the new session.
 void require_alike(const SessionFacts& before, const SessionFacts& after);
 
 }  // namespace apps

@@ -1,4 +1,4 @@
-// epoxy first, and X with OpenXR in this file alone: its macros are everywhere.
+// epoxy first. X is included with OpenXR only in this file, because X's macros clash with other code.
 #include <epoxy/gl.h>
 #include <epoxy/glx.h>
 #define XR_USE_PLATFORM_XLIB
@@ -17,11 +17,11 @@ namespace {
 
 constexpr XrPosef no_offset{{0, 0, 0, 1}, {0, 0, 0}};
 
-// Views and spaces tell validity by the same bits.
+// Views and spaces use the same validity bits.
 static_assert(XR_SPACE_LOCATION_POSITION_TRACKED_BIT == XR_VIEW_STATE_POSITION_TRACKED_BIT);
 static_assert(XR_SPACE_LOCATION_ORIENTATION_VALID_BIT == XR_VIEW_STATE_ORIENTATION_VALID_BIT);
 
-/// A session must not be made before these were asked for.
+/// The specification requires this query before a session is made.
 void check_graphics(const XrConnection& xr, XrSystemId system) {
   XrGraphicsRequirementsOpenGLKHR needs{};
   needs.type = XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR;
@@ -119,7 +119,7 @@ HeadsetPose pose_of(const XrPosef& pose, XrFlags64 flags) {
   out.turn_valid = flags & XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
   out.place_tracked = flags & XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
   out.turn_tracked = flags & XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
-  // What is not valid may hold anything.
+  // Invalid parts may hold any values.
   if (out.place_valid) out.place_m = {pose.position.x, pose.position.y, pose.position.z};
   if (out.turn_valid)
     out.turn = {pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w};

@@ -1,5 +1,5 @@
 #pragma once
-/// OpenXR's session on a GL context, and calls into it that leave the caller's GL as it was.
+/// OpenXR's session on a GL context, and calls into it that preserve the caller's GL context.
 
 #include <string>
 #include <vector>
@@ -11,11 +11,11 @@
 
 namespace apps {
 
-/// Destroyed with the object, after everything that was made of it.
+/// The destructor destroys the session; everything made from it must be destroyed before.
 class SessionHandle {
  public:
-  /// base::Error when the runtime does not take such contexts or this one. `gl` is current on the calling
-  /// thread and outlives the session.
+  /// base::Error if the runtime does not take contexts of this kind, or this one. `gl` is current on the
+  /// calling thread and outlives the session.
   SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl);
   ~SessionHandle();
   SessionHandle(const SessionHandle&) = delete;
@@ -24,29 +24,30 @@ class SessionHandle {
   XrSession get() const { return session_; }
   const XrConnection& xr() const { return xr_; }
 
-  /// call<PFN_xrEndSession>("xrEndSession", session): base::Error for a failure; returns the success.
+  /// call<PFN_xrEndSession>("xrEndSession", session): base::Error for a failure; returns the success code.
   template <class F, class... Arguments>
   XrResult call(const char* name, Arguments... arguments) const {
     const XrResult result = attempt<F>(name, arguments...);
     check_xr(result, name);
     return result;
   }
-  /// The same, and failures are returned too.
+  /// The same, but also returns failures.
   template <class F, class... Arguments>
   XrResult attempt(const char* name, Arguments... arguments) const {
     const F function = xr_.function<F>(name);
     const KeptContext kept(on_x_);
     return function(arguments...);
   }
-  /// Destroys what was made of the session, unless the session was left behind.
+  /// Destroys an object made from the session, unless the session was left behind.
   template <class F, class Handle>
   void destroy(const char* name, Handle handle) const {
     if (handle != XR_NULL_HANDLE && !left_behind_) attempt<F>(name, handle);
   }
-  /// A call never came back: nothing more of the session may be touched. It stays until the process ends.
+  /// For a call that never returned: nothing of the session may be touched any more. It stays until the
+  /// process ends.
   void leave_behind() { left_behind_ = true; }
 
-  /// GL internal formats of pictures in the runtime's order of preference.
+  /// GL internal formats for pictures, in the runtime's order of preference.
   std::vector<std::int64_t> formats() const;
 
  private:
@@ -68,7 +69,7 @@ class Space {
   Space& operator=(Space&&) = delete;
 
   XrSpace get() const { return space_; }
-  /// Its pose in `base`; `next` is chained to the answer.
+  /// Its pose in `base`; `next` is chained to the result structure.
   HeadsetPose locate(const Space& base, XrTime time, void* next = nullptr) const;
 
  private:
@@ -76,7 +77,7 @@ class Space {
   XrSpace space_ = XR_NULL_HANDLE;
 };
 
-/// Between OpenXR's poses and ours.
+/// Conversions between OpenXR's poses and ours.
 HeadsetPose pose_of(const XrPosef& pose, XrFlags64 flags);
 XrPosef pose_of(const HeadsetPose& pose);
 

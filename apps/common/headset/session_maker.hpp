@@ -1,5 +1,5 @@
 #pragma once
-/// Sessions in a headset, one after the other: another one where the runtime lost the last.
+/// Makes a headset's first session, and new ones when the runtime loses it.
 
 #include <memory>
 
@@ -12,12 +12,12 @@ class SessionMaker {
   /// In all. A runtime that loses this many would lose the next one, too.
   static constexpr int most_sessions = 3;
 
-  /// gl: as HeadsetSession takes it. Makes none yet.
+  /// gl: as in HeadsetSession. Makes no session yet.
   SessionMaker(const sim::GlContext& gl, const HeadsetChoice& choice) : gl_(gl), choice_(choice) {}
 
-  /// The first session, at once or not at all. Later another one, for one that was lost and is destroyed:
-  /// that is tried again and again for as long as the choice's patience, for the headset may be gone for a
-  /// moment. base::Error when none comes, or too many were lost. earliest_ns: see HeadsetChoice.
+  /// Makes the first session, with one attempt. Later calls make a new session after the lost one was
+  /// destroyed: they retry for the choice's patience, because the headset may be gone only for a moment.
+  /// base::Error if none can be made, or too many were lost. earliest_ns: see HeadsetChoice.
   std::unique_ptr<HeadsetSession> make(std::int64_t earliest_ns = 0);
 
  private:

@@ -64,7 +64,7 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
   wait.timeout = std::chrono::nanoseconds(image_wait).count();
   const auto deadline = std::chrono::steady_clock::now() + limit;
   do {
-    // A success may still say that the image is not free yet.
+    // XR_TIMEOUT_EXPIRED is a success code: the image is not free yet.
     if (session_.call<PFN_xrWaitSwapchainImage>("xrWaitSwapchainImage", swapchain_, &wait) !=
         XR_TIMEOUT_EXPIRED)
       return index;
@@ -100,7 +100,7 @@ std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& ses
     } catch (const HeadsetLost&) {
       throw;
     } catch (const base::Error&) {
-      if (format == formats.back()) throw;  // what is listed is not always there
+      if (format == formats.back()) throw;  // a listed format may not work
     }
   }
   return {};

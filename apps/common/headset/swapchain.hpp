@@ -1,5 +1,5 @@
 #pragma once
-/// The runtime's images of one picture.
+/// A runtime's swapchain for one picture.
 
 #include <chrono>
 #include <memory>
@@ -11,20 +11,20 @@
 
 namespace apps {
 
-/// Destroyed with the object; needs the session's context then.
+/// The destructor destroys the swapchain and needs the session's context.
 class Swapchain {
  public:
-  /// base::Error when the runtime does not make such images, or OpenGL cannot draw into them.
+  /// base::Error if the runtime does not make such images, or OpenGL cannot draw into them.
   Swapchain(const SessionHandle& session, std::int64_t format, int width_px, int height_px);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
   std::int64_t format() const { return format_; }
-  /// Copies a part of a picture, of the image's size, into the next image and hands that over. base::Error
-  /// when the runtime holds all images for longer than `limit`.
+  /// Copies a part of a picture, of the image's size, into the next image and releases that to the runtime.
+  /// base::Error if the runtime holds all images for longer than `limit`.
   void write(const sim::Offscreen& picture, const PicturePart& part, std::chrono::nanoseconds limit);
-  /// The whole picture, for a layer.
+  /// The whole image, for a layer.
   XrSwapchainSubImage image() const;
 
  private:
@@ -40,8 +40,8 @@ class Swapchain {
   std::unique_ptr<PictureCopy> copy_;
 };
 
-/// Swapchains of the best offered format that can really be made, one a size; they all have the same.
-/// base::Error when there is none.
+/// Makes one swapchain per size, all of the best offered format that can really be made. base::Error if there
+/// is none.
 std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& session,
                                                         const std::vector<PictureSize>& sizes);
 

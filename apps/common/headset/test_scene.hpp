@@ -1,5 +1,5 @@
 #pragma once
-/// A scene that shows whether a headset shows what it should.
+/// A scene for checking that a headset displays correctly.
 
 #include <array>
 
@@ -14,23 +14,23 @@ struct TestDisc {
   float radius_m;
   std::array<float, 3> paint;  ///< sRGB, [0, 1]
 };
-/// At .5, 1 and 2 m, each four degrees wide: red left, green in the middle, blue right.
+/// At 0.5, 1 and 2 m, each four degrees wide: red left, green in the middle, blue right.
 const std::array<TestDisc, 3>& test_discs();
 
-/// An upright strip of 256 greys, level 0 on the left.
+/// An upright strip of 256 greys, level 0 at the left.
 struct TestRamp {
   float left_m = -0.6f, right_m = 0.6f, down_m = -0.6f, up_m = -0.3f, z_m = -1.5f;
 };
 
-/// The discs, the ramp, and a yellow line at eye level that is infinitely far. Needs a current context.
+/// The discs, the ramp, and an infinitely distant yellow line at eye level. Needs a current context.
 class TestScene {
  public:
   TestScene();
   ~TestScene();
   TestScene(const TestScene&) = delete;
   TestScene& operator=(const TestScene&) = delete;
-  /// As the eye sees it, into a part of a framebuffer that begins at x_px and has the eye's size; sRGB
-  /// values.
+  /// Draws the eye's view, with sRGB values, into the part of a framebuffer that starts at x_px and has the
+  /// eye's size.
   void draw(const EyeView& eye, unsigned framebuffer, int x_px) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Where a headset's eyes and rays are: plain values, for those who know nothing of OpenXR.
+/// Poses and fields of view of a headset's eyes, as plain values without OpenXR.
 
 #include <array>
 
@@ -7,24 +7,24 @@
 
 namespace apps {
 
-/// A place and a turn in the headset's world: x right, y up, -z ahead, metres; the origin is where the head
-/// was when the runtime fixed it (OpenXR's LOCAL space).
+/// Position and orientation in the headset's world: x right, y up, -z ahead, metres; the origin is the head's
+/// position when the runtime fixed it (OpenXR's LOCAL space).
 struct HeadsetPose {
   std::array<float, 3> place_m{};
   std::array<float, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
   bool place_valid = false, turn_valid = false;
-  /// Valid and not tracked is a guess of the runtime: sub-nominal.
+  /// Valid but not tracked: the runtime's guess, sub-nominal.
   bool place_tracked = false, turn_tracked = false;
 
   bool valid() const { return place_valid && turn_valid; }
 };
 
-/// Angles from straight ahead, rad; left and down are negative as a rule.
+/// Angles from straight ahead, rad; left and down are usually negative.
 struct FieldOfView {
   float left = 0, right = 0, up = 0, down = 0;
 };
 
-/// What one eye sees from.
+/// Pose, field of view and picture size of one eye.
 struct EyeView {
   HeadsetPose pose;
   FieldOfView fov;
@@ -34,16 +34,16 @@ struct EyeView {
 /// Left and right.
 using EyeViews = std::array<EyeView, 2>;
 
-/// Both poses are valid: what they are drawn from can be shown.
+/// True if both poses are valid, so that a picture drawn from them can be shown.
 bool can_be_shown(const EyeViews& views);
 
-/// Right, up and back of a pose as unit vectors, one behind the other.
+/// The right, up and back unit vectors of a pose, concatenated.
 std::array<float, 9> axes_of(const HeadsetPose& pose);
 /// The direction in which a pose looks, a unit vector.
 std::array<float, 3> direction_of(const HeadsetPose& pose);
 
-/// An eye as stimuli take it, whose picture begins at x_px of the canvas. world_scale: metres of the room for
-/// a metre of the scene.
+/// Converts an eye's view for stimuli; its picture starts at x_px of the canvas. world_scale: metres of the
+/// room per metre of the scene.
 study::EyeView study_view(const EyeView& eye, int x_px, double world_scale = 1);
 
 }  // namespace apps

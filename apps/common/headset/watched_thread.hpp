@@ -1,5 +1,5 @@
 #pragma once
-/// Calls that may never come back.
+/// Runs calls that may never return.
 
 #include <chrono>
 #include <functional>
@@ -7,17 +7,17 @@
 
 namespace apps {
 
-/// Runs calls on a thread of its own while the caller waits for them, up to a limit.
+/// Runs calls on its own thread while the caller waits for them, up to a limit.
 class WatchedThread {
  public:
   WatchedThread();
-  /// Ends the thread; one that hangs in a call is left to itself.
+  /// Ends the thread; a thread that hangs in a call is detached.
   ~WatchedThread();
   WatchedThread(const WatchedThread&) = delete;
   WatchedThread& operator=(const WatchedThread&) = delete;
 
-  /// True when the call came back in time. After a false the thread hangs and takes no further call; the call
-  /// must own what it writes to.
+  /// Returns true if the call returned in time. After false the thread hangs and takes no further calls; the
+  /// call must own the memory that it writes to.
   bool run(std::function<void()> call, std::chrono::nanoseconds limit);
   bool hangs() const { return hangs_; }
 

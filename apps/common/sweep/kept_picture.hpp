@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures that a cell of a sweep keeps, so that what was seen can be compared when a table is made.
+/// Pictures that a cell of a sweep stores, to be compared when a table is made.
 
 #include <cstdint>
 #include <string>
@@ -10,13 +10,14 @@ namespace apps {
 struct KeptPicture {
   double time_s = 0;  ///< since the gate opened
   std::string png;
-  /// Masks for comparing, of the reference alone and of the first of two pictures: to_bits.
+  /// Masks for comparison, packed by to_bits(); only the reference has them, on the first picture of each
+  /// pair.
   std::string fovea = {}, salient = {};
 };
 
-/// A bit a pixel of a mask of bytes (0 or not), the first in the lowest bit.
+/// Packs a byte mask (0 or not) into one bit per pixel, lowest bit first.
 std::string to_bits(const std::vector<std::uint8_t>& mask);
-/// A byte a pixel, 1 or 0; empty where there are fewer bits than pixels.
+/// One byte per pixel, 1 or 0; empty if there are fewer bits than pixels.
 std::vector<std::uint8_t> from_bits(const std::string& bits, std::size_t pixels);
 
 }  // namespace apps

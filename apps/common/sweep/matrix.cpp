@@ -17,7 +17,7 @@ SolverSetting start_of(const SweepPlan& plan, sim::MethodKind method) {
   return out;
 }
 
-/// A knob's value as it stands in a setting.
+/// A knob's value in a setting.
 double value_of(const SolverKnobTraits& traits, double value, const SweepPlan& plan) {
   return traits.knob == SolverKnob::Size ? std::round(value * static_cast<double>(plan.n_star)) : value;
 }

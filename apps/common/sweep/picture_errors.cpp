@@ -32,14 +32,14 @@ Picture decoded(const KeptPicture& kept) {
   return without_alpha(sim::png_of(kept.png, "a picture of the sweep"));
 }
 
-/// Pictures come in pairs 1/30 s apart: the first is compared by itself, both by their change.
+/// Pictures come in pairs 1/30 s apart: the first is compared alone, both by their change.
 bool first_of_pair(std::size_t i) { return i % 2 == 0; }
 
-/// What the runs are held against.
+/// The reference run, decoded.
 struct Reference {
   std::vector<double> times_s = {};
   std::vector<Picture> pictures = {};
-  std::vector<Mask> fovea = {}, salient = {};  ///< empty where there is none that is large enough
+  std::vector<Mask> fovea = {}, salient = {};  ///< empty if there is no mask that is large enough
   double pixels_per_degree = 0;
 };
 
@@ -76,7 +76,7 @@ class Mean {
 
 double rms_pct(const Mean& squares) { return 100 * std::sqrt(squares.value()) / 255; }
 
-/// One run's differences from the reference, instant by instant; NaN where there is nothing to compare.
+/// Differences of one run from the reference per instant; NaN if there is nothing to compare.
 struct Trace {
   std::vector<double> square = {}, fovea = {}, salient = {}, structure = {}, change = {};
 };
@@ -108,7 +108,7 @@ Trace trace_of(const CellRun& run, const Reference& reference) {
   return out;
 }
 
-/// Runs `job(i)` for each i on all cores, and lets the first error out.
+/// Runs `job(i)` for each i on all cores, and rethrows the first error.
 template <class Job>
 void for_all(std::size_t count, const Job& job) {
   std::exception_ptr problem;

@@ -15,7 +15,7 @@ namespace apps {
 
 namespace {
 
-using Group = std::vector<const StoredCell*>;  // one setting's seeds
+using Group = std::vector<const StoredCell*>;  // the seeds of one setting
 
 double centre_distance(const WaterSample& a, const WaterSample& b) {
   return std::hypot(a.centre_m[0] - b.centre_m[0], a.centre_m[1] - b.centre_m[1],
@@ -53,7 +53,7 @@ double tau_of(const Group& group) {
                              : stats::ptpe_tolerance({}, stats::fps_moments(intervals_s));
 }
 
-/// For each frame of `from` the difference to the frame of `to` at the same share of the content.
+/// For each frame of `from`, the difference to the frame of `to` at the same fraction of the content.
 std::vector<double> paired_differences(const Group& from, const Group& to) {
   std::vector<double> out;
   for (std::size_t seed = 0; seed < std::min(from.size(), to.size()); ++seed) {
@@ -84,7 +84,7 @@ struct Sweep {
   }
 };
 
-/// What cells of this scene were run otherwise: ", of MACHINE, program P, ...; it holds 24 cells of ...".
+/// How other cells of this scene were run: ", of MACHINE, program P, ...; it holds 24 cells of ...".
 std::string others_in_words(const std::vector<StoredCell>& cells, const SweepPlan& plan,
                             const SweepOrigin& origin) {
   const auto named = [](const SweepOrigin& from, double seconds, const std::string& size,
@@ -104,7 +104,7 @@ std::string others_in_words(const std::vector<StoredCell>& cells, const SweepPla
   return out.empty() ? out : " of " + own + out;
 }
 
-/// Errors of all runs, each computed once.
+/// Computes the errors of all runs, each once.
 void measure(Sweep& sweep, const CellRun& twin) {
   std::vector<const CellRun*> runs;
   for (const auto& group : sweep.groups)
@@ -173,7 +173,7 @@ SettingResult result_of(const Sweep& sweep, const Group& group) {
   return out;
 }
 
-/// The one knob in which two settings differ; none when it is none or several.
+/// The one knob in which two settings differ; none if none or several differ.
 std::optional<SolverKnob> turned(const SolverSetting& a, const SolverSetting& b) {
   std::optional<SolverKnob> out;
   if (a.method != b.method) return {};
@@ -209,7 +209,7 @@ double most_kinetic(const CellRun& run) {
   return out;
 }
 
-/// Of runs that grow finer; the steps are over the first one's.
+/// For runs that get finer; steps are relative to the first one.
 ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>& runs,
                        const std::vector<double>& steps, double tank_length_m) {
   ObservedOrder out{of, steps, {}};
@@ -218,7 +218,7 @@ ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>&
     for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
       const double log_step = std::log(steps[i]);
       double distance = water_errors(*runs[i], *runs[i + 1], tank_length_m)[e];
-      // That of the energies is over the finer run's largest, which is another one each time.
+      // The error in energy is relative to the finer run's maximum, which differs between runs.
       if (e == static_cast<std::size_t>(SweepError::Kinetic)) distance *= most_kinetic(*runs[i + 1]);
       const double log_distance = std::log(distance);
       count += 1;
@@ -233,7 +233,7 @@ ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>&
   return out;
 }
 
-/// The first seeds of HiRes' usual setting with these values of a knob; empty where one was not run.
+/// The first seeds of HiRes' default setting with these values of a knob; empty if one was not run.
 std::vector<const CellRun*> refined(const Sweep& sweep, const SweepPlan& plan, SolverKnob knob,
                                     const std::vector<double>& values) {
   std::vector<const CellRun*> out;

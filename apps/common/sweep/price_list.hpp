@@ -1,6 +1,6 @@
 #pragma once
-/// What the rows of a sweep say: the error of each setting beside its milliseconds, and what a knob's turn
-/// buys.
+/// Evaluates the cells of a sweep: error and milliseconds of each setting, and the effect of turning each
+/// knob.
 
 #include <array>
 #include <cmath>
@@ -13,14 +13,14 @@
 
 namespace apps {
 
-/// Errors that a sweep tells, each in per cent; smaller is better.
+/// Errors that a sweep reports, each in per cent; smaller is better.
 enum class SweepError {
   Front,    ///< E1: root mean square over the instants of the front's distance from the reference's, over the
             ///< tank's length
-  Centre,   ///< E3: the same of the centre of mass
-  Kinetic,  ///< E4: the same of the kinetic energy, over the reference's largest
-  Density,  ///< E2: mean over the instants of max(rho / rho_0 - 1, 0), for which no reference is needed
-  Picture,  ///< this and all below: PictureError's, NaN where the sweep kept no pictures
+  Centre,   ///< E3: the same for the centre of mass
+  Kinetic,  ///< E4: the same for the kinetic energy, over the reference's maximum
+  Density,  ///< E2: mean over the instants of max(rho / rho_0 - 1, 0); needs no reference
+  Picture,  ///< this and all below: see PictureError; NaN if the sweep stored no pictures
   Fovea,
   Salient,
   Ssim,
@@ -28,7 +28,7 @@ enum class SweepError {
   Film,
   Flicker
 };
-/// Those of the water come first.
+/// The errors of the water come first.
 inline constexpr std::size_t water_error_count = 4;
 inline constexpr std::size_t sweep_error_count = water_error_count + picture_error_count;
 inline constexpr std::array<const char*, sweep_error_count> sweep_error_columns{
@@ -52,96 +52,96 @@ using WaterErrors = std::array<double, water_error_count>;
 /// base::Error unless both were sampled at the same instants.
 WaterErrors water_errors(const CellRun& run, const CellRun& reference, double tank_length_m);
 
-/// Least and largest of the seeds, and their mean.
+/// Mean, smallest and largest over the seeds.
 struct Spread {
   double mean = 0, low = 0, high = 0;
 };
 
-/// "1.2 [1.1, 1.3]": mean, least and largest.
+/// "1.2 [1.1, 1.3]": mean, smallest and largest.
 std::string in_words(const Spread& spread);
 
-/// A setting with all its seeds.
+/// A setting over all its seeds.
 struct SettingResult {
   SolverSetting setting;
   int seeds = 0;
   double particles = 0, substeps = 0;
   double ms_mean = 0, ms_low_quartile = 0, ms_median = 0, ms_high_quartile = 0, ms_p95 = 0;  ///< whole frames
-  double draw_ms_mean = 0;  ///< of it; NaN without pictures
-  /// E8: Eq. 11 with the paper's a and b, of the frames as a display shows them that has the setting's rate:
-  /// none comes earlier than its period. Frames/s.
+  double draw_ms_mean = 0;  ///< part of ms_mean; NaN without pictures
+  /// E8: Eq. 11 with the paper's a and b, for the frames as a display at the setting's rate shows them: no
+  /// interval is shorter than its period. Frames/s.
   double tau = 0;
   std::array<Spread, sweep_error_count> errors = {};
 };
 
-/// What turning one knob away from the start changes.
+/// The effect of turning one knob away from the usual setting.
 struct Price {
   sim::MethodKind method{};
   SolverKnob knob{};
   double from = 0, to = 0;
   double ms = 0;                                      ///< change of the mean frame
-  double ms_low_quartile = 0, ms_high_quartile = 0;   ///< of the changes of frames at the same instants
+  double ms_low_quartile = 0, ms_high_quartile = 0;   ///< over the changes of frames at the same instants
   std::array<Spread, sweep_error_count> errors = {};  ///< change; low and high over all pairs of seeds
-  /// No more than what frames differ by of themselves: zero lies between the quartiles.
+  /// True if zero lies between the quartiles: the change is within the variation of the frames.
   bool free() const { return ms_low_quartile <= 0 && ms_high_quartile >= 0; }
 };
 
-/// How fast HiRes nears itself when it is refined: the slope of log(distance of each run from the next finer
-/// one) over log(step), by least squares.
+/// How fast HiRes converges under refinement: slope of log(distance of each run from the next finer one) over
+/// log(step), by least squares.
 struct ObservedOrder {
   std::string of;                    ///< "particle spacing" or "time step"
-  std::vector<double> steps;         ///< over the first one's
-  std::array<double, 3> order = {};  ///< of Front, Centre and Kinetic; NaN where two runs are equal
+  std::vector<double> steps;         ///< relative to the first one
+  std::array<double, 3> order = {};  ///< of Front, Centre and Kinetic; NaN if two runs are equal
 };
 
 struct PriceList {
   SweepOrigin origin;
   std::string scene;
-  SweepErrors floor{};  ///< error of a reference moved by an ulp: below it errors say nothing
-  /// What twice the projections, substeps and particles change in the reference; empty where not run.
+  SweepErrors floor{};  ///< errors of a reference perturbed by an ulp: smaller errors are meaningless
+  /// The reference with twice the projections, substeps and particles; empty if not run.
   std::vector<SettingResult> finer = {};
   std::vector<SettingResult> settings = {};
   std::vector<Price> prices = {};
-  /// For each error whether all three finer references lie within a third of the smallest error that is
-  /// listed above the floor.
+  /// True for each error if all three finer references differ from the reference by less than a third of the
+  /// smallest listed error above the floor.
   std::array<bool, sweep_error_count> converged{};
-  std::vector<ObservedOrder> orders = {};  ///< of what was run
-  double parting_s = 0;                    ///< PictureScores'
+  std::vector<ObservedOrder> orders = {};  ///< of the refinements that were run
+  double parting_s = 0;                    ///< as PictureScores::parting_s
   bool pictures() const { return !std::isnan(parting_s); }
 };
 
-/// Of the cells of one machine, program and scene with this plan's reference. base::Error without the
-/// reference and its second seed.
+/// Evaluates the cells of one machine, program and scene against this plan's reference. base::Error without
+/// the reference and its second seed.
 PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan, const SweepOrigin& origin,
                      double tank_length_m);
 
-/// Settings that no other one beats in both milliseconds (mean) and this error, the fastest first: places in
-/// PriceList::settings.
+/// Indices in `settings` of those that no other one beats in both mean milliseconds and this error, the
+/// fastest first.
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
 
-/// Cells with seeds 1 to `seeds` of each setting that is on the front of any error, in the sweep's order.
+/// Cells with seeds 1 to `seeds` of each setting on the front of any error, in the sweep's order.
 std::vector<SweepCell> more_seeds_of_fronts(const PriceList& list, const SweepPlan& plan, int seeds);
 
-/// What tells a setting from its method's usual one: "n_* 512, projections 8".
+/// The values in which a setting differs from its method's default, and n_*: "n_* 512, projections 8".
 std::string in_words(const SolverSetting& setting);
-/// "counts as converged" and the like, of an error's reference.
+/// "counts as converged" and the like, for the reference of an error.
 std::string convergence(const PriceList& list, SweepError error);
 
 /// "HiRes' order in the time step (1.00, 0.50, 0.25): front 1.02, ...".
 std::string in_words(const ObservedOrder& order);
-/// A sentence that says when pictures of the reference and of its second seed part; list.pictures().
+/// A sentence on when the pictures of the reference and of its second seed part; needs list.pictures().
 std::string parting_in_words(const PriceList& list);
 
 /// Why an error of pictures is NaN in all rows.
 std::string why_untold(const PriceList& list);
 
-/// For programs.
+/// Tables for programs.
 TextTable setting_table(const PriceList& list);
 TextTable price_table(const PriceList& list);
-/// For readers: errors of the water or of the pictures.
+/// Tables for readers: errors of the water or of the pictures.
 enum class ErrorPart { Water, Pictures };
 TextTable settings_to_read(const PriceList& list, ErrorPart part);
 TextTable prices_to_read(const PriceList& list, ErrorPart part);
-/// What these show, with what the floor and the finer references say.
+/// The tables for readers, with the errors' floors and the references' convergence.
 std::string to_markdown(const PriceList& list);
 
 }  // namespace apps

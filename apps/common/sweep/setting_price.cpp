@@ -13,8 +13,8 @@ namespace apps {
 
 namespace {
 
-/// What the cells of a table have in common: machine, program, hash of the scene file, scene, seconds, timed
-/// picture, kept pictures.
+/// Properties that the cells of a table share: machine, program, hash of the scene file, scene, seconds,
+/// timed picture, stored pictures.
 using Kind = std::tuple<std::string, std::string, std::string, std::string, double, std::string, std::string>;
 
 Kind kind_of(const StoredCell& cell) {
@@ -23,7 +23,7 @@ Kind kind_of(const StoredCell& cell) {
           cell.cell.seconds, cell.cell.size, cell.cell.kept};
 }
 
-/// n_* of each reference that ran from two starts.
+/// n_* of each reference that was run from two starts.
 std::vector<std::int64_t> references_in(const std::vector<const StoredCell*>& cells) {
   std::map<std::int64_t, int> starts;
   for (const auto* cell : cells) {
@@ -37,7 +37,7 @@ std::vector<std::int64_t> references_in(const std::vector<const StoredCell*>& ce
   return out;
 }
 
-/// Of the scene's file as it is now. base::Error where it is another than the sweep's.
+/// Tank length in the current scene file. base::Error if the sweep used another file.
 double tank_length_m(const std::string& scene, const std::string& sha256) {
   const sim::Scene file = scenes_of(scene).front().scene;
   if (file.sha256 != sha256)
@@ -64,7 +64,7 @@ std::string value_or_rate(SolverKnob knob, double value) {
   return std::isnan(value) ? "following the frame rate" : value_words(knob, value);
 }
 
-/// In which knobs the nearest rows of the method differ.
+/// Says in which knobs the nearest row of the method differs.
 std::string why_no_row(const std::vector<const SweepTable*>& tables, const SolverSetting& setting) {
   const SettingResult* nearest = nullptr;
   std::vector<SolverKnob> least;

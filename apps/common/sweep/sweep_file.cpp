@@ -27,7 +27,7 @@ std::string knob_columns(const char* after) {
   return out;
 }
 
-/// Of a cell without its id, in the order in which they are bound and read.
+/// Columns of a cell without its id, in the order in which they are bound and read.
 std::string cell_columns() {
   return "key, machine, program, scene_sha256, scene, method, " + knob_columns("") +
          "seed, seconds, picture, kept, particles_mean, substeps_mean, braked, pixels_per_degree";
@@ -58,7 +58,8 @@ std::string schema() {
                     "name the file that it wrote, or a new one");
 }
 
-/// By the file's head (sqlite.org/fileformat.html, section 1.3), before SQLite touches a file of others.
+/// Checks the file's header (sqlite.org/fileformat.html, section 1.3), before SQLite touches another
+/// program's file.
 void recognise(Connection& database, Open how) {
   constexpr std::size_t header_bytes = 100, version_at = 60, application_at = 68;
   const std::string head = database.header();
@@ -73,7 +74,7 @@ void recognise(Connection& database, Open how) {
                                   version, schema_version),
                       "use the newer vip-bench; the file was left as it is");
   }
-  // Cells of different programs are never compared, so that there is nothing to take over.
+  // Cells of different programs are never compared, so an older file has nothing to convert.
   if (version > 0 && version < schema_version) {
     throw base::Error(database.path().string(),
                       fmt::format("was written by an older program (schema {}, this program writes {})",
@@ -82,7 +83,7 @@ void recognise(Connection& database, Open how) {
   }
 }
 
-/// No salvage is offered: what a sweep holds can be computed anew.
+/// Salvage is not offered, because a sweep can be computed again.
 [[noreturn]] void refuse_damaged(const std::filesystem::path& path) {
   throw base::Error(path.string(), "is damaged or cut short", "name another file; its cells can be run anew");
 }
@@ -130,7 +131,7 @@ void read_run(Connection& database, std::int64_t id, CellRun& run) {
     run.pictures.push_back({pictures.real(0), pictures.blob(1), pictures.blob(2), pictures.blob(3)});
 }
 
-/// Within a transaction. False where the machine's row for this key is there.
+/// Call it within a transaction. Returns false if the machine has a row for this key.
 bool insert(Connection& database, const StoredCell& stored) {
   Statement there(database, "SELECT 1 FROM cell WHERE key = ? AND machine = ?");
   there.bind_all(stored.key(), stored.origin.machine);
@@ -188,12 +189,12 @@ SweepFile::SweepFile(const std::filesystem::path& path, Open how) {
   try {
     database_->check_integrity();
   } catch (const study::sqlite::LockedOut&) {
-    throw;  // by another program, and sound
+    throw;  // locked by another program, but intact
   } catch (const base::Error&) {
     refuse_damaged(path);
   }
   database_->execute("PRAGMA foreign_keys = ON");
-  // A kill may have left a first transaction that SQLite undid just now.
+  // A kill may have left an unfinished first transaction, which SQLite has just rolled back.
   if (how == Open::Read && database_->integer("PRAGMA user_version") == 0) refuse(path);
   if (how == Open::Read) return;
   database_->execute("PRAGMA synchronous = FULL");

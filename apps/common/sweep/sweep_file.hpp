@@ -1,6 +1,6 @@
 #pragma once
-/// The SQLite file of an accuracy sweep: a row for each cell with what its water did and what its frames
-/// took. Errors are not in it; they follow from the rows when a table is made.
+/// The SQLite file of an accuracy sweep: one row per cell with the state of its water and the times of its
+/// frames. Errors are not stored; they are computed from the rows when a table is made.
 
 #include <filesystem>
 #include <memory>
@@ -17,10 +17,10 @@ namespace apps {
 /// SQLite's application_id of these files: "ViPS".
 inline constexpr std::int64_t sweep_application_id = 0x56695053;
 
-/// What a cell ran on and from. Only cells that agree in machine, program and scene file are compared.
+/// The circumstances of a cell's run. Only cells with equal machine, program and scene file are compared.
 struct SweepOrigin {
   std::string machine;  ///< processor, cores, device and threads
-  std::string program;  ///< version and digest of the program's bytes
+  std::string program;  ///< version and digest of the program's binary
   std::string scene_sha256;
   auto operator<=>(const SweepOrigin&) const = default;
 };
@@ -34,17 +34,17 @@ struct StoredCell {
 
 class SweepFile {
  public:
-  /// Open::Create makes a missing or empty file. base::Error, with the file left as it is, for one of another
-  /// program or a newer one, or a damaged one.
+  /// Open::Create makes a missing or empty file. base::Error, without changing the file, if it belongs to
+  /// another program or to another version of this one, or is damaged.
   SweepFile(const std::filesystem::path& path, study::sqlite::Open how);
 
-  /// In one transaction; nothing where the machine's row for this key is there.
+  /// Adds the cell in one transaction; does nothing if the machine has a row for this key.
   void add(const StoredCell& cell);
-  /// Keys that this machine has run.
+  /// Keys of the cells that this machine has run.
   std::set<std::string> keys(const std::string& machine);
-  /// Ordered by scene, setting and seed, never by when they ran.
+  /// Ordered by origin, scene, setting and seed, never by time of run.
   std::vector<StoredCell> cells();
-  /// Takes over the cells of another sweep file that are not here, in one transaction; how many these were.
+  /// Adds the cells of another sweep file that are missing here, in one transaction; returns their number.
   std::int64_t merge(const std::filesystem::path& shard);
 
  private:

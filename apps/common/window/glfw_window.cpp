@@ -1,6 +1,6 @@
 #include "apps/common/window/glfw_window.hpp"
 
-// epoxy first: GLFW then leaves GL's headers alone.
+// epoxy first: GLFW then does not include GL's headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -12,7 +12,7 @@
 
 #include "stats/base/error.hpp"
 
-// GLFW/glfw3native.h would ask for the headers of Xrandr too.
+// GLFW/glfw3native.h would also need the headers of Xrandr.
 extern "C" Display* glfwGetX11Display(void);
 
 namespace apps {
@@ -25,7 +25,7 @@ std::int64_t steady_ns() {
       .count();
 }
 
-/// Set when the connection to the X server broke.
+/// Set if the connection to the X server breaks.
 std::atomic<bool> display_lost = false;
 
 [[noreturn]] void fail(const std::string& problem, const std::string& mend) {
@@ -125,7 +125,7 @@ void GlfwWindow::note_input() { last_input_ns_ = steady_ns(); }
 double GlfwWindow::idle_s() const { return 1e-9 * static_cast<double>(steady_ns() - last_input_ns_); }
 
 GlfwWindow::~GlfwWindow() {
-  if (display_lost) return;  // every call would speak to a server that is gone
+  if (display_lost) return;  // every call would go to a server that is gone
   glfwDestroyWindow(window_);
   glfwTerminate();
 }
@@ -171,7 +171,7 @@ Monitor GlfwWindow::monitor() const {
 bool GlfwWindow::display_is_gone() { return display_lost; }
 
 Compositor find_compositor() {
-  if (std::getenv("WAYLAND_DISPLAY")) return Compositor::Running;  // Wayland has no other way
+  if (std::getenv("WAYLAND_DISPLAY")) return Compositor::Running;  // Wayland always composites
   Display* display = glfwGetX11Display();
   if (!display || display_lost) return Compositor::Unknown;
   const std::string selection = "_NET_WM_CM_S" + std::to_string(DefaultScreen(display));

@@ -15,23 +15,23 @@ namespace apps {
 
 struct WindowChoice {
   std::string title;
-  int width_px = 0, height_px = 0;  ///< 0: the whole of `monitor`
+  int width_px = 0, height_px = 0;  ///< 0: all of `monitor`
   int monitor = 0;                  ///< 0: the primary one
-  std::string mend{};               ///< what to do where there is no display, for messages
-  bool in_background = false;       ///< takes no keyboard from another window when it opens
+  std::string mend{};               ///< remedy for messages if there is no display
+  bool in_background = false;       ///< does not take the keyboard focus when it opens
 };
 
 /// A monitor as the system describes it.
 struct Monitor {
   std::string name;
   int width_px = 0, height_px = 0;
-  double refresh_hz = 0;            ///< whole numbers only; 0: not told
-  int width_mm = 0, height_mm = 0;  ///< 0: not told; often wrong
+  double refresh_hz = 0;            ///< whole numbers only; 0: unknown
+  int width_mm = 0, height_mm = 0;  ///< 0: unknown; often wrong
 };
 
 class GlfwWindow {
  public:
-  /// base::Error when there is no display, no such monitor or no such context on it.
+  /// base::Error if there is no display, no such monitor, or no such context.
   explicit GlfwWindow(const WindowChoice& choice);
   ~GlfwWindow();
   GlfwWindow(const GlfwWindow&) = delete;
@@ -39,30 +39,30 @@ class GlfwWindow {
 
   GLFWwindow* get() const { return window_; }
   bool asked_to_close() const;
-  /// Of the framebuffer, px; 0 when minimised.
+  /// Size of the framebuffer, px; 0 if minimised.
   struct Size {
     int width = 0, height = 0;
   };
   Size size() const;
-  /// A place as shares of the window's width and height from its upper left corner.
+  /// A position as fractions of the window's width and height from its upper left corner.
   using Place = std::optional<std::pair<double, double>>;
-  /// Where the mouse is; none outside.
+  /// Position of the mouse; none outside the window.
   Place mouse_place() const;
-  /// Called whenever it is taken in that the mouse moved, to a place or out of the window (none).
+  /// Sets the function to call when the mouse moves, with its position, or none when it leaves the window.
   void on_mouse(std::function<void(const Place&)> moved) { mouse_moved_ = std::move(moved); }
-  /// The mouse in px of the framebuffer from its lower left corner; false when it is outside.
+  /// Position of the mouse in px of the framebuffer from its lower left corner; false if it is outside.
   bool mouse(double& x_px, double& y_px) const;
-  /// Keys pressed since the last call, as GLFW numbers them: none is lost when frames are slow. A key held
-  /// down counts once.
+  /// GLFW key codes pressed since the last call; none is lost when frames are slow. A key held down counts
+  /// once.
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
   /// Seconds since the last key, button or movement of the mouse, or since the window was opened. Any thread.
   double idle_s() const;
-  /// Whether it was minimised at any time since the last call, or is now: nobody saw what was drawn then.
+  /// True if it is minimised, or was at any time since the last call: what was drawn then was not seen.
   bool take_minimised();
   bool minimised() const;
-  /// The monitor it fills or, of a window, the primary one.
+  /// The monitor that it fills or, if it is a window, the primary one.
   Monitor monitor() const;
-  /// The display itself is gone: nothing can be drawn any more.
+  /// True if the connection to the display is lost: nothing can be drawn any more.
   static bool display_is_gone();
 
  private:
@@ -77,7 +77,7 @@ class GlfwWindow {
   std::atomic<std::int64_t> last_input_ns_;  ///< steady clock
 };
 
-/// Whether a compositor stands between windows and the screen. Needs a window that lives.
+/// Whether a compositor is between windows and the screen. find_compositor() needs an open window.
 enum class Compositor { Unknown, Absent, Running };
 Compositor find_compositor();
 

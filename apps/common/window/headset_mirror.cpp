@@ -1,6 +1,6 @@
 #include "apps/common/window/headset_mirror.hpp"
 
-// epoxy first: GLFW then leaves GL's headers alone.
+// epoxy first: GLFW then does not include GL's headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -21,7 +21,7 @@ namespace apps {
 namespace {
 
 constexpr std::chrono::milliseconds between_pictures{100};
-/// Share of the time that goes into pictures at most: software OpenGL draws on cores that others need.
+/// Pictures take at most 1 / most_share of the time: software OpenGL uses cores that others need.
 constexpr int most_share = 4;
 
 WindowChoice choice_of(bool reveal) {
@@ -33,7 +33,7 @@ WindowChoice choice_of(bool reveal) {
   return choice;
 }
 
-/// Takes pictures in the context that shares them, which is current only meanwhile: a thread has one context,
+/// Takes pictures in the shared context, which is current only meanwhile: a thread has one current context,
 /// and the window's may be of another kind.
 class PictureTaker {
  public:
@@ -50,7 +50,7 @@ class PictureTaker {
   PictureTaker(const PictureTaker&) = delete;
   PictureTaker& operator=(const PictureTaker&) = delete;
 
-  /// None: all is black.
+  /// None if all is black.
   std::optional<sim::Image> take(HeadsetDisplay& display, bool reveal) {
     gl_.make_current();
     std::optional<sim::Image> image;
@@ -77,12 +77,12 @@ class PictureWindow {
     glCreateFramebuffers(1, &source_);
     glNamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, texture_, 0);
   }
-  /// Its objects go with its context.
+  /// Its GL objects are destroyed with its context.
   ~PictureWindow() = default;
   PictureWindow(const PictureWindow&) = delete;
   PictureWindow& operator=(const PictureWindow&) = delete;
 
-  /// None: black. False once somebody closed it, or its screen is gone.
+  /// None: black. Returns false once the window was closed, or its screen is gone.
   bool show(const std::optional<sim::Image>& image) {
     glfwPollEvents();
     if (GlfwWindow::display_is_gone() || window_.asked_to_close()) return false;
@@ -101,7 +101,7 @@ class PictureWindow {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTextureSubImage2D(texture_, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
                         image.rgba.data());
-    // Upside down: an image begins with its highest row.
+    // Flipped, because an image begins with its top row.
     glBlitNamedFramebuffer(source_, 0, 0, image.height, image.width, 0, to.x0, to.y0, to.x1, to.y1,
                            GL_COLOR_BUFFER_BIT, GL_LINEAR);
   }
@@ -141,13 +141,13 @@ HeadsetMirror::~HeadsetMirror() {
   thread_.join();
 }
 
-/// False once it is to end.
+/// Returns false when the thread must end.
 bool HeadsetMirror::wait(std::chrono::steady_clock::duration time) {
   std::unique_lock lock(mutex_);
   return !changed_.wait_for(lock, time, [this] { return over_; });
 }
 
-/// Every call of GLFW comes from this thread, which is its main one: X asks for no other.
+/// All GLFW calls come from this thread; X does not require the program's main thread.
 void HeadsetMirror::run(std::promise<void> opened) {
   std::unique_ptr<PictureWindow> window;
   std::unique_ptr<PictureTaker> taker;
@@ -159,7 +159,7 @@ void HeadsetMirror::run(std::promise<void> opened) {
     return;
   }
   opened.set_value();
-  // Who closes the window looks on no more; the session goes on.
+  // Closing the window stops the mirror only; the session goes on.
   for (bool goes_on = true; goes_on;) {
     const auto begun = std::chrono::steady_clock::now();
     goes_on = window->show(taker->take(display_, reveal_));

@@ -1,5 +1,5 @@
 #pragma once
-/// A window that shows the experimenter what somebody in a headset sees.
+/// A window that shows the experimenter the view of a person in a headset.
 
 #include <chrono>
 #include <condition_variable>
@@ -11,14 +11,14 @@
 
 namespace apps {
 
-/// The middle of the left eye's view, some ten times a second or, where drawing takes long, less often. A
-/// thread of its own draws it in a context that shares the headset's pictures, reads it back and shows it:
-/// windows share no context with a headset, whose OpenGL may be another display's or another device's. Slots
-/// and the session's thread never wait for it.
+/// Shows the middle of the left eye's view, about ten times a second, or less often if drawing is slow. Its
+/// own thread draws it in a context that shares the headset's pictures, reads it back and shows it: the
+/// window has a separate context, because the headset's OpenGL may be on another display or device. Slots and
+/// the session's thread never wait for it.
 class HeadsetMirror {
  public:
-  /// On the display's thread; the display outlives it. reveal: stimuli are shown too, else they are black.
-  /// base::Error where no window can be opened.
+  /// Call it on the display's thread; the display must outlive it. reveal: shows stimuli too; otherwise they
+  /// are black. base::Error if no window can be opened.
   HeadsetMirror(HeadsetDisplay& display, bool reveal);
   ~HeadsetMirror();
   HeadsetMirror(const HeadsetMirror&) = delete;
@@ -30,7 +30,7 @@ class HeadsetMirror {
 
   HeadsetDisplay& display_;
   bool reveal_;
-  sim::GlContext pictures_;  ///< current nowhere, but while a picture is taken
+  sim::GlContext pictures_;  ///< current only while a picture is taken
   std::mutex mutex_;
   std::condition_variable changed_;
   bool over_ = false;

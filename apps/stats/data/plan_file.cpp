@@ -20,7 +20,7 @@ constexpr std::array decision_names{"intersection-union", "holm"};
 constexpr std::array tests_names{"paired", "mixed"};
 constexpr const char* as_once_frozen = "H2, H3 and H6";
 
-/// A number, or "none".
+/// Reads a number or "none".
 std::optional<double> optional_number(const base::TomlTable& table, const char* key,
                                       std::optional<double> fallback, base::Range range) {
   if (!table.has(key)) return fallback;
@@ -52,8 +52,8 @@ void read_exclusions(const base::TomlTable& table, stats::ExclusionRules& rules)
   rules.min_answered = table.number_or("min_answered", rules.min_answered, share);
 }
 
-/// A file that names protocols was frozen. Where it lacks these keys, that was done before they were there:
-/// then it is analysed as bundles were at the time.
+/// A file that names protocols was frozen. If it lacks these keys, it was frozen before they existed and is
+/// analysed by the rules of that time.
 void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   const bool frozen = root.has("protocols");
   if (frozen && !root.has("decision")) plan.decision = stats::DecisionRule::Holm;
@@ -115,7 +115,7 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
   return plan;
 }
 
-/// Left out where it says what holds without.
+/// Empty if all rules have their defaults.
 std::string format_pilot(const stats::PilotRules& rules) {
   if (!rules.exclude_reverse_coders && !rules.model_drift && !rules.model_lapses) return "";
   return std::string("\n[pilot]\nreverse_coders = ") +

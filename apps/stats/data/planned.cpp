@@ -20,7 +20,7 @@ int index_in(const std::vector<std::string>& list, const std::string& item) {
 
 Key key_of_report(const Report& report) { return {report.participant, report.visit, report.position}; }
 
-/// The session's trials without practice and repeats; periods count from 0 within the visit.
+/// The session's trials without practice and repeats; periods are numbered from 0 within the visit.
 std::vector<Report> planned_of(const study::TaskSession& session, const TaskData& data, int participant) {
   std::vector<Report> out;
   std::vector<int> blocks;
@@ -42,7 +42,7 @@ std::vector<Report> planned_of(const study::TaskSession& session, const TaskData
   return out;
 }
 
-/// Periods of later visits follow those of earlier ones.
+/// Numbers periods across visits: those of later visits follow those of earlier ones.
 void count_over_visits(std::map<Key, Report>& planned) {
   std::set<std::pair<int, int>> periods;
   for (const auto& [key, report] : planned) periods.insert({report.visit, report.period});

@@ -1,11 +1,11 @@
 #pragma once
-/// Task 1: what was planned for those whose answers count.
+/// Task 1: the planned trials of the analysed participants.
 
 #include "apps/stats/data/task_data.hpp"
 
 namespace apps {
 
-/// Gives each report its period, and lists the planned trials without a report.
+/// Sets the period of each report, and lists the planned trials without a report.
 void add_planned(TaskData& data);
 
 }  // namespace apps

@@ -27,7 +27,7 @@ bool is_scale(const Question& question) {
   return question.kind == study::AnswerKind::Scale && !is_sickness(question);
 }
 
-/// Answered by one of two stimuli.
+/// True if the answer is one of two stimuli.
 bool is_choice_of_two(const Question& question) {
   return question.kind == study::AnswerKind::Choice && question.anchors.size() == 2;
 }
@@ -43,7 +43,8 @@ std::string hashed_name(const TaskProtocol& protocol) {
   return name_of(protocol) + " " + protocol.sha256.substr(0, 12);
 }
 
-/// By the first digits of the SHA-256, by name, by name and version, or as messages list it.
+/// True if `by` is the first digits of the SHA-256, the name, the name and version, or the form used in
+/// messages.
 bool is_meant(const TaskProtocol& protocol, const std::string& by) {
   return protocol.sha256.starts_with(by) || by == protocol.name || by == name_of(protocol) ||
          by == hashed_name(protocol);
@@ -57,7 +58,7 @@ std::ptrdiff_t answered_sessions(const TaskProtocol& protocol) {
   return std::count_if(protocol.sessions.begin(), protocol.sessions.end(), has_answers);
 }
 
-/// Of a design without any question on a scale or of a choice: none.
+/// For a design without any question the result is one empty question.
 std::vector<Question> main_questions(const TaskProtocol& protocol, const TaskSelection& selection) {
   std::vector<Question> out;
   for (const Question& question : protocol.questions) {
@@ -89,13 +90,14 @@ std::vector<std::string> questions_of(const std::vector<ChosenTask>& all) {
   return out;
 }
 
-/// Protocols that are asked for; first those with real answers, whose number is `real`.
+/// Protocols that match the selection: first those with real answers, whose number is `real`.
 std::vector<const TaskProtocol*> protocols_for(const study::TaskStudy& study, const TaskSelection& selection,
                                                std::size_t& real) {
   std::vector<const TaskProtocol*> out;
   for (const TaskProtocol& protocol : study.protocols)
     if (is_asked_for(protocol, selection)) out.push_back(&protocol);
-  // That of most people first: a version with a typo, which was mended, comes after the mended one.
+  // The protocol with most answered sessions first, so that a version with a mistake comes after its
+  // corrected version.
   std::stable_sort(out.begin(), out.end(), [](const TaskProtocol* a, const TaskProtocol* b) {
     return answered_sessions(*a) > answered_sessions(*b);
   });

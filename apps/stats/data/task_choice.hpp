@@ -1,5 +1,6 @@
 #pragma once
-/// Which protocols of a database and which of their questions are analysed, and at which level of a scale.
+/// Chooses which protocols of a database and which of their questions to analyse, and at which level of a
+/// scale.
 
 #include <optional>
 #include <string>
@@ -11,40 +12,41 @@
 
 namespace apps {
 
-/// What a protocol is analysed as.
+/// The kind of analysis of a protocol.
 enum class TaskKind {
   Pilot,  ///< one method under several frame rates, rated on a scale
   Task1,  ///< methods shown one by one, rated for realism
-  Task2,  ///< pairs of methods, one of which is chosen
+  Task2,  ///< pairs of methods, with a choice of one
   Own     ///< any other design: its answers are described, and no hypothesis is tested
 };
 /// "pilot", "task1", "task2", "own".
 const char* task_name(TaskKind task);
-/// For print: "Pilot", "Task 1", "Task 2", "Own design".
+/// For display: "Pilot", "Task 1", "Task 2", "Own design".
 const char* task_title(TaskKind task);
 TaskKind kind_of(const study::TaskProtocol& protocol);
 
-/// What the options of a command ask for.
+/// The selection made by a command's options.
 struct TaskSelection {
   TaskKind task = TaskKind::Task1;
   std::string protocol;  ///< its name, with or without version, or leading digits of its SHA-256; empty: all
   stats::AnalysisPlan plan;
   std::string question = {};         ///< its id; empty: all
-  std::optional<double> level = {};  ///< pilot: score of the curve; none: that of level_of()
+  std::optional<double> level = {};  ///< pilot: score at which the curve is fitted; empty: see level_of()
 };
 
 /// Score at which a pilot's curve is fitted: that of the selection, else of the plan, else of the protocol,
-/// which without one means the middle of the scale.
+/// whose default is the middle of the scale.
 double level_of(const TaskSelection& selection, const study::Question& question);
 
 bool has_answers(const study::TaskSession& session);
-/// Answered by an observer model, on whatever page.
+/// True if an observer model answered it, on any page.
 bool is_simulated(const study::TaskSession& session);
 bool has_real_answers(const study::TaskProtocol& protocol);
 
-/// A protocol of a task that is not analysed, as it holds nothing but test data and others hold real data.
+/// A protocol that is not analysed because it holds only test data while other protocols of its task hold
+/// real data.
 struct SetAside {
-  std::string name;  ///< "name 1.0, SHA-256 0123456789ab": two may have one name and version
+  std::string name;  ///< "name 1.0, SHA-256 0123456789ab", since two may have one name and version
   int sessions = 0;
 };
 
@@ -54,27 +56,29 @@ struct ChosenTask {
   std::vector<SetAside> set_aside;
   /// Realism of Task 1, the choice of Task 2, a scale of the pilot, the first question of another design.
   study::Question question;
-  bool first_of_protocol = true;  ///< no question of this protocol was chosen before
+  bool first_of_protocol = true;  ///< true for the first question chosen from this protocol
 };
 
-/// Whether the protocol asks it of each trial, so that it is analysed by itself.
+/// True if the question gets an analysis of its own: the protocol asks it about its trials and its kind suits
+/// the task.
 bool is_main_question(const study::TaskProtocol& protocol, const study::Question& question);
 
-/// All that is asked for: those protocols with real answers, or without any all of them; of each, every main
-/// question. Refused with the reason when there is none.
+/// All protocols that match the selection and have real answers, or if there are none, all that match; for
+/// each, every main question. Refused with the reason if nothing matches.
 stats::Result<std::vector<ChosenTask>> choose_tasks(const study::TaskStudy& study,
                                                     const TaskSelection& selection);
 
-/// The only one. Refused with the reason where there are several, as they are never pooled.
+/// The only match. Refused with the reason if there are several, which are never pooled, or none.
 stats::Result<ChosenTask> choose_task(const study::TaskStudy& study, const TaskSelection& selection);
 
-/// What to do where choose_task() is refused: only what there is to choose from; empty: it is not.
+/// Advice if choose_task() is refused, naming only existing choices; empty if it is not refused.
 std::string mend_of_choice(const study::TaskStudy& study, const TaskSelection& selection);
 
-/// Why no analysis at all, of whatever task, was chosen, and what to do. `protocol`: as given.
+/// The reason why no analysis of any task was chosen; `mend` gets the advice. `protocol`: as given.
 stats::Refusal nothing_chosen(const study::TaskStudy& study, const std::string& protocol, std::string& mend);
 
-/// A curve is fitted between the ends of its scale. The reason and the mend are the same for every command.
+/// True if the level lies between the ends of the scale, as a curve requires. The reason and the advice are
+/// the same for every command.
 bool within_scale(double level, const study::Question& question);
 std::string outside_scale(double level, const study::Question& question);
 std::string mend_of_level(const study::Question& question);

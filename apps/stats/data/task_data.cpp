@@ -19,11 +19,11 @@ using study::TaskTrial;
 /// "Ours n_star=16384 ... (setting SHA-256 ...)".
 std::string setting_words(const study::RunSetting& setting) {
   const auto file = parse_setting_file(setting.text, "setting " + setting.sha256.substr(0, 12));
-  const std::string words = to_text(file.setting);  // begins with the scene that it was chosen in
+  const std::string words = to_text(file.setting);  // begins with the scene in which the setting was chosen
   return words.substr(words.find(' ') + 1) + " (setting " + setting.sha256 + ")";
 }
 
-/// Clocks are put right by so much while they run.
+/// Smaller steps of a clock are normal corrections while it runs.
 constexpr std::int64_t small_step_s = 3600;
 
 std::optional<DoubtfulTime> doubt_about(const TaskSession& session) {
@@ -51,7 +51,7 @@ class Collector {
   }
 
  private:
-  /// Test data beside real ones, observer models beside people.
+  /// Leaves out test data if real data exist, and observer models if people exist.
   void leave_out_sessions() {
     auto& sessions = data_.protocol.sessions;
     data_.test_data =
@@ -95,7 +95,7 @@ class Collector {
     if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
   }
 
-  /// True when an answer about it counts.
+  /// True if an answer about the trial is analysed.
   bool add_trial(const TaskSession& session, const TaskTrial& trial) {
     if (trial.kind == "practice") {
       ++data_.flow.practice;
@@ -114,7 +114,8 @@ class Collector {
     }
     ++data_.flow.trials_planned;
     if (record.answers == 0) return false;
-    // Who answered a side question alone is not left out: there is nothing to analyse.
+    // A participant who answered only a side question does not count as excluded, since there is nothing to
+    // analyse.
     if (record.answer == record.answer || data_.task == TaskKind::Task1 || data_.task == TaskKind::Own)
       answered_.insert(session.participant);
     ++data_.flow.trials_answered;
@@ -222,7 +223,8 @@ class Collector {
   }
 
   TaskData& data_;
-  std::set<std::string> people_, answered_;  ///< codes: of all, and of those with an answer to analyse
+  std::set<std::string> people_, answered_;  ///< codes of all participants, and of those with an answer to
+                                             ///< analyse
 };
 
 }  // namespace

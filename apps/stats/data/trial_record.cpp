@@ -18,7 +18,8 @@ stats::TrialTiming timing_of(const study::TaskShowing& shown) {
   return *shown.verdict == study::Verdict::Degraded ? stats::TrialTiming::Degraded : stats::TrialTiming::Fail;
 }
 
-/// A pilot's predictor is what was really shown: where no frame is recorded there is none.
+/// Excludes a pilot's showings without recorded frames, since the pilot's predictor is the realised frame
+/// rate.
 void exclude_unrecorded(std::vector<stats::Exclusion>& list, const TaskSession& session,
                         const study::Question& question) {
   for (const TaskTrial& trial : session.trials) {
@@ -61,7 +62,7 @@ stats::TrialRecord record_of(const TaskSession& session, const TaskTrial& trial,
   out.answers =
       static_cast<int>(std::count_if(trial.answers.begin(), trial.answers.end(),
                                      [](const study::TaskAnswer& one) { return one.score.has_value(); }));
-  // A repeat without an original compares with nothing.
+  // A repeat without a known original refers to itself and so is compared with no trial.
   if (trial.kind == "repeat") out.repeats = trial.repeats.value_or(trial.position);
   return out;
 }

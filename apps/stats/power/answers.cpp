@@ -17,10 +17,10 @@ namespace {
 
 constexpr int sickness_item_count = 4;
 constexpr double rounding_variance = 1.0 / 12;
-/// Numbers of a person's methods are apart from those of the trials.
+/// Separates the random numbers for a person's methods from those for the trials.
 constexpr std::uint64_t by_method_key = 0x6d6574686f64;
 
-/// The numbers of one participant: 0 to 9 are the person's own, then ten for each trial.
+/// Random numbers of one participant: 0 to 9 belong to the person, then ten to each trial.
 class Draws {
  public:
   Draws(std::uint64_t key, int participant)
@@ -34,7 +34,7 @@ class Draws {
   }
 
  private:
-  /// A trial is known by its position, which no participant has twice.
+  /// A trial is identified by its position, which is unique for a participant.
   static std::uint64_t counter(const ShownTrial& trial, int which) {
     return 10 * (static_cast<std::uint64_t>(trial.position) + 1) + static_cast<std::uint64_t>(which);
   }
@@ -80,7 +80,7 @@ Task1Scatter task1_scatter(const PowerRequest& request) {
   out.method_realism = std::sqrt(method_realism);
   out.method_sickness = std::sqrt(method_sickness);
   out.noise_realism = std::sqrt(latent_variance("--sd", realism - method_realism, rounding));
-  // Half of the variance is the items', unless person and method take more than the other half.
+  // The items get half of the variance, or less if person by method takes more than the other half.
   const double report = std::max(sickness / 2 - method_sickness, 0.0);
   out.noise_sickness = std::sqrt(report);
   out.noise_item = std::sqrt(

@@ -1,5 +1,5 @@
 #pragma once
-/// Simulated answers to what was planned.
+/// Simulated answers to planned trials.
 
 #include <cstdint>
 #include <span>
@@ -12,44 +12,45 @@
 
 namespace apps {
 
-/// How Task 1's answers scatter. Of the latent answers, in points; participants' own level cancels in pairs.
+/// Standard deviations of Task 1's latent answers, in points. A participant's own level cancels in pairs.
 struct Task1Scatter {
   static constexpr double participant_share = 0.6;  ///< SD of participants' levels / SD of the differences
   AnswerScale answers = AnswerScale::Likert;
   double participant_realism = 0, participant_sickness = 0;
-  double method_realism = 0, method_sickness = 0;  ///< of person by method, the same at every n_*
+  double method_realism = 0, method_sickness = 0;  ///< of the effect of person by method, the same at every
+                                                   ///< n_*
   double noise_realism = 0;
-  double noise_sickness = 0;  ///< common to the four items of a report
+  double noise_sickness = 0;  ///< shared by the four items of a report
   double noise_item = 0;
   double realism_min = 1, realism_max = 7, item_min = 0, item_max = 3;
 };
 
-/// Such that the difference between two methods' answers has the standard deviation asked for away from the
-/// ends of the scale; the rounding's own variance, 1/12 an answer (Sheppard), is part of it. base::Error when
-/// it is less than rounding alone makes.
+/// Scatter for which the difference between two methods' answers has the requested standard deviation, away
+/// from the ends of the scale. This includes the variance from rounding, 1/12 per answer (Sheppard).
+/// base::Error if the request is less than rounding alone.
 Task1Scatter task1_scatter(const PowerRequest& request);
 
 struct Task1Answers {
   std::vector<stats::MethodScore> realism, sickness;  ///< by participant
 };
 
-/// Answers depend on the key and on each trial, not on how many others there are.
+/// Answers depend only on the key and the trial, not on the number of other trials.
 Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors& factors,
                           const Scenario& truth, const Task1Scatter& scatter, std::uint64_t key);
 
 std::vector<stats::PairChoice> answer_task2(std::span<const ShownTrial> trials, const ShownFactors& factors,
                                             const Scenario& truth, double interval_bias, std::uint64_t key);
 
-/// What a setting's frames really are.
+/// The realised frame rates of a setting.
 struct RealisedSetting {
   double mu = 0, delta = 0;  ///< nominal
   double harmonic = 0, arithmetic = 0, sd = 0;
 };
 
-/// Each cell's schedule compiled once: its moments do not depend on its order.
+/// Compiles each cell's schedule once; its moments do not depend on its order.
 std::vector<RealisedSetting> realised_settings(const study::Protocol& protocol);
 
-/// Scores that may be given, and the one whose mean the observer's curve is the contour of.
+/// Range of scores, and the level at which the observer's curve is the contour of the mean score.
 struct RatedScale {
   int min = 1, max = 7;
   double level = 4;

@@ -11,7 +11,7 @@ namespace {
 using stats::Alternative;
 using stats::HypothesisKind;
 
-/// Truths are sums of decimal fractions.
+/// Tolerance for truths, which are sums of decimal fractions.
 constexpr double rounding = 1e-9;
 
 std::optional<double> value_of(const stats::Result<double>& result) {
@@ -41,7 +41,7 @@ std::optional<double> closed_form_power(const PowerRequest& request, const stats
                                         const stats::HypothesisTest& test, double truth, int n) {
   const bool by_model = request.plan.plan.tests == stats::ScoreTests::Mixed;
   if (by_model && hypothesis.kind != HypothesisKind::Preference) return {};
-  // Of a symmetric two-sided test, the side claimed is the one-sided test at half the level.
+  // The claimed side of a symmetric two-sided test is the one-sided test at half the level.
   const double level = (hypothesis.one_sided ? 1 : 0.5) * hypothesis.alpha, margin = test.margin.value_or(0);
   const double sd = higher_is_better(test) ? request.sd_realism : request.sd_sickness;
   const double better = higher_is_better(test) ? truth : -truth;

@@ -1,5 +1,5 @@
 #pragma once
-/// The power of one uncorrected test, where there is a formula.
+/// The power of one uncorrected test, if there is a formula.
 
 #include <optional>
 
@@ -8,15 +8,16 @@
 
 namespace apps {
 
-/// Of a test with this true difference (or preference for `a`) at n participants: p < alpha in the direction
-/// claimed. Task 1 as if answers were continuous; the mixed model and levels of effects have no formula.
+/// Power of a test with this true difference (or preference for `a`) at n participants: p < alpha in the
+/// direction claimed. For Task 1 as if answers were continuous. Empty for the mixed model and for levels of
+/// effects, which have no formula.
 std::optional<double> closed_form_power(const PowerRequest& request, const stats::Hypothesis& hypothesis,
                                         const stats::HypothesisTest& test, double truth, int n);
 
-/// Whether what a test claims is true.
+/// True if the test's claim is true.
 bool claim_is_true(stats::HypothesisKind kind, const stats::HypothesisTest& test, double truth);
 
-/// Whether a higher score is better.
+/// True if a higher score is better.
 bool higher_is_better(const stats::HypothesisTest& test);
 
 }  // namespace apps

@@ -21,7 +21,7 @@ bool has_effects(const ShownFactors& factors, std::size_t treatment) {
   return factors.effects[static_cast<std::size_t>(level)] != study::no_effects_level;
 }
 
-/// Treatments by treatments.
+/// Preferences, treatments by treatments.
 std::vector<double> preferring_effects(const ShownFactors& factors, double p) {
   const std::size_t count = factors.methods.size();
   std::vector<double> out;
@@ -34,7 +34,7 @@ std::vector<double> preferring_effects(const ShownFactors& factors, double p) {
   return out;
 }
 
-/// The level over none, whichever of the two stands first in the protocol.
+/// The test of the level over none, in whichever order the protocol lists them.
 stats::HypothesisTest test_of(const stats::LevelPreference& found, bool none_first, const std::string& level,
                               const stats::AnalysisPlan& plan) {
   stats::HypothesisTest out;

@@ -1,6 +1,6 @@
 #pragma once
-/// Power where effects are a factor of a protocol that shows pairs: what a level is worth over level none,
-/// all else alike, by the analysis of the report's table of factors (stats/analysis/factor_levels.hpp).
+/// Power if effects are a factor of a protocol that shows pairs: the preference for a level over level none,
+/// all else equal, by the analysis of the report's table of factors (stats/analysis/factor_levels.hpp).
 
 #include <span>
 #include <string>
@@ -12,16 +12,17 @@
 
 namespace apps {
 
-/// "effect": every other level is chosen over none with PowerRequest::effect, whatever the methods; "null".
-/// What is not parted by none is chosen with .5. base::Error: a world that knows no effects, no --effect.
+/// World "effect": every other level is chosen over none with probability PowerRequest::effect, whatever the
+/// methods; or world "null". Pairs that do not contain none are chosen with .5. base::Error if the world does
+/// not apply to effects, or without --effect.
 World effect_world(const PowerRequest& request, const ShownFactors& factors, const std::string& id);
 
-/// The claim that each level is preferred over none: one test a level, t of the participants' shares, Holm
-/// over all pairs of levels.
+/// The claim that each level is preferred over none: one t test of the participants' shares for each level,
+/// with Holm over all pairs of levels.
 stats::Hypothesis effect_hypothesis(std::span<const stats::PairChoice> choices, const ShownFactors& factors,
                                     const stats::AnalysisPlan& plan);
 
-/// Of such a test: the true preference for its level.
+/// The true preference for the level of such a test.
 double effect_truth(const Scenario& scenario, const ShownFactors& factors, const stats::HypothesisTest& test);
 
 }  // namespace apps

@@ -12,7 +12,7 @@ namespace apps {
 
 namespace {
 
-/// `level`: where the observer's curve runs.
+/// `level`: score of the observer's curve.
 PilotOutcome estimate(std::span<const stats::PilotRating> ratings, double level,
                       const PowerRequest& request) {
   PilotOutcome out;
@@ -84,7 +84,7 @@ PilotPoint describe(const std::vector<PilotOutcome>& pilots, const PowerRequest&
               request.observer.b, request.precision_b, request)};
 }
 
-/// The first n from which `reached` holds to the end.
+/// The smallest n from which on `reached` is always true.
 std::optional<int> lasting(const PowerRequest& request, const std::vector<PilotPoint>& curve,
                            const std::function<bool(const PilotPoint&)>& reached) {
   std::optional<int> out;

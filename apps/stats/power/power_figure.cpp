@@ -92,7 +92,7 @@ class Drawing {
   double height() const { return top + panel_height + 64; }
 
  private:
-  /// Line and a bar of two standard errors to either side where there are few points.
+  /// A line, with bars of two standard errors to either side if there are few points.
   template <class At>
   std::string curve(const Curve& curve, std::size_t index, At at) const {
     std::string moves, marks;

@@ -140,7 +140,7 @@ Json coefficient_json(const std::optional<CoefficientPoint>& at) {
   return out;
 }
 
-/// A CSV field; words that hold a comma or a quote are quoted.
+/// A CSV field; texts are quoted.
 std::string field(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();

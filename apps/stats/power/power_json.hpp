@@ -1,6 +1,6 @@
 #pragma once
-/// The results of a power calculation as JSON ("vip-power/1", docs/statistics.md) and as a table. What is
-/// drawn and printed is taken from the JSON.
+/// The results of a power calculation as JSON ("vip-power/1", docs/statistics.md) and as a table. Figures and
+/// printed tables are made from the JSON.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,8 @@
 
 namespace apps {
 
-/// What simulated studies depend on besides their number and n: program, protocol, plan, worlds, settings.
+/// Everything that simulated studies depend on besides their number and n: program, protocol, plan, worlds,
+/// settings.
 Json studies_json(const PowerRequest& request);
 
 Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds);

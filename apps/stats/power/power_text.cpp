@@ -10,7 +10,7 @@ namespace apps {
 
 namespace {
 
-/// Most numbers of participants printed; the files hold all.
+/// Most numbers of participants that are printed; the files hold all.
 constexpr std::size_t printed_columns = 6;
 
 std::vector<std::size_t> columns_to_print(const Json& json) {
@@ -57,7 +57,7 @@ void print_hypothesis(const Json& hypothesis, const Json& settings, const std::v
                 hypothesis.at("n_for_power").get<int>());
 }
 
-/// Single tests, corrected and not, where one number of participants was asked for.
+/// Single tests, corrected and uncorrected, if only one number of participants was requested.
 void print_tests(const Json& hypothesis) {
   for (const auto& test : hypothesis.at("tests")) {
     const Json& at = test.at("curve").at(0);

@@ -1,11 +1,11 @@
 #pragma once
-/// What vip-stats power prints.
+/// The console output of vip-stats power.
 
 #include "apps/stats/power/power_json.hpp"
 
 namespace apps {
 
-/// The calculation's head, and its figures at up to six numbers of participants, on stdout.
+/// Prints the calculation's head, and its figures at up to six numbers of participants, on stdout.
 void print_power(const PowerRequest& request, const Json& json);
 
 }  // namespace apps

@@ -38,7 +38,7 @@ bool has_question(const study::Protocol& protocol, const std::string& id) {
                      [&](const auto& question) { return question.second->id == id; });
 }
 
-/// Worlds are about H1 to H6, or about levels of effects. A power of claims that cannot be tested is none.
+/// Checks that a claim can be tested: worlds are about H1 to H6, or about levels of effects.
 void check_claims(const study::Protocol& protocol) {
   if (!protocol.design.effects.empty()) return;
   const auto shown = hypotheses_of(protocol, {});

@@ -1,5 +1,5 @@
 #pragma once
-/// What a power calculation is asked.
+/// The input of a power calculation.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,11 +13,11 @@
 
 namespace apps {
 
-/// What a protocol's trials are good for.
+/// The kind of power calculation that a protocol's trials allow.
 enum class PowerKind { Task1, Task2, Pilot };
 /// "task1", "task2", "pilot".
 const char* power_kind_name(PowerKind kind);
-/// base::Error when the protocol shows neither settings, nor pairs of methods, nor methods that are rated.
+/// base::Error if the protocol shows neither settings, nor pairs of methods, nor rated methods.
 PowerKind power_kind(const study::Protocol& protocol);
 
 /// How simulated people answer Task 1.
@@ -26,7 +26,7 @@ enum class AnswerScale {
   Continuous  ///< unrounded and unbounded, for which the closed forms hold exactly
 };
 
-/// Task 1: the share of an answer's variance, apart from the person's own level, that belongs to person and
+/// Task 1: the share of an answer's variance, excluding the person's own level, that belongs to person by
 /// method and so is the same at every n_*; 0 to 1.
 struct PersonByMethod {
   double realism = 0, sickness = 0;
@@ -34,13 +34,13 @@ struct PersonByMethod {
 
 struct PowerRequest {
   study::Protocol protocol;
-  std::string file;    ///< of the protocol, as given
+  std::string file;    ///< the protocol's file, as given
   std::vector<int> n;  ///< participants, ascending
   int studies = 2000;  ///< simulated for each number of participants and world
   std::uint64_t seed = 1;
   PlanInForce plan;                 ///< margins, level
-  double power = 0.8;               ///< wished
-  std::vector<std::string> worlds;  ///< "effect", "null", "margin", "paper"; without repeats
+  double power = 0.8;               ///< requested power
+  std::vector<std::string> worlds;  ///< "effect", "null", "margin", "paper"; each at most once
 
   /// Task 1: difference in standard deviations of the paired differences; Task 2: true preference of the
   /// better method.
@@ -54,17 +54,17 @@ struct PowerRequest {
 
   study::PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: the paper's PTPE@4.0
   std::string question = {};         ///< Pilot: id of the scale; empty: the first that the trials ask
-  std::optional<double> level = {};  ///< Pilot: where the observer's curve runs; none: that of level_of()
-  std::optional<double> precision_a, precision_b;  ///< wished half widths: frames/s, s/frame
+  std::optional<double> level = {};  ///< Pilot: score of the observer's curve; empty: see level_of()
+  std::optional<double> precision_a, precision_b;  ///< requested half widths: frames/s, s/frame
 };
 
-/// The scale that a simulated pilot is rated on, and the level at which its curve is fitted. base::Error when
-/// the trials ask none, or not the one wished, or the level lies outside.
+/// The scale that a simulated pilot is rated on, and the level at which its curve is fitted. base::Error if
+/// the trials ask no scale, or not the requested one, or if the level lies outside it.
 study::Question rated_question(const PowerRequest& request);
 double rated_level(const PowerRequest& request);
 
-/// The shares that the mixed models of Task 1 found in an earlier study: `results` is the JSON of vip-stats
-/// report or task1. base::Error where it holds no such model, or nobody judged one method at two n_*.
+/// The shares estimated by the mixed models of Task 1 in an earlier study: `results` is the JSON of vip-stats
+/// report or task1. base::Error if it holds no such model, or if no participant judged one method at two n_*.
 PersonByMethod person_by_method_of(const std::filesystem::path& results);
 
 /// "10:60", "10:60:5" or "26" as numbers of participants, from 2 to 2,000. base::Error otherwise.

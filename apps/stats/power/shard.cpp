@@ -20,7 +20,7 @@ constexpr const char* schema = "vip-power-shard/1";
 constexpr const char* head = R"({"schema":"vip-power-shard/)";
 constexpr std::size_t most_bytes = std::size_t{1} << 28, most_named = 10;
 
-// An entry's figures in the order of the file, to be written or to be filled.
+// An entry's figures in the order of the file, for writing or reading.
 auto figures(auto& count) requires requires { count.holds; }
 {
   return std::tie(count.holds, count.uncorrected, count.against, count.refused, count.estimates,
@@ -43,7 +43,7 @@ Json written(const auto& entry) {
   return std::apply([&](const auto&... value) { return Json::array({json(value)...}); }, figures(entry));
 }
 
-/// As json_number() wrote it.
+/// Reads a number as written by json_number().
 void fill(double& out, const Json& json) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   if (json.is_null())
@@ -58,8 +58,7 @@ void fill(Whole& out, const Json& json) {
   json.get_to(out);
 }
 
-/// std::out_of_range where there are not as many as there should be; Json::exception for other kinds of
-/// value.
+/// std::out_of_range if the list has another size; Json::exception for other kinds of values.
 void expect_size(const Json& list, std::size_t size) {
   if (!list.is_array() || list.size() != size) throw std::out_of_range("size");
 }
@@ -89,7 +88,7 @@ Json written(const StudyOutcomes& outcomes) {
   return out;
 }
 
-/// Adds a cell's counts; `sum` may be of no study, and has the shape of all.
+/// Adds a cell's counts. `sum` must have the final shape; it may contain no study yet.
 void add_outcomes(std::vector<HypothesisCount>& sum, const Json& outcomes) {
   expect_size(outcomes, sum.size());
   auto counts = sum;
@@ -130,7 +129,7 @@ Json read_shard(const fs::path& file) {
   return out;
 }
 
-/// The first difference is named.
+/// base::Error that names the first difference.
 void check_studies(const fs::path& file, const Json& there, const Json& here) {
   for (const auto& [name, value] : here.items()) {
     const Json other = there.value(name, Json());
@@ -156,7 +155,7 @@ std::string words_of(const PowerCell& cell) { return cell.key + " (" + to_text(c
                     "run each with --cell KEY --out SHARD, and name its file too");
 }
 
-/// One object takes shards until it is whole.
+/// Joins shards until all cells are present.
 class Join {
  public:
   explicit Join(const PowerRequest& request)

@@ -17,7 +17,7 @@ int index_or_add(std::vector<std::string>& list, const std::string& item) {
   return static_cast<int>(list.size()) - 1;
 }
 
-/// Of one participant's trials. A block is a scene at one n_*.
+/// Sets the periods of one participant's trials. A block is a scene at one n_*.
 void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
   std::vector<int> blocks;
   for (const auto& trial : trials) {
@@ -31,7 +31,7 @@ void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
 }  // namespace
 
 ShownFactors::ShownFactors(const study::Design& design) {
-  std::vector<std::string> alone;  // methods without their level
+  std::vector<std::string> alone;  // methods without their level of effects
   for (const auto& cell : design.cells) {
     const study::StimulusSpec& what = cell.stimulus;
     cells.push_back({index_or_add(scenes, what.scene), index_or_add(n_stars, what.n_star),
@@ -46,7 +46,7 @@ std::vector<ShownTrial> planned_trials(const study::Protocol& protocol, std::uin
   const ShownFactors factors(protocol.design);
   std::vector<ShownTrial> out;
   for (int participant = 0; participant < n; ++participant) {
-    // The least taken slot comes next: 0, 1, ..., then from the start.
+    // The least used slot comes next: 0, 1, ..., then from the start.
     const auto plan =
         study::make_plan(protocol, "P" + std::to_string(participant + 1), seed, participant % slots);
     const auto before = out.size();

@@ -1,5 +1,5 @@
 #pragma once
-/// Who is shown what: the protocol's own plan, reduced to what an analysis knows of a trial.
+/// The protocol's plan of trials for each participant, reduced to the fields that an analysis uses.
 
 #include <cstdint>
 #include <string>
@@ -18,9 +18,9 @@ struct ShownFactors {
     int scene = 0, n_star = 0, method = 0;
   };
   std::vector<std::string> scenes, n_stars;
-  std::vector<std::string> methods;  ///< where effects are a factor, with their level: treatment_name()
-  std::vector<Place> cells;          ///< as Design::cells
-  std::vector<std::string> effects;  ///< levels of the factor; empty: effects are none
+  std::vector<std::string> methods;            ///< with their level if effects are a factor: treatment_name()
+  std::vector<Place> cells;                    ///< as Design::cells
+  std::vector<std::string> effects;            ///< levels of the factor; empty if effects are not a factor
   std::vector<stats::FactorPlace> treatments;  ///< of `methods`: level of effects, and method
 };
 
@@ -32,8 +32,8 @@ struct ShownTrial {
   int period = 0;  ///< as stats::MethodScore::period
 };
 
-/// Trials of blocks of kind stimulus for n participants who take the assignment's slots in turn, each with
-/// the plan that `vip-study run` would make with this seed. The first m of n participants are a study of m.
+/// Trials of blocks of kind stimulus for n participants. They take the assignment's slots in turn, each with
+/// the plan that `vip-study run` would make with this seed. The first m of n participants form a study of m.
 std::vector<ShownTrial> planned_trials(const study::Protocol& protocol, std::uint64_t seed, int n);
 
 }  // namespace apps

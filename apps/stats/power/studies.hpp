@@ -1,5 +1,5 @@
 #pragma once
-/// Simulated studies side by side, and what is counted over them.
+/// Runs simulated studies in parallel, and summarises counts over them.
 
 #include <cstdint>
 #include <functional>
@@ -8,13 +8,14 @@
 
 namespace apps {
 
-/// Studies with numbers in a row. A study is known by its number, whoever simulates it and beside whom.
+/// Consecutive studies. A study is identified by its number, whichever process simulates it and with which
+/// others.
 struct StudyRange {
   int first = 0, count = 0;
 };
 
 /// Runs `simulate` for each study, on all threads, in any order, with a progress bar. The first exception
-/// ends it and is thrown on.
+/// stops it and is rethrown.
 void for_each_study(StudyRange studies, const std::string& label, const std::function<void(int)>& simulate);
 
 /// A figure and its Monte-Carlo standard error.
@@ -22,9 +23,9 @@ struct Estimated {
   double value = 0, se = 0;
 };
 
-/// k of n. The error is that of (k + 1) of (n + 2), so that no study in which nothing happened claims none.
+/// The share k of n. The error is that of (k + 1) of (n + 2), so that it is never 0.
 Estimated share_of(std::int64_t k, int n);
-/// Mean of values in the order given; at least two.
+/// Mean of the values, summed in the order given; at least two.
 Estimated mean_of(std::span<const double> values);
 /// Sample quantile; its error is half the distance between the order statistics one binomial standard
 /// deviation to either side. At least two values.

@@ -13,7 +13,7 @@ namespace apps {
 
 namespace {
 
-/// One hypothesis of one scenario. Its words and tests come from the analysis itself.
+/// One hypothesis of one scenario. The analysis itself supplies its texts and tests.
 struct Judged {
   const Scenario* scenario = nullptr;
   stats::Hypothesis hypothesis;
@@ -21,7 +21,7 @@ struct Judged {
   std::vector<bool> claims;
 };
 
-/// True difference a - b, or preference for a.
+/// True difference a - b, or true preference for a.
 double truth_of(const Scenario& scenario, const ShownFactors& factors, const stats::HypothesisTest& test) {
   if (!factors.effects.empty()) return effect_truth(scenario, factors, test);
   const auto index = [](const std::vector<std::string>& list, const std::string& item) {
@@ -36,7 +36,7 @@ double truth_of(const Scenario& scenario, const ShownFactors& factors, const sta
   return means[row + a] - means[row + b];
 }
 
-/// Answers of participants 0 to n - 1; all stand by participant.
+/// Answers of participants 0 to n - 1; `answers` is ordered by participant.
 template <class Answer>
 std::span<const Answer> of_first(const std::vector<Answer>& answers, int n) {
   const auto end = std::partition_point(answers.begin(), answers.end(),
@@ -80,7 +80,7 @@ class Simulation {
   }
 
  private:
-  /// Judges answers to nothing, which names every hypothesis and its tests.
+  /// Analyses an empty study, which gives every hypothesis and its tests.
   void prepare() {
     for (const auto& world : worlds_) {
       for (const auto& scenario : world.scenarios) {
@@ -141,7 +141,7 @@ class Simulation {
     return stats::task2_hypotheses(pairs, factors_.methods, plan, "");
   }
 
-  /// Counts of no study.
+  /// Zero counts.
   std::vector<HypothesisCount> none() const {
     std::vector<HypothesisCount> out;
     for (const auto& one : judged_) out.push_back({.tests = std::vector<TestCount>(one.claims.size())});
@@ -216,7 +216,7 @@ class Simulation {
     return out;
   }
 
-  /// The first n from which the wished power is reached to the end.
+  /// The smallest n from which on the requested power is always reached.
   template <class Power>
   std::optional<int> lasting(Power power) const {
     std::optional<int> out;

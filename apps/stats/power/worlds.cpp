@@ -12,10 +12,10 @@ namespace apps {
 
 namespace {
 
-/// From worse to better as H1 and H4 to H6 claim.
+/// From worst to best, as H1 and H4 to H6 claim.
 constexpr std::array<const char*, 5> methods_by_rank{"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"};
 
-/// Place in methods_by_rank, or -1.
+/// Index in methods_by_rank, or -1.
 int rank_of(const std::string& method) {
   const auto* const found = std::find(methods_by_rank.begin(), methods_by_rank.end(), method);
   return found == methods_by_rank.end() ? -1 : static_cast<int>(found - methods_by_rank.begin());
@@ -25,7 +25,7 @@ using Qualities = std::array<double, 5>;  // by rank
 
 constexpr double middle_of_realism = 4, middle_of_sickness = 1.5;
 
-/// Means `unit` points of quality apart; cybersickness falls as quality rises.
+/// Means that differ by `unit` points for each unit of quality; cybersickness decreases with quality.
 Scenario by_quality(const ShownFactors& factors, std::vector<std::string> hypotheses,
                     const Qualities& quality, double unit_realism, double unit_sickness) {
   Scenario out{std::move(hypotheses), {}, {}, {}};
@@ -40,9 +40,10 @@ Scenario by_quality(const ShownFactors& factors, std::vector<std::string> hypoth
   return out;
 }
 
-/// The paper prints no means of its Fig. 9, only what was significant and in which direction. These are our
-/// reading of its words: Ours and Ours-TSp above FovFluid; Ours below HiRes in realism; Ours-TSp above HiRes
-/// at 16k, slightly below and with more cybersickness at 32k; Ours-TSp nowhere worse than Ours in realism.
+/// The paper gives no means for its Fig. 9, only which differences were significant and their direction.
+/// These means are our reading of its text: Ours and Ours-TSp above FovFluid; Ours below HiRes in realism;
+/// Ours-TSp above HiRes at 16k, slightly below and with more cybersickness at 32k; Ours-TSp nowhere worse
+/// than Ours in realism.
 struct PaperMeans {
   const char* n_star;
   Qualities realism, sickness;
@@ -120,8 +121,8 @@ std::vector<double> equal_preference(const ShownFactors& factors, double p) {
   return out;
 }
 
-/// Of 26 who chose the first. The first two follow from the p-values that the paper prints (.029, .002), the
-/// others are our reading of its words on Fig. 10; pairs that it leaves out follow the first.
+/// Choices of the first method by 26 participants. The first two follow from the p-values in the paper (.029,
+/// .002), the others are our reading of its text on Fig. 10; pairs that it omits follow the first.
 struct PaperPreference {
   const char *a, *b;
   int chosen;
@@ -179,7 +180,7 @@ World task2_world(const PowerRequest& request, const ShownFactors& factors, cons
 
 namespace {
 
-/// Without hypotheses about methods that the protocol does not show.
+/// Removes hypotheses about methods that the protocol does not show.
 void keep_shown(World& world, const PowerRequest& request) {
   const auto shown = hypotheses_of(request.protocol, request.plan.plan).claims;
   for (Scenario& scenario : world.scenarios) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What is true in a simulated study.
+/// The assumed truth of a simulated study.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace apps {
 
-/// One truth, and the hypotheses whose decisions are judged in it.
+/// One assumed truth, and the hypotheses evaluated under it.
 struct Scenario {
   std::vector<std::string> hypotheses;    ///< "H1", ...
   std::vector<double> realism, sickness;  ///< Task 1: mean answer by n_* and method, row after row
@@ -18,12 +18,12 @@ struct Scenario {
 
 struct World {
   std::string id;     ///< "effect", "null", "margin" or "paper"
-  std::string words;  ///< what it holds to be true
+  std::string words;  ///< what it assumes, in words
   std::vector<Scenario> scenarios;
 };
 
-/// Worlds as PowerRequest::worlds names them; Task 1 or 2. base::Error for an effect that the world needs and
-/// that was not given, and for a design whose n_* the paper does not have.
+/// Worlds as PowerRequest::worlds names them; Task 1 or 2. base::Error if a world needs an effect that was
+/// not given, or the design has an n_* that the paper does not have.
 std::vector<World> make_worlds(const PowerRequest& request, const ShownFactors& factors);
 
 }  // namespace apps

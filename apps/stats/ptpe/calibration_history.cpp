@@ -20,7 +20,7 @@ constexpr std::size_t largest_record = 1 << 26;
       "restore the record from a copy, or move it away to begin a new one; nothing was written");
 }
 
-/// Every line is whole and follows the one before; the last one, or null.
+/// Checks that every line is complete and follows the one before. Returns the last one, or null.
 Json last_of(const std::filesystem::path& path, const std::string& record) {
   std::istringstream lines(record);
   std::string line, before;

@@ -17,7 +17,8 @@ using Polyline = std::vector<ContourPoint>;
 
 constexpr int pieces = 12;
 
-/// A side of a small triangle: the two corners' numbers, smaller first. Neighbours share it exactly.
+/// A side of a small triangle: the ids of its two corners, smaller first. Neighbouring triangles share it
+/// exactly.
 using Side = std::pair<std::size_t, std::size_t>;
 
 struct Corner {
@@ -37,7 +38,7 @@ GridNode patch(const std::array<GridNode, 4>& corner, double s, double t) {
   return node;
 }
 
-/// Where the contour crosses sides, and which sides it joins within a triangle.
+/// Points where the contour crosses sides, and the sides that it connects within a triangle.
 struct Pieces {
   std::map<Side, ContourPoint> at;
   std::map<Side, std::vector<Side>> joined;
@@ -58,7 +59,7 @@ struct Pieces {
     joined[ends[1]].push_back(ends[0]);
   }
 
-  /// Takes the line that begins at a side out of `joined`.
+  /// Removes the line that begins at a side from `joined` and returns it.
   Polyline take(Side side) {
     Polyline line{at[side]};
     while (!joined[side].empty()) {
@@ -100,7 +101,7 @@ std::vector<Polyline> contour_polylines(const ScoreGrid& grid, double level) {
   std::vector<Side> ends, all;
   for (const auto& [side, others] : found.joined) (others.size() == 1 ? ends : all).push_back(side);
   std::vector<Polyline> lines;
-  // Open lines from their ends first; what is left are loops.
+  // Takes open lines from their ends first; the rest are loops.
   ends.insert(ends.end(), all.begin(), all.end());
   for (const auto& side : ends) {
     if (!found.joined[side].empty()) lines.push_back(found.take(side));

@@ -1,5 +1,5 @@
 #pragma once
-/// Contours as lines to draw.
+/// Contours as polylines for drawing.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace apps {
 
-/// The contour over every cell that has its four nodes, as polylines in frames/s. Each cell's patch is cut
+/// The contour over every cell with all four nodes, as polylines in frames/s. Each cell's patch is divided
 /// into 12 x 12 pairs of triangles.
 std::vector<std::vector<stats::ContourPoint>> contour_polylines(const stats::ScoreGrid& grid, double level);
 

@@ -25,7 +25,7 @@ Json contour_json(const stats::Contour& contour) {
           {"points_delta_mu", points}};
 }
 
-/// Whatever has a_ci, b_ci, a_se and b_se as numbers.
+/// Spread must have a_ci, b_ci, a_se and b_se.
 template <class Spread>
 void add_spread(Json& json, const Result<Spread>& spread) {
   json["a_se"] = spread ? Json(spread->a_se) : Json();

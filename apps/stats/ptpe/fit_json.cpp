@@ -20,7 +20,7 @@ constexpr const char* estimator =
 constexpr const char* direct_interval =
     "jackknife over participants with Student's t, for a on the log scale";
 
-/// Of the a and b at the top.
+/// The method of the main intervals of a and b.
 std::string interval_method(const MainEstimate& main) {
   if (main.spread && !main.spread->spans_contour) return direct_interval;
   return std::string("the range that two intervals span together: the direct estimate's (") +
@@ -31,7 +31,7 @@ constexpr const char* mean_caveat =
     "mean run "
     "at a lower harmonic one. The solver's tau uses the harmonic mean.";
 
-/// The paper's estimate at each level, the direct one with this mean inside.
+/// The paper's estimate at each level, containing the direct one with the same mean.
 Json levels_json(const std::map<double, LevelFit>& estimates) {
   Json list = Json::array();
   for (const auto& [level, estimate] : estimates) {
@@ -43,7 +43,7 @@ Json levels_json(const std::map<double, LevelFit>& estimates) {
   return list;
 }
 
-/// One value for each participant, at each setting.
+/// For each setting, one value for each participant.
 Json cells_json(const PilotFit& fit) {
   const auto& grid = fit.grid;
   Json cells = Json::array();
@@ -67,7 +67,7 @@ Json cells_json(const PilotFit& fit) {
   return cells;
 }
 
-/// What was analysed, by verdict and grade of its showing, and what was not.
+/// Counts of analysed showings by verdict and grade, and of what was left out.
 Json data_json(const TaskData& data) {
   std::map<std::string, int> verdicts, grades, rules;
   for (const auto& one : data.showings) {

@@ -62,7 +62,7 @@ void print_points(const std::vector<double>& deltas, const Curve& curve) {
   std::printf("\n");
 }
 
-/// The curve at the deviations shown, its form, and whether the scores rise evenly.
+/// Prints the curve at the deviations shown, the form test, and the lack-of-fit test.
 void print_curve(const PilotFit& fit) {
   const auto& direct = fit.chosen().direct;
   if (!direct.jackknife) return;

@@ -1,5 +1,5 @@
 #pragma once
-/// The fit of a pilot for people, on the console.
+/// Prints the fit of a pilot on the console.
 
 #include "apps/stats/ptpe/pilot_fit.hpp"
 

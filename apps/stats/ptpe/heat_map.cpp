@@ -34,7 +34,7 @@ std::vector<double> borders(const std::vector<double>& axis) {
   return edges;
 }
 
-/// Places of the drawing, in pixels, for coordinates in frames/s.
+/// Converts coordinates in frames/s to places of the drawing, in pixels.
 struct Frame {
   std::vector<double> x_edges, y_edges;
   double left = 78, top = 58, width = 500, height = 420;
@@ -51,7 +51,7 @@ struct Colour {
   double r, g, b;
 };
 
-/// Purple - white - green (PRGn of Brewer 2003), distinguishable with every common colour vision.
+/// Purple - white - green (PRGn of Brewer 2003), distinguishable with all common types of colour vision.
 Colour colour_of(double share) {
   constexpr std::array<Colour, 9> anchors{{{118, 42, 131},
                                            {153, 112, 171},
@@ -113,12 +113,12 @@ std::string contour_style(double level) {
   return "fill=\"none\" stroke=\"#000000\" stroke-width=\"1.8\"" + dash;
 }
 
-/// Names the number that a text shows, where the results have it.
+/// The data-field attribute for a number of the results.
 std::string field_attribute(const std::string& pointer, const std::string& member) {
   return pointer.empty() ? "" : svg::attribute("data-field", pointer + member);
 }
 
-/// Share of the rating scale that a score takes.
+/// Position of a score on the rating scale, 0 to 1.
 double share_of(const HeatMap& map, double score) {
   return (score - map.scale_min) / (map.scale_max - map.scale_min);
 }
@@ -145,7 +145,7 @@ std::string cell_values(const HeatMap& map, const Frame& frame) {
       const auto& node = map.grid.at(row, column);
       if (!node) continue;
       const auto colour = colour_of(share_of(map, node->score));
-      // In the corner, clear of the curves, which pass near the middles.
+      // In the corner, away from the curves, which pass near the cells' middles.
       auto at = frame.at(frame.x_edges[column + 1], frame.y_edges[row]);
       at.x -= 8;
       at.y -= 9;
@@ -201,7 +201,7 @@ std::string colour_bar(const HeatMap& map, const Frame& frame) {
   return out;
 }
 
-/// A number of the estimate with its place in the results.
+/// A number of the estimate with its JSON pointer.
 std::string number_of(const HeatMap& map, double value, int decimals, const std::string& member) {
   const std::string text =
       std::isinf(value) ? value > 0 ? "\xE2\x88\x9E" : "\xE2\x88\x92\xE2\x88\x9E" : number(value, decimals);

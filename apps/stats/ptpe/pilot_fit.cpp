@@ -21,7 +21,7 @@ std::string count_words(int n, const std::string& thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-/// `fitted`: the contour has a curve.
+/// `fitted`: true if the contour has a curve.
 void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour, bool fitted) {
   const std::string inner = fitted ? "; the contour's curve goes by the others" : "";
   const auto lines = [&](int n) { return std::to_string(n) + " of " + count_words(contour.lines, "line"); };
@@ -140,7 +140,7 @@ void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main, const Pilo
   }
 }
 
-/// What the solver's file cannot take is no usable fit.
+/// Why the fit is not usable, as when the solver's file could not hold it; empty if it is usable.
 std::string unusable(const PilotFit& fit, const TaskData& data, const stats::PilotTable& table) {
   if (table.ratings() == 0) return "no answered trial is left to analyse";
   if (!within_scale(fit.level, data.question)) return outside_scale(fit.level, data.question);
@@ -155,18 +155,19 @@ std::string unusable(const PilotFit& fit, const TaskData& data, const stats::Pil
   return "";
 }
 
-/// Whether the paper's two levels, 4 and 5, mean what they mean in the paper.
+/// True if the scale is that of the paper, so that its levels 4 and 5 apply.
 bool on_papers_scale(const study::Question& question) {
   return question.scale_min == 1 && question.scale_max == 7;
 }
 
-/// The ratings as categories, for the ordinal model: participants left out, no score corrected.
+/// The ratings as categories for the ordinal model: reverse coders are left out by the rules, but scores are
+/// not corrected.
 struct Categories {
   std::vector<stats::PilotRating> ratings;
   double lapse_rate = 0, lowest = 1;
   stats::ScaleEnds ends;
 
-  /// The level that a mean score with lapses has where it would be `level` without.
+  /// The mean score with lapses that corresponds to `level` without lapses.
   double with_lapses(double level) const { return (1 - lapse_rate) * level + lapse_rate * lowest; }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The fit of a pilot: everything between its ratings and the files.
+/// The fit of a pilot, from its ratings to the contents of its files.
 
 #include <array>
 #include <map>
@@ -19,7 +19,7 @@
 
 namespace apps {
 
-/// Something a reader of the fit has to know.
+/// A remark that a reader of the fit needs to know.
 struct FitFlag {
   std::string code;  ///< stable, snake_case
   std::string text;
@@ -38,54 +38,56 @@ struct MainFit {
   double a = 0, b = 0;
 };
 struct MainSpread {
-  std::array<double, 2> a_ci{}, b_ci{};  ///< reach over the contour's too (stats/ptpe/solver_interval.hpp)
+  std::array<double, 2> a_ci{}, b_ci{};  ///< span the contour's intervals too
+                                         ///< (stats/ptpe/solver_interval.hpp)
   double a_se = 0, b_se = 0;             ///< of the direct estimate
   bool spans_contour = false;
 };
-/// What goes to the solver.
+/// The estimate for the solver.
 struct MainEstimate {
   stats::Result<MainFit> fit;
   stats::Result<MainSpread> spread;
 };
 
-/// The estimates at the level of the study, with the harmonic and with the arithmetic realised mean. On the
-/// paper's scale of 1 to 7 also those at the paper's two levels, 4.0 and 5.0. The ordinal one is made with
-/// the harmonic mean only.
+/// The estimates at the level of the study, with the harmonic and with the arithmetic realised mean; on the
+/// paper's scale of 1 to 7 also at the paper's two levels, 4.0 and 5.0. The ordinal estimate uses only the
+/// harmonic mean.
 struct PilotFit {
   TaskData data;
   double level = 4;
   stats::BootstrapOptions bootstrap;
   int participants = 0;
   std::size_t settings = 0;
-  stats::ScoreGrid grid;                            ///< harmonic
-  std::vector<std::vector<double>> scores;          ///< of the grid's nodes: a mean for each participant
-  std::vector<double> deltas;                       ///< nominal, ascending
+  stats::ScoreGrid grid;                    ///< harmonic
+  std::vector<std::vector<double>> scores;  ///< for each node of the grid: one mean for each participant
+  std::vector<double> deltas;               ///< nominal, ascending
   std::map<double, LevelFit> harmonic, arithmetic;  ///< by level
-  stats::PilotPeople people;                        ///< of all ratings that count, before the rules
-  stats::PilotRules rules;  ///< what the plan makes of it; `data` holds the ratings after them
+  stats::PilotPeople people;                        ///< from all analysed ratings, before the rules
+  stats::PilotRules rules;  ///< the plan's rules for it; `data` holds the ratings after them
   std::vector<FitFlag> flags;
-  std::string reason;                     ///< why there is no usable fit; empty = there is one
-  std::vector<stats::PilotDoubt> doubts;  ///< why the fit there is must not steer a solver
+  std::string reason;                     ///< why there is no usable fit; empty if there is one
+  std::vector<stats::PilotDoubt> doubts;  ///< why the fit must not be used by a solver
 
   bool ok() const { return reason.empty(); }
   bool level_within_scale() const;
   const LevelFit& chosen() const { return harmonic.at(level); }
-  /// The direct estimate: level wished, harmonic mean, as the solver's own mu.
+  /// The direct estimate at `level`, with the harmonic mean as in the solver's mu.
   MainEstimate main() const;
   /// Largest half width of the direct curve's 95 % band, as a share of mu(delta), over the deltas shown at
-  /// which the curve is in reach: beyond them it is extrapolated and flagged. The fit is ok().
+  /// which the curve is in reach; beyond them it is extrapolated and flagged. Requires ok().
   double relative_half_width() const;
 };
 
-/// `level` is finite; outside the rating scale there is no fit.
+/// `level` must be finite; outside the rating scale there is no fit.
 PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap,
                    const stats::PilotRules& rules = {});
 
-/// The same for a database without usable data: only the reason is known.
+/// fit.json for a database without usable data: only the reason is known.
 base::Json failed_fit_json(std::optional<double> level, const std::string& reason);
-/// Every number of the fit, for fit.json. No NaN: what is undefined is null with its reason beside it.
+/// Every number of the fit, for fit.json. It has no NaN: undefined values are null, with the reason beside
+/// them.
 base::Json fit_json(const PilotFit& fit);
-/// For the solver; the fit is ok().
+/// The solver's file. Requires fit.ok().
 sim::PtpeFile ptpe_file(const PilotFit& fit);
 
 }  // namespace apps

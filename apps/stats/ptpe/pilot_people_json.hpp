@@ -1,5 +1,5 @@
 #pragma once
-/// How the participants of a pilot used the scale: as JSON and in sentences.
+/// How a pilot's participants used the scale, as JSON and in sentences.
 
 #include <string>
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace apps {
 
-/// "raters": reverse coders, drift and lapses, each with its test, the plan's rule and a text. Of all people
-/// and no single one: a withdrawal does not reach the file of a fit.
+/// "raters": reverse coders, drift and lapses, each with its test, the plan's rule and a text. It covers all
+/// people and names no single one, since a withdrawal does not reach the file of a fit.
 base::Json raters_json(const PilotFit& fit);
-/// Codes of the reverse coders with their slopes, for the console alone.
+/// Codes of the reverse coders with their slopes, only for the console.
 std::vector<std::string> reverse_coders(const PilotFit& fit);
-/// Of those that were found, with what the plan makes of them.
+/// Flags for the effects found, with the plan's rule for each.
 std::vector<FitFlag> rater_flags(const PilotFit& fit);
 
 }  // namespace apps

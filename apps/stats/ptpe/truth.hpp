@@ -1,5 +1,5 @@
 #pragma once
-/// Whether a fit recovers what simulated participants were made with.
+/// Compares a fit with the parameters of simulated participants.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace apps {
 
-/// Does each interval of the main estimate hold its true value?
+/// For each interval of the main estimate: true if it covers the true value.
 struct Recovery {
   stats::PtpeModel truth;
   bool a_held = false, b_held = false;
@@ -18,13 +18,13 @@ struct Recovery {
 /// a and b of an observer, spelt as for vip-study run: "ptpe:a=24,b=0.02". base::Error otherwise.
 stats::PtpeModel parse_truth(const std::string& observer);
 
-/// base::Error where the fit's level is not the middle of the scale, at which an observer's curve runs.
+/// base::Error if the fit's level is not the middle of the scale, which is the level of an observer's curve.
 void check_comparable(const PilotFit& fit, const std::string& observer);
 
-/// `fit` is ok().
+/// Requires fit.ok().
 Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth);
 
-/// Two lines for people, and the same for fit.json.
+/// Two lines for the console, and the same for fit.json.
 std::string format_recovery(const PilotFit& fit, const Recovery& recovery);
 base::Json recovery_json(const Recovery& recovery);
 

@@ -18,11 +18,11 @@ constexpr double left = 62, right_margin = 14, group_gap = 46, least_step = 74, 
 constexpr double plot_height = 270, bracket_step = 24, below = 78;
 constexpr const char* ink = "stroke=\"#000000\" stroke-width=\"1.4\" fill=\"none\"";
 
-/// A pair that differs, as a bracket over its boxes.
+/// A bracket over the boxes of a pair that differs.
 struct Bracket {
-  std::size_t first = 0, last = 0;  ///< places of the boxes within the group
+  std::size_t first = 0, last = 0;  ///< indices of the boxes within the group
   Field stars;
-  bool survives = false;  ///< Holm
+  bool survives = false;  ///< true if significant after Holm
   std::size_t layer = 0;  ///< 0 = lowest
 };
 
@@ -32,7 +32,7 @@ struct Group {
   std::vector<Bracket> brackets;
 };
 
-/// From one box to the next, with room for the longest name of a method.
+/// Distance from one box to the next, with room for the longest name of a method.
 double step_of(const std::vector<Group>& groups) {
   std::vector<std::string> names;
   for (const Group& group : groups)
@@ -40,7 +40,7 @@ double step_of(const std::vector<Group>& groups) {
   return std::max(least_step, room_for(names) + 10);
 }
 
-/// Short brackets lie low; one that shares a stretch with another goes above it.
+/// Stacks the brackets: short ones lowest, and overlapping ones above each other.
 void stack(std::vector<Bracket>& brackets) {
   std::stable_sort(brackets.begin(), brackets.end(),
                    [](const Bracket& p, const Bracket& q) { return p.last - p.first < q.last - q.first; });
@@ -77,7 +77,7 @@ std::vector<Group> groups_of(const Field& task1, const std::string& score) {
   return groups;
 }
 
-/// Where the scores lie on the paper.
+/// Vertical axis of the scores.
 struct Axis {
   double min = 1, max = 7, top = 0;
   double y(double value) const { return top + plot_height * (max - value) / (max - min); }

@@ -30,7 +30,7 @@ std::string hypothesis_text(const Json& hypothesis) {
   return out;
 }
 
-/// A line for each curve.
+/// The text, with a line for each curve.
 std::string curves_text(const study::Protocol& protocol, const stats::AnalysisPlan& plan) {
   std::string out;
   for (const auto& question : curve_questions(protocol)) {
@@ -41,13 +41,13 @@ std::string curves_text(const study::Protocol& protocol, const stats::AnalysisPl
   return out;
 }
 
-/// Whether a protocol's session has a block of this kind.
+/// True if a protocol's session has a block of this kind.
 bool has_block(const study::Protocol& protocol, study::BlockKind kind) {
   return std::any_of(protocol.blocks.begin(), protocol.blocks.end(),
                      [&](const study::Block& block) { return block.kind == kind; });
 }
 
-/// The largest difference of two ratings that a trial may get.
+/// The largest possible difference of two ratings of a trial.
 int widest_scale(const study::Protocol& protocol) {
   int out = 0;
   for (const auto& [block, question] : study::all_questions(protocol))
@@ -56,7 +56,7 @@ int widest_scale(const study::Protocol& protocol) {
   return out;
 }
 
-/// Keys of the plan that cannot act, and why.
+/// Keys of the plan that can have no effect, and why.
 std::map<std::string, std::string> idle_rules(const std::vector<study::Protocol>& protocols,
                                               const stats::AnalysisPlan& plan) {
   const auto none = [&](auto holds) { return std::none_of(protocols.begin(), protocols.end(), holds); };

@@ -1,4 +1,4 @@
-/// Whether a bundle is older than the answers, where clocks can be wrong.
+/// Decides if a bundle is older than the answers, allowing for wrong clocks.
 #include "apps/stats/report/bundle_parts.hpp"
 
 namespace apps::report {
@@ -7,14 +7,14 @@ namespace {
 
 using Json = base::Json;
 
-/// What is known of the sessions whose clock contradicts the order of the rows.
+/// The result for sessions whose clock contradicts the order of the rows.
 struct ByOrder {
-  bool known = true;  ///< of each it is known that the bundle is older
+  bool known = true;  ///< for each of them the bundle is known to be older
   std::string text;
 };
 
-/// An impossible time is that of a clock that was wrong then, so that the rows before it hold. Of two other
-/// times it is not known which is the wrong one.
+/// An impossible time shows that this session's clock was wrong, so the times of the rows before it count.
+/// For other contradictions it is unknown which time is wrong.
 ByOrder judge_by_order(const std::string& frozen, const Json& used) {
   ByOrder out;
   for (const Json& one : used.value("doubtful_times", Json::array())) {

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = base::Json;
 
-/// Lines of a changed protocol that the page quotes.
+/// Most lines of a changed protocol that the page quotes.
 constexpr std::size_t most_lines = 12;
 
 [[noreturn]] void no_bundle(const fs::path& folder, const std::string& problem) {
@@ -34,7 +34,7 @@ std::map<std::string, std::string> read_manifest(const std::string& text, const 
   return out;
 }
 
-/// JSON deeper than anything a bundle holds would end the program when it is compared or printed.
+/// Deepest nesting in a bundle. Comparing or printing much deeper JSON would overflow the stack.
 constexpr int most_levels = 16;
 
 Json parsed(const std::string& bytes, const fs::path& file) {
@@ -53,7 +53,7 @@ bool has_texts(const Json& object, std::initializer_list<const char*> keys) {
          });
 }
 
-/// What the comparison reads is there and is text where it is taken for text.
+/// Checks that the fields that the comparison reads exist and are texts.
 void check_about(const Json& about, const fs::path& file) {
   if (!has_texts(about, {"schema"}) || about["schema"] != "vip-preregistration/1")
     no_bundle(file, "is not of schema vip-preregistration/1");
@@ -90,14 +90,14 @@ std::string name_in_bundle(const Json& about, const std::string& sha256) {
   return "";
 }
 
-/// Whether the study's protocol is one of the bundle's; adds what differs.
+/// True if the study's protocol is in the bundle; adds the differences.
 bool same_protocol(const Bundle& bundle, const study::ProtocolRow& used, bool pilot, Json& differences) {
   if (bundle.protocols.contains(used.sha256)) return true;
   const auto planned = std::find_if(bundle.protocols.begin(), bundle.protocols.end(), [&](const auto& entry) {
     return name_in_bundle(bundle.about, entry.first) == used.name;
   });
   if (planned == bundle.protocols.end()) {
-    // A pilot beside the tasks is exploratory and need not be in their bundle.
+    // A pilot besides the tasks is exploratory and need not be in their bundle.
     if (pilot) return false;
     differences.push_back("protocol " + used.name + " was not preregistered");
     return false;
@@ -112,7 +112,8 @@ bool same_protocol(const Bundle& bundle, const study::ProtocolRow& used, bool pi
   return false;
 }
 
-/// "H2, margin: preregistered 0.5, tested 0.4" for what differs between two parts; false when anything does.
+/// Adds differences between two parts, as "H2, margin: preregistered 0.5, tested 0.4"; false if there are
+/// any.
 bool same_part(const std::string& name, const Json& planned, const Json& tested, Json& differences) {
   bool same = true;
   for (const auto& [key, value] : tested.items()) {
@@ -150,7 +151,7 @@ bool same_hypothesis(Json planned, Json tested, Json& differences) {
   return same_part(id, planned, tested, differences) && same;
 }
 
-/// Whether the hypotheses of a task were tested as planned; adds what differs.
+/// True if the hypotheses of a task were tested as planned; adds the differences.
 bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& results, Json& differences) {
   bool same = true;
   std::map<std::string, Json> planned;
@@ -176,7 +177,7 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
   return same;
 }
 
-/// Whether a pilot's curve was fitted at the level that the bundle's plan names; adds what differs.
+/// True if a pilot's curve was fitted at the level in the bundle's plan; adds the differences.
 bool same_level(const Bundle& bundle, const Json& results, Json& differences) {
   const Json pilot = results.value("pilot", Json());
   if (!pilot.is_object() || !pilot.contains("question") || !pilot.at("level").is_number()) return true;

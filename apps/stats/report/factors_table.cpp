@@ -5,7 +5,7 @@ namespace apps::report {
 
 namespace {
 
-/// "effects: foam over none"; of a difference with a minus sign.
+/// "effects: foam over none"; for a difference with a minus sign.
 std::string level_name(const Field& line, const char* between) {
   std::string out = words(line["factor"]) + ": " + words(line["a"]) + between + words(line["b"]);
   if (line["test"].words() == "exact sign test")

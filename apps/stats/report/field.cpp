@@ -33,7 +33,7 @@ std::string dash(const Field& field) {
          ">\xE2\x80\x93</span>";
 }
 
-/// APA style leaves the 0 before the point out where a number cannot exceed 1.
+/// APA style omits the 0 before the point if a number cannot exceed 1.
 std::string without_zero(std::string text) { return text.starts_with("0.") ? text.substr(1) : text; }
 
 std::string end_of(const Field& end, int decimals) {

@@ -11,24 +11,24 @@
 
 namespace apps::report {
 
-/// Width in pixels to keep free for the longest of these names, at a font size of 13 pixels. The browser
-/// alone knows the true width. 8 pixels a letter are more than sans-serif fonts take on average.
+/// Width in pixels to reserve for the longest of these names, at a font size of 13 pixels. Only the browser
+/// knows the true width; 8 pixels a letter exceed the average of sans-serif fonts.
 inline double room_for(const std::vector<std::string>& names) {
   std::ptrdiff_t longest = 0;
   for (const std::string& name : names)
     longest = std::max(longest, std::count_if(name.begin(), name.end(), [](char byte) {
-                         return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // first of a letter
+                         return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // first byte of a letter
                        }));
   return 8.0 * static_cast<double>(longest);
 }
 
-/// Elements of a picture, moved to the right to make that room.
+/// Elements of a picture, moved to the right by `px`.
 inline std::string moved_right(const std::string& elements, double px) {
   return "<g transform=\"translate(" + svg::number(px, 0) + " 0)\">\n" + elements + "</g>\n";
 }
 
-/// One score of Task 1 as in the paper's Fig. 9: a box for each method within each n_*, its mean an X,
-/// brackets with stars over pairs that differ. `score`: an entry of task1.scores.
+/// One score of Task 1 as in the paper's Fig. 9: within each n_* a box for each method with an X at its mean,
+/// and brackets with stars over pairs that differ. `score`: an entry of task1.scores.
 svg::Picture box_plot(const Field& task1, const Field& score);
 
 /// One score of Task 1: a line for each participant over the methods, within each n_*, and the mean.
@@ -41,7 +41,7 @@ svg::Picture scene_lines(const Field& task1, const Field& score);
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title);
 
-/// The share that a pair's test is about: of answers, or over people where they answered several times.
+/// The share that a pair's test is about: of answers, or over people if they answered several times.
 inline Field tested_share(const Field& pair) {
   return pair["by_person"].there() ? pair["by_person"]["share"] : pair["share"];
 }
@@ -49,16 +49,16 @@ inline Field tested_share(const Field& pair) {
 /// Task 2 as in the paper's Fig. 10: how often each of a pair was chosen, with the interval of the share.
 svg::Picture preference_bars(const Field& pairs);
 
-/// Verdicts on the timing of each method's showings, over scenes, where one was degraded or failed.
+/// Timing verdicts of each method's showings, over scenes, if one was degraded or failed.
 svg::Picture timing_chart(const Field& timing, const std::string& task);
 
-/// What became of those who began, as CONSORT draws it. `flow`: flow.task1 or flow.task2.
+/// Flow chart of participants in CONSORT style. `flow`: flow.task1 or flow.task2.
 svg::Picture flow_chart(const Field& flow, const std::string& id, const std::string& task);
 
-/// FMS at each asking: quartiles, median, mean and largest. `fms`: an entry of sickness, its "fms".
+/// FMS at each time of asking: quartiles, median, mean and largest. `fms`: "fms" of an entry of sickness.
 svg::Picture fms_chart(const Field& fms, const std::string& id);
 
-/// The pilot's heat map (paper Fig. 6). `pilot`: what fit-ptpe writes; its estimates are there.
+/// The pilot's heat map (paper Fig. 6). `pilot`: as written by fit-ptpe; its estimates must be present.
 svg::Picture pilot_map(const Field& pilot);
 
 }  // namespace apps::report

@@ -11,7 +11,7 @@ using svg::text;
 
 constexpr double main_x = 16, main_width = 270, side_x = 350, side_width = 300, line_px = 20, pad = 10;
 
-/// A count with what it counts.
+/// A count with its description.
 struct Entry {
   const char* words;
   Field n;
@@ -36,7 +36,7 @@ Box box(double x, double y, double width, const std::vector<Entry>& entries) {
   return out;
 }
 
-/// A line with a head, drawn without a marker: its id would have to differ from chart to chart.
+/// An arrow, drawn without an SVG marker, whose id would have to be unique for each chart.
 std::string arrow(svg::Point from, svg::Point to) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const double dx = (to.x - from.x) / length, dy = (to.y - from.y) / length;
@@ -95,7 +95,7 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
     double next = y + main.height + 34;
     if (!gone.empty()) {
       picture.width = side_x + side_width + 12;
-      // The side box stands beside the arrow to the next step; beside the last box itself.
+      // The side box is beside the arrow to the next step, or beside the last box itself.
       const bool last = i + 1 == steps.size();
       const Box side = box(side_x, last ? y : y + main.height + 12, side_width, gone);
       picture.body += side.drawn;

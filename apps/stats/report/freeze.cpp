@@ -35,14 +35,14 @@ std::vector<study::Protocol> read_protocols(const std::vector<fs::path>& paths) 
   return out;
 }
 
-/// Whether all of "H1", or of "H1 to H3", are among these.
+/// True if all hypotheses of a range, "H1" or "H1 to H3", are among `ids`.
 bool all_among(const std::string& range, const std::set<std::string>& ids) {
   for (char number = range.at(1); number <= range.back(); ++number)
     if (!ids.contains(std::string("H") + number)) return false;
   return true;
 }
 
-/// A protocol that tests some is not blamed for those that another one tests.
+/// Claims that none of the protocols tests.
 std::vector<std::string> untested_of(const std::vector<study::Protocol>& protocols,
                                      const stats::AnalysisPlan& plan) {
   std::vector<stats::ShownClaims> shown;
@@ -60,7 +60,7 @@ std::vector<std::string> untested_of(const std::vector<study::Protocol>& protoco
   return out;
 }
 
-/// The plan with the level of each curve: its own, else the protocol's.
+/// The plan with the level of each curve: that of the plan, else that of the protocol.
 stats::AnalysisPlan with_levels(stats::AnalysisPlan plan, const std::vector<study::Protocol>& protocols) {
   const auto given = plan.levels;
   std::map<std::string, std::string> named_by;
@@ -117,13 +117,13 @@ Files contents(const BundleRequest& request) {
   return files;
 }
 
-/// A folder that vanishes unless it is kept under its final name.
+/// A folder that is deleted unless keep() renames it to its final name.
 class Draft {
  public:
   explicit Draft(const fs::path& out) : out_(out), path_(base::draft_name(out)) {
     std::error_code failed;
     if (out.has_parent_path()) fs::create_directories(out.parent_path(), failed);
-    // A folder or link of that name is somebody else's: no more than what is made here is written to.
+    // An existing folder or link of that name is refused: only a folder made here is written to.
     if (failed || !fs::create_directory(path_, failed))
       throw base::Error(path_.string(), failed ? failed.message() : "is there already",
                         "choose a folder that can be written");

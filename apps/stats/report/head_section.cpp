@@ -7,7 +7,7 @@ namespace apps::report {
 
 namespace {
 
-/// Protocols of all parts of which `holds` is true, each once: "Pilot (ptpe_pilot, version 1.0)".
+/// Protocols of all parts for which `holds` is true, each once: "Pilot (ptpe_pilot, version 1.0)".
 template <class Holds>
 std::vector<std::string> parts_where(const Field& root, Holds holds) {
   std::vector<std::string> out, seen;
@@ -54,7 +54,7 @@ std::vector<Field> documents(const Field& root) {
 
 namespace {
 
-/// What a reader must know before any number: that it is of no people.
+/// Warnings before any number: incomplete, test or simulated data.
 std::string banners(const Field& root) {
   const Field study = root["study"];
   std::string out;

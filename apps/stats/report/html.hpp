@@ -1,5 +1,5 @@
 #pragma once
-/// The pieces that the report's page is made of, and one of its own.
+/// HTML elements of the report's page.
 
 #include <string>
 

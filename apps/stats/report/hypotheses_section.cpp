@@ -7,7 +7,7 @@ namespace {
 
 const std::string minus = "\xE2\x88\x92";
 
-/// "90 % CI [0.06, 1.25]": the intervals of one page do not all hold the same share.
+/// "90 % CI [0.06, 1.25]", with its level, since the intervals of a page differ in level.
 std::string interval_of(const Field& test) {
   return (test["ci"].entries().empty() ? "" : percent(test["ci_confidence"]) + " ") + "CI " +
          interval(test["ci"], 2);
@@ -15,10 +15,10 @@ std::string interval_of(const Field& test) {
 
 bool is_sign_test(const Field& test) { return test["method"].words() == "exact sign test"; }
 
-/// Satterthwaite's degrees of freedom are not whole.
+/// True if the test is by the mixed model, whose (Satterthwaite's) degrees of freedom are not whole.
 bool by_model(const Field& test) { return test["method"].words() == "t test of the mixed model"; }
 
-/// "0.46, 90 % CI [0.06, 1.25]" of a difference, or of a share.
+/// "0.46, 90 % CI [0.06, 1.25]" for a difference or a share.
 std::string estimate(const Field& test) {
   if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
   if (is_sign_test(test))
@@ -26,7 +26,7 @@ std::string estimate(const Field& test) {
   return fixed(test["estimate"], 2) + ", " + interval_of(test);
 }
 
-/// What the test did not give, behind its label.
+/// The test's label, followed by the reason if there is no test.
 std::string label(const Field& test) {
   const std::string reason = test["reason"].words();
   return words(test["label"]) + (reason.empty() ? "" : " <em>(no test: " + words(test["reason"]) + ")</em>");
@@ -67,7 +67,8 @@ std::string apa(const Field& test, bool preference) {
   return out + ", <i>p</i> " + p(test["p"]) + ", <i>p</i><sub>Holm</sub> " + p(test["p_holm"]);
 }
 
-/// What Holm makes of a preference over the paper's five pairs and over all ten: the family decides.
+/// p of preferences after Holm over the paper's five pairs and over all ten, since the result depends on the
+/// family.
 std::string families(const Field& hypothesis) {
   Table table("The same <i>p</i> in larger families",
               {"Test", "<i>p</i>", "Holm over this family", "Holm over the five of the paper's figure",
@@ -80,7 +81,7 @@ std::string families(const Field& hypothesis) {
   return table.empty() ? "" : table.html();
 }
 
-/// The paired tests beside those of the mixed model.
+/// The paired tests, given beside those of the mixed model.
 std::string paired(const Field& hypothesis) {
   const Field beside = hypothesis["paired"];
   if (!beside.there()) return "";
@@ -89,7 +90,8 @@ std::string paired(const Field& hypothesis) {
          tests_table(hypothesis, beside["tests"], "paired tests beside").html();
 }
 
-/// The rule was fixed before it was known how often people would answer a pair.
+/// A note if the share test replaced the binomial test of the rule, which was fixed before it was known how
+/// often people would answer a pair.
 std::string other_test(const Field& hypothesis) {
   for (const Field& test : hypothesis["tests"].entries())
     if (hypothesis["kind"].words() == "preference" && test["p"].is_number() &&
@@ -129,7 +131,7 @@ std::string one(const Field& hypothesis, bool registered) {
   return subsection(words(hypothesis["id"]) + ", " + words(hypothesis["kind"]), body);
 }
 
-/// How tests become a verdict, by the plan.
+/// The plan's decision rule in words.
 std::string decision_words(const Field& plan) {
   if (plan["decision"].words() == "holm")
     return "Each hypothesis is a family of its own; Holm's step-down correction holds the family's error "

@@ -1,5 +1,5 @@
 #pragma once
-/// What two texts differ in, line by line.
+/// Line-by-line difference of two texts.
 
 #include <string>
 #include <string_view>
@@ -8,10 +8,10 @@
 namespace apps::report {
 
 struct LineDifference {
-  std::vector<std::string> only_first, only_second;  ///< in their order; blank lines are passed over
+  std::vector<std::string> only_first, only_second;  ///< in their order; blank lines are ignored
 };
 
-/// By the longest common subsequence of lines. Texts of up to some thousand lines.
+/// By the longest common subsequence of lines; for texts of up to a few thousand lines.
 LineDifference line_difference(std::string_view first, std::string_view second);
 
 }  // namespace apps::report

@@ -69,7 +69,7 @@ std::string people_text(const Field& flow) {
   return out;
 }
 
-/// The rules of the plan that can act, in words; "" of none.
+/// The rules of the plan that can have an effect, in words; "" if there are none.
 std::string rules_text(const Field& rules, const std::vector<std::string>& acting) {
   const auto acts = [&](const char* rule) {
     return std::find(acting.begin(), acting.end(), rule) != acting.end();
@@ -99,7 +99,7 @@ std::string rules_text(const Field& rules, const std::vector<std::string>& actin
   return out;
 }
 
-/// The rules of exclusion that could act, in words, parts with the same ones together.
+/// The exclusion rules that could have an effect, in words; parts with the same rules are combined.
 std::string exclusion_rules(const Field& root) {
   const Field rules = root["plan"]["exclusions"];
   if (!rules.there()) return "";
@@ -145,7 +145,7 @@ std::string tests_of_task1(const Field& root) {
              : "H1 to H3 were tested by paired <i>t</i> tests. ";
 }
 
-/// By the tests that were made.
+/// Describes the tests that were made.
 std::string tests_of_task2(const Field& pairs) {
   bool binomial = false, shares = false;
   for (const Field& pair : pairs.entries()) {
@@ -167,7 +167,7 @@ std::string factors_text(const Field& root) {
          "<i>t</i> tests, and by exact sign tests where all participants are alike. ";
 }
 
-/// Of the scores that were asked for.
+/// Margins of the scores whose items were asked.
 std::string margins_text(const Field& root) {
   const Field margins = root["plan"]["margins"];
   const auto scores = root["task1"]["scores"].entries();
@@ -189,7 +189,7 @@ std::string task1_text(const Field& root) {
          " resamples with seed " + count(plan["seed"]) + ". " + tests_of_task1(root);
 }
 
-/// "two-sided", or which of H1 to H6 are not.
+/// "two-sided", "one-sided", or which of H1 to H6 are one-sided.
 std::string sides(const Field& directional) {
   if (!directional.words().empty()) return "two-sided, but one-sided for " + words(directional);
   return directional.yes() ? "one-sided, in the direction claimed" : "two-sided";

@@ -16,7 +16,7 @@ std::string score_label(const Field& task1, const Field& entry) {
   return words(entry["score"]);
 }
 
-/// Which pairs rest on different people.
+/// Notes on pairs with different participants.
 std::string people_notes(const Field& task1) {
   std::vector<std::string> lines;
   for (const Field& one : task1["people"].entries()) {
@@ -31,7 +31,7 @@ std::string people_notes(const Field& task1) {
          "</div>";
 }
 
-/// A row by `row` of each comparison that is `wanted`, under the names of its score and n_*.
+/// Adds a row made by `row` for each `wanted` comparison, under the name of its score and n_*.
 template <class Wanted, class Row>
 void by_score(Table& table, const Field& task1, Wanted wanted, Row row) {
   std::string last;

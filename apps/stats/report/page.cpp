@@ -32,7 +32,7 @@ constexpr Section sections[] = {
     {"provenance", "Provenance", provenance_section},
 };
 
-/// Writes "Table 3. " or "Figure 2. " behind each start tag, in the order of the page.
+/// Inserts "Table 3. " or "Figure 2. " after each start tag, in the order of the page.
 std::string numbered(std::string body, const std::string& tag, const std::string& name) {
   int n = 0;
   for (auto at = body.find(tag); at != std::string::npos; at = body.find(tag, at)) {
@@ -42,8 +42,8 @@ std::string numbered(std::string body, const std::string& tag, const std::string
   return body;
 }
 
-/// Every id of the page and every reference to one with `prefix` before it, so that parts of the same form
-/// stand on one page. Quotes are no part of a text (svg::escaped).
+/// Puts `prefix` before every id of the page and every reference to one, so that parts of the same form can
+/// be on one page. Texts contain no quotes (svg::escaped).
 std::string with_prefix(std::string html, const std::string& prefix) {
   for (const std::string mark : {" id=\"", "href=\"#", "url(#", "aria-labelledby=\""}) {
     for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
@@ -62,7 +62,7 @@ struct Rendered {
   std::string contents, body;
 };
 
-/// The sections that the results have. `name` parts those of a document that stands apart from the others.
+/// Renders the sections that the results have. `name` distinguishes those of a document in "apart".
 Rendered rendered(const Field& results, const std::string& prefix, const std::string& name) {
   Rendered out;
   for (const Section& part : sections) {

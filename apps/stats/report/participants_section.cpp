@@ -25,7 +25,7 @@ std::string exclusions_table(const Field& root) {
          (one_trial ? " Trials are counted from nought, in the order of showing." : "") + "</p>\n";
 }
 
-/// Parts of which the results list no exclusion.
+/// A sentence on the parts without exclusions.
 std::string untouched(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts) {
@@ -49,7 +49,7 @@ bool any_unjudged(const Field& timing) {
   return false;
 }
 
-/// Every session of the database, by protocol, and where it is analysed.
+/// Every session of the database, by protocol, with the section that analyses it.
 std::string roster(const Field& roster) {
   if (!roster.there()) return "";
   Table table("Everybody in the database", {"Protocol", "Version", "SHA-256", "Participants", "Sessions",
@@ -69,7 +69,8 @@ std::string roster(const Field& roster) {
          (table.empty() ? "" : table.html());
 }
 
-/// A score that was never given is left out, so that a scale of many points has short lines.
+/// A cell's distribution. Scores that were never given are omitted, so that scales of many points have short
+/// lines.
 std::string distribution(const Field& cell) {
   std::string out;
   for (const Field& one : cell["distribution"].entries()) {
@@ -83,7 +84,7 @@ std::string distribution(const Field& cell) {
 
 bool flawed(const Field& cell) { return cell["degraded"].number() + cell["fail"].number() > 0; }
 
-/// Whether a cell of the part has a value there.
+/// True if a cell of the part has a number under `key`.
 bool measured(const Field& timing, const Field& total, const char* key) {
   const auto cells = timing.entries();
   return std::any_of(cells.begin(), cells.end(), [&](const Field& one) {
@@ -138,7 +139,7 @@ std::string certificate(const Field& root, const Field& total, const std::string
                  : "<p class=\"note\">No showing measured the share of particles that was solved.</p>\n");
 }
 
-/// What failed in full, the rest in a table to be opened.
+/// Shows flawed cells in full, and all cells in a table that can be opened.
 std::string timing_of(const Field& root, const Field& total) {
   const std::string key = total["task"].words();
   std::string title = key;

@@ -11,7 +11,7 @@ namespace apps::report {
 
 namespace {
 
-/// The grid that the cells' list was written from.
+/// The grid from which the list of cells was written.
 stats::ScoreGrid grid_of(const Field& cells) {
   std::set<double> mu, delta;
   for (const Field& cell : cells.entries()) {
@@ -64,7 +64,7 @@ std::string model_of(const Field& pilot) {
 std::string estimates(const Field& pilot) {
   Table table("Estimates of " + pilot_curve + ", intervals over participants",
               {"Estimate", "<i>a</i> [CI], frames/s", "<i>b</i> [CI], s/frame"});
-  // The solver's interval may be wider than that of the estimate which it belongs to.
+  // The solver's interval may be wider than that of its estimate.
   if (pilot["a"].is_number())
     table.row({"<strong>" + for_solver(pilot) + "</strong>, level " + fixed(pilot["level"], 1),
                a_with_interval(pilot), b_with_interval(pilot)});
@@ -99,7 +99,7 @@ std::string bands(const Field& pilot) {
   return table.empty() ? "" : table.html();
 }
 
-/// Whether the curve is an exponential, and beside it the curve that need not be one.
+/// The test that the curve is an exponential, and the free curve beside it.
 std::string form(const Field& pilot) {
   const Field test = pilot["form"];
   if (!test.there()) return "";
@@ -149,7 +149,7 @@ svg::Picture pilot_map(const Field& pilot) {
   for (const Field& e : pilot["means"]["harmonic"].entries()) {
     const double level = e["level"].number();
     map.levels.push_back(level);
-    // The points are the contour's: with other estimators beside it they are not what was fitted.
+    // The points are the contour's; if there are other estimators, the curve was not fitted to them.
     if (level != pilot["level"].number() || !pilot["estimators"].entries().empty()) continue;
     for (const Field& point : e["contour"]["points_delta_mu"].entries())
       map.points.push_back({point[0].number(), point[1].number()});

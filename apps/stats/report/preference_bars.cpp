@@ -10,7 +10,7 @@ using svg::Point;
 using svg::text;
 
 constexpr double left = 118, width = 480, right_label = 104, row = 40, bar = 22, top = 62;
-constexpr double gap = 8;  ///< between a bar and the names beside it
+constexpr double gap = 8;  ///< gap between a bar and the names beside it
 
 double x_of(double share) { return left + width * share; }
 
@@ -23,7 +23,7 @@ std::string interval_line(double low, double high, double y) {
          svg::path(moves, "stroke=\"#000000\" stroke-width=\"1.8\" fill=\"none\"");
 }
 
-/// Stars of the uncorrected test; behind the stroke those that Holm leaves.
+/// Stars of the uncorrected test, then a slash and the stars after Holm.
 std::string stars_of(const Field& pair) {
   const std::string plain = pair["stars"].words(), holm = pair["stars_holm"].words();
   if (plain.empty()) return "";

@@ -1,5 +1,6 @@
 #pragma once
-/// What is fixed before the data: a folder with protocols, hypotheses and rules under one SHA-256.
+/// Preregistration: a folder (bundle) with protocols, hypotheses and rules under one SHA-256, fixed before
+/// the data.
 
 #include <filesystem>
 #include <map>
@@ -22,16 +23,16 @@ struct BundleRequest {
 
 /// Writes the folder `out`: a copy of each protocol, hypotheses.json (H1 to H6 as far as the protocols test
 /// them, each test with its margin), plan.toml (margins, level, exclusion rules, seed), power.json if given,
-/// about.json, PREREGISTRATION.txt for people, and MANIFEST.sha256, which sha256sum -c reads. Returns the
-/// bundle's hash: the SHA-256 of MANIFEST.sha256. base::Error when `out` holds anything, a protocol cannot
-/// be read or two share a name; nothing is then left behind.
+/// about.json, the readable PREREGISTRATION.txt, and MANIFEST.sha256 for sha256sum -c. Returns the bundle's
+/// hash: the SHA-256 of MANIFEST.sha256. base::Error if `out` is not empty, a protocol cannot be read or two
+/// have the same name; nothing is then left behind.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
-/// Hypotheses of the shipped analyses that these protocols do not test, each with the reason: "H1 of task1:
+/// Hypotheses of the built-in analyses that these protocols do not test, each with the reason: "H1 of task1:
 /// the protocol does not show FovFluid".
 std::vector<std::string> untested_claims(const BundleRequest& request);
 
-/// A bundle as it lies there now.
+/// A bundle as it is on disk now.
 struct Bundle {
   std::string sha256;                ///< of the manifest
   std::vector<std::string> altered;  ///< files that are missing or do not have the manifest's hash
@@ -40,11 +41,11 @@ struct Bundle {
   PlanInForce plan;
 };
 
-/// base::Error when it is no bundle.
+/// base::Error if the folder is not a bundle.
 Bundle read_bundle(const std::filesystem::path& folder);
 
-/// "preregistration" of the results (docs/results.md): whether each task's protocol and hypotheses are those
-/// of the bundle, and what differs. `results`: as study_results() gave them under the bundle's plan.
+/// "preregistration" of the results (docs/results.md): tells if each task's protocol and hypotheses are those
+/// of the bundle, and lists differences. `results`: from study_results() under the bundle's plan.
 base::Json compare_with_bundle(const Bundle& bundle, const std::vector<study::ProtocolRow>& protocols,
                                const base::Json& results);
 

@@ -25,7 +25,7 @@ std::string bundle_text(const Field& bundle) {
   return body;
 }
 
-/// "tables and tests of Task 1, ordinal models, ...": what the page holds beside the hypotheses.
+/// "tables and tests of Task 1, ordinal models, ...": the page's contents besides the hypotheses.
 std::string everything_else(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts)

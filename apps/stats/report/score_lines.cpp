@@ -69,7 +69,7 @@ std::string frame(const Panels& panels) {
   return out;
 }
 
-/// Through the points that are there; a gap where one is missing.
+/// A polyline through the points, with a gap at each missing one.
 std::string polyline(const std::vector<std::optional<Point>>& points, const std::string& attributes) {
   std::string moves;
   bool drawing = false;
@@ -93,7 +93,7 @@ Line empty_line(const Panels& panels) {
   return Line(panels.n_stars.size(), std::vector<std::optional<double>>(panels.methods.size()));
 }
 
-/// With the score's name and the axes.
+/// A picture with the score's name and the axes.
 svg::Picture picture_of(const Panels& panels, const Field& score, const std::string& id) {
   svg::Picture picture{.width = std::max(panels.right() + 12, 420.0), .height = panels.bottom() + below};
   picture.id = id + "-" + score["code"].words();
@@ -103,7 +103,7 @@ svg::Picture picture_of(const Panels& panels, const Field& score, const std::str
   return picture;
 }
 
-/// Calls `take` with each cell of the score in a panel, and the place of its method.
+/// Calls `take` with each cell of the score in a panel, and the index of its method.
 template <class Take>
 void each_cell(const Panels& panels, const Field& cells, const Field& score, std::size_t panel, Take take) {
   for (const Field& cell : cells.entries()) {
@@ -152,7 +152,7 @@ svg::Picture person_lines(const Field& task1, const Field& score) {
   for (std::size_t p = 0; p < panels.n_stars.size(); ++p) {
     std::size_t person = 0;
     for (const auto& [participant, means] : people) {
-      // A little aside, so that equal scores do not lie on each other.
+      // Shifted sideways a little, so that equal scores do not overlap.
       const double aside = 0.30 * panels.step *
                            ((static_cast<double>(person++) + 0.5) / static_cast<double>(people.size()) - 0.5);
       std::vector<std::optional<Point>> points(panels.methods.size());

@@ -81,7 +81,7 @@ std::string fms(const Field& fms, const std::string& id) {
   };
   part("Whole session", fms);
   for (const Field& block : fms["blocks"].entries()) part("Block " + words(block["block"]), block);
-  // A model takes no time to answer.
+  // Models have no answering times.
   const auto asked = fms["times"].entries();
   const bool timed =
       std::any_of(asked.begin(), asked.end(), [](const Field& time) { return time["minutes"].is_number(); });

@@ -51,7 +51,7 @@ std::string cells_table(const Field& task1, const Field& score) {
   });
 }
 
-/// Behind the name of a pair without spread.
+/// True for a pair without spread, which is marked behind its name.
 bool by_sign(const Field& pair) { return pair["test"].words() == "exact sign test"; }
 
 std::string sign_test(const Field& pair) {
@@ -105,7 +105,7 @@ std::string other_tests(const Field& task1, const Field& score) {
   return table_html.empty() ? "" : table_html + note;
 }
 
-/// t tests as sentences, of those below .05 without correction.
+/// t tests with an uncorrected p below .05, as sentences.
 std::string score_apa_lines(const Field& task1, const std::string& score) {
   std::vector<std::string> lines;
   bool any_tested = false;
@@ -195,7 +195,7 @@ std::string ordinal(const Field& task1) {
   return table.empty() ? "" : subsection("Ordinal models", table.html() + note);
 }
 
-/// Whether the figure by scene cuts an interval: the scale ends before it.
+/// True if the figure by scene cuts off an interval that exceeds the scale.
 bool cut_intervals(const Field& task1, const Field& score) {
   for (const Field& cell : task1["by_scene"].entries())
     if (cell["score"].words() == score["code"].words() && cell["ci"].entries().size() == 2 &&

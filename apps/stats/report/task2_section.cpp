@@ -10,14 +10,14 @@ namespace {
 
 std::string preferred_pair(const Field& pair) { return words(pair["a"]) + " over " + words(pair["b"]); }
 
-/// Whether a pair has the binomial test's interval of Wilson.
+/// True if a pair has the binomial test's Wilson interval.
 bool has_wilson(const Field& pairs) {
   const auto all = pairs.entries();
   return std::any_of(all.begin(), all.end(),
                      [](const Field& pair) { return !pair["by_person"].there() && pair["wilson"].there(); });
 }
 
-/// The names of the intervals that the bars carry.
+/// The names of the intervals on the bars.
 std::string interval_names(const Field& pairs) {
   std::vector<std::string> names, seen;
   for (const Field& pair : pairs.entries()) {
@@ -51,7 +51,7 @@ std::string bars_caption(const Field& pairs) {
   return tests.empty() ? out : out + " Stars: " + tests + ", uncorrected / after Holm over all pairs.";
 }
 
-/// Once, not at each pair.
+/// A note shown once, not for each pair.
 std::string several_answers(const Field& several) {
   if (!(several["participants"].number() > 0)) return "";
   return paragraph(count(several["participants"]) + " of " + count(several["of"]) +

@@ -15,7 +15,7 @@ namespace apps {
 
 namespace {
 
-/// A mean of what some sessions have.
+/// A mean of values that some sessions have.
 struct RunningMean {
   double sum = 0;
   int count = 0;
@@ -26,14 +26,14 @@ struct RunningMean {
   Json json() const { return count > 0 ? Json(sum / count) : Json(); }
 };
 
-/// What the sessions hold of one stimulus.
+/// The sessions' data on one stimulus.
 struct Shown {
   study::StimulusSpec what;
   int sessions = 0, measured = 0;
-  RunningMean made_ms, made_p95_ms;     ///< as the stations measured it
-  RunningMean interval_ms;              ///< of showings without a schedule
-  std::map<std::string, int> settings;  ///< sessions by text of the setting; "" = the usual
-  std::set<std::string> stimuli;        ///< what the sessions say that they showed
+  RunningMean made_ms, made_p95_ms;     ///< as measured by the stations
+  RunningMean interval_ms;              ///< frame interval of showings without a schedule
+  std::map<std::string, int> settings;  ///< sessions by text of the setting; "" = the default setting
+  std::set<std::string> stimuli;        ///< the stimuli that the sessions recorded as shown
   RunningMean said;                     ///< Task 1: scores; Task 2: 1 = chosen
 };
 using Stimuli = std::map<std::array<int, 3>, Shown>;  // scene, n_*, method
@@ -43,7 +43,7 @@ std::array<int, 3> key_of(const study::TaskProtocol& protocol, const study::Stim
           place_in(protocol.methods, treatment_name(what))};
 }
 
-/// The text of the session's setting for this method and n_*; empty: the usual.
+/// The text of the session's setting for this method and n_*; empty for the default setting.
 std::string setting_text(const study::TaskSession& session, const study::StimulusSpec& what) {
   for (const auto& one : session.settings) {
     const auto setting = parse_setting_file(one.text, "setting " + one.sha256.substr(0, 12)).setting;
@@ -85,14 +85,14 @@ void add_session(const study::TaskProtocol& protocol, const study::TaskSession& 
   }
 }
 
-/// What people said, of the answers that are analysed.
+/// Adds the analysed answers.
 void add_answers(const TaskData& data, Stimuli& out) {
   for (const auto& report : data.reports) {
     const auto answer = report.answers.find(data.question.id);
     if (answer != report.answers.end())
       out[{report.scene, report.n_star, report.method}].said.add(answer->second);
   }
-  // A pair is of one n_*; where the study has several, which one is not among the answers.
+  // A pair has one n_*, but the choices do not say which if the study has several.
   if (data.protocol.n_stars.size() > 1) return;
   for (const auto& choice : data.choices) {
     out[{choice.scene, 0, choice.first}].said.add(choice.first_chosen ? 1 : 0);
@@ -100,7 +100,7 @@ void add_answers(const TaskData& data, Stimuli& out) {
   }
 }
 
-/// The scene's file as it is now, where the sessions say that they showed it.
+/// The scene's file as it is now, if the sessions recorded that they showed it.
 stats::Result<sim::Scene> scene_of(const study::StimulusSpec& what, const Shown& shown) {
   if (!what.effects.empty() && what.effects != study::scene_effects_level)
     return stats::Refusal{"errors are measured with the scene's own effects, and this is level " +
@@ -124,7 +124,7 @@ Json spread_json(const Spread& spread) {
           {"high", json_number(spread.high)}};
 }
 
-/// Of the setting file that the record holds.
+/// The error measured in the recorded setting file.
 Json recorded_error_json(const SettingFile& file, const stats::Result<sim::Scene>& scene) {
   if (!scene) return json_refused(scene.reason());
   if (file.measured.scene_sha256 != scene->sha256)

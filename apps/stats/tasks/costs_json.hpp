@@ -1,6 +1,6 @@
 #pragma once
-/// What the frames of each method cost, what error they carried, and what people said of them
-/// (docs/results.md: costs, sweep).
+/// The cost and error of each method's frames, and people's answers about them (docs/results.md: costs,
+/// sweep).
 
 #include <string>
 
@@ -10,10 +10,11 @@
 
 namespace apps {
 
-/// A list, one entry for each scene, n_* and method that was shown. `sweep`: null = none was given.
+/// A list with one entry for each scene, n_* and method shown. `sweep`: null if none was given.
 Json costs_json(const TaskData& data, const SweepTables* sweep);
 
-/// "sweep": the file's name to show, the errors' headings by name, and why cells of it stand in no table.
+/// "sweep": the file's name for display, the errors' headings by name, and why cells of the sweep are in no
+/// table.
 Json sweep_json(const std::string& file, const SweepTables& sweep);
 
 }  // namespace apps

@@ -16,7 +16,8 @@ const std::vector<std::string> exclusion_columns{"task", "participant", "visit",
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
-/// The one number that JSON has as a text and a spreadsheet would take for a formula stays as it is.
+/// A JSON value as a field. "-Inf", the only number stored as text that a spreadsheet would take for a
+/// formula, is not guarded.
 std::string scalar(const Json& value) {
   if (value.is_null()) return {};
   if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
@@ -29,7 +30,7 @@ bool all_texts(const Json& list) {
   return std::all_of(list.begin(), list.end(), [](const Json& one) { return one.is_string(); });
 }
 
-/// An interval may have open ends, which are texts.
+/// True if the list is an interval. Recognised by name, since open ends are texts.
 bool is_interval(const std::string& name, const Json& list) {
   return list.size() == 2 && (name.ends_with("ci") || name.ends_with("bca") || name == "clopper_pearson" ||
                               name == "wilson" || name == "range");
@@ -51,7 +52,7 @@ void flatten(const std::string& name, const Json& value, Fields& fields) {
   }
 }
 
-/// An interval that is null in this line has its two columns in others.
+/// True if `name` is an interval in another line: this line's null then has no column of its own.
 bool names_interval(const std::vector<std::string>& columns, const std::string& name) {
   return std::find(columns.begin(), columns.end(), name + "_low") != columns.end();
 }
@@ -69,7 +70,7 @@ std::vector<std::string> columns_of(const std::vector<Fields>& lines) {
   return out;
 }
 
-/// Fields of each hypothesis's tests, with the hypothesis's own before them.
+/// The tests of each hypothesis, each with the hypothesis's fields first.
 Json tests_of(const Json& hypotheses) {
   Json list = Json::array();
   for (const auto& one : hypotheses) {
@@ -86,7 +87,7 @@ Json tests_of(const Json& hypotheses) {
   return list;
 }
 
-/// Lists of each model, such as its effects, one entry a line.
+/// The entries of a list of each model, such as its effects, one per line.
 Json entries_of(const Json& models, const std::string& name) {
   Json list = Json::array();
   for (const auto& model : models) {
@@ -126,7 +127,7 @@ Json sensitivity_lines(const Json& variants) {
   return list;
 }
 
-/// One line for each entry of a list that lies at `pointer` in the parts of "sickness".
+/// One line for each entry of the list at `pointer` in the parts of "sickness".
 Json sickness_lines(const Json& parts, const Json::json_pointer& pointer) {
   Json list = Json::array();
   for (const auto& part : parts) {

@@ -14,7 +14,7 @@ std::string counted(std::size_t n, const std::string& thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-/// Levels of the factor and what each holds; empty: effects are none.
+/// Levels of the factor effects with their contents in words; empty if effects are not a factor.
 Json effects_json(const TaskData& data) {
   Json json = Json::object();
   for (const auto& level : data.protocol.effects) json[level.name] = level.words;
@@ -57,7 +57,8 @@ Json protocol_json(const TaskData& data) {
   return json;
 }
 
-/// The pilot shows one method, which refines nothing by gaze. Another design may show none that does.
+/// True if a method refines by gaze. The pilot's single method does not, and other designs may have none that
+/// does.
 bool refines(const TaskData& data) {
   if (data.task != TaskKind::Own) return data.task != TaskKind::Pilot;
   return std::any_of(data.protocol.methods.begin(), data.protocol.methods.end(), [](const std::string& one) {
@@ -94,7 +95,7 @@ std::vector<std::string> notes_of(const TaskData& data) {
   return notes;
 }
 
-/// Of what may not have been measured.
+/// Mean of values that may be missing.
 struct Mean {
   int count = 0;
   double sum = 0;
@@ -105,14 +106,14 @@ struct Mean {
   Json json() const { return count > 0 ? Json(sum / count) : Json(); }
 };
 
-/// One line of the certificates.
+/// One line of the timing certificate.
 struct TimedCell {
   int showings = 0, pass = 0, degraded = 0, fail = 0, unjudged = 0;
   std::map<std::string, int> grades;
   study::FpsSetting nominal;
   double mean = 0, sd = 0, longest_ms = 0;
   std::int64_t late = 0;
-  Mean active_fraction, tau_fps;  ///< over the showings that measured them
+  Mean active_fraction, tau_fps;  ///< over the showings with measurements
 
   void add(const study::TaskShowing& shown) {
     ++showings;

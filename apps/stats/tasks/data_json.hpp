@@ -1,5 +1,5 @@
 #pragma once
-/// What was analysed and what was not (docs/results.md: study, flow, exclusions, timing).
+/// The data that were analysed and that were not (docs/results.md: study, flow, exclusions, timing).
 
 #include <map>
 #include <string>
@@ -10,19 +10,20 @@
 
 namespace apps {
 
-/// "study" of one or two tasks; `database`: name to show.
+/// "study" of one or two tasks; `database`: name for display.
 Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks);
-/// Names of the rules of exclusion that could leave out something of these data, whatever they say; those
-/// that compare with what was not shown or asked are none.
+/// Names of the exclusion rules that could exclude some of these data, whatever the answers; not those that
+/// need something that was not shown or asked.
 Json acting_rules_json(const TaskData& data, const stats::ExclusionRules& rules);
 Json flow_json(const TaskFlow& flow);
-/// "roster": every session of the database, by protocol. `sections`: where a protocol is analysed, by
+/// "roster": every session of the database, by protocol. `sections`: the section that analyses a protocol, by
 /// SHA-256.
 Json roster_json(const study::TaskStudy& study, const std::multimap<std::string, std::string>& sections);
 /// Lists.
 Json exclusions_json(const TaskData& data);
 Json timing_json(const TaskData& data);
-/// One entry for each part in a list of timing_json(): its sums, and in how many cells every showing passed.
+/// One entry for each part in a list of timing_json(): its sums, and the number of cells in which every
+/// showing passed.
 Json timing_totals_json(const Json& timing);
 
 }  // namespace apps

@@ -12,28 +12,29 @@ namespace apps {
 
 namespace {
 
-constexpr int most_listed_scores = 21;  ///< of a scale, whose scores are all listed, given or not
+constexpr int most_listed_scores = 21;  ///< largest scale for which all scores are listed, including those
+                                        ///< never given
 
-/// One stimulus of a trial, as places in the protocol's lists and its frame rate.
+/// One stimulus of a trial: its method as an index in the protocol's list, and its frame rate.
 struct ShownSetting {
   std::size_t method = 0;
   double mean = 0, sd = 0;
   auto operator<=>(const ShownSetting&) const = default;
 };
 
-/// What a line of the table is about; of a pair both stimuli, the earlier in the protocol first. Where an
-/// answer does not name one of the two, it may be about the order, so that each order has a line.
+/// A line of the table; for a pair both stimuli, the earlier in the protocol first. An answer that does not
+/// name one of the two may be about the order, so each order then has its own line.
 struct Cell {
   std::size_t scene = 0, n_star = 0;
   std::vector<ShownSetting> shown;
-  bool by_order = false;  ///< of a pair: of one order of showing alone
-  bool turned = false;    ///< that which shows the later one first
+  bool by_order = false;  ///< of a pair: only one order of showing
+  bool turned = false;    ///< the order that shows the later stimulus first
   auto operator<=>(const Cell&) const = default;
 };
 
 struct Given {
   std::vector<double> scores;
-  std::vector<bool> first_stands_first;  ///< of a pair: shown in the order of Cell::shown
+  std::vector<bool> first_stands_first;  ///< of a pair: true if shown in the order of Cell::shown
   std::set<std::string> participants;
 };
 
@@ -94,7 +95,7 @@ class Describer {
     return several_settings_ ? fmt::format("{}, {:g} frames/s, SD {:g}", method, one.mean, one.sd) : method;
   }
 
-  /// "LoRes", "LoRes and HiRes" of both orders, or "first HiRes, then LoRes".
+  /// "LoRes", "LoRes and HiRes" for both orders, or "first HiRes, then LoRes".
   std::string name(const Cell& cell) const {
     if (cell.shown.size() == 1) return name(cell.shown[0]);
     if (!cell.by_order) return name(cell.shown[0]) + " and " + name(cell.shown[1]);
@@ -102,7 +103,7 @@ class Describer {
            name(cell.shown[cell.turned ? 0 : 1]);
   }
 
-  /// Which of a pair was chosen.
+  /// True if the question asks which of a pair is chosen.
   bool is_choice_of_pair(const study::Question& question, const Cell& cell) const {
     return question.kind == study::AnswerKind::Choice && question.anchors.size() == 2 &&
            cell.shown.size() == 2;
@@ -140,7 +141,7 @@ class Describer {
               {"shown", name(cell)},
               {"n", given.scores.size()},
               {"participants", given.participants.size()}};
-    // The numbers of a choice's answers are names.
+    // A choice's answers are labels, so they have no mean.
     const auto described = stats::describe(given.scores);
     const bool counted = question.kind != study::AnswerKind::Choice && described;
     json["mean"] = counted ? json_number(described->mean) : Json();

@@ -1,5 +1,6 @@
 #pragma once
-/// Answers as they were given, by question and cell: of any protocol (docs/results.md: descriptives).
+/// Descriptive statistics of the answers, by question and cell, for any protocol (docs/results.md:
+/// descriptives).
 
 #include <string>
 #include <vector>
@@ -9,8 +10,8 @@
 
 namespace apps {
 
-/// A list with an entry for each of these questions (ids) and each cell in which it was answered, over the
-/// trials that are analysed.
+/// A list with an entry for each of these questions (ids) and each cell with answers to it, over the analysed
+/// trials.
 Json descriptives_json(const TaskData& data, const std::vector<std::string>& questions);
 
 }  // namespace apps

@@ -41,7 +41,7 @@ Json pilot_distributions(const TaskData& data) {
   return list;
 }
 
-/// Mean answer of each participant to each item at one n_*, participants by items; NaN: none.
+/// Mean answer of each participant to each item at one n_*, participants by items; NaN without an answer.
 Scores item_means(const TaskData& data, const std::vector<std::string>& items, int n_star) {
   const std::size_t k = items.size();
   Scores sums(data.participants.size() * k, 0.0), counts(sums.size(), 0.0);
@@ -59,7 +59,7 @@ Scores item_means(const TaskData& data, const std::vector<std::string>& items, i
   return sums;
 }
 
-/// (a - b at one n_*) less (a - b at another), of the participants with all four.
+/// (a - b at one n_*) minus (a - b at another), for the participants with all four values.
 Scores double_differences(const stats::ScoreTable& table, std::pair<int, int> n_stars, int a, int b) {
   const auto a1 = table.column(n_stars.first, a), b1 = table.column(n_stars.first, b);
   const auto a2 = table.column(n_stars.second, a), b2 = table.column(n_stars.second, b);
@@ -71,7 +71,7 @@ Scores double_differences(const stats::ScoreTable& table, std::pair<int, int> n_
   return out;
 }
 
-/// All pairs of methods of one score between two n_*, with Holm over them.
+/// Adds all pairs of methods of one score between two n_*, with Holm over these pairs.
 void add_pair_of_n_stars(Json& list, const stats::ScoreTable& table, std::pair<int, int> n_stars,
                          const stats::AnalysisPlan& plan) {
   const auto name = [](const std::vector<std::string>& names, int i) { return names.at(std::size_t(i)); };
@@ -106,7 +106,7 @@ void add_pair_of_n_stars(Json& list, const stats::ScoreTable& table, std::pair<i
   }
 }
 
-/// Median of the standard deviations of the pairs' differences; NaN: none is known.
+/// Median of the standard deviations of the pairs' differences; NaN if none is known.
 double median_sd(const stats::ScoreAnalysis& analysis, int n_star) {
   Scores sds;
   for (const auto& one : analysis.comparisons) {

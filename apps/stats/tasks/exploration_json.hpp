@@ -1,6 +1,6 @@
 #pragma once
-/// What describes the answers of a part, untested or exploratory (docs/results.md: distributions,
-/// response_times, reliability, by_n_star, detectable).
+/// Descriptive and exploratory results of a part (docs/results.md: distributions, response_times,
+/// reliability, by_n_star, detectable).
 
 #include <vector>
 
@@ -13,10 +13,10 @@
 
 namespace apps {
 
-/// How often each score was given: by question, n_* and method, of the pilot by setting. Empty for pairs.
+/// Counts of each score by question, n_* and method; for the pilot by setting. Empty for pairs.
 Json distributions_json(const TaskData& data);
 
-/// One entry for each question about trials that was answered; null times were not recorded.
+/// One entry for each answered question about trials; null times were not recorded.
 Json response_times_json(const TaskData& data);
 
 /// One entry for each score of several items and each n_*: Cronbach's alpha of participants' means of each
@@ -24,13 +24,13 @@ Json response_times_json(const TaskData& data);
 Json reliability_json(const TaskData& data, const std::vector<stats::ScoreTable>& tables,
                       const stats::AnalysisPlan& plan);
 
-/// Reports of one score as they were given, by n_*, scene and method; the interval is of participants' means.
+/// Single reports of one score by n_*, scene and method; the interval is of participants' means.
 Json score_by_scene_json(const TaskData& data, const stats::ScoreTable& table, double confidence);
 
-/// Whether the difference of two methods depends on n_*: for each score, pair of n_* and pair of methods.
+/// Tests if the difference of two methods depends on n_*: for each score, pair of n_* and pair of methods.
 Json n_star_differences_json(const std::vector<stats::ScoreTable>& tables, const stats::AnalysisPlan& plan);
 
-/// The smallest effect that the tests of so many people find with this power.
+/// The smallest effects are those that the tests of the given number of people detect with this power.
 inline constexpr double detectable_power = 0.8;
 Json detectable_scores_json(const std::vector<stats::ScoreTable>& tables,
                             const std::vector<stats::ScoreAnalysis>& analyses,

@@ -8,7 +8,7 @@ namespace apps {
 
 namespace {
 
-/// A factor within the groups of cells: its levels, and those of each treatment.
+/// A factor: its levels, and the level and rest of each treatment.
 struct Factor {
   const char* name;
   std::vector<std::string> levels;
@@ -19,7 +19,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// Effects and method, those of them that have several levels; none where effects are no factor.
+/// The factors effects and method, if they have several levels; empty if effects are not a factor.
 std::vector<Factor> factors_of(const study::TaskProtocol& protocol) {
   if (protocol.effects.empty()) return {};
   Factor effects{"effects", {}, {}}, methods{"method", {}, {}};
@@ -41,7 +41,7 @@ const std::string& level(const Factor& factor, int index) {
   return factor.levels[static_cast<std::size_t>(index)];
 }
 
-/// The test of one number of each participant.
+/// The test of one value for each participant.
 Json t_test_json(const stats::Result<stats::OneSampleTTest>& test,
                  const std::optional<stats::Unanimous>& all_alike, const std::optional<double>& p,
                  const std::optional<double>& p_holm) {

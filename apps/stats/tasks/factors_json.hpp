@@ -1,5 +1,5 @@
 #pragma once
-/// "factors" of a task's results: what each level of each factor is worth, where effects are a factor.
+/// "factors" of a task's results: the effect of each level of each factor, if effects are a factor.
 
 #include <vector>
 
@@ -10,9 +10,9 @@
 
 namespace apps {
 
-/// Task 2. Empty: effects are no factor.
+/// For Task 2. Empty if effects are not a factor.
 Json preference_factors_json(const TaskData& data, const stats::AnalysisPlan& plan);
-/// Task 1, of every score.
+/// For every score of Task 1.
 Json score_factors_json(const TaskData& data, const std::vector<stats::ScoreTable>& tables,
                         const stats::AnalysisPlan& plan);
 

@@ -9,7 +9,7 @@
 namespace apps {
 
 Json hypothesis_json(const stats::Hypothesis& hypothesis);
-/// As much as a sensitivity analysis shows.
+/// Only the fields that a sensitivity analysis shows.
 Json hypothesis_outline_json(const stats::Hypothesis& hypothesis);
 
 }  // namespace apps

@@ -1,6 +1,6 @@
 #pragma once
-/// What speaks of missing answers in Task 1's results (docs/results.md): the mixed model of all answers, on
-/// whom pairs rest, tipping points.
+/// The parts of Task 1's results about missing answers (docs/results.md): the mixed model of all answers, the
+/// participants of pairs, tipping points.
 
 #include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/data/task_data.hpp"
@@ -9,7 +9,7 @@
 
 namespace apps {
 
-/// "mixed" and "tipping" of one entry of task1.comparisons.
+/// Adds "mixed" and "tipping" to one entry of task1.comparisons.
 void add_missing_data(Json& comparison, const stats::ScoreTable& table, const stats::MethodComparison& one,
                       double alpha);
 /// One entry of task1.mixed.

@@ -13,10 +13,10 @@ namespace {
 
 using Counts = std::vector<std::pair<std::string, int>>;
 
-/// The range of a summary is whole multiples of this: its exact ends are each one person's answer.
+/// Ranges are rounded outwards to multiples of this, since each exact end is one person's answer.
 constexpr double range_step = 5;
 
-/// What the participants of a part answered to one question, those who answered.
+/// The answers of a part's participants to one question.
 std::vector<std::string> answers_to(const study::Question& question, const TaskData& data,
                                     const std::vector<study::PersonalEntry>& answers) {
   std::map<std::string, std::string> by_person;
@@ -31,14 +31,15 @@ std::vector<std::string> answers_to(const study::Question& question, const TaskD
   return out;
 }
 
-/// Of a scale the scores, as far as the file of personal data does not have its words.
+/// The score of a scale's answer, if the file of personal data holds its anchor's words; else the answer
+/// itself.
 std::string score_of(const study::Question& question, const std::string& answer) {
   for (const auto& [score, words] : question.anchors)
     if (words == answer) return std::to_string(score);
   return answer;
 }
 
-/// A scale's range is that of its scores, so that only a typed number's is shown.
+/// The range is shown only for typed numbers, since a scale's range is known.
 void add_numbers(Json& json, const study::Question& question, std::vector<std::string> answers) {
   for (std::string& answer : answers) answer = score_of(question, answer);
   std::vector<double> values;

@@ -1,5 +1,5 @@
 #pragma once
-/// "people" of the results: who took part, in summaries by which no single person is recognised.
+/// "people" of the results: summaries of the participants that do not identify a single person.
 
 #include <string>
 #include <utility>
@@ -10,14 +10,14 @@
 
 namespace apps {
 
-/// Fewer people than this are shown as no group of their own.
+/// Smallest group of people that is shown separately.
 inline constexpr int smallest_group = 3;
-/// Mean, SD and range of fewer numbers than this are not shown: they nearly give the numbers themselves.
+/// Fewest numbers for which mean, SD and range are shown; fewer would nearly reveal the numbers themselves.
 inline constexpr int fewest_numbers = 5;
 
-/// Answers and how many people gave each; `pooled`: answers of fewer than smallest_group people, taken
-/// together with the next smallest groups until they are that many, so that no small group follows from the
-/// sum.
+/// Answers and the number of people who gave each. `pooled`: answers of fewer than smallest_group people,
+/// combined with the next smallest groups until they are that many, so that no small group can be derived
+/// from the sum.
 struct GroupCounts {
   std::vector<std::pair<std::string, int>> shown;  ///< in the order given
   std::vector<std::string> pooled;
@@ -25,7 +25,7 @@ struct GroupCounts {
 };
 GroupCounts pool_small_groups(std::vector<std::pair<std::string, int>> counts);
 
-/// One entry for each part of the study that asks its participants about themselves; of those analysed.
+/// One entry for each part of the study that asks its participants about themselves, over the analysed ones.
 /// `answers`: TaskStudy::about_people.
 Json people_json(const std::vector<const TaskData*>& parts, const std::vector<study::PersonalEntry>& answers);
 

@@ -20,17 +20,17 @@ namespace apps {
 
 namespace {
 
-/// One analysis: parts of the document.
+/// One analysis, with its parts of the document.
 struct TaskPart {
   TaskData data;
   std::vector<std::string> described;  ///< ids of the questions whose answers are described
-  Json results = {};                   ///< refused when no answer counts
+  Json results = {};                   ///< refused if no answer can be analysed
   std::vector<stats::Hypothesis> hypotheses = {};
   std::vector<stats::ShownClaims::LeftOut> not_analysed = {};
   Json sensitivity = Json::array();
 };
 
-/// Why a design is one that no shipped analysis is about.
+/// Why no built-in analysis applies to a design.
 std::string what_it_lacks(const TaskData& data) {
   const auto& protocol = data.protocol;
   const std::string lacks =
@@ -46,7 +46,7 @@ std::string why_not_analysed(const TaskData& data) {
   return what_it_lacks(data) + ", so no shipped analysis covers it; its answers are described by cell";
 }
 
-/// All that no shipped analysis covers of such a design.
+/// The parts of such a design that no built-in analysis covers.
 std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
   std::vector<stats::ShownClaims::LeftOut> out{{"own design", why_not_analysed(data)}};
   const std::string lacks = what_it_lacks(data);
@@ -59,7 +59,7 @@ std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
   return out;
 }
 
-/// What stands under the task's own name, and its hypotheses. Refused with the reason.
+/// Makes the results under the task's own name, and the hypotheses. Refused with the reason.
 stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   const TaskData& data = part.data;
   const stats::AnalysisPlan& plan = request.plan.plan;
@@ -83,7 +83,7 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());
   const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
-  // The paper's claims are about methods alone.
+  // The paper's claims are only about methods.
   if (data.protocol.effects.empty()) {
     auto claims = stats::claims_about(
         stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem()),
@@ -94,7 +94,8 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   return task2_json(data, analysis, plan);
 }
 
-/// Each question is described once: with its own analysis, or with the first of its protocol.
+/// Questions that this analysis describes. Each question is described once: with its own analysis, or with
+/// the first analysis of its protocol.
 std::vector<std::string> described_questions(const ChosenTask& chosen, const std::string& only) {
   std::vector<std::string> out;
   for (const study::Question& question : chosen.protocol.questions) {
@@ -107,7 +108,7 @@ std::vector<std::string> described_questions(const ChosenTask& chosen, const std
   return out;
 }
 
-/// Without an answer that counts, who left and why still stands.
+/// Even without an answer to analyse, the part reports who left and why.
 TaskPart analyse(const study::TaskStudy& study, const ChosenTask& chosen, const ResultsRequest& request,
                  std::vector<MissingTask>& missing) {
   const TaskSelection selection{kind_of(chosen.protocol), request.protocol, request.plan.plan};
@@ -186,10 +187,11 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
   return json;
 }
 
-/// Of the document at this place in "apart".
+/// Name of the document at this index in "apart".
 std::string apart_name(std::size_t index) { return "apart " + std::to_string(index + 1); }
 
-/// How many simulated participants answered, whether or not it counts: one may be in several protocols.
+/// Number of simulated participants with answers, analysed or not; each counts once, since one may be in
+/// several protocols.
 std::size_t simulated_people(const study::TaskStudy& study) {
   std::set<std::string> people;
   for (const study::TaskProtocol& protocol : study.protocols)
@@ -198,7 +200,7 @@ std::size_t simulated_people(const study::TaskStudy& study) {
   return people.size();
 }
 
-/// Where each protocol is analysed, by SHA-256.
+/// The section in which each protocol is analysed, by SHA-256.
 std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>& first,
                                                     const std::vector<TaskPart>& others) {
   std::multimap<std::string, std::string> out;

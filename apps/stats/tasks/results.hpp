@@ -16,33 +16,33 @@ namespace apps {
 
 struct ResultsRequest {
   std::filesystem::path database;
-  std::vector<TaskKind> tasks;  ///< those without a protocol in the database are left out
-  std::string protocol;         ///< leading digits of a SHA-256; empty: all
+  std::vector<TaskKind> tasks;  ///< tasks without a protocol in the database are left out
+  std::string protocol;         ///< name, with or without version, or leading digits of a SHA-256; empty: all
   PlanInForce plan;
-  std::shared_ptr<const SweepTables> sweep = {};  ///< none = not asked
-  std::string sweep_file = {};                    ///< its name to show
-  bool incomplete = false;                        ///< go on where the journal holds more than the database
+  std::shared_ptr<const SweepTables> sweep = {};  ///< null if not requested
+  std::string sweep_file = {};                    ///< its name for display
+  bool incomplete = false;                        ///< continue if the journal holds more than the database
   std::string question = {};                      ///< its id; empty: all
-  std::optional<double> level = {};               ///< of a pilot's curve; none: that of level_of()
+  std::optional<double> level = {};               ///< of a pilot's curve; empty: see level_of()
 };
 
 /// A task of the request that has no results.
 struct MissingTask {
   TaskKind task = TaskKind::Task1;
   std::string reason;
-  std::string mend;  ///< for the person at the command line
+  std::string mend;  ///< advice for the user
 };
 
 struct Results {
-  /// The first analysis of each task. What else the request asks for, another protocol of a task or another
-  /// question, is in "apart": a list of documents of the same form, each with one analysis.
+  /// The first analysis of each task. Further analyses, of another protocol of a task or another question,
+  /// are in "apart": a list of documents of the same form, each with one analysis.
   Json json;
   std::vector<MissingTask> missing;
 };
 
-/// Of a study that was read already; the request's database only gives its name.
+/// Results of a study that was already read; the request's database only gives its name.
 Results make_results(const study::TaskStudy& study, const ResultsRequest& request);
-/// base::Error when the database cannot be read.
+/// Reads the database; base::Error if that fails.
 Results study_results(const ResultsRequest& request);
 
 }  // namespace apps

@@ -30,7 +30,7 @@ Json changed(const Verdicts& planned, const Verdicts& other) {
   return ids;
 }
 
-/// One way of looking at the data.
+/// Writes one entry for each variant of the analysis.
 class Writer {
  public:
   Writer(TaskKind task, const Verdicts& planned) : task_(task), planned_(planned) {}
@@ -66,7 +66,7 @@ study::TaskStudy with_tracked_gaze(study::TaskStudy study) {
   return study;
 }
 
-/// Every block (participant, visit, scene) as if it were a participant of its own.
+/// The data with every block treated as a separate participant.
 TaskData with_blocks_pooled(TaskData data) {
   std::map<std::tuple<int, int, int, int>, int> blocks;
   for (Report& report : data.reports) {
@@ -77,11 +77,11 @@ TaskData with_blocks_pooled(TaskData data) {
             .first->second;
   }
   data.participants.resize(blocks.size());
-  data.unanswered.clear();  // they are of people
+  data.unanswered.clear();  // these refer to people, not blocks
   return data;
 }
 
-/// Somebody has several reports at one n_* on one method, so that averaging does something.
+/// True if a participant has several reports at one n_* on one method, so that averaging has an effect.
 bool averages_blocks(const TaskData& data) {
   std::map<std::tuple<int, int, int>, int> reports;
   return std::any_of(data.reports.begin(), data.reports.end(), [&](const Report& one) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The hypotheses again under other rules: do the verdicts hang on an exclusion?
+/// The hypotheses tested again under other rules, to show if verdicts depend on an exclusion.
 
 #include <vector>
 

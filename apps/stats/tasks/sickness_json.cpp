@@ -32,7 +32,8 @@ Json change_json(const stats::SicknessChange& change) {
   return json;
 }
 
-/// Sums of one person before and after, of the sessions with both; without such, of those with either.
+/// Mean sums of one person before and after, over the sessions with both; if there are none, over those with
+/// either.
 struct Occasions {
   stats::ExactMean before, after;
 };
@@ -70,7 +71,7 @@ Occasions ssq_occasions(const Sessions& sessions, stats::SsqScale scale) {
 Occasions fms_occasions(const Sessions& sessions) {
   std::vector<std::array<std::optional<double>, 2>> ends;
   for (const auto* session : sessions) {
-    // One answer alone has nothing to be compared with.
+    // A single answer cannot be compared.
     if (session->fms.size() > 1) ends.push_back({session->fms.front().score, session->fms.back().score});
   }
   return mean_of(ends);
@@ -138,7 +139,7 @@ std::vector<double> scores_of(const Sessions& sessions, const std::string& block
   return scores;
 }
 
-/// Mean and peak of each person in a block, in the whole session without one, described over people.
+/// Statistics over people of each person's mean and peak, in a block or (if empty) in the whole session.
 Json course_json(const People& people, const std::string& block) {
   std::vector<double> means, peaks;
   for (const auto& [code, sessions] : people) {
@@ -150,7 +151,7 @@ Json course_json(const People& people, const std::string& block) {
   return {{"mean", summary_json(stats::describe(means))}, {"peak", summary_json(stats::describe(peaks))}};
 }
 
-/// Blocks in the order of the session that asks first.
+/// Blocks by the earliest position at which a session asks.
 std::vector<std::string> blocks_of(const People& people) {
   std::map<std::string, int> first;
   for (const auto& [code, sessions] : people) {
@@ -168,7 +169,7 @@ std::vector<std::string> blocks_of(const People& people) {
   return blocks;
 }
 
-/// The n-th answers of all sessions that have so many.
+/// For each n, the n-th answers of all sessions that have as many.
 Json times_json(const People& people) {
   Json list = Json::array();
   for (std::size_t asked = 0;; ++asked) {
@@ -177,7 +178,7 @@ Json times_json(const People& people) {
       for (const auto* session : sessions) {
         if (asked >= session->fms.size()) continue;
         scores.push_back(session->fms[asked].score);
-        // Of a model the time that the program took, which is none of a session.
+        // A model's minutes are the program's run time, not session time.
         if (!is_simulated(*session)) minutes.push_back(session->fms[asked].minutes);
       }
     }
@@ -209,7 +210,7 @@ Json fms_json(const People& people, const stats::AnalysisPlan& plan) {
   return json;
 }
 
-/// One line for each participant, with the scores as they are compared.
+/// One line for each participant, with the scores that are compared.
 Json participants_json(const People& people) {
   Json list = Json::array();
   for (const auto& [code, sessions] : people) {

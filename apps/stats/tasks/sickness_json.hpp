@@ -9,8 +9,9 @@
 
 namespace apps {
 
-/// One entry for each protocol that asked for either. Test data step back behind real ones, within a protocol
-/// observer models behind people; no other rule leaves out anything, since all of it tells of safety.
+/// One entry for each protocol that asked for either. Test data are left out if real data exist, and within a
+/// protocol observer models if people exist. No other rule excludes anything, since all of these data concern
+/// safety.
 Json sickness_json(std::vector<study::SicknessSession> sessions, const stats::AnalysisPlan& plan);
 
 }  // namespace apps

@@ -7,7 +7,7 @@
 namespace apps {
 
 Json task1_json(const TaskData& data, const Task1Results& results, const stats::AnalysisPlan& plan);
-/// Without corrections for several tests.
+/// Without corrections for multiple tests.
 Json signed_rank_json(const stats::SignedRank& test);
 
 }  // namespace apps

@@ -29,7 +29,7 @@ const study::Question* find_question(const TaskData& data, const std::string& id
   return nullptr;
 }
 
-/// False when an item is not asked; else the range of the answers is that of the questions.
+/// Sets the scale's range from the questions; false if an item is not asked.
 bool fit_scale(ScoreScale& scale, const TaskData& data) {
   for (const std::string& item : scale.items) {
     const study::Question* question = find_question(data, item);
@@ -79,7 +79,7 @@ const stats::ScoreTable* find_table(const std::vector<stats::ScoreTable>& tables
   return nullptr;
 }
 
-/// H1 to H3 need both scores. Each score is analysed whether or not the other is there.
+/// H1 to H3 need both scores, though each score is analysed without the other.
 stats::ShownClaims shown_claims(const std::vector<stats::ScoreTable>& tables, const TaskData& data,
                                 const stats::AnalysisPlan& plan) {
   const auto* realism = find_table(tables, "realism");
@@ -120,7 +120,7 @@ std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats:
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
   Task1Results out;
   out.tables = score_tables(data, plan);
-  // The paper's claims are about methods alone.
+  // The paper's claims are only about methods.
   if (data.protocol.effects.empty()) {
     auto hypotheses = shown_claims(out.tables, data, plan);
     out.hypotheses = std::move(hypotheses.claims);

@@ -26,18 +26,18 @@ struct Task1Results {
   std::vector<stats::ShownClaims::LeftOut> left_out;  ///< hypotheses that are not tested
 };
 
-/// Realism and the cybersickness scores. A score is the mean of its items; a report that lacks one has none.
-/// Scores of which an item is not asked are left out.
+/// Realism and the cybersickness scores. A score is the mean of its items; a report that lacks an item has no
+/// score. Scores with an item that is not asked are left out.
 std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// A table's scores before scenes are averaged: one for each report, NaN for those planned and not given.
+/// A table's scores before scenes are averaged: one for each report; NaN for reports planned but not given.
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
 
-/// Each score that is asked for. Of H1 to H3 those whose methods the protocol shows; none where effects are a
-/// factor or an item of a score is not asked.
+/// Analyses each score whose items are asked, and those of H1 to H3 whose methods the protocol shows; no
+/// hypotheses if effects are a factor or an item of a score is not asked.
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// H1 to H3 alone, as far as the protocol shows their methods: for sensitivity.
+/// Only H1 to H3, as far as the protocol shows their methods: for the sensitivity analysis.
 std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats::AnalysisPlan& plan);
 
 }  // namespace apps

@@ -35,7 +35,7 @@ const char* repeated_rule(stats::RepeatedPairs rule) {
          "half, by an exact test over people.";
 }
 
-/// Of people who answered a pair more than once.
+/// Counts of people who answered a pair more than once.
 Json several_answers_json(const TaskData& data) {
   std::map<std::tuple<int, int, int>, int> answers;
   for (const auto& one : data.choices)
@@ -148,7 +148,7 @@ Json interval_json(const stats::IntervalBias& bias) {
           {"by_participant", by_participant_json(bias)}};
 }
 
-/// The interval's pull on the choice and its drift over the session, within the Bradley-Terry model.
+/// The bias to an interval and its drift over the session, within the Bradley-Terry model.
 Json order_json(const stats::Result<stats::OrderBias>& model, const Names& methods) {
   if (!model) return json_refused(with_names(model.reason(), methods));
   return json_result(model, [](const stats::OrderBias& bias) {
@@ -189,7 +189,7 @@ Json differences_json(const stats::BradleyTerry& model, const Names& methods) {
   return list;
 }
 
-/// Whose errors the model's are, and Wald's test of equal methods over people.
+/// The kind of the model's errors, and Wald's test of equal methods over people.
 Json people_json(const stats::BradleyTerry& model) {
   const auto& test = model.equal_over_people;
   return {{"errors", model.people_df ? "people" : "independent answers"},
@@ -242,7 +242,7 @@ Json triads_json(const TaskData& data, const stats::PreferenceAnalysis& analysis
 }
 
 Json by_scene_json(const TaskData& data) {
-  std::map<std::tuple<int, int, int>, std::pair<int, int>> cells;  // answers, a chosen
+  std::map<std::tuple<int, int, int>, std::pair<int, int>> cells;  // answers, choices of a
   for (const auto& choice : data.choices) {
     const int a = std::min(choice.first, choice.second), b = std::max(choice.first, choice.second);
     auto& [n, k] = cells[{choice.scene, a, b}];

@@ -1,5 +1,5 @@
 #pragma once
-/// The panel of the window: what is shown and what can be chosen, in Dear ImGui.
+/// The window's panel of figures and controls, in Dear ImGui.
 
 #include <cstdint>
 #include <string>
@@ -17,33 +17,33 @@ struct GLFWwindow;
 
 namespace apps {
 
-/// What the panel shows.
+/// Values that the panel shows.
 struct Figures {
   int frame = 0;
   std::int64_t particles = 0;
   double frame_ms = 0;  ///< of the last frame
   stats::FpsMoments fps;
   double tau = 0, beta = 1;  ///< of the frames shown
-  std::string model;         ///< where a and b come from
+  std::string model;         ///< source of a and b
   FrameStrip strip;
-  std::string legend;              ///< of what is painted over the water
-  std::vector<std::string> price;  ///< what the setting costs and errs by; empty: no sweep was given
-  PassMeans passes;                ///< while the schedule is shown
-  std::string said;                ///< the last error, or where a screenshot went
+  std::string legend;              ///< of the values painted over the water
+  std::vector<std::string> price;  ///< cost and errors of the setting; empty without a sweep
+  PassMeans passes;                ///< only while the schedule is shown
+  std::string said;                ///< the last error, or the path of a screenshot
 };
 
-/// What the panel sets.
+/// Values that the panel sets.
 struct Controls {
   ViewOptions chosen;
-  double alpha = 0;    ///< those of the fluid that runs
-  int iterations = 1;  ///< likewise
+  double alpha = 0;    ///< of the running fluid
+  int iterations = 1;  ///< of the running fluid
   bool paused = false;
   bool step_once = false;
-  bool mouse_gaze = true;  ///< else the scene's gaze keys
+  bool mouse_gaze = true;  ///< if false, the scene's gaze keys
   bool screenshot = false;
   bool restart = false;
   OverlayKind overlay = OverlayKind::None;
-  bool schedule = false;               ///< shown, and so timed
+  bool schedule = false;               ///< shown, and therefore timed
   std::vector<EffectSwitch> switches;  ///< of the scene's effects, also while a slider is dragged
 };
 
@@ -57,11 +57,11 @@ class Panel {
 
   /// Draws it over the current framebuffer.
   void draw(Controls& controls, const Figures& figures);
-  /// Draws how far a new fluid is: a text and a bar from 0 to 1.
+  /// Draws the progress of a new fluid: a text and a bar from 0 to 1.
   void draw_progress(const std::string& text, float done);
-  /// Whether the mouse is at the panel and so not a gaze.
+  /// True if the mouse is over the panel, so that it is not a gaze.
   bool has_mouse() const;
-  /// Whether a number is being typed.
+  /// True while a number is typed.
   bool has_keys() const;
 
  private:
@@ -71,8 +71,8 @@ class Panel {
   void draw_schedule(const PassMeans& passes);
 
   std::vector<std::string> scenes_, methods_, sizes_;
-  int size_ = 0;    ///< of the slider of n_*, while it is dragged
-  int levels_ = 4;  ///< likewise of N
+  int size_ = 0;    ///< position of the n_* slider while it is dragged
+  int levels_ = 4;  ///< of the N slider, likewise
 };
 
 }  // namespace apps

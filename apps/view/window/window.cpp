@@ -1,4 +1,4 @@
-// epoxy first: GLFW then leaves GL's headers alone.
+// epoxy first: GLFW then does not include GL's headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -25,17 +25,17 @@ namespace {
 
 constexpr double progress_every_s = 0.1;
 
-/// Thrown out of a settling when the window was closed meanwhile.
+/// Thrown from the settling callback when the window was closed.
 struct Closed {};
 
-/// With all its effects, of which any may be turned on while the picture is there.
+/// The scene with all listed effects, any of which may be turned on later.
 sim::Scene as_listed(const PreparedFluid& prepared) {
   sim::Scene out = prepared.scene;
   out.effects = prepared.listed;
   return out;
 }
 
-/// A fluid that runs, and what is drawn of it.
+/// A running fluid and its picture.
 struct Running {
   explicit Running(PreparedFluid fluid)
       : prepared(std::move(fluid)),
@@ -46,11 +46,11 @@ struct Running {
   FluidPicture picture;
   OverlayPainter painter;
   stats::FpsWindow fps{30};
-  bool timed = false;   ///< its passes
-  double shown_s = -1;  ///< when the last frame was shown; < 0 when a pause lies between
+  bool timed = false;   ///< its passes are timed
+  double shown_s = -1;  ///< when the last frame was shown; < 0 after a pause
 };
 
-/// Words as the choosers spell them.
+/// The options with names as the combo boxes spell them.
 ViewOptions spelled_out(ViewOptions options) {
   options.method = sim::method_name(sim::parse_method(options.method));
   options.preset = sim::preset_name(sim::parse_preset(options.preset));
@@ -88,7 +88,7 @@ class Viewer {
   void note_time(bool stepped);
   void save_screenshot(int width, int height);
 
-  ViewOptions running_;  ///< what the fluid was made with
+  ViewOptions running_;  ///< the options of the running fluid
   GlfwWindow window_;
   Panel panel_;
   Controls controls_;
@@ -97,7 +97,7 @@ class Viewer {
   std::unique_ptr<Running> fluid_;
 };
 
-/// Settles it while a picture of how far it is stands in the window.
+/// Makes and settles a fluid while the window shows the progress.
 std::unique_ptr<Running> Viewer::make_fluid(const ViewOptions& options) {
   const std::string what = scene_title(options.scene) + ", " + options.method + ", n_* " + options.n_star;
   double shown_s = -progress_every_s;
@@ -137,9 +137,9 @@ void Viewer::take(std::unique_ptr<Running> fluid) {
   figures_.price = price_lines(controls_.chosen, prepared.setting, prepared.scene);
 }
 
-/// The old fluid stays when the new one cannot be made.
+/// Keeps the old fluid if the new one cannot be made.
 void Viewer::begin_anew() {
-  // Another scene lists effects of its own.
+  // Another scene lists other effects.
   if (controls_.chosen.scene != running_.scene) {
     controls_.chosen.effects.reset();
     controls_.chosen.effects_off.clear();
@@ -170,7 +170,7 @@ void Viewer::follow_keys() {
   }
 }
 
-/// The clock round each pass stands only while its times are shown.
+/// Times passes only while the schedule is shown.
 void Viewer::follow_schedule() {
   if (fluid_->timed == controls_.schedule) return;
   fluid_->prepared.fluid->time_passes(controls_.schedule);
@@ -178,7 +178,7 @@ void Viewer::follow_schedule() {
   figures_.passes.clear();
 }
 
-/// The old ones stay where the new ones are refused.
+/// Keeps the old effects if the new ones are refused.
 void Viewer::exchange_effects() {
   PreparedFluid& prepared = fluid_->prepared;
   const auto wished = controls_.chosen.effects.value_or(prepared.scene.effects);
@@ -225,7 +225,7 @@ void Viewer::step(const sim::View& view) {
       prepared.camera, sim::gaze_point(prepared.scene, sim::scene_frame(prepared.scene, figures_.frame + 1,
                                                                         prepared.frame_dt_s)));
   if (controls_.mouse_gaze) {
-    // Nowhere when the mouse is at the panel or outside: the gaze counts as lost.
+    // If the mouse is over the panel or outside the window, the gaze counts as lost.
     double x = 0, y = 0;
     const bool looks = window_.mouse(x, y) && !panel_.has_mouse();
     gaze = looks ? gaze_through(view, x, y) : sim::Gaze{};
@@ -236,7 +236,7 @@ void Viewer::step(const sim::View& view) {
   controls_.step_once = false;
 }
 
-/// Only the time from one step to the next is a frame's: no pause, no settling.
+/// Counts only the time from one step to the next, without pauses and settling.
 void Viewer::note_time(bool stepped) {
   const double now_s = glfwGetTime();
   const double interval_s = now_s - fluid_->shown_s;
@@ -298,7 +298,7 @@ void run_window(const ViewOptions& options) {
   try {
     Viewer(options).run();
   } catch (const Closed&) {
-    // Closed while a fluid settled: nothing is left to do.
+    // Closed while a fluid settled: nothing left to do.
   }
 }
 

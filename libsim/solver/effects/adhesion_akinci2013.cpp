@@ -1,4 +1,4 @@
-/// Adhesion: walls and obstacles pull at water near them.
+/// Adhesion: walls and obstacles attract nearby water.
 
 #include "libsim/solver/effects/body_layer.hpp"
 #include "libsim/solver/effects/surface_energy.hpp"
@@ -8,18 +8,18 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// What the pull makes of its own work: calibrated by the contact angles of drops of level 0
+/// Share of its nominal work that the pull yields: calibrated by the contact angles of drops of level 0
 /// (docs/solver_notes.md).
 constexpr float pull_share = 0.75f;
-/// c of f below.
+/// Constant c of f below.
 constexpr float poly6_behind = 1.23046875f;
 
-/// What a round surface makes of a plane's f, whose second derivatives lie along the normal alone: with the
-/// curvature k = h / R about one axis or two, f' becomes f' (1 + k q)^(-1/2) or f' / (1 + k q), and f'' has
-/// f' k / (1 + k q) across the normal.
+/// Correction of a plane's f for a round surface; the plane's second derivatives are along the normal only.
+/// With the curvature k = h / R about one axis or two, f' becomes f' (1 + k q)^(-1/2) or f' / (1 + k q), and
+/// f'' has f' k / (1 + k q) perpendicular to the normal.
 struct Rounding {
   float share = 1, share_slope = 0, turn = 0;
-  Vec3 straight{0, 0, 0};  ///< along which the surface is not round
+  Vec3 straight{0, 0, 0};  ///< direction in which the surface is not curved
 
   SIM_FN Rounding(const Body& body, Vec3 x, float q, float h) {
     if (body.radius == 0) return;
@@ -39,17 +39,17 @@ struct Pulled {
   Vec3 along, across;
 };
 
-/// A wall is water that stays: tension's pairs act between it and the water before it, where only the latter
-/// has a surface. For a plane their sum over the half space behind is
+/// A wall acts like fixed water: tension's pairs act between it and the water in front of it, where only the
+/// latter has a surface. For a plane their sum over the half-space behind it is
 ///   m_i dv_i / dt = sigma V_i / h^2 [pull s_i f'(q) - smoothing f''(q) n_i] along the wall's normal,
-/// with f the share of poly6 behind it (Walls::behind). It acts where the surface meets the wall, and costs
-/// the work sigma: a contact angle of 90 degrees. Works below sigma take a share of it.
+/// with f the share of poly6 behind it (Walls::behind). It acts where the surface meets the wall, and does
+/// the work sigma: a contact angle of 90 degrees. Works below sigma use a share of it.
 ///
-/// The rest of the work is the printed pull of samples on a wall, A(q) = (-4 q^2 + 6 q - 2)^(1/4) for 1/2 < q
-/// < 1, summed over a whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv = -dt w /
-/// (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that taking a face of water off the wall costs the
-/// work w, whatever its particles. An obstacle does the same along its normal, per area of its own. Water
-/// that is too coarse for tension is not pulled.
+/// The rest of the work comes from the published attraction of wall samples, A(q) = (-4 q^2 + 6 q - 2)^(1/4)
+/// for 1/2 < q < 1, summed over a whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv =
+/// -dt w / (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that removing a unit area of water from
+/// the wall costs the work w, for any particle size. An obstacle does the same along its normal, per unit
+/// area of its own. Water too coarse for tension is not attracted.
 template <class Bodies>
 struct Adhesion {
   const Vec4* position;
@@ -62,7 +62,7 @@ struct Adhesion {
   float strength;  ///< dt w / rho_0, m3/s
   float whole;     ///< int_1/2^1 A
   float per_g;     ///< 1 / G
-  float widest;    ///< support that takes part, m
+  float widest;    ///< largest support that takes part, m
 
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
@@ -86,11 +86,11 @@ struct Adhesion {
   SIM_FN float pull(float h, float q, float skin, Vec3 n, Vec3 away) const {
     return (strength * per_g * sampled(q) + held * tied(q, skin, dot(n, away))) / (h * h);
   }
-  /// Change of its velocity by a body.
+  /// Change of a particle's velocity by a body.
   SIM_FN Pulled pulled_by(const Body& body, Vec4 at, const Body::Near& near, float skin, Vec3 n) const {
     const float q = at_least(near.distance / at.w, 0.0f);
     const Rounding round(body, xyz(at), q, at.w);
-    const float share = face_share(body, xyz(at), near.distance / 2);  // of what lies between
+    const float share = face_share(body, xyz(at), near.distance / 2);  // of the space between
     const float t = 1 - q * q;
     const float slope = -poly6_behind * t * t * t * t;
     const float bend = 8 * poly6_behind * q * t * t * t;
@@ -120,7 +120,7 @@ struct Adhesion {
     const float from = asinf(at_most(4 * q - 3, 1.0f));
     const float step = (pi / 2 - from) / steps;
     float sum = 0;
-    for (int k = 0; k < steps; ++k) {  // the last is 0
+    for (int k = 0; k < steps; ++k) {  // the last term is 0
       const float c = at_least(cosf(from + step * static_cast<float>(k)), 0.0f);
       sum += (k == 0 ? 1.0f : k % 2 ? 4.0f : 2.0f) * c * sqrtf(c);
     }
@@ -136,7 +136,7 @@ struct PullingBodies {
   static constexpr bool there = true;
   Solids solids;
   BodyListener to;
-  /// Tension turns no body about an axis round which it is round: what acts across has no moment.
+  /// Tension does not turn a body about an axis about which it is round: the tangential part has no moment.
   SIM_FN Vec3 hear(int body, Vec4 at, Pulled change) const {
     if (to.sums) {
       const float way = solids.dt * mass_units_of(at.w, to.finest_support);

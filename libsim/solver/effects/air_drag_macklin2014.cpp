@@ -1,4 +1,4 @@
-/// Air drag: air at rest brakes what it reaches.
+/// Air drag: air at rest brakes exposed water.
 
 #include "libsim/solver/stages/stages.hpp"
 
@@ -6,16 +6,16 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// v falls at the rate k e_i, with e = (1 - rho / rho_0) / (1 - rho_alone / rho_0) the share of the particle
-/// that the air reaches: 1 for a drop of one particle of any size, 0 inside the water. The step is exact for
-/// a constant e, so that a lone drop falls at g / k at last.
+/// v decreases at the rate k e_i, with e = (1 - rho / rho_0) / (1 - rho_alone / rho_0) the exposed share of
+/// the particle: 1 for a drop of one particle of any size, 0 inside the water. The step is exact for a
+/// constant e, so that a lone drop reaches the terminal speed g / k.
 struct AirDrag {
   const float* density;
   const std::uint8_t* level;
   Vec4* velocity;
   float rate;    ///< k dt
   float alone;   ///< rho / rho_0 of a lone particle
-  int coarsest;  ///< level that air still brakes
+  int coarsest;  ///< coarsest level that air brakes
 
   SIM_FN void operator()(int i) const {
     if (level[i] > coarsest) return;

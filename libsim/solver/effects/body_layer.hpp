@@ -1,23 +1,23 @@
 #pragma once
-/// The water next to obstacles, as effects that act on it there meet it.
+/// The water next to obstacles, for effects that act on this layer.
 
 #include "libsim/particles/solids.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// In place of bodies, where an effect meets none.
+/// Replaces the bodies if an effect has no obstacles to act on.
 struct NoBodies {
   static constexpr bool there = false;
 };
 
-/// Is x farther from a body than `reach` for sure? Quicker than its distance.
+/// True if x is certainly farther from the body than `reach`. Cheaper than computing the distance.
 SIM_FN bool far_from(const Body& body, Vec3 x, float reach) {
   const Vec3 away = x - body.centre;
   const float most = length(body.half) + body.radius + reach;
   return dot(away, away) > most * most;
 }
 
-/// Calls then(number, body, near) for each body whose surface lies within `reach` of x.
+/// Calls then(number, body, near) for each body whose surface is within `reach` of x.
 template <class Then>
 SIM_FN void for_bodies_within(const Solids& solids, Vec3 x, float reach, Then then) {
   for (int b = 0; b < solids.count; ++b) {
@@ -28,7 +28,8 @@ SIM_FN void for_bodies_within(const Solids& solids, Vec3 x, float reach, Then th
   }
 }
 
-/// Face of a body over that of its layer at x: round a sphere a layer is larger than the face below.
+/// Ratio of the body's surface area to the area of its layer at x: around a sphere the layer is larger than
+/// the surface.
 SIM_FN float face_share(const Body& body, Vec3 x, float distance) {
   if (body.radius == 0) return 1;
   const float share = body.radius / (body.radius + at_least(distance, 0.0f));

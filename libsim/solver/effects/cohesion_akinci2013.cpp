@@ -1,6 +1,6 @@
-/// Surface tension: a pull between pairs, and a smoothing of the surface. As printed the pull acts inside the
-/// water too, where the pressure that answers it makes particles stick (docs/solver_notes.md). Here both
-/// terms come from energies that are constant inside.
+/// Surface tension: an attraction between pairs, and a smoothing of the surface. As published, the attraction
+/// also acts inside the water, where the resulting pressure makes particles stick (docs/solver_notes.md).
+/// Here both terms come from energies that are constant inside.
 
 #include "libsim/solver/effects/loops/surface_normals.hpp"
 #include "libsim/solver/effects/surface_energy.hpp"
@@ -12,9 +12,10 @@ namespace {
 /// m_i dv_i / dt = sigma sum_j V_i V_j [pull / hbar (s_i + s_j) grad W_ij
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
 /// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
-/// so that momentum stays. A pair of any size pulls with a force of sigma hbar, and an area of any sampling
-/// with sigma a length. Pairs with particles that are not solved are left out: no pressure of theirs answers
-/// the pull, and they would not give it back. So are pairs with those that are too coarse for the effect.
+/// so that momentum is conserved. A pair of any size attracts with a force of sigma hbar, and a surface of
+/// any sampling with sigma per length. Pairs with unsolved particles are skipped: their pressure would not
+/// balance the attraction, and they would not receive the reaction. Pairs with particles too coarse for the
+/// effect are skipped too.
 template <bool OneLevel, class Selection>
 struct Cohesion {
   Selection select;
@@ -24,7 +25,7 @@ struct Cohesion {
   Neighbours neighbours;
   Vec4* velocity;
   float strength;  ///< dt sigma / rho_0, m3/s
-  float widest;    ///< support that takes part, m
+  float widest;    ///< largest support that takes part, m
 
   struct Self {
     Vec4 at;
@@ -33,7 +34,7 @@ struct Cohesion {
     PairKernel<OneLevel> pair;
   };
 
-  /// What particle j adds, over 6 V_i; see SIM_LANES.
+  /// Adds particle j, divided by 6 V_i; see SIM_LANES.
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);

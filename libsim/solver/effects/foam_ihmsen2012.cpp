@@ -1,4 +1,4 @@
-/// Spray, foam and bubbles: once a frame, one way.
+/// Spray, foam and bubbles: one-way coupling, once per frame.
 
 #include "libsim/foam/motion.hpp"
 #include "libsim/solver/stages/stages.hpp"

@@ -1,4 +1,4 @@
-/// Friction: walls and obstacles slow what slides along them.
+/// Friction: walls and obstacles slow water that slides along them.
 
 #include "libsim/particles/free_body.hpp"
 #include "libsim/solver/effects/body_layer.hpp"
@@ -8,11 +8,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A wall brakes what slides along it at the speed u by the stress rho_0 c u (Navier's law of slip; nu / c is
-/// its slip length), so that a sheet of depth H slides u H / c far. The stress acts on the layer that lies
-/// within a particle's own spacing d of the wall: there u falls at the rate c / d. Any lattice and any water
-/// without order have one particle a face d^2 there, whatever their level. A substep takes at most all of u,
-/// so that none is too long: a large c holds the layer.
+/// A wall brakes water that slides along it at the speed u with the stress rho_0 c u (Navier's law of slip;
+/// nu / c is its slip length), so that a sheet of depth H slides a distance u H / c. The stress acts on the
+/// layer within a particle's own spacing d of the wall: there u decreases at the rate c / d. Any lattice and
+/// any disordered water have one particle per area d^2 there, whatever their level. A substep removes at most
+/// all of u, so that it is stable for any step: a large c stops the layer.
 SIM_FN Vec3 slowed(Vec3 v, Vec3 wall_velocity, Vec3 normal, float steps) {
   const Vec3 slip = v - wall_velocity;
   return v - at_most(steps, 1.0f) * (slip - dot(slip, normal) * normal);
@@ -27,14 +27,14 @@ SIM_FN Vec3 slowed_by(const Walls& walls, Vec4 at, Vec3 v, float way) {
   return v;
 }
 
-/// Obstacles, who are told what they brake.
+/// Obstacles; what they brake is recorded for them.
 struct BrakingBodies {
   Solids solids;
-  const FreeBody* free;  ///< nullptr: none is
+  const FreeBody* free;  ///< nullptr: no body is free
   BodyListener to;
 
-  /// A free body that is lighter than the layer which it brakes would swing. Steps have an end where the two
-  /// have one speed, however much of the layer there is: all that fits round a ball that holds the body.
+  /// Limits steps for a free body that is lighter than the layer it brakes; it would oscillate. The limit is
+  /// where both have one speed, for the largest possible layer: around a ball that contains the body.
   SIM_FN float most_steps(int b, float d) const {
     if (!free || free[b].mass == 0) return 1;
     const float out = length(solids.bodies[b].half) + solids.bodies[b].radius + d;
@@ -58,15 +58,15 @@ SIM_FN Vec3 slowed_by(const BrakingBodies& bodies, Vec4 at, Vec3 v, float way) {
   return slowed_by(bodies.solids.walls, at, v, way);
 }
 
-/// Everyone, also those that temporal acceleration does not solve: the tuned readings let nobody rest near a
-/// wall.
+/// All particles, including those that temporal acceleration does not solve: with the tuned readings no
+/// particle rests near a wall.
 template <class Boundary>
 struct Slide {
   const Vec4* position;
   Vec4* velocity;
   Boundary boundary;
   float way;     ///< c dt, m
-  float widest;  ///< support that takes part, m
+  float widest;  ///< largest support that takes part, m
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
     if (at.w > widest) return;

@@ -1,4 +1,4 @@
-/// Heat: warm water warms what touches it, and rises.
+/// Heat: conduction to neighbours and walls, and buoyancy.
 
 #include "libsim/solver/effects/loops/conduction.hpp"
 
@@ -6,10 +6,10 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A wall of the temperature T stands for water whose temperature goes on along the line from the particle's
-/// through T at the wall: d theta / dt = 2 D (T - theta) / s int z F over the water behind it, which is
-/// 315 / 256 (1 - q^2)^4 / h for poly6, with q = s / h. Exact for a constant rate, so that no step is too
-/// long.
+/// A wall of the temperature T acts like water whose temperature continues along the line from the particle's
+/// through T at the wall: d theta / dt = 2 D (T - theta) / s int z F over the water behind it, which is 315 /
+/// 256 (1 - q^2)^4 / h for poly6, with q = s / h. Exact for a constant rate, so that it is stable for any
+/// step.
 struct WarmAtWalls {
   const Vec4* position;
   const std::uint8_t* level;
@@ -18,8 +18,8 @@ struct WarmAtWalls {
   HeatLedger* ledger;
   float wall;      ///< K above the reference
   float spread;    ///< 2 D dt, m2
-  float wall_gap;  ///< nearest distance to a wall, as a share of d
-  float widest;    ///< support that takes part, m
+  float wall_gap;  ///< minimum distance to a wall, as a share of d
+  float widest;    ///< largest support that takes part, m
 
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
@@ -63,8 +63,8 @@ void warm_at_walls(FluidState& state, WarmView p) {
                        .widest = state.widest_support(EffectOption::HeatCoarsest)});
 }
 
-/// Boussinesq: dv / dt = g beta theta upwards, with beta the expansion per kelvin. It acts on those on whom
-/// gravity acts.
+/// Boussinesq: dv / dt = g beta theta upwards, with beta the expansion per kelvin. It acts on the particles
+/// on which gravity acts.
 template <class Selection>
 struct Rise {
   Selection select;
@@ -72,7 +72,7 @@ struct Rise {
   const std::uint8_t* level;
   Vec4* velocity;
   float lift;    ///< g beta dt
-  int coarsest;  ///< level that takes part
+  int coarsest;  ///< coarsest level that takes part
 
   SIM_FN void operator()(int i) const {
     if (level[i] > coarsest) return;

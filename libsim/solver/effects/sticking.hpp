@@ -1,5 +1,5 @@
 #pragma once
-/// Obstacles that hold viscous fluid.
+/// Viscous fluid that sticks to obstacles.
 
 #include "libsim/particles/free_body.hpp"
 #include "libsim/solver/effects/body_layer.hpp"
@@ -7,21 +7,21 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Free bodies are rows of the same system as the particles: what holds the fluid is held by it, however
-/// light. So every step of the conjugate gradients keeps the momentum and the spin of both together. Rows of
-/// other bodies follow the same steps without a part in them: what they gain is what the fluid lost, however
-/// few the steps. Without rows no body is free, and nobody asks.
+/// Free bodies are rows of the same system as the particles: body and fluid hold each other, however light
+/// the body. So every step of the conjugate gradients conserves their total momentum and angular momentum.
+/// Rows of other bodies follow the same steps without contributing to the sums: they gain exactly what the
+/// fluid lost, however few the steps. Without rows, moves() is false for every body.
 struct BodyRows {
   BodyRow* rows;
   const Body* bodies;
-  const FreeBody* free;  ///< nullptr: none is
-  int count;             ///< of the rows
-  /// Of their sums, m_* m/s: residuals and directions are as many times faster than the fluid as the stiffest
-  /// particle's term is larger than 1, and fixed point holds only so much.
+  const FreeBody* free;  ///< nullptr: no body is free
+  int count;             ///< number of rows
+  /// Unit of their sums, m_* m/s: residuals and directions exceed the fluid's speeds by as much as the
+  /// stiffest particle's term exceeds 1, and fixed point has a limited range.
   float unit;
 
   SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }
-  /// Of the residual and of A p what particles give; forgets what they gave.
+  /// What particles gave to the residual or to A p, converted for this body; resets the sums.
   SIM_FN BodyTurn given(int b) const {
     BodyRow& row = rows[b];
     const Vec3 push = unit * row.push.value(), moment = unit * row.moment.value();
@@ -29,13 +29,13 @@ struct BodyRows {
     if (!moves(b)) return {push, moment};
     return {(1 / free[b].mass) * push, spin_of(free[b], bodies[b].turn, moment)};
   }
-  /// m a a'.
+  /// Inner product m a b of two rates.
   SIM_FN float product(int b, BodyTurn a, BodyTurn other) const {
     if (!moves(b)) return 0;
     return free[b].mass * dot(a.along, other.along) +
            dot(a.round, momentum_of(free[b], bodies[b].turn, other.round));
   }
-  /// Residual and direction from what particles give at first; its square.
+  /// Sets residual and direction from the particles' first sums; returns the squared residual.
   SIM_FN float begin() const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
@@ -45,7 +45,7 @@ struct BodyRows {
     }
     return out;
   }
-  /// p A p.
+  /// Returns p A p.
   SIM_FN float bend() const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
@@ -55,7 +55,7 @@ struct BodyRows {
     }
     return out;
   }
-  /// The square of the new residual.
+  /// Takes a step; returns the square of the new residual.
   SIM_FN float advance(float step) const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
@@ -74,21 +74,22 @@ struct BodyRows {
   }
 };
 
-/// The fluid that lies within its own spacing d of a surface, one particle a face d^2 whatever its level,
-/// feels the stress of the shear between: rho_0 nu u / s, at the distance s, where it slips by u. So a
-/// lattice at any s, and fluid without order, come to rest at the surface itself. u counts along the surface,
-/// and against the body's motion as if that went on to the particle: what turns with a body is not braked. In
-/// the implicit step the terms stay symmetric and positive definite: each is the square of a difference.
+/// Fluid within its own spacing d of a surface, one particle per area d^2 whatever its level, feels the shear
+/// stress rho_0 nu u / s at the distance s, where its slip speed is u. So both a lattice at any s and
+/// disordered fluid come to rest at the surface itself. u is tangential, relative to the body's rigid motion
+/// extended to the particle: fluid that rotates with a body is not braked. In the implicit step the terms
+/// stay symmetric and positive definite: each is the square of a difference.
 struct StickingBodies {
   static constexpr bool there = true;
   Solids solids;
   BodyRows rows;
   float rate;            ///< nu dt times the share that sticks, m2
-  float finest_support;  ///< of m_*
-  /// Of d, the least s: as near as particles come to walls.
+  float finest_support;  ///< support of m_*
+  /// Minimum s as a share of d: as near as particles come to walls.
   static constexpr float nearest = 0.1f;
 
-  /// Calls then(number, what the body takes of v in dt). First: of velocities, then of directions.
+  /// Calls then(number, change of v that the body takes in dt). First: v are velocities, otherwise
+  /// directions.
   template <bool First, class Then>
   SIM_FN void each(Vec4 at, Vec3 v, Then then) const {
     const float d = 0.5f * at.w;
@@ -104,7 +105,7 @@ struct StickingBodies {
     const BodyTurn p = rows.rows[b].direction;
     return p.along + cross(p.round, x - solids.bodies[b].centre);
   }
-  /// What all of them take, which their rows are told.
+  /// The sum over all bodies; it is also added to their rows.
   template <bool First>
   SIM_FN Vec3 taken(Vec4 at, Vec3 v) const {
     Vec3 out{0, 0, 0};
@@ -122,7 +123,7 @@ struct StickingBodies {
   }
 };
 
-/// Ends of the sums: what free bodies add, and the steps of all.
+/// Final steps of the sums: add the free bodies' share, and update all rows.
 template <class Bodies>
 struct TakeRest {
   TakeTurn take;
@@ -152,7 +153,7 @@ struct TakeNext {
   }
 };
 
-/// Tells bodies what they gained.
+/// Records in the bodies' sums what the rows gained.
 struct HearGained {
   BodyRows rows;
   BodyListener to;

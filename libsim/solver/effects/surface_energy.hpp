@@ -1,18 +1,18 @@
 #pragma once
-/// The energies of a surface that tension's forces come from, for pairs and for walls.
+/// Surface energies from which the tension forces follow, for pairs and for walls.
 
 #include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Of both terms in units of sigma: calibrated together by the period of one drop of level 0
-/// (docs/solver_notes.md). Tests measure sigma back from others.
+/// Both in units of sigma: calibrated together by the period of one drop of level 0 (docs/solver_notes.md).
+/// Tests measure sigma from other cases.
 inline constexpr float pull_strength = 12;
 inline constexpr float smoothing_strength = 2.6f;
-/// What is denser than 1 - skin_depth in units of rho_0 pulls less.
+/// Water denser than 1 - skin_depth, in units of rho_0, pulls less.
 inline constexpr float skin_depth = 0.2f;
 
-/// How much a particle of this rho / rho_0 belongs to the surface, 0 .. 1.
+/// Degree to which a particle of this rho / rho_0 belongs to the surface, 0 .. 1.
 SIM_FN float skin(float density) { return at_most(at_least((1 - density) / skin_depth, 0.0f), 1.0f); }
 
 }  // namespace sim::SIM_BACKEND

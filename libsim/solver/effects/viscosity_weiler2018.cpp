@@ -1,4 +1,4 @@
-/// Viscosity of fluids as thick as honey: implicit, so that no step is too long for it.
+/// Viscosity of fluids as thick as honey: implicit, so that it is stable for any step.
 
 #include "libsim/solver/effects/sticking.hpp"
 #include "libsim/solver/stages/stages.hpp"
@@ -7,31 +7,32 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A pair pulls along the direction e between its particles, by their relative velocity u:
+/// A pair pulls along the direction e between its particles, in proportion to their relative velocity u:
 ///   m_i dv_i / dt = -rho_0 sum_j V_i V_j w_ij (e u) e,
-/// the form of Weiler et al. 2018, Eq. 7 and 8, symmetric in i and j and central: momentum and spin stay, and
-/// nothing brakes what turns as a whole. As printed w is the slope of a kernel over r. Here w = c nu / h^5
-/// (1 - q^2)^(3/2), which on the cubic lattice, where fluid at rest lies, is 1.02 to 1.05 of its integral in
-/// every direction. nu = 1/2 int w x^2 y^2 / r^2 dV gives c.
+/// the form of Weiler et al. 2018, Eq. 7 and 8, symmetric in i and j and central: momentum and angular
+/// momentum are conserved, and rigid rotation is not braked. In the paper w is the slope of a kernel divided
+/// by r. Here w = c nu / h^5 (1 - q^2)^(3/2), whose sum on the cubic lattice, the arrangement of fluid at
+/// rest, is 1.02 to 1.05 of its integral in every direction. nu = 1/2 int w x^2 y^2 / r^2 dV gives c.
 constexpr float pair_rate = 640 / (pi * pi);
 
-/// w_ij V_j over c nu V_i.
+/// w_ij V_j divided by c nu V_i.
 SIM_FN float weight_of(const Kernel& kernel, float mass_ratio, float r2) {
   const float inverse = reciprocal(kernel.h2);
   const float t = at_least(1 - r2 * inverse, 0.0f);
   return mass_ratio * inverse * inverse * kernel.h * inverse * t * rough_root(t);
 }
 
-/// Behind a wall the fluid goes on as its image. Where it slips, the image moves as in a mirror. Where it
-/// sticks, the image moves against that, so that the velocity along the wall is 0 there. Pairs with images
-/// are as symmetric as others. Images of images, behind edges, are left out.
+/// Behind a wall the fluid continues as its mirror image. If it slips, the image has the mirrored velocity.
+/// If it sticks, the image has the opposite one, so that the velocity along the wall is 0 there. Pairs with
+/// images are as symmetric as others. Images of images, behind edges, are left out.
 struct Images {
   Walls walls;
-  float turn;  ///< of the image's velocity: 1 slips, -1 sticks
+  float turn;  ///< factor of the image's velocity: 1 slips, -1 sticks
 
-  /// May a particle there have a neighbour behind wall k? Coarsest neighbours have twice its support.
+  /// True if a particle there may have a neighbour behind wall k. The coarsest neighbours have twice its
+  /// support.
   SIM_FN bool near(int k, Vec4 at) const { return walls.distance(k, xyz(at)) < 1.5f * at.w; }
-  /// Is there a wall for both?
+  /// True if the wall acts on both.
   SIM_FN bool between(int k, Vec4 a, Vec4 b) const {
     return !walls.absent(k, xyz(a)) && !walls.absent(k, xyz(b));
   }
@@ -44,19 +45,19 @@ struct Images {
   }
 };
 
-/// Particles that rest keep out of the system: they take the mean change of those around them later. A pair
-/// of solved ones pulls for them too, as much harder as its neighbourhoods are thinner. w of `bent` becomes
-/// all the neighbours' weight over that of the solved ones, 0 for those who rest or are too coarse for the
-/// effect, which are no neighbours either.
+/// Resting particles are not part of the system: they later take the mean change of the particles around
+/// them. Pairs of solved particles are strengthened to make up for missing neighbours. w of `bent` becomes
+/// the weight of all neighbours divided by that of the solved ones, and 0 for particles that rest or are too
+/// coarse for the effect, which do not count as neighbours either.
 template <bool OneLevel>
 struct Shares {
   ActiveParticles select;
   const Vec4* position;
   Neighbours neighbours;
   Vec4* bent;
-  float widest;  ///< support that takes part, m
+  float widest;  ///< largest support that takes part, m
 
-  /// What particle j adds; see SIM_LANES.
+  /// Adds particle j; see SIM_LANES.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& all, float& solved) const {
     const Vec4 other = position[j];
     const Vec3 offset = xyz(self) - xyz(other);
@@ -89,14 +90,14 @@ struct Shares {
     solved = team.sum(solved);
     if (team.rank() == 0) bent[i] = {0, 0, 0, all > 0 ? quotient(all, at_least(solved, all / most)) : 1};
   }
-  /// Of the pull of a neighbourhood where nearly all rest.
+  /// Upper bound of the strengthening, for neighbourhoods where nearly all rest.
   static constexpr float most = 4;
 };
 
-/// Implicit Euler, A v' = v with A = 1 - dt (pairs), by conjugate gradients in the product sum_i m_i a_i b_i:
-/// A is symmetric in it, and every step of theirs, not only the last, keeps momentum and spin. First:
-/// residual and direction of the velocity. Then: A times the direction. What is too coarse for the effect is
-/// no part of the system: a pair pulls where both take part.
+/// Implicit Euler, A v' = v with A = 1 - dt (pairs), by conjugate gradients in the inner product sum_i m_i
+/// a_i b_i: A is symmetric in it, and every step, not only the last, conserves momentum and angular momentum.
+/// First: computes residual and direction from the velocity. Otherwise: A times the direction. Particles too
+/// coarse for the effect are not part of the system: a pair pulls only if both take part.
 template <bool First, bool OneLevel, class Selection, class Bodies>
 struct Friction {
   Selection select;
@@ -109,8 +110,8 @@ struct Friction {
   Vec4* residual;
   Vec4* direction;
   Vec4* bent;    ///< A times direction
-  float widest;  ///< support that takes part, m
-  // w of residual and direction is that of Shares.
+  float widest;  ///< largest support that takes part, m
+  // w of residual and direction: as in Shares.
 
   struct Self {
     Vec4 at, moving;
@@ -138,11 +139,11 @@ struct Friction {
     y -= along * dy;
     z -= along * dz;
   }
-  /// What particle j adds; see SIM_LANES.
+  /// Adds particle j; see SIM_LANES.
   SIM_FN void add_one(int j, const Self& me, float& x, float& y, float& z) const {
     add(share_of(j), position[j], moving[j], me, x, y, z);
   }
-  /// What its image behind wall k adds.
+  /// Adds the image of particle j behind wall k.
   SIM_FN void add_image(int k, int j, const Self& me, float& x, float& y, float& z) const {
     const Vec4 other = position[j];
     if (images.between(k, me.at, other))
@@ -321,17 +322,18 @@ void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
   if (to.sums) for_each("hear bodies", rows.count, HearGained{rows, to, k.dt});
 }
 
-/// Under pressure particles of one size lie on a lattice, which carries shear until it yields: fluid so thick
-/// that it calms its own jitter would stop on a slope. So each particle inside the fluid takes a random step,
-/// and the next projections make room again. Velocities stay, and so does momentum.
-constexpr float loosening = 0.04f;  ///< most of a step along each axis, spacings
+/// Under pressure particles of one size form a lattice, which carries shear until it yields: a fluid so
+/// viscous that it damps its own jitter would stop on a slope. So each particle inside the fluid takes a
+/// random step, and the next projections correct the density. Velocities do not change, and so momentum is
+/// conserved.
+constexpr float loosening = 0.04f;  ///< maximum step along each axis, in spacings
 template <class Selection>
 struct Loosen {
   Selection select;
   Vec4* position;
   const float* density;
   const int* id;
-  float widest;  ///< support that takes part, m
+  float widest;  ///< largest support that takes part, m
 
   SIM_FN void operator()(int slot) const {
     const int i = select(slot);
@@ -344,14 +346,14 @@ struct Loosen {
     const Vec3 step{along(i, 0, at.x), along(i, 1, at.y), along(i, 2, at.z)};
     position[i] = with_w(xyz(at) + (loosening / 2 * at.w) * step, at.w);
   }
-  /// Uniform in [-1, 1). The place stands for the moment, so that a run that goes on from a saved state has
-  /// the same steps.
+  /// Uniform in [-1, 1). The position replaces the time in the hash, so that a run resumed from a saved state
+  /// takes the same steps.
   SIM_FN float along(int i, std::uint32_t axis, float place) const {
     const auto moment = static_cast<std::uint32_t>(static_cast<std::int64_t>(place * fine));
     return 2 * uniform_of(random_bits(static_cast<std::uint32_t>(id[i]), moment, axis)) - 1;
   }
-  static constexpr float fine = 1048576;  ///< 1/m: places this near count as one
-  /// Share of rho_0: what is thinner is a part of the surface, which keeps still.
+  static constexpr float fine = 1048576;  ///< 1/m: closer positions count as one
+  /// Share of rho_0: particles of lower density belong to the surface, which is left unchanged.
   static constexpr float inside = 0.95f;
 };
 
@@ -368,7 +370,7 @@ void loosen(FluidState& state, LoosenView p, Selection select) {
                              .widest = state.widest_support(EffectOption::ViscosityCoarsest)});
 }
 
-/// Without gravity nothing presses. Mixed sizes make no lattice.
+/// Without gravity there is no pressure. Mixed sizes form no lattice.
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
   if (!state.one_level || (k.gravity <= 0 && k.pull.strength <= 0)) return;

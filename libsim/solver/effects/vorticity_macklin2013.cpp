@@ -1,4 +1,4 @@
-/// Vorticity confinement: gives back the swirl that a method's own viscosity takes.
+/// Vorticity confinement: restores the swirl that a method's numerical viscosity removes.
 
 #include "libsim/solver/effects/loops/curl.hpp"
 
@@ -6,20 +6,20 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Where the slope of |omega| over h is less than this share of |omega| it has no direction.
+/// If the gradient of |omega| times h is less than this share of |omega|, its direction is undefined.
 constexpr float least_slope = 0.03f;
 
-/// The mean of omega over those around, itself among them, by poly6's slope over its way; |of it| in w. Curls
-/// scatter, most where levels meet, and slopes of what scatters point anywhere.
+/// The mean of omega over the neighbours and the particle, weighted by poly6's slope over distance; its
+/// length in w. Curls scatter, most where levels meet, and gradients of scattered values point anywhere.
 struct Smooth {
   static constexpr int sums = 4;
   static constexpr bool of_all = false;
   const Vec4* curl;
   Vec4* smooth;
-  float widest;  ///< support that takes part, m
+  float widest;  ///< largest support that takes part, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
-  using Self = Vec4;  ///< its own omega
+  using Self = Vec4;  ///< the particle's omega
   SIM_FN Self self(int i) const { return curl[i]; }
   SIM_FN void add(const NeighbourPair& pair, Self, float& x, float& y, float& z, float& whole) const {
     const Vec4 there = curl[pair.j];
@@ -37,10 +37,10 @@ struct Smooth {
   SIM_FN void skip(int i) const { smooth[i] = {0, 0, 0, Curl::unknown}; }
 };
 
-/// dv / dt = c f N x omega with N = grad |omega| over its length, omega there the mean above: c is a speed,
-/// so that the force on a volume does not depend on its particles. A Lamb-Oseen vortex gains c omega(r) round
-/// its axis. f feeds what turns faster than `from` and no faster than `most`, so that still water stays still
-/// and swirl stays bounded. Momentum is accounted (Change::Effects); spin is gained.
+/// dv / dt = c f N x omega with N = grad |omega| normalised, omega the mean above: c is a speed, so that the
+/// force on a volume does not depend on its particles. A Lamb-Oseen vortex gains c omega(r) around its axis.
+/// f amplifies rotation faster than `from` and at most `most`, so that still water stays still and swirl
+/// stays bounded. The change of momentum is booked (Change::Effects); angular momentum increases.
 struct Confine {
   static constexpr int sums = 3;
   static constexpr bool of_all = false;
@@ -49,12 +49,12 @@ struct Confine {
   Vec4* velocity;
   float kick;  ///< c dt, m
   float from, most;
-  float widest;  ///< support that takes part, m
+  float widest;  ///< largest support that takes part, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
-  using Self = float;  ///< its own |mean of omega|
+  using Self = float;  ///< the particle's |mean of omega|
   SIM_FN Self self(int i) const { return smooth[i].w; }
-  /// To grad |omega|, over 6 V_i.
+  /// Adds to grad |omega|, divided by 6 V_i.
   SIM_FN void add(const NeighbourPair& pair, Self own, float& x, float& y, float& z, float&) const {
     const float there = smooth[pair.j].w;
     const float along = there < 0 ? 0.0f : pair.slope * (there - own);
@@ -74,7 +74,7 @@ struct Confine {
   SIM_FN void skip(int) const {}
 
  private:
-  /// f: from 0 at `from` to 1 at twice that; from 1 at half of `most` to 0 there.
+  /// f: rises from 0 at `from` to 1 at twice that; falls from 1 at half of `most` to 0 at `most`.
   SIM_FN float fed(float omega) const {
     const float rise = omega - from;
     const float begins = rise >= from ? 1.0f : at_least(rise, 0.0f) / from;
@@ -82,13 +82,12 @@ struct Confine {
   }
 };
 
-/// For saliency. Those that are not solved keep what they last had; what is too coarse for the effect does
-/// not turn.
+/// Output for saliency. Unsolved particles keep their last value; particles too coarse for the effect get 0.
 struct Show {
   const Vec4* smooth;
   const std::uint8_t* level;
   float* swirl;
-  int coarsest;  ///< level that takes part
+  int coarsest;  ///< coarsest level that takes part
 
   SIM_FN void operator()(int i) const {
     const float turns = smooth[i].w;
@@ -119,8 +118,8 @@ std::string if_seen(const Demand& demand) {
   return demand.saliency && counts ? "saliency sees it" : "";
 }
 
-/// Saliency looks once a frame at most. Whether it will in the next one is not known here: a gaze that jumps
-/// gives levels a turn at once.
+/// Saliency reads the swirl at most once per frame. It is unknown here if the next frame does: a gaze jump
+/// triggers a level update at once.
 void show_swirl(FluidState& state, ShowView p) {
   const auto& k = state.parameters;
   if (state.substep + 1 < k.substeps) return;

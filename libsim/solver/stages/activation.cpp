@@ -24,7 +24,7 @@ struct Choose {
   const std::uint8_t* level;
   const float* importance;
   const ValueRange* range;
-  const std::uint8_t* age;  ///< nullptr where nothing splits or merges
+  const std::uint8_t* age;  ///< nullptr if nothing splits or merges
   Vec4* velocity;
   std::uint8_t* active;
   std::uint8_t* rest;
@@ -35,7 +35,7 @@ struct Choose {
   Boundary walls;
   ActivationRules rules;
   float beta, dt;
-  std::uint8_t sparse_mark;  ///< of Active, for solved particles of few neighbours
+  std::uint8_t sparse_mark;  ///< value of Active for solved particles with few neighbours
   std::uint32_t frame, seed;
 
   SIM_FN void operator()(int i) const {
@@ -54,8 +54,8 @@ struct Choose {
     }
   }
 
-  /// Counts the frames of a rest, then on from the longest one while the particle must be solved; 0: it may
-  /// rest.
+  /// Counts the frames of a rest; then continues from longest_rest while the particle must be solved. 0: it
+  /// may rest.
   SIM_FN int count_after(int count, bool on) const {
     if (!on) return count < rest_count_mask ? count + 1 : count;
     if (rules.longest_rest <= 0 || count == 0) return 0;
@@ -79,7 +79,7 @@ using ActivationColumns =
                columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
                columns(Column::Saliency, Column::Age)>;
 
-/// Eq. 12-14 and the range that they are normalised by.
+/// Eq. 12-14 and their normalisation range.
 void measure(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
   const float spacing = 0.5f * state.finest_support;

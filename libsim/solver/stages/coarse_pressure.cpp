@@ -6,17 +6,17 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 constexpr float fixed_point = CellWater::fixed_point;
-/// More than this is not compression but particles on top of each other, which the projections part.
+/// Higher values are not compression but overlapping particles, which the projections separate.
 constexpr float most_excess = 0.5f;
 
-/// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume. A particle
-/// that is not solved brings a trace: it marks its cell as fluid and leaves the mean to the others.
+/// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume. An unsolved
+/// particle adds a tiny amount: it marks its cell as fluid and hardly affects the mean.
 template <class Selection>
 struct Gather {
   Selection select;
   const Vec4* predicted;
   const float* density;
-  const float* ease;  ///< of its constraint; nullptr where nothing splits or merges
+  const float* ease;  ///< share of its constraint; nullptr if nothing splits or merges
   PressureFrame frame;
   CellBlock block;
   CellSum* sums;
@@ -32,8 +32,8 @@ struct Gather {
     CellSum& sum = sums[block.index(x, y, z)];
     float volume = mass_of(p.w, 1) / unit_volume;
     float excess = at_most(at_least(density[i] - 1, -1.0f), most_excess);
-    // Not much less: the cells are what keeps a whole tank that splits from getting too dense, and what they
-    // leave for later comes back as speed.
+    // Only slightly reduced: the cells keep a tank that splits completely from becoming too dense, and
+    // remaining compression would later become speed.
     if (ease) excess *= 0.75f + 0.25f * ease[i];
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
@@ -46,7 +46,7 @@ struct Gather {
   }
 };
 
-/// Adds all particles' volumes to their cells, whether they are solved or not.
+/// Adds all particles' volumes to their cells, solved or not.
 struct GatherVolume {
   const Vec4* predicted;
   PressureFrame frame;
@@ -65,7 +65,7 @@ struct GatherVolume {
   }
 };
 
-/// Turns sums into the equation: the source is the mean C of a cell's particles times the cell's volume.
+/// Converts sums to the equation: the source is the mean C of a cell's particles times the cell's volume.
 struct Classify {
   PressureFrame frame;
   GridView grid;
@@ -86,9 +86,9 @@ struct Classify {
   }
 };
 
-/// The same with obstacles: their cells count as water at rest up to the level beside them and as air above,
-/// as if the water that they displace were there. Its weight is what the pressure beside an obstacle carries,
-/// and that is all that cells so wide can tell of it. The particles' constraint keeps the water out.
+/// The same with obstacles: their cells count as water at rest up to the water level beside them, and as air
+/// above, as if the displaced water were there. The pressure beside an obstacle carries the weight of this
+/// water; cells this wide resolve no more. The particles' constraint keeps the water out of the obstacle.
 struct ClassifyRound {
   PressureFrame frame;
   GridView grid;
@@ -113,7 +113,7 @@ struct ClassifyRound {
     if (waterline.solids.nearest_body(at) > 0.5f * frame.edge.y) return;
     const LevelBeside level = waterline.beside(x, y, z);
     if (level.mean > 0.5f) grid.kind[i] = CellKind::Fluid;
-    // A wall between water and none holds the water: air in it would draw it in.
+    // A wall between water and dry space blocks the water: air cells in it would draw the water in.
     else if (level.most == 1)
       grid.kind[i] = CellKind::Solid;
   }
@@ -124,7 +124,7 @@ template <class Selection>
 struct Shift {
   Selection select;
   const Vec4* predicted;
-  Vec4* next;  ///< holds the places of those who are neither solved nor pressed
+  Vec4* next;  ///< keeps the positions of particles that are neither solved nor pressed
   CoarseSlope slope;
 
   SIM_FN void operator()(int slot) const {
@@ -140,9 +140,9 @@ struct Shift {
   }
 };
 
-/// Edge of the cells, for the particles that are there: those of a method that could hold finer ones would
-/// hold too few of them to tell a mean. It goes by the mean mass in half levels, so that it changes rarely,
-/// and leaves at least three cells across the tank where the lightest particles do.
+/// Edge of the cells for the present particles: cells sized for the finest particles of the method would
+/// contain too few for a mean. It follows the mean mass in half levels, so that it rarely changes, and leaves
+/// at least three cells across the tank if cells for the lightest particles do.
 float cell_edge(const FluidState& state) {
   const int n = state.particles.size();
   const float finest = state.parameters.coarse_edge * state.lightest_support;
@@ -158,7 +158,7 @@ float cell_edge(const FluidState& state) {
 template <class Selection>
 void launch(FluidState& state, CoarsePressureView p, Selection select) {
   auto& coarse = state.coarse;
-  // While the water settles at one level, nobody has written the shares.
+  // While the water settles at one level, the shares are not written.
   const float* ease = state.one_level ? nullptr : p.ease();
   constrain_density(state, p);
   coarse.fit(state.domain, cell_edge(state));

@@ -1,15 +1,15 @@
 #pragma once
-/// What conjugate gradients keep between their passes (libsim/solver/effects).
+/// State of the conjugate gradients between passes (libsim/solver/effects).
 
 #include "libsim/exec/ordered_sum.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Numbers of a step, on the device: no step is decided on the host.
+/// Scalars of a step, on the device: the host decides nothing.
 struct ConjugateStep {
   float rest;   ///< r r
-  float along;  ///< how far x goes along p
-  float turn;   ///< how much of p the next one keeps
+  float along;  ///< step length of x along p
+  float turn;   ///< factor of p in the next direction
 };
 
 /// Empty until the first solve.
@@ -18,12 +18,12 @@ struct ConjugateGradient {
   Array<ConjugateStep> step;
 };
 
-/// alpha = r r / p A p, and 0 once nothing is left.
+/// alpha = r r / p A p, or 0 if p A p is 0.
 struct TakeAlong {
   ConjugateStep* step;
   SIM_FN void operator()(float bent) const { step->along = bent > 0 ? step->rest / bent : 0; }
 };
-/// beta = r r now / r r before, and 0 once nothing is left.
+/// beta = new r r / old r r, or 0 if the old r r is 0.
 struct TakeTurn {
   ConjugateStep* step;
   SIM_FN void operator()(float rest) const {

@@ -7,22 +7,22 @@ namespace {
 
 /// rho_i = sum_j m_j W_ij, C_i = max(rho_i / rho_0 + missing - 1, 0) and
 /// lambda_i = -C_i / (w_i |grad_i C_i|^2 + sum_j m_j |grad W_ij|^2 / rho_0^2 + epsilon_i), w = 1 / m.
-/// Sums run over mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel but for one factor.
-/// A particle that is not solved has lambda = 0; unless the others yield, it has no share in the sum over j,
-/// as if its mass were infinite.
+/// Sums use mass ratios m_j / m_i: with V_i = m_i / rho_0 the masses cancel except for one factor. A particle
+/// that is not solved has lambda = 0; unless OthersYield, it does not contribute to the sum over j, as if its
+/// mass were infinite.
 template <bool OneLevel, bool OthersYield, class Selection, class Boundary>
 struct Density {
   Selection select;
   const Vec4* predicted;
   Neighbours neighbours;
   Boundary walls;
-  const float* ease;  ///< of its constraint; nullptr where all have the whole
+  const float* ease;  ///< share of its constraint; nullptr if all enforce the whole
   float* lambda;
   float* density;
   Guards* guards;
   float rest_density, relaxation;
 
-  /// What particle j adds to the sums; see SIM_LANES.
+  /// Adds particle j to the sums; see SIM_LANES.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& rho, float& gx, float& gy,
                   float& gz, float& squares, int& zero) const {
     const Vec4 other = predicted[j];
@@ -75,7 +75,7 @@ struct Density {
     squares = team.sum(squares);
     zero = team.sum(zero);
     if (team.rank() > 0) return;
-    // A pair is met twice, once from either side.
+    // Each pair is counted twice, once from each side.
     if (zero) atomic_add(&guards->coincident_pairs, static_cast<std::uint64_t>(zero));
     const float mass = mass_of(self.w, rest_density);
     const float volume = mass / rest_density;
@@ -131,7 +131,7 @@ void constrain(FluidState& state, DensityView p, const float* ease) {
 
 using EasedView = ColumnView<DensityView::reads, DensityView::writes, columns(Column::Ease)>;
 
-/// While the water settles at one level, nobody has written the shares.
+/// While the water settles at one level, the shares are not written.
 void run_density(FluidState& state, EasedView p) {
   constrain(state, p, state.one_level ? nullptr : p.ease());
 }

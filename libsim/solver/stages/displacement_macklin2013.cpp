@@ -19,7 +19,7 @@ struct Displace {
   int half;  ///< of a substep, see TroubleKey
   float rest_density, tensile, wall_gap, momentum;
 
-  /// What particle j adds to the step; see SIM_LANES. own: lambda of the particle itself.
+  /// Adds particle j to the step; see SIM_LANES. own: lambda of the particle itself.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float own, float& px, float& py,
                   float& pz, int& zero) const {
     const Vec4 other = predicted[j];
@@ -70,7 +70,7 @@ struct Displace {
       x += parted(slot, self, own);
       Witness{guards, id, half}.note(Trouble::Coincident, i);
     }
-    // `next` still holds the positions before the last projection.
+    // `next` still contains the positions before the last projection.
     if (momentum > 0) x += momentum * (xyz(self) - xyz(next[i]));
     if (walls.project(x, xyz(self), wall_gap * self.w / 2))
       atomic_add(&guards->wall_projected, std::uint64_t{1});
@@ -86,9 +86,9 @@ struct Displace {
     return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
   }
 
-  /// The loop gives coincident pairs no direction; here they get one from their ids, and a small step even
-  /// where the density alone would let them stay together. Steps are weighted so that the pair's centre of
-  /// mass rests.
+  /// The loop gives coincident pairs no direction; here it comes from their ids, with a small step even if
+  /// the density alone would not separate them. Steps are weighted so that the pair's centre of mass does not
+  /// move.
   SIM_FN Vec3 parted(int slot, Vec4 self, float own) const {
     const PairKernel<OneLevel> pair(self.w);
     Vec3 step{0, 0, 0};

@@ -4,7 +4,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Lists belong to slots; who is not solved has nothing to ease.
+/// Lists belong to slots; unsolved particles need no easing.
 template <class Selection>
 struct Ease {
   Selection select;

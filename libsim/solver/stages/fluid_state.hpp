@@ -1,5 +1,5 @@
 #pragma once
-/// Everything a stage may touch.
+/// All state that stages may access.
 
 #include <limits>
 
@@ -25,45 +25,46 @@ namespace sim::SIM_BACKEND {
 
 /// Acceleration -strength r towards an axis (sim::CentralForce).
 struct CentralPull {
-  float strength = 0;  ///< Omega^2, 1/s2; 0 leaves it out of the kernel
+  float strength = 0;  ///< Omega^2, 1/s2; 0 removes the term from the kernel
   Vec3 centre{};
   Vec3 axis{0, 0, 1};
 };
 
-/// Numbers of the solver. Defaults are measured ones; docs/solver_notes.md says how.
+/// Solver numbers. The defaults were measured, see docs/solver_notes.md.
 struct SolverParameters {
   float rest_density = 1000;  ///< rho_0, kg/m3
   float gravity = 9.81f;      ///< along -y, m/s2
-  CentralPull pull;           ///< beside gravity
+  CentralPull pull;           ///< in addition to gravity
   float dt = 1.0f / 180;      ///< substep, s
-  int substeps = 3;           ///< a frame
+  int substeps = 3;           ///< per frame
   double frame_s() const { return static_cast<double>(dt) * substeps; }
-  int iterations = 4;  ///< constraint projections a substep
-  /// Relaxation without unit, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
+  int iterations = 4;  ///< constraint projections per substep
+  /// Dimensionless relaxation, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
   float relaxation = 0.01f;
-  /// s_corr without unit: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 leaves the term out of the kernel.
+  /// Dimensionless s_corr: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 removes the term from the kernel.
   float tensile = 0;
-  /// Share of the last projection's step that is taken again (momentum); 0 in a substep's first projection.
+  /// Share of the previous projection's step that is repeated (momentum); not used in a substep's first
+  /// projection.
   float momentum = 0.4f;
-  /// V-cycles of the coarse pressure before the projections; 0 leaves the pass out.
+  /// V-cycles of the coarse pressure before the projections; 0 omits the pass.
   int coarse_cycles = 2;
-  /// Edge of its cells as a share of the finest h, before it is fitted between the walls.
+  /// Edge of its cells in units of the finest h, before fitting between the walls.
   float coarse_edge = 2;
-  /// Kinematic viscosity nu, m2/s; 0 leaves the pass out.
+  /// Kinematic viscosity nu, m2/s; 0 omits the pass.
   float viscosity = 0;
   EffectCoefficients effects;  ///< SI; 0 = no such stage runs
-  /// No water gets so fast by itself, m/s: what is faster is braked and counted.
+  /// Speed that no water exceeds by itself, m/s: faster particles are braked and counted.
   float most_speed = 0;
-  /// Nearest distance to a wall, as a share of d.
+  /// Minimum distance to a wall, as a share of d.
   float wall_gap = 0.1f;
 };
 
-/// Takes from a particle's velocity what guards do not allow, and counts it.
+/// Limits a particle's velocity to what the guards allow, and counts each case.
 struct Brake {
   Witness witness;
   float most_speed, finest_support;
 
-  /// v, or as much of it as is allowed, of particle i with support h.
+  /// v limited to the allowed speed, for particle i with support h.
   SIM_FN Vec3 limited(Vec3 v, float h, int i) const {
     const float speed = length(v);
     if (!(speed > most_speed)) return v;
@@ -80,40 +81,41 @@ struct Brake {
   }
 };
 
-/// The fluid between two passes. Arrays of particles are in the grid's order of the last substep.
+/// The fluid between two passes. Particle arrays are in the grid's order of the last substep.
 struct FluidState {
   SolverParameters parameters;
   Walls walls{};
   ObstacleState obstacles;
   Domain domain{};
-  float finest_support = 0;    ///< h_* = 4 r_*, m: h of level 0, whether the method holds it or not
+  float finest_support = 0;  ///< h_* = 4 r_*, m: h of level 0, even if the method has no particles of level 0
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
-  /// Of all particles at the start less what has drained, in m_*; what a nozzle holds back is a trace.
+  /// Mass of the particles at the start minus the drained mass, in m_*; the mass that nozzles hold back is
+  /// negligible.
   std::int64_t mass_units = 0;
   LevelSupports supports{};
-  Vec3 refuge{};           ///< where a particle goes whose place is lost
-  bool one_level = true;   ///< all particles have one level, for good
-  bool compressed = true;  ///< was lately, or may be: frames begin with a pre-stabilisation
+  Vec3 refuge{};           ///< position for particles whose own position is lost
+  bool one_level = true;   ///< all particles have one level throughout the run
+  bool compressed = true;  ///< the water is or may be compressed: frames begin with a pre-stabilisation
   int substep = 0;
   int iteration = 0;  ///< projection within the substep
   Particles particles;
   Grid grid;
   NeighbourList neighbours;
-  /// The lists of the last substep hold everyone's neighbours in today's order: what looks at the fluid
-  /// before it moves need not look for them again. Between h and the list's margin they tell the truth of a
-  /// moment before.
+  /// The lists of the last substep hold all particles' neighbours in the present order: passes that read the
+  /// fluid before it moves need not search again. Between h and the list's margin they may be slightly out of
+  /// date.
   bool lists_hold = false;
-  bool lists_by_slot = false;  ///< they belong to the slots of that substep
+  bool lists_by_slot = false;  ///< the lists belong to the slots of that substep
   CoarseGrid coarse;
   Jets jets;
   Outflow outflow;
   Drained drained;         ///< since the run began
-  Array<HeatLedger> heat;  ///< one, where particles have a temperature
-  FoamPool foam;           ///< of no capacity where the scene lists none
+  Array<HeatLedger> heat;  ///< one element, if particles have a temperature
+  FoamPool foam;           ///< capacity 0 if the scene lists none
   SaliencyState saliency;
   LevelState levels;
-  /// False while a frame is solved that leaves particles out: its passes run over active() and lists belong
-  /// to slots. True between frames.
+  /// False while solving a frame that leaves particles out: its passes run over active() and lists belong to
+  /// slots. True between frames.
   bool all_active = true;
   Activation activation;
   Array<Guards> guards;
@@ -122,7 +124,7 @@ struct FluidState {
   PartClock clock;
   PassClock pass_clock;
 
-  /// Who was solved in the last frame; nullptr when everyone was.
+  /// Flags of the particles solved in the last frame; nullptr if all were.
   const std::uint8_t* last_active() const {
     return activation.columns_set && !activation.all_marked ? particles.all().active.data() : nullptr;
   }
@@ -132,13 +134,13 @@ struct FluidState {
   ActiveParticles active() {
     return {activation.slots.data(), particles.all().active.data(), activation.rules.pressed};
   }
-  /// What bounds the water of a scene with obstacles; others have `walls`. Kernels are templates of the two,
-  /// so that those of a scene without obstacles know nothing of them.
+  /// The boundaries of a scene with obstacles; other scenes use `walls`. Kernels are templates over both
+  /// types, so that kernels of scenes without obstacles contain no obstacle code.
   Solids solids() const {
     return {walls, obstacles.bodies.data(), obstacles.count(), parameters.dt, obstacles.meshes.data()};
   }
-  /// Supports above this, m, are of levels that an effect's coarsest_level leaves out: halfway to the next
-  /// one's, or wider than any.
+  /// Supports above this, m, belong to levels that an effect's coarsest_level excludes: halfway to the next
+  /// level's support, or the maximum float.
   float widest_support(EffectOption coarsest_level) const {
     const auto level = static_cast<std::size_t>(parameters.effects[coarsest_level]);
     if (level + 1 >= static_cast<std::size_t>(most_levels)) return std::numeric_limits<float>::max();
@@ -150,12 +152,12 @@ struct FluidState {
     return {listens() && obstacles.told() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
             finest_support, times};
   }
-  /// For effects, whose pushes are summed apart from the constraint's; records nothing without those sums.
+  /// For effects, whose pushes are summed apart from the constraint's; records nothing if those sums are off.
   BodyListener effects_listener() {
     return {obstacles.told() ? obstacles.sums.data() + obstacles.count() : nullptr, obstacles.bodies.data(),
             finest_support, 1};
   }
-  /// Of scenes with obstacles, while the coarse pressure's cells hold their sums.
+  /// For scenes with obstacles, while the coarse pressure's cells hold their sums.
   Waterline waterline() {
     return {{coarse.frame, mass_of(lightest_support, 1)},
             coarse.multigrid.finest().block,

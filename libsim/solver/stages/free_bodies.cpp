@@ -1,4 +1,4 @@
-/// Obstacles that the water and gravity move.
+/// Obstacles moved by water and gravity.
 
 #include "libsim/particles/body_drive.hpp"
 #include "libsim/solver/stages/stages.hpp"
@@ -7,11 +7,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Takes each body to the substep's end, where the water meets it.
+/// Moves each body to the substep's end, where contacts with water are computed.
 struct Move {
   Body* bodies;
   FreeBody* free;
-  const MeshGrid* meshes;  ///< as Solids has them
+  const MeshGrid* meshes;  ///< as in Solids
   Walls walls;
   BodyDrive drive;
 
@@ -31,22 +31,23 @@ struct Move {
   }
 };
 
-/// What the water gave in the substep. A body that is lighter than the water that goes along with it would
-/// swing: the water answers its last acceleration a, with the force -m_a a of its added mass. Counted as
-/// inertia of the body on both sides of Newton's law, m a' + m_a a' = F + m g + m_a a, it no longer matters.
-/// With f = m (a - g), the force that the body follows, that is f' = s F + (1 - s) f, s = m / (m + m_a).
+/// Applies the water's push of the substep. A body lighter than the water it accelerates would oscillate: the
+/// water responds to its last acceleration a, with the force -m_a a of its added mass. Adding m_a as inertia
+/// of the body on both sides of Newton's law, m a' + m_a a' = F + m g + m_a a, removes this. With f = m (a -
+/// g), the force applied to the body, this is f' = s F + (1 - s) f, s = m / (m + m_a).
 struct Push {
   FreeBody* free;
   const Body* bodies;
-  const MeshGrid* meshes;  ///< as Solids has them
+  const MeshGrid* meshes;  ///< as in Solids
   const BodySum* sums;
   const BodySum* by_effects;
-  const std::uint64_t* wet;  ///< volume below the water's level, of the body's; nullptr: all of it
-  float per_dt;              ///< of the sums' ways
+  const std::uint64_t* wet;  ///< volume below the water level, per body; nullptr: the whole body
+  float per_dt;              ///< converts the sums' displacements
   float per_dt2;
 
-  /// Added mass over the mass of the displaced water: 0.5 of a sphere far from walls, 0.64 of a cube; walls
-  /// raise it. Too little by half would swing, too much only makes bodies slow to follow.
+  /// Added mass divided by the mass of the displaced water: 0.5 for a sphere far from walls, 0.64 for a cube;
+  /// walls increase it. A value too small by half would oscillate; too large a value only makes bodies
+  /// respond slowly.
   static constexpr float added_mass = 0.7f;
 
   SIM_FN void operator()(int b) const {
@@ -56,7 +57,7 @@ struct Push {
     const Vec3 moment =
         turning(bodies[b], mesh_of(meshes, b), -per_dt2 * (sums[b].moment - it.counted.moment).value());
     it.counted = sums[b];
-    // Effects see to it themselves that a light body does not swing.
+    // Effects themselves prevent oscillation of a light body.
     it.momentum += -per_dt * (by_effects[b].push - it.counted_of_effects.push).value();
     it.spin += -per_dt * (by_effects[b].moment - it.counted_of_effects.moment).value();
     it.counted_of_effects = by_effects[b];
@@ -69,7 +70,7 @@ struct Push {
     force += share * (given - force);
     left += given - force;
   }
-  /// Pressure turns no body about an axis round which it is round; cells alone would.
+  /// Pressure does not turn a body about an axis about which it is round; the cells alone would.
   SIM_FN static Vec3 turning(const Body& body, const MeshGrid* mesh, Vec3 moment) {
     if (mesh) {
       const Vec3 own = turned(turned_back(body.turn), moment);

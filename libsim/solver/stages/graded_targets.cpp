@@ -4,7 +4,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Keeps the level of those that are not far enough beyond the border to a coarser one.
+/// Keeps the level of particles that are not far enough beyond the border to a coarser one.
 struct Hold {
   const std::uint8_t* level;
   const float* saliency;
@@ -17,7 +17,7 @@ struct Hold {
   }
 };
 
-/// l_i <= min_j l_j + 1 over the neighbours: one sweep carries a step one support radius far.
+/// l_i <= min_j l_j + 1 over the neighbours: one sweep propagates by one support radius.
 struct Grade {
   const Vec4* position;
   const std::uint8_t* target;
@@ -28,7 +28,7 @@ struct Grade {
     const int wish = target[i] > 1 ? team.min(graded(i, team)) : target[i];  // 0 and 1 are never too coarse
     if (team.rank() == 0) out[i] = static_cast<std::uint8_t>(wish);
   }
-  /// By this lane's neighbours.
+  /// Over this lane's neighbours.
   template <class Team>
   SIM_FN int graded(int i, Team team) const {
     int wish = target[i];
@@ -47,7 +47,7 @@ struct Grade {
   }
 };
 
-/// A step of three levels needs three sweeps.
+/// A difference of three levels needs three sweeps.
 constexpr int sweeps = 3;
 
 using GradedTargetsColumns =

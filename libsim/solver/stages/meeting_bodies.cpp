@@ -1,4 +1,4 @@
-/// Obstacles that are free and meet others.
+/// Free obstacles that meet others.
 
 #include "libsim/particles/meeting.hpp"
 #include "libsim/solver/stages/stages.hpp"

@@ -17,14 +17,14 @@ void sort(FluidState& state) {
 using SubstepView = ColumnView<NeighboursView::reads, NeighboursView::writes, columns(Column::Active),
                                columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Only those whom the frame solves need lists, unless the others conduct heat.
+/// Only the particles that the frame solves need lists, unless the others conduct heat.
 void list_active(FluidState& state, SubstepView p) {
   const Witness witness = state.witness(p.id(), 0);
   sort(state);
   state.lists_by_slot = true;
   state.lists_hold = false;
   state.activation.list_active(p);
-  // The next frame's levels compare everyone.
+  // The next frame's level update compares all particles.
   const bool hold = !state.one_level && state.substep + 1 == state.parameters.substeps;
   if (hold || state.parameters.effects[EffectKind::Heat] > 0) {
     state.neighbours.build(p, state.grid, EverySlot{state.activation.slots.data()}, witness);
@@ -70,7 +70,7 @@ Stage frame_neighbours_stage() {
                                     .source = "neighbour list at the frame's start",
                                     .phase = Phase::FrameStart,
                                     .called_for = [](const Demand& demand) -> std::string {
-                                      // Saliency finds them itself.
+                                      // Saliency finds the neighbours itself.
                                       return demand.levels && !demand.saliency ? "levels compare neighbours"
                                                                                : "";
                                     },

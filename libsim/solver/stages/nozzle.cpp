@@ -12,10 +12,10 @@ using NozzleColumns = ColumnView<columns(Column::Position, Column::Velocity, Col
                                  columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                                  columns(Column::Target), columns(Column::Temperature)>;
 
-/// Places particles in the layers whose turn comes within the frame. A layer that passes the mouth `lead`
-/// seconds after the frame's start begins it u lead - g lead^2 / 2 above the mouth at the speed u - g lead.
+/// Places the particles of the layers that are due within the frame. A layer that passes the mouth `lead`
+/// seconds after the frame's start begins the frame u lead - g lead^2 / 2 above it at the speed u - g lead.
 struct Pour {
-  const int* which;  ///< the particles; null: those from `first` on
+  const int* which;  ///< the particles; null: all from index `first`
   int first;
   Vec4* position;
   Vec4* velocity;
@@ -27,7 +27,7 @@ struct Pour {
   const std::uint8_t* level;
   float* temperature;
   float warmth;      ///< of the jet, K above the reference
-  HeatLedger* heat;  ///< nullptr where there is no temperature
+  HeatLedger* heat;  ///< nullptr if particles have no temperature
 
   SIM_FN void operator()(int k) const {
     const int site = k % sites;
@@ -45,7 +45,7 @@ struct Pour {
     velocity[i] = {0, gravity * lead - speed, 0, 0};
     if (heat) warm(i);
   }
-  /// A particle that is taken from the corners itself has not been told of.
+  /// If a particle taken from the corners is reused, its heat has not been booked yet.
   SIM_FN void warm(int i) const {
     if (which) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
     temperature[i] = warmth;
@@ -81,7 +81,7 @@ void pour(FluidState& state, NozzleColumns p, const Nozzle& nozzle, const Layers
                 .heat = state.heat.data()});
 }
 
-/// Adds up the mass that wants each level within a sphere.
+/// Sums the mass per target level within a sphere.
 struct CountTargets {
   const Vec4* position;
   const std::uint8_t* level;
@@ -96,8 +96,8 @@ struct CountTargets {
   }
 };
 
-/// Median target, by mass, of the water within one diameter of the mouth; where there is none, the level of
-/// before.
+/// Median target, by mass, of the water within one diameter of the mouth; without water, the previous
+/// level.
 int median_target(FluidState& state, NozzleColumns p, const Nozzle& nozzle) {
   const auto f = [](double value) { return static_cast<float>(value); };
   Array<int>& mass = state.jets.mass_by_target;
@@ -118,7 +118,7 @@ int median_target(FluidState& state, NozzleColumns p, const Nozzle& nozzle) {
   return level;
 }
 
-/// One nozzle's layers of this frame.
+/// Pours one nozzle's layers of this frame.
 void pour_due_layers(FluidState& state, NozzleColumns p, const Nozzle& nozzle, Poured& before) {
   auto& jets = state.jets;
   const double frame_dt = jets.frame_dt_s;
@@ -144,7 +144,7 @@ void pour_due_layers(FluidState& state, NozzleColumns p, const Nozzle& nozzle, P
   state.lists_hold = state.lists_hold && layers == 0;
   jets.poured += static_cast<std::int64_t>(layers) * layer.sites << jets.level;
   jets.waited += static_cast<std::uint64_t>(due.count - layers);
-  // Layers that waited are left out of the jet.
+  // Layers that could not be poured are left out of the jet.
   before.length_m += due.count * layer.pitch_m;
   before.layers += due.count;
 }
@@ -153,7 +153,7 @@ void run_nozzle(FluidState& state, NozzleColumns p) {
   auto& jets = state.jets;
   const std::int64_t made = jets.made;
   for (std::size_t k = 0; k < jets.nozzles.size(); ++k) {
-    // At one level the timetable is a pure function of the frame.
+    // At one level the schedule is a pure function of the frame.
     if (!jets.by_target)
       jets.before[k] = poured_before(jets.nozzles[k], std::cbrt(1 << jets.level) * jets.finest_spacing_m,
                                      jets.frame, jets.frame_dt_s);

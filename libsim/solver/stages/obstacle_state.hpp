@@ -1,5 +1,5 @@
 #pragma once
-/// The scene's obstacles as the solver has them.
+/// The solver's state of the scene's obstacles.
 
 #include <vector>
 
@@ -11,23 +11,23 @@ namespace sim::SIM_BACKEND {
 struct ObstacleState {
   std::vector<Obstacle> obstacles;
   double frame_begin_s = 0;  ///< since frame 0
-  Array<Body> bodies;        ///< where they are at the end of this substep
-  /// Of this frame: what the constraint's pushes gave, as `bodies`, then what effects did. None while nobody
-  /// asks what obstacles give.
+  Array<Body> bodies;        ///< positions at the end of this substep
+  /// Of this frame: pushes of the constraint, one per body, then pushes of effects. Empty unless the
+  /// obstacles' pushes are recorded.
   Array<BodySum> sums;
-  /// Volume of each below the water's level, over that of m_*, as CellWater counts.
+  /// Volume of each body below the water level, in volumes of m_*, as CellWater counts.
   Array<std::uint64_t> wet;
-  Array<FreeBody> free;  ///< as `bodies`; none while no obstacle is free
-  Array<BodyRow> rows;   ///< as `bodies`; none before an effect solves for them
-  // None while no obstacle is a mesh:
-  Array<MeshGrid> meshes;     ///< as `bodies`
-  Array<float> distances;     ///< of all their grids
-  Array<Vec3> mesh_contacts;  ///< of all of them
-  // None while no free obstacle meets another or has friction:
-  Array<Vec3> by_others;              ///< what others gave each in this frame, m_* m/s
+  Array<FreeBody> free;  ///< one per body; empty if no obstacle is free
+  Array<BodyRow> rows;   ///< one per body; empty until an effect solves for them
+  // Empty if no obstacle is a mesh:
+  Array<MeshGrid> meshes;     ///< one per body
+  Array<float> distances;     ///< of all grids
+  Array<Vec3> mesh_contacts;  ///< of all meshes
+  // Empty if no free obstacle meets another or has friction:
+  Array<Vec3> by_others;              ///< momentum that each body received from others in this frame, m_* m/s
   Array<float> friction;              ///< coefficient of each
-  bool rough = false;                 ///< one is not 0
-  int feelers = 0;                    ///< the most that one has
+  bool rough = false;                 ///< true if a coefficient is not 0
+  int feelers = 0;                    ///< the largest number on one body
   Array<unsigned char> meeting_room;  ///< scratch memory
 
   bool there() const { return bodies.size() > 0; }
@@ -42,7 +42,7 @@ struct ObstacleState {
 /// Brings the grids of obstacles that are meshes to the device.
 void place_meshes(ObstacleState& state);
 
-/// The obstacles where a scene has them at this time, as they came there in `dt`; at rest for dt = 0.
+/// The scene's obstacles at this time, with the velocities of a move within `dt`; at rest for dt = 0.
 std::vector<Body> bodies_at(const std::vector<Obstacle>& obstacles, double time_s, double dt);
 
 }  // namespace sim::SIM_BACKEND

@@ -7,7 +7,7 @@ namespace {
 
 static_assert(most_bodies == static_cast<int>(most_obstacles));
 
-/// All of them as an argument: the device is told without a copy of its own.
+/// Passes all bodies as a kernel argument: this needs no separate copy to the device.
 struct PlaceBodies {
   Body from[most_bodies];
   int which[most_bodies];

@@ -10,7 +10,7 @@ void run_outflow(FluidState& state, OutflowView p) {
   state.drained.particles += left.particles;
   state.drained.mass += left.mass;
   state.mass_units -= left.mass;
-  // Neighbours are named by their places in memory.
+  // Lists store indices, which have changed.
   state.lists_hold = false;
 }
 

@@ -1,23 +1,24 @@
 #pragma once
-/// One walk over each particle's neighbours for the sums of one stage, or of two that share it. Which of them
-/// share is chosen when the schedule is compiled (schedule.cpp); here it is a type.
+/// One loop over each particle's neighbours that computes the sums of one stage, or of two that share it. The
+/// sharing is decided when the schedule is compiled (schedule.cpp); here it is a type.
 
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// A pair i, j as a term sees it.
+/// A pair i, j as a term receives it.
 struct NeighbourPair {
   int j;
   float x, y, z;  ///< from j to i, m
   float h;        ///< of j, m
-  float slope;  ///< (m_j / m_i) poly6 (h^2 - r^2)^2: the gradient of W is -6 (m_i / m_j) slope times the way
+  /// (m_j / m_i) poly6 (h^2 - r^2)^2: the gradient of W is -6 (m_i / m_j) slope (x, y, z).
+  float slope;
 };
 
-/// A term that adds nothing. The others are like it: `sums`, how many of the four they use; `of_all`,
-/// whether those that are not solved have them too; takes(), whether a particle of this support has them;
-/// Self, what is read once of particle i; add(), what a neighbour adds; finish(), by one lane, when all have;
-/// skip(), for those that have no sums.
+/// A term that adds nothing, and the interface of all terms. `sums`: how many of the four sums it uses.
+/// `of_all`: true if unsolved particles have sums too. takes(): true if a particle of this support has sums.
+/// Self: data read once for particle i. add(): adds a neighbour. finish(): called by one lane after all
+/// neighbours. skip(): for particles without sums.
 struct NoTerm {
   static constexpr int sums = 0;
   static constexpr bool of_all = false;
@@ -44,7 +45,7 @@ struct PairLoop {
     typename Second::Self second;
   };
 
-  /// What particle j adds; see SIM_LANES.
+  /// Adds particle j; see SIM_LANES.
   SIM_FN void add(int j, const Self& me, float& a0, float& a1, float& a2, float& a3, float& b0, float& b1,
                   float& b2, float& b3) const {
     const Vec4 other = position[j];
@@ -59,7 +60,7 @@ struct PairLoop {
     second.add(pair, me.second, b0, b1, b2, b3);
   }
 
-  /// Over the lanes, where the term has so many.
+  /// Sums over the lanes if the term uses sum `number`.
   template <class Term, int number, class Team>
   SIM_FN static float sum(Team team, float mine) {
     if constexpr (Term::sums >= number) return team.sum(mine);

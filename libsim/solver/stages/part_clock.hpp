@@ -1,5 +1,5 @@
 #pragma once
-/// How long the parts of a frame take, and its passes.
+/// Timers for the parts of a frame, and for its passes.
 
 #include <array>
 #include <chrono>
@@ -9,10 +9,10 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What a stage is counted as in the paper's Table 2.
+/// The parts of the paper's Table 2 to which stages are assigned.
 enum class Part { Saliency, Levels, Activation, Solve, count };
 
-/// Off until it is switched on: it waits for the device wherever one part ends and another begins.
+/// Off until switched on. Waits for the device between parts.
 class PartClock {
  public:
   void switch_on() { on_ = true; }
@@ -29,7 +29,7 @@ class PartClock {
   }
   void end_frame() { enter(Part::count); }
 
-  /// Of the last frame.
+  /// In the last frame.
   double milliseconds(Part part) const { return 1e3 * seconds_[static_cast<std::size_t>(part)]; }
 
  private:
@@ -39,10 +39,10 @@ class PartClock {
   std::array<double, static_cast<std::size_t>(Part::count)> seconds_{};
 };
 
-/// The same of each pass of a schedule, by its place there.
+/// The same for each pass of a schedule, by its index.
 class PassClock {
  public:
-  /// Forgets what it had measured. 0 passes: off.
+  /// Discards earlier measurements. 0 passes: off.
   void measure(std::size_t passes) {
     seconds_.assign(passes, 0);
     running_ = passes;
@@ -58,7 +58,7 @@ class PassClock {
   }
   void end_frame() { enter(seconds_.size()); }
 
-  /// Of the last frame; 0 while it is off.
+  /// In the last frame; 0 while off.
   double milliseconds(std::size_t pass) const { return seconds_.empty() ? 0 : 1e3 * seconds_[pass]; }
 
  private:

@@ -4,8 +4,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Moves by what was mended at the substep's beginning, there and where the substep leads, so that no
-/// velocity comes of it.
+/// Applies the correction made at the substep's beginning to both the start and the predicted position, so
+/// that it adds no velocity.
 template <class Boundary>
 struct Follow {
   const Vec4* mended;
@@ -25,8 +25,8 @@ struct Follow {
   }
 };
 
-/// Lists those within the support of a particle that split or merged this frame, themselves included: the
-/// share of the constraint round them is the least.
+/// Lists the particles within the support of a particle that split or merged in this frame, including it:
+/// they have the smallest share of the constraint.
 template <class Selection>
 struct ListBesideFresh {
   Selection select;
@@ -43,7 +43,7 @@ struct ListBesideFresh {
 using Places = ColumnView<columns(Column::Predicted), columns(Column::Predicted, Column::PredictedNext,
                                                               Column::Position, Column::VelocityNext)>;
 
-/// Puts the solver back to the substep's beginning; VelocityNext keeps where it leads.
+/// Resets the solver to the substep's beginning; VelocityNext stores the predicted positions.
 void go_back(FluidState& state, Places p) {
   state.impulse.listen(false);
   p.copy<Column::VelocityNext, Column::Predicted>();
@@ -73,8 +73,8 @@ using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Colum
                                   columns(Column::Predicted, Column::PredictedNext, Column::Position,
                                           Column::VelocityNext, Column::Lambda, Column::Density)>;
 
-/// Parts at the substep's beginning: what is dense there is overlap, while on its way water is compressed
-/// too.
+/// Separates particles at the substep's beginning: there high density means overlap, whereas during the
+/// substep water is also compressed.
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
@@ -95,7 +95,7 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
 }
 
 void run_parting(FluidState& state, PartingColumns p) {
-  // The frame's first substep has the fresh particles; most frames of water at rest have none.
+  // Fresh particles exist in the frame's first substep; most frames of water at rest have none.
   if (!state.levels.changed || state.substep > 0) return;
   state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
 }
@@ -105,9 +105,9 @@ using EveryonesColumns = ColumnView<columns(Column::Predicted, Column::Neighbour
                                             Column::VelocityNext, Column::Lambda, Column::Density),
                                     columns(Column::Ease)>;
 
-/// Compression that is there before the substep moves anything is an error, such as an uneven start or poured
-/// layers bring. Taken away by the substep itself it would become speed: a lattice of 80 layers shot up at 12
-/// m/s, and in the jet of Faucet, which falls at 18 m/s, some were thrown at 35.
+/// Compression before the substep moves anything is an error, caused for example by an uneven start or poured
+/// layers. If the substep itself removed it, it would become speed: a lattice of 80 layers shot up at 12 m/s,
+/// and in the jet of Faucet, which falls at 18 m/s, some particles were ejected at 35.
 void stabilise(FluidState& state, EveryonesColumns p) {
   const int rounds = state.compressed ? 3 : state.jets.pouring ? 1 : 0;
   if (rounds == 0 || state.substep > 0) return;

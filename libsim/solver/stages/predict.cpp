@@ -6,7 +6,7 @@ namespace {
 
 struct Gravity {
   float gravity;
-  /// What it does to v in a time of dt.
+  /// Changes v over a time dt.
   SIM_FN void act(Vec3, Vec3& v, float dt) const { v.y -= gravity * dt; }
 };
 
@@ -20,7 +20,7 @@ struct GravityAndPull {
   }
 };
 
-/// A particle that is not solved flies at the velocity it was given: forces and pressure are both in it.
+/// An unsolved particle moves at its inherited velocity, which includes forces and pressure.
 template <class Selection, class Forces, class Boundary>
 struct Predict {
   Selection select;
@@ -32,7 +32,7 @@ struct Predict {
   Vec3 refuge;
   Brake brake;
   float dt, wall_gap;
-  float reach;  ///< beyond a wall by more than this a place is lost, m
+  float reach;  ///< a position farther beyond a wall is lost, m
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
@@ -52,8 +52,9 @@ struct Predict {
     predicted[i] = with_w(x, h);
   }
 
-  /// A broken velocity is lost; a broken position goes to the refuge, and so does one so far outside that the
-  /// guard on speed would not let the walls bring it back. The rest of the fluid never reads either.
+  /// Sets the velocity to zero. Moves the particle to the refuge if its position is not finite, or so far
+  /// outside that at limited speed the walls could not bring it back. The rest of the fluid never reads the
+  /// lost values.
   SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
     const bool far_outside = all_finite(x) && tank(walls).nearest(x) < -reach;
     const bool place_lost = far_outside || !all_finite(x);

@@ -1,6 +1,6 @@
-/// The coarse pressure is no pair force: interpolated between cells it gives the water momentum that nothing
-/// gave. What it gave is measured against what the walls gave (Gauss' theorem on the cells), and the
-/// difference is taken from all whom it pushed, alike.
+/// The coarse pressure is not a pair force: interpolation between cells adds spurious momentum to the water.
+/// Its push is compared with that of the walls (Gauss' theorem on the cells), and the difference is
+/// subtracted equally from all pushed particles.
 
 #include "libsim/pressure/coarse_slope.hpp"
 #include "libsim/solver/stages/stages.hpp"
@@ -9,7 +9,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Particles that a team adds up, so that few meet at one sum.
+/// Number of particles that a team sums, to reduce contention for one sum.
 constexpr int run_length = 64;
 
 struct SumPush {
@@ -56,18 +56,18 @@ struct SumWalls {
   }
 };
 
-/// What obstacles give: the displaced water's weight in the field, up to the level beside them, and rho_0 q A
-/// where they are solid.
+/// The obstacles' share: the displaced water's weight in the pressure field, up to the water level beside
+/// them, and rho_0 q A at their solid cells.
 struct SumBodies {
-  static constexpr int samples = 4;  ///< of a cell along an edge
+  static constexpr int samples = 4;  ///< samples along a cell's edge
   CoarseSlope slope;
   Waterline waterline;
-  BodyListener to;     ///< without sums nobody listens
+  BodyListener to;     ///< records nothing without sums
   std::uint64_t* wet;  ///< ObstacleState::wet
   float unit_volume;
   PushBalance* out;
 
-  /// Few cells have a body, and those have much to do.
+  /// Few cells contain a body, and those need much work.
   int lanes(int) const { return 8; }
 
   template <class Team>
@@ -90,7 +90,7 @@ struct SumBodies {
         tell(given);
       }
     }
-    // What a solid cell gives stands in its neighbours' faces.
+    // The push of a solid cell is counted at its neighbours' faces.
     if (away > 0.5f * length(e) || solid(x, y, z) > 0) return;
     const float level = waterline.beside(x, y, z).mean;
     if (level <= 0) return;
@@ -102,7 +102,7 @@ struct SumBodies {
           centre + Vec3{e.x * offset(k % samples), e.y * up, e.z * offset(k / (samples * samples))};
       int body;
       if (solids.nearest_body(at, body) >= 0) continue;
-      // A sample is a layer of its own height, which the level may cut.
+      // A sample is a layer of its own height, which the water level may cut.
       const float below = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
       if (below == 0) continue;
       if (body != given.body) {
@@ -117,7 +117,7 @@ struct SumBodies {
     }
   }
 
-  /// Of one body, so that all of a cell meet at its sums once.
+  /// Sums for one body, so that a cell adds to its totals once.
   struct Given {
     int body = -1;
     MassWay push{};
@@ -144,7 +144,7 @@ struct SumBodies {
     if (given.wet > 0) atomic_add(&wet[given.body], given.wet);
     if (to.sums) to.add_at_once(given.body, given.heard);
   }
-  /// Areas of the faces before an obstacle's solid cells, m2, along the way out of them.
+  /// Areas of the faces next to an obstacle's solid cells, m2, along the direction out of them.
   SIM_FN Vec3 solid_sides(int x, int y, int z) const {
     const Vec3 e = slope.frame.edge;
     return {e.y * e.z * (solid(x - 1, y, z) - solid(x + 1, y, z)),
@@ -176,8 +176,8 @@ struct Balance {
     if (walls.project(x, xyz(from), wall_gap * to.w / 2))
       atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, to.w);
-    // A particle that no projection moves has its place in both buffers. Who listens asks whence it came
-    // first.
+    // A particle that no projection moves needs the same position in both buffers. A recording pass first
+    // needs its origin.
     next[i] = listens ? from : predicted[i];
   }
 };
@@ -225,7 +225,7 @@ void balance_push(FluidState& state, ClampView p) {
   auto& coarse = state.coarse;
   coarse.balance.resize(1);
   coarse.balance.zero();
-  // Where those who are not solved are not pressed, their share of the walls' push reaches nobody.
+  // If unsolved particles are not pressed, their share of the walls' push is not applied.
   const bool pressed = state.all_active || state.activation.rules.pressed;
   if (pressed) {
     for_each_team("sum push", (p.size() + run_length - 1) / run_length,

@@ -8,7 +8,7 @@ using SurroundingsView =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                columns(Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density)>;
 
-/// What saliency reads; where its results go is the caller's.
+/// Inputs of saliency; the caller sets the outputs.
 SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
   const auto& k = state.parameters;
   return {.position = p.position(),
@@ -22,15 +22,15 @@ SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
           .guards = state.guard()};
 }
 
-/// Neighbours where the particles are now, and densities where they are asked for.
+/// Finds neighbours at the present positions, and densities if requested.
 void find_surroundings(FluidState& state, SurroundingsView p, bool densities) {
   p.copy<Column::Predicted, Column::Position>();
   find_neighbours(state, p);
   if (densities) constrain_density(state, p);
 }
 
-/// The same from the last substep, as far as it holds: nobody was listed before the first frame, nor what a
-/// nozzle has just moved, and who was not solved has no density of the last frame.
+/// Reuses the last substep's lists and densities as far as valid: there are no lists before the first frame
+/// or after a nozzle moved particles, and unsolved particles have no density of the last frame.
 void recall_surroundings(FluidState& state, SurroundingsView p, bool densities) {
   if (!state.lists_hold) {
     find_surroundings(state, p, densities);

@@ -1,5 +1,5 @@
 #pragma once
-/// What a stage is: data, and a function that reaches the columns that it declares and no others.
+/// A stage: data, and a function that accesses only the columns it declares.
 
 #include <optional>
 #include <string>
@@ -9,44 +9,44 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What a scene, a method and the wanted outputs call for.
+/// What a scene, a method and the requested outputs require.
 struct Demand {
   SolverParameters parameters;
   std::vector<Effect> effects;    ///< that the scene lists
   bool nozzles = false;           ///< the scene has one
   bool outlets = false;           ///< the scene has one
-  bool moving_obstacles = false;  ///< the scene has one that goes a way of its own
-  bool free_obstacles = false;    ///< the scene has one that the water moves
-  bool obstacles_meet = false;    ///< and that one may meet another, or has friction
+  bool moving_obstacles = false;  ///< the scene has one that moves along a given path
+  bool free_obstacles = false;    ///< the scene has one that is moved by the water
+  bool obstacles_meet = false;    ///< a free obstacle may meet another, or has friction
   bool settling = false;          ///< the gate is closed and the water comes to rest
   bool levels = false;            ///< particles split and merge
   bool forced_targets = false;    ///< a test gives their targets
-  bool gaze_targets = false;      ///< their targets follow the gaze alone
-  bool saliency = false;          ///< their targets follow saliency
-  bool saliency_parts = false;    ///< an output asks for what saliency is made of
-  bool activation = false;        ///< temporal acceleration chooses who is solved
-  bool wall_impulse = false;      ///< an output asks what the walls give the water
+  bool gaze_targets = false;      ///< targets follow the gaze alone
+  bool saliency = false;          ///< targets follow saliency
+  bool saliency_parts = false;    ///< an output needs the parts of saliency
+  bool activation = false;        ///< temporal acceleration selects the solved particles
+  bool wall_impulse = false;      ///< an output needs the walls' impulse on the water
 };
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
 
-/// What a stage sums over neighbours, where another may share the loop (SharedLoop).
+/// Sums over neighbours that a stage computes, for stages that can share a loop (SharedLoop).
 enum class SharedTerm { None, SurfaceNormals, Curl, Conduction };
 
 struct Stage {
   const char* name;
   const char* source = "";  ///< paper and equation
   Phase phase;
-  /// Empty when nothing calls for the stage; otherwise the reason. A stage of an effect needs none; with one
-  /// it runs where both call for it.
+  /// Returns the reason why the stage is required, or an empty string. An effect's stage needs no such
+  /// function; with one it runs only if the function also requires it.
   std::string (*called_for)(const Demand&) = nullptr;
   Part part = Part::Solve;
-  /// What its change of the water's momentum is counted as; each stage that writes velocities has one.
+  /// How its change of the water's momentum is booked; each stage that writes velocities has one.
   Change changes = Change::None;
-  EffectKind effect = no_effect;  ///< that alone calls for it
+  EffectKind effect = no_effect;  ///< the effect that alone requires the stage
   SharedTerm loop = SharedTerm::None;
-  std::size_t place = 0;  ///< among the passes of a schedule, which says so
-  // From the function's view, by stage_of:
+  std::size_t place = 0;  ///< index among the passes of a schedule, set by the schedule
+  // Set by stage_of from the function's view:
   ColumnSet reads = {}, writes = {};
   void (*run)(FluidState&) = nullptr;
 };
@@ -56,8 +56,8 @@ template <class View>
 View view_of(void (*)(FluidState&, View));
 }
 
-/// The stage that runs `function`, a void(FluidState&, ColumnView<...>): what the view declares is what the
-/// stage declares.
+/// The stage that runs `function`, a void(FluidState&, ColumnView<...>): the stage declares the columns that
+/// the view declares.
 template <auto function>
 Stage stage_of(Stage stage) {
   using View = decltype(stage_detail::view_of(function));
@@ -67,7 +67,7 @@ Stage stage_of(Stage stage) {
   return stage;
 }
 
-// Reasons that more than one stage has.
+// Reasons shared by several stages.
 inline std::string always_moves(const Demand&) { return "every method moves its particles"; }
 inline std::string keeps_density(const Demand&) { return "every method keeps the density"; }
 inline std::string if_levels(const Demand& demand) {

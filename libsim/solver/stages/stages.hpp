@@ -1,5 +1,5 @@
 #pragma once
-/// The stages of the solver, one source file each, and what they lend to each other.
+/// The stages of the solver, one source file each, and the passes that they share.
 
 #include <vector>
 
@@ -12,43 +12,43 @@ namespace sim::SIM_BACKEND {
 Stage nozzle_stage();
 /// Saliency and target levels from the eyes, the last picture and the fluid.
 Stage saliency_stage();
-/// What saliency is made of, for an output.
+/// The parts of saliency, for an output.
 Stage saliency_parts_stage();
 /// Target levels from the gaze alone.
 Stage gaze_targets_stage();
-/// Neighbour list at the frame's start, for what looks at the fluid before it moves.
+/// Neighbour list at the frame's start, for stages that read the fluid before it moves.
 Stage frame_neighbours_stage();
 /// Targets of tests (LevelState::forced).
 Stage forced_targets_stage();
-/// Targets of neighbours differ by one level at most.
+/// Limits targets of neighbours to differ by at most one level.
 Stage graded_targets_stage();
-/// Algorithms 1 and 2; changes the number of particles and makes the neighbour list stale.
+/// Algorithms 1 and 2; changes the number of particles and invalidates the neighbour list.
 Stage split_and_merge_stage();
-/// Brings moving obstacles to their places at the substep's end.
+/// Moves moving obstacles to their positions at the substep's end.
 Stage obstacles_stage();
-/// Moves an obstacle that is free and meets walls alone, which are smooth.
+/// Moves free obstacles that meet only walls, without friction.
 Stage bodies_move_stage();
-/// Moves obstacles that are free, and holds them apart from others.
+/// Moves free obstacles, and keeps them apart from others.
 Stage bodies_meet_stage();
-/// Takes what the water gave them.
+/// Applies what the water gave the free obstacles.
 Stage bodies_pushed_stage();
-/// Gravity and the explicit step to predicted positions; speed limit; quarantine of what is not finite.
+/// Gravity and the explicit step to predicted positions; speed limit; quarantine of non-finite particles.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
-/// Shares of the constraint round fresh particles.
+/// Share of the constraint near fresh particles.
 Stage ease_stage();
-/// The slow part of the pressure, solved on cells and applied first.
+/// The low-frequency part of the pressure, solved on cells and applied first.
 Stage coarse_pressure_stage();
-/// Takes compression away that was there before the substep, without giving it speed.
+/// Removes compression that existed before the substep, without adding velocity.
 Stage pre_stabilisation_stage();
-/// Parts what overlaps after a split or a merge, without giving it speed.
+/// Separates particles that overlap after a split or a merge, without adding velocity.
 Stage parting_stage();
-/// Density, unilateral constraint and its multiplier lambda, times these shares.
+/// Density, unilateral constraint and its multiplier lambda, times the shares of ease_stage.
 Stage density_stage();
-/// Position correction, momentum-exact, and wall projection.
+/// Position correction, which conserves momentum exactly, and wall projection.
 Stage displacement_stage();
-/// Accounts of what the walls give: holding back, missing density, pressure of cells.
+/// Accounts of what the walls give the water: holding back, missing density, pressure of cells.
 Stage held_at_walls_stage();
 Stage missing_density_stage();
 Stage wall_cells_stage();
@@ -56,40 +56,39 @@ Stage wall_cells_stage();
 Stage velocity_stage();
 /// XSPH viscosity.
 Stage xsph_stage();
-/// The same for methods that split and merge: fresh particles come to rest among their neighbours.
+/// The same for methods that split and merge: fresh particles are damped among their neighbours.
 Stage xsph_of_levels_stage();
-/// Velocity x 0.9 a frame while the water settles.
+/// Velocity x 0.9 per frame while the water settles.
 Stage settling_stage();
 
-/// What is through an outlet leaves; last in a frame.
+/// Removes particles that passed an outlet; last in a frame.
 Stage outflow_stage();
 
-/// Which particles the frame solves.
+/// Selects the particles that the frame solves.
 Stage activation_stage();
-/// Velocity and energy grids; what was not solved inherits from them.
+/// Velocity and energy grids; unsolved particles inherit from them.
 Stage velocity_grid_stage();
 
-// Passes that others borrow. Each says which columns it touches; a caller that does not declare them does not
-// compile.
+// Passes that other stages reuse. Each declares the columns it touches; a caller that does not declare them
+// does not compile.
 
 using NeighboursView =
     ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id, Column::Level),
                columns(Column::Neighbours)>;
-/// Sorts the particles by the grid's cells at their predicted positions, and lists everyone's neighbours
-/// there.
+/// Sorts the particles by the grid's cells at their predicted positions, and lists all particles' neighbours.
 void find_neighbours(FluidState& state, NeighboursView particles);
 
 using DensityView =
     ColumnView<columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density)>;
-/// Densities and multipliers at the predicted positions of those whom the frame solves.
+/// Densities and multipliers at the predicted positions of the particles that the frame solves.
 void constrain_density(FluidState& state, DensityView particles);
-/// The same of everyone outside the schedule, over lists that belong to slots.
+/// The same for all particles outside the schedule, with lists that belong to slots.
 void constrain_density(FluidState& state, DensityView particles, EverySlot everyone);
 
 using DisplacementView =
     ColumnView<columns(Column::Predicted, Column::Lambda, Column::Neighbours, Column::Id),
                columns(Column::PredictedNext, Column::Predicted)>;
-/// Moves those whom the frame solves by their multipliers.
+/// Moves the particles that the frame solves by their multipliers.
 void displace(FluidState& state, DisplacementView particles);
 
 using CoarsePressureView =
@@ -99,41 +98,41 @@ using CoarsePressureView =
 /// Shifts the predicted positions by the pressure on cells.
 void press(FluidState& state, CoarsePressureView particles);
 
-/// What moves free obstacles in the present substep.
+/// The forces that move free obstacles in the present substep.
 BodyDrive body_drive(FluidState& state);
 
-// For the momentum account of the walls. While it records, kernels leave the clamp at the walls to a pass of
-// its own, which records what it does.
+// For the momentum account of the walls. While it records, kernels skip the clamp at the walls; a separate
+// pass applies and records it.
 
-/// Smallest distance to a wall that kernels keep, as a share of d; none while the account records.
+/// Minimum distance to a wall that kernels enforce, as a share of d; none while the account records.
 float gap_of_kernels(const FluidState& state);
 using ClampView = ColumnView<ColumnSet{}, columns(Column::Predicted, Column::PredictedNext)>;
-/// The clamp that kernels left out; does nothing while no account records. `from`: positions before the step.
-/// `times`: as in WallListener. `in_both`: PredictedNext holds the same places afterwards.
+/// Applies the clamp that kernels skipped; does nothing unless an account records. `from`: positions before
+/// the step. `times`: as in WallListener. `in_both`: also write PredictedNext.
 void clamp_and_listen(FluidState& state, ClampView particles, const Vec4* from, float times, bool in_both);
-/// Ends the coarse pressure's push from Predicted to PredictedNext: it gives the water what the walls gave,
-/// and stops at the walls. Both hold the places then.
+/// Ends the coarse pressure's push from Predicted to PredictedNext: gives the water the walls' share, and
+/// stops it at the walls. Afterwards both hold the same positions.
 void balance_push(FluidState& state, ClampView particles);
 /// Weight of a push of this projection, including the shares of it that later projections repeat as
 /// momentum steps.
 float times_taken(const SolverParameters& parameters, int iteration);
 
-/// The two halves of one projection of a few. The others need lambda = 0 and the same
-/// place in both buffers.
+/// The two halves of one projection of a few particles. The others need lambda = 0 and equal positions in
+/// both buffers.
 void constrain_density(FluidState& state, DensityView particles, Listed<AllParticles> few);
 void constrain_density(FluidState& state, DensityView particles, Listed<ActiveParticles> few);
 void displace(FluidState& state, DisplacementView particles, Listed<AllParticles> few);
 void displace(FluidState& state, DisplacementView particles, Listed<ActiveParticles> few);
 
-/// Saliency of the present state for an output, in whatever method: `observer` has the eyes. Permutes the
-/// columns and fills the given ones in the new order.
+/// Saliency of the present state for an output, for any method: `observer` has the eyes. Permutes the columns
+/// and fills the given arrays in the new order.
 void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                       Array<std::uint8_t>& target, Array<SaliencyParts>& parts);
 /// The same from the gaze alone, in the present order.
 void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                   Array<std::uint8_t>& target);
 
-/// Two stages in one: its loop finds the sums of both.
+/// A stage that combines two: its loop computes the sums of both.
 struct SharedLoop {
   SharedTerm first, second;
   Stage stage;

@@ -4,12 +4,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but free of the rounding of x while nothing pushes.
+/// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but without the rounding of x if nothing pushes.
 struct Advance {
   Vec4* position;
   const Vec4* predicted;
   Vec4* velocity;
-  Vec4* kick;  ///< what this changes, for the filter round fresh particles; nullptr without one
+  Vec4* kick;  ///< velocity change, for the filter near fresh particles; nullptr without one
   Brake brake;
   float dt;
   SIM_FN void operator()(int i) const {
@@ -19,7 +19,8 @@ struct Advance {
     const Vec3 kept = brake.limited(after, predicted[i].w, i);
     velocity[i] = with_w(kept, 0);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
-    // Nobody is carried farther than the limit allows: a crowd in one place would reach others at once.
+    // No particle moves farther than the speed limit allows: a crowd in one place would otherwise hit others
+    // at once.
     position[i] = length(after) > brake.most_speed ? with_w(fused(xyz(position[i]), dt, kept), predicted[i].w)
                                                    : predicted[i];
   }
@@ -30,7 +31,7 @@ using VelocityColumns =
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
 void run_velocity(FluidState& state, VelocityColumns p) {
-  // The old places that PredictedNext holds are done with.
+  // The old positions in PredictedNext are no longer needed.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
            Advance{.position = p.position(),

@@ -4,12 +4,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Mean change of velocity of a cell and level's active particles over the frame, less what the others of the
-/// cell have already met; what is empty takes the mean of the other levels.
+/// Mean velocity change of a cell and level's active particles over the frame, minus the change that the
+/// cell's other particles already have; empty entries take the mean of the other levels.
 struct MeanChange {
   const MomentumSum* before;
   const MomentumSum* after;
-  const MomentumSum* others_before;  ///< nullptr unless something moved the others too
+  const MomentumSum* others_before;  ///< nullptr unless the others moved too
   const MomentumSum* others_after;
   Vec4* change;
   int cells;
@@ -40,8 +40,8 @@ struct MeanChange {
   }
 };
 
-/// Algorithm 3, line 15, once all active particles are done: what was not solved takes its velocity from the
-/// grid. Its way is mended as if the change had come in equal parts in the frame's substeps.
+/// Algorithm 3, line 15, after all active particles are done: unsolved particles take their velocity from the
+/// grid. Their displacement is corrected as if the change had come in equal parts in the frame's substeps.
 template <class Boundary>
 struct Inherit {
   const std::uint8_t* active;
@@ -78,7 +78,7 @@ struct Inherit {
   }
 };
 
-/// Marks spray, which no grid may move.
+/// Marks spray, which must not be moved by a grid.
 struct MarkSparse {
   const std::uint8_t* active;
   const float* density;
@@ -96,7 +96,8 @@ using VelocityGridColumns =
                        Column::Rest, Column::StartCell),
                columns(Column::Velocity, Column::Position, Column::Rest)>;
 
-/// V, what the resting inherit, and who is sparse: one launch over the particles, one over the cells' sums.
+/// Computes V, the changes that resting particles inherit, and the sparse marks: one launch over the
+/// particles, one over the cells' sums.
 void find_means(FluidState& state, VelocityGridColumns p) {
   auto& a = state.activation;
   const bool changes = !state.all_active && a.rules.inherit_change;
@@ -129,7 +130,7 @@ template <class Boundary>
 void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
-  // As printed, the mean velocities are those of V.
+  // As in the paper, the mean velocities are those of V.
   const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
   const auto substeps = static_cast<float>(k.substeps);
   const float idle = 1 - a.beta;

@@ -1,4 +1,4 @@
-/// What the walls give the water, told to the account (libsim/impulse) beside the passes that do it.
+/// Records what the walls give the water (libsim/impulse), in passes beside those that do it.
 
 #include "libsim/solver/stages/stages.hpp"
 
@@ -6,7 +6,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Whom a particle tells of what walls, and in scenes with obstacles bodies, do to it.
+/// Listeners for corrections of a particle by walls and, in scenes with obstacles, by bodies.
 struct Listeners {
   WallListener walls;
   bool walls_listen;
@@ -29,7 +29,7 @@ Listeners listeners(FluidState& state, float times) {
   return {state.impulse.listener(times), state.impulse.on(), state.body_listener(times)};
 }
 
-/// What Predict did, told again.
+/// Repeats the hold-back of Predict in order to record it.
 template <class Boundary, class Hearer>
 struct HeldBack {
   const Vec4* position;
@@ -61,7 +61,7 @@ void hear_held_back(FluidState& state, MovingView p) {
                           : held_back(state, p, state.walls, state.impulse.listener());
 }
 
-/// Delta p_i = w_i lambda_i grad_i C_wall of the displacement to come, wall by wall.
+/// Delta p_i = w_i lambda_i grad_i C_wall of the next displacement, wall by wall.
 SIM_FN float beside_bodies(const Walls&, Vec3, float) { return 1; }
 SIM_FN float beside_bodies(const Solids& solids, Vec3 x, float h) { return solids.beside_bodies(x, h); }
 
@@ -84,7 +84,7 @@ struct MissingDensity {
   }
 };
 
-/// The same of bodies.
+/// The same for bodies.
 struct MissingInBodies {
   const Vec4* predicted;
   const float* lambda;
@@ -127,8 +127,8 @@ void hear_missing_density(FluidState& state, ConstraintView p) {
                            .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 
-/// The pressure of the cells at a wall, as push_balance.cpp counts it. Gauges may be smaller than a cell:
-/// within a face the pressure follows its neighbours, on patches that sum up to the face.
+/// The pressure of the cells at a wall, counted as in push_balance.cpp. Gauges may be smaller than a cell:
+/// within a face the pressure is interpolated to its neighbours, on patches that sum up to the face.
 template <class Boundary>
 struct WallCells {
   PressureFrame frame;
@@ -154,7 +154,7 @@ struct WallCells {
         for (int b = 0; b < patches; ++b) {
           const float first = middle(a) / patches - 0.5f;
           const float second = middle(b) / patches - 0.5f;
-          // Along the wall; across it a patch lies where its cell does.
+          // Varies along the wall; across it a patch is at its cell's position.
           const Vec3 from = normal.x != 0   ? Vec3{0, first, second}
                             : normal.y != 0 ? Vec3{first, 0, second}
                                             : Vec3{first, second, 0};
@@ -164,7 +164,7 @@ struct WallCells {
       }
     });
   }
-  /// Change of q over the cell, which nowhere in it falls below 0.
+  /// Change of q over the cell, limited so that q does not fall below 0 within it.
   SIM_FN float slope_of(float q, int x, int y, int z, int dx, int dy, int dz) const {
     const float before = q_beside(q, x - dx, y - dy, z - dz);
     const float after = q_beside(q, x + dx, y + dy, z + dz);
@@ -194,7 +194,7 @@ template <class Boundary, class Hearer>
 struct Clamp {
   Vec4* predicted;
   const Vec4* from;
-  Vec4* next;  ///< nullptr where it goes on holding other places
+  Vec4* next;  ///< nullptr if it must keep other positions
   Boundary walls;
   Hearer to;
   Guards* guards;

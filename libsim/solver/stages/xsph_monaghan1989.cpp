@@ -5,12 +5,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A filter of velocities besides the viscosity: none, or one that calms resting water after splits and
-/// merges. New particles overlap their neighbours, the projections separate them, and the velocity of that
-/// separation is no motion of the fluid. Velocity changes near new particles are averaged over neighbours.
-/// The average keeps momentum and common changes, such as gravity and pressure. What remains uneven sinks for
-/// a second or two and stirs the water; a stronger viscosity damps it. Water that moved before is filtered
-/// less and has no such viscosity, as it would lose energy.
+/// A filter of velocities in addition to the viscosity: none, or one that calms resting water after splits
+/// and merges. New particles overlap their neighbours, the projections separate them, and the velocity of
+/// that separation is not a motion of the fluid. Velocity changes near new particles are averaged over
+/// neighbours. The average conserves momentum and common changes, such as gravity and pressure. The remaining
+/// irregularities sink for a second or two and stir the water; a stronger viscosity damps them. Water that
+/// moved before is filtered less and has no such viscosity, because it would lose energy.
 struct NoFilter {
   static constexpr bool filters = false;
 };
@@ -20,12 +20,12 @@ struct RestingWater {
   const float* ease;
   float strength;
   Calm calm;
-  /// Share of the filter that moving water keeps: with all of it dams lose 4 % of their energy, with none a
-  /// deep pool of levels stirs itself beyond what rests. Without gravity nothing rests, and it is 1.
+  /// Share of the filter for moving water: with the full filter dams lose 4 % of their energy; without it a
+  /// deep pool of levels stirs itself beyond the speed of rest. Without gravity no water rests, and it is 1.
   float in_motion;
-  float viscosity;  ///< of water at rest besides its own, as a multiple of it
+  float viscosity;  ///< additional viscosity of water at rest, as a multiple of its own
 
-  /// How much of the pair is water at rest that was so before the substep's kicks.
+  /// Degree to which the particle was at rest before the substep's kicks.
   SIM_FN float rest(Vec4 v, int i) const {
     const Vec4 k = kick[i];
     return calm(v.x - k.x, v.y - k.y, v.z - k.z);
@@ -35,13 +35,13 @@ struct RestingWater {
   }
 };
 
-/// More of the difference than this is not taken in one substep: the explicit step stays stable.
+/// Upper bound for the share of the difference removed in one substep, for stability of the explicit step.
 constexpr float most_share = 0.5f;
 
 /// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
 /// The second moment of poly6 is h^2 / 11 along each axis, so that one substep diffuses velocity by c h^2 /
-/// 22 and c_ij = 22 nu dt / h_ij^2 is the kinematic viscosity nu at every size and time step. Particles that
-/// are not solved keep their velocity and count as at the rest density.
+/// 22 and c_ij = 22 nu dt / h_ij^2 is the kinematic viscosity nu at every size and time step. Unsolved
+/// particles keep their velocity and count as having the rest density.
 template <bool OneLevel, class Filter, class Selection>
 struct Xsph {
   Selection select;
@@ -63,7 +63,7 @@ struct Xsph {
     float rest = 0;  ///< with a filter
   };
 
-  /// What particle j adds to the change of velocity; see SIM_LANES.
+  /// Adds particle j to the change of velocity; see SIM_LANES.
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);

@@ -1,25 +1,25 @@
 #pragma once
-/// What warm water gives to its neighbours: a term of a loop over them.
+/// Heat conduction between neighbours: a term of a loop over them.
 
 #include "libsim/solver/stages/pair_loop.hpp"
 
 namespace sim::SIM_BACKEND {
 
 /// m_i d theta_i / dt = rho_0 sum_j 2 D V_i V_j F_ij (theta_j - theta_i), F = -(dW/dr) / r of poly6, which
-/// stays finite where particles overlap; the harmonic mean of two equal conductivities is D. Antisymmetric,
-/// so that the heat stays. Everyone conducts, also those that are not solved: they have lists too
-/// (stages/neighbours.cpp). What has no neighbours, a wall or the air, insulates. Water that is too coarse
-/// for the effect keeps its heat: a pair conducts where both take part.
+/// stays finite if particles overlap; D is the harmonic mean of two equal conductivities. The term is
+/// antisymmetric, so heat is conserved. All particles conduct, including unsolved ones: they have lists too
+/// (stages/neighbours.cpp). Walls and air have no neighbours and so insulate. Water coarser than the effect's
+/// coarsest level keeps its heat: a pair conducts only if both particles take part.
 struct Conduction {
   static constexpr int sums = 1;
   static constexpr bool of_all = true;
   const float* temperature;
   float* next;
   float spread;  ///< 12 D dt, m2: F = 6 poly6 (h^2 - r^2)^2
-  float widest;  ///< support that takes part
+  float widest;  ///< largest support that takes part
 
   SIM_FN bool takes(float h) const { return h <= widest; }
-  using Self = float;  ///< its own temperature
+  using Self = float;  ///< the particle's temperature
   SIM_FN Self self(int i) const { return temperature[i]; }
   SIM_FN void add(const NeighbourPair& pair, Self own, float& gain, float&, float&, float&) const {
     const float slope = pair.h <= widest ? pair.slope : 0.0f;
@@ -34,7 +34,7 @@ struct Conduction {
 using ConductView = ColumnView<columns(Column::Position, Column::Neighbours),
                                columns(Column::Temperature, Column::TemperatureNext)>;
 
-/// The sums come to TemperatureNext: swap afterwards.
+/// The result is in TemperatureNext: swap afterwards.
 inline Conduction conduction_of(const FluidState& state, ConductView p) {
   const auto& k = state.parameters;
   return {.temperature = p.temperature(),

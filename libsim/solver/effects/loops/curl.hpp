@@ -1,27 +1,27 @@
 #pragma once
-/// How water turns: a term of a loop over neighbours.
+/// Curl of the velocity: a term of a loop over neighbours.
 
 #include "libsim/solver/stages/pair_loop.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// omega_i = sum_j V_j grad W_ij x (v_j - v_i) / s_i with poly6, and |omega_i| in w. s_i = 1/3 sum_j V_j
-/// (x_j - x_i) grad W_ij is 1 inside and about a half at a plane surface or wall: what turns as a whole has
-/// its omega inside, and within a seventh there, at every level and mix of levels. What is too coarse for the
-/// effect has none, and is a neighbour like others.
+/// omega_i = sum_j V_j grad W_ij x (v_j - v_i) / s_i with poly6, and |omega_i| in w. s_i = 1/3 sum_j V_j (x_j
+/// - x_i) grad W_ij is 1 inside and about one half at a plane surface or wall. For rigid rotation omega is
+/// exact inside and within a seventh at a surface or wall, at every level and mix of levels. Particles
+/// coarser than the effect's coarsest level get no curl, but count as neighbours.
 struct Curl {
   static constexpr int sums = 4;
   static constexpr bool of_all = false;
-  /// Less of a neighbourhood than this does not count as a whole one: spray has no curl.
+  /// Minimum s_i used as divisor, so that spray gets almost no curl.
   static constexpr float least_whole = 0.3f;
-  /// w of the curl of particles that have none.
+  /// Value of w for particles without a curl.
   static constexpr float unknown = -1;
   const Vec4* velocity;
   Vec4* curl;
-  float widest;  ///< support that takes part, m
+  float widest;  ///< largest support that takes part, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
-  using Self = Vec4;  ///< its own velocity
+  using Self = Vec4;  ///< the particle's velocity
   SIM_FN Self self(int i) const { return velocity[i]; }
   SIM_FN void add(const NeighbourPair& pair, Self own, float& x, float& y, float& z, float& whole) const {
     const Vec4 v = velocity[pair.j];

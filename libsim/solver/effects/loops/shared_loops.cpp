@@ -1,4 +1,4 @@
-/// Loops over neighbours that two effects of one scene share: where both are listed, one walk finds the sums
+/// Loops over neighbours shared by two effects of one scene: if both are listed, one loop computes the sums
 /// of both.
 
 #include "libsim/solver/effects/loops/conduction.hpp"

@@ -1,19 +1,19 @@
 #pragma once
-/// Where the water ends, and which way: a term of a loop over neighbours.
+/// Surface normals: a term of a loop over neighbours.
 
 #include "libsim/solver/stages/pair_loop.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// n_i = h_i sum_j V_j grad W_ij of poly6, without unit: 0 inside and at walls, about 1 at a surface,
-/// inwards; 0 for particles that are not solved or too coarse for tension.
+/// n_i = h_i sum_j V_j grad W_ij of poly6, dimensionless: 0 inside and at walls, about 1 at a surface,
+/// pointing inwards; 0 for particles that are not solved or too coarse for tension.
 template <class Boundary>
 struct SurfaceNormals {
   static constexpr int sums = 3;
   static constexpr bool of_all = false;
   Boundary walls;
   Vec4* normal;
-  float widest;  ///< support that takes part, m
+  float widest;  ///< largest support that takes part, m
 
   SIM_FN bool takes(float h) const { return h <= widest; }
   struct Self {};
@@ -34,7 +34,7 @@ struct SurfaceNormals {
 
 using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), columns(Column::Normal)>;
 
-/// Calls then(term): with obstacles it is of another type.
+/// Calls then(term); the term's type depends on whether the scene has obstacles.
 template <class Then>
 void with_surface_normals(FluidState& state, NormalView p, Then then) {
   const float widest = state.widest_support(EffectOption::CohesionCoarsest);
