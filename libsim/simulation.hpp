@@ -7,8 +7,10 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "libsim/exec/backend.hpp"
@@ -43,7 +45,36 @@ struct TemporalOptions {
   bool always = false;  ///< also for methods without temporal acceleration, in tests and comparisons
 };
 
-struct SimulationOptions {
+/// Numbers of the solver that a program may set; solver_numbers() lists their units and ranges. A
+/// negative value selects the scene's number or the measured default (libsim/solver/stages/fluid_state.hpp).
+struct SolverNumbers {
+  int iterations = 0;     ///< constraint projections per substep; 0 = the scene's
+  int substeps = 0;       ///< per frame; 0 = as many as the fastest particle needs (scene.hpp)
+  int most_substeps = 0;  ///< limit per frame if substeps is 0; 0 = 32, or the scene's minimum if larger
+  double frame_dt_s = 0;  ///< 0 = the scene's
+  double relaxation = -1;
+  double tensile = -1;
+  double viscosity_m2_s = -1;
+  double momentum = -1;
+  double courant = -1;
+  int coarse_cycles = -1;
+  double coarse_edge = -1;
+};
+
+/// Describes one of SolverNumbers.
+struct SolverNumber {
+  const char* name;    ///< of the option of programs, without "--"
+  const char* help;    ///< meaning, unit and default
+  double least, most;  ///< allowed values
+  std::variant<int SolverNumbers::*, double SolverNumbers::*> value;
+};
+/// All of SolverNumbers, once each. Options of programs, keys of settled states and of saved runs come from
+/// this list.
+std::span<const SolverNumber> solver_numbers();
+/// " iterations=4 ...", exact: equal texts mean equal numbers.
+std::string in_words(const SolverNumbers& numbers);
+
+struct SimulationOptions : SolverNumbers {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 32 * 1024;
   Backend backend = Backend::Cpu;
@@ -53,10 +84,6 @@ struct SimulationOptions {
   std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
   std::int64_t particle_capacity = 0;          ///< for methods that split and merge; 0 = 8 n_*
   int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
-  int iterations = 0;        ///< constraint projections per substep; 0 = the scene's
-  int substeps = 0;          ///< per frame; 0 = as many as the fastest particle needs (scene.hpp)
-  int most_substeps = 0;     ///< limit per frame if substeps is 0; 0 = 32, or the scene's minimum if larger
-  double frame_dt_s = 0;     ///< 0 = the scene's
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
   /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
@@ -78,14 +105,6 @@ struct SimulationOptions {
   bool time_parts = false;    ///< measure Simulation::part_times(); waits for the device between parts
   /// Called after each settling frame with (done, total).
   std::function<void(int, int)> settling;
-  // Solver numbers; a negative value selects the measured default (libsim/solver/stages/fluid_state.hpp).
-  double relaxation = -1;
-  double tensile = -1;
-  double viscosity_m2_s = -1;
-  double momentum = -1;
-  double courant = -1;
-  int coarse_cycles = -1;
-  double coarse_edge = -1;
 };
 
 /// Counts of guard interventions since the simulation was made: each count says how often one rule stepped

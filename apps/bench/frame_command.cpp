@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdio>
 #include <memory>
+#include <type_traits>
+#include <variant>
 
 #include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
@@ -35,38 +37,22 @@ constexpr const char* floors_help =
     "take\n"
     "less than its floor. - stands where nothing is known.";
 
-/// Options for solver numbers, instead of the scene's.
+/// An option for each number of the solver.
 void add_solver_numbers(CLI::App& command, sim::SimulationOptions& fluid) {
-  auto* substeps = command
-                       .add_option("--substeps", fluid.substeps,
-                                   "Substeps in every frame; 0 = as many as the fastest particle asks for")
-                       ->check(CLI::Range(0, 64));
-  command.add_option("--iterations", fluid.iterations, "Projections a substep; 0 = the scene's")
-      ->check(CLI::Range(0, 64));
-  command.add_option("--dt", fluid.frame_dt_s, "Frame step in s; the scene's when left out")
-      ->check(number_in(1e-5, 1.0));
-  command.add_option("--relaxation", fluid.relaxation, "Constraint relaxation")->check(number_in(0.0, 100.0));
-  command.add_option("--tensile", fluid.tensile, "s_corr strength")->check(number_in(0.0, 100.0));
-  command
-      .add_option("--viscosity", fluid.viscosity_m2_s,
-                  "Kinematic viscosity in m2/s; the scene's when left out")
-      ->check(number_in(0.0, 1e3));
-  command
-      .add_option("--courant", fluid.courant,
-                  "Way of the fastest particle in a substep at most, in h; the scene's when left out")
-      ->check(number_in(0.05, 4.0))
-      ->excludes(substeps);
-  command
-      .add_option("--most-substeps", fluid.most_substeps,
-                  "Substeps a frame at most while the fastest particle is followed")
-      ->check(CLI::Range(1, 1000))
-      ->excludes(substeps);
-  command.add_option("--momentum", fluid.momentum, "Share of the last projection taken again")
-      ->check(number_in(0.0, 100.0));
-  command.add_option("--coarse-cycles", fluid.coarse_cycles, "V-cycles of the coarse pressure; 0 = none")
-      ->check(CLI::Range(0, 16));
-  command.add_option("--coarse-edge", fluid.coarse_edge, "Edge of its cells in h")
-      ->check(number_in(0.5, 8.0));
+  for (const sim::SolverNumber& number : sim::solver_numbers()) {
+    std::visit(
+        [&](auto member) {
+          using Number = std::remove_reference_t<decltype(fluid.*member)>;
+          auto* option = command.add_option("--" + std::string(number.name), fluid.*member, number.help);
+          if constexpr (std::is_integral_v<Number>)
+            option->check(CLI::Range(static_cast<int>(number.least), static_cast<int>(number.most)));
+          else
+            option->check(number_in(number.least, number.most));
+        },
+        number.value);
+  }
+  for (const char* follows_speed : {"--courant", "--most-substeps"})
+    command.get_option(follows_speed)->excludes(command.get_option("--substeps"));
 }
 
 void print_frame(const base::Json& result) {

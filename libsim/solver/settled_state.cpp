@@ -65,11 +65,8 @@ fs::path default_cache_folder() {
 
 std::string settled_key(const Scene& scene, const SimulationOptions& options) {
   std::ostringstream text;
-  text << std::hexfloat << solver_digest << ' ' << scene.sha256 << ' ' << method_name(options.method)
-       << ' ' << options.n_star << ' ' << backend_name(options.backend) << ' ' << options.iterations << ' '
-       << options.substeps << ' ' << options.frame_dt_s << ' ' << options.relaxation << ' ' << options.tensile
-       << ' ' << options.viscosity_m2_s << ' ' << options.momentum << ' ' << options.courant << ' '
-       << options.most_substeps << ' ' << options.coarse_cycles << ' ' << options.coarse_edge << ' '
+  text << std::hexfloat << solver_digest << ' ' << scene.sha256 << ' ' << method_name(options.method) << ' '
+       << options.n_star << ' ' << backend_name(options.backend) << in_words(options) << ' '
        << format_effects(scene.effects);
   return base::sha256_hex(text.str());
 }

@@ -10,8 +10,8 @@
 
 namespace sim {
 
-/// Increase when the layout of the body changes.
-inline constexpr int state_file_format = 3;
+/// Increase when the layout of the body or the contents of the key change.
+inline constexpr int state_file_format = 4;
 
 /// SHA-256 of everything that a state belongs to: scene, method, n_*, back end, levels, readings and numbers
 /// of the solver. Runs with equal keys continue identically from one state.

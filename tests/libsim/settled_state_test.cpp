@@ -8,7 +8,9 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <variant>
 
+#include "libsim/solver/state_file.hpp"
 #include "stats/base/file.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
 
@@ -81,10 +83,6 @@ TEST_F(SettledState, EveryChoiceHasItsOwnState) {
   add();
   options_.method = sim::MethodKind::LoRes;
   add();
-  options_.momentum = 0.1;
-  add();
-  options_.coarse_cycles = 1;
-  add();
   scene_.sha256 = "of another";
   add();
   scene_.effects = {{sim::EffectKind::AirDrag, 1}};
@@ -93,6 +91,15 @@ TEST_F(SettledState, EveryChoiceHasItsOwnState) {
   add();
   std::sort(keys.begin(), keys.end());
   EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+}
+
+TEST_F(SettledState, EveryNumberOfTheSolverHasItsOwnStateAndItsOwnRun) {
+  for (const sim::SolverNumber& number : sim::solver_numbers()) {
+    auto other = options_;
+    std::visit([&](auto member) { other.*member += 1; }, number.value);
+    EXPECT_NE(sim::settled_key(scene_, other), sim::settled_key(scene_, options_)) << number.name;
+    EXPECT_NE(sim::run_key(scene_, other), sim::run_key(scene_, options_)) << number.name;
+  }
 }
 
 TEST_F(SettledState, DamagedFileIsSettledAgain) {

@@ -1,0 +1,44 @@
+#include <array>
+#include <sstream>
+
+#include "libsim/simulation.hpp"
+
+namespace sim {
+
+std::span<const SolverNumber> solver_numbers() {
+  // A number that is added to SolverNumbers does not compile here until it is named, and listed below.
+  [[maybe_unused]] const auto [iterations, substeps, most_substeps, frame_dt_s, relaxation, tensile,
+                               viscosity_m2_s, momentum, courant, coarse_cycles, coarse_edge] =
+      SolverNumbers{};
+  static constexpr std::array<SolverNumber, 11> all{{
+      {"iterations", "Projections a substep; 0 = the scene's", 0, LiveNumbers::most_iterations,
+       &SolverNumbers::iterations},
+      {"substeps", "Substeps in every frame; 0 = as many as the fastest particle needs", 0, 64,
+       &SolverNumbers::substeps},
+      {"most-substeps",
+       "Most substeps in a frame, where the fastest particle decides; 32 or the scene's least when left out",
+       1, 1000, &SolverNumbers::most_substeps},
+      {"dt", "Frame step in s; the scene's when left out", 1e-5, 1, &SolverNumbers::frame_dt_s},
+      {"relaxation", "Constraint relaxation", 0, 100, &SolverNumbers::relaxation},
+      {"tensile", "s_corr strength", 0, 100, &SolverNumbers::tensile},
+      {"viscosity", "Kinematic viscosity in m2/s; the scene's when left out", 0, 1e3,
+       &SolverNumbers::viscosity_m2_s},
+      {"momentum", "Factor of the last projection's step that is taken again", 0, 100,
+       &SolverNumbers::momentum},
+      {"courant", "Longest way of the fastest particle in a substep, in h; the scene's when left out", 0.05,
+       4, &SolverNumbers::courant},
+      {"coarse-cycles", "V-cycles of the coarse pressure; 0 = none", 0, 16, &SolverNumbers::coarse_cycles},
+      {"coarse-edge", "Edge of the coarse pressure's cells, in h", 0.5, 8, &SolverNumbers::coarse_edge},
+  }};
+  return all;
+}
+
+std::string in_words(const SolverNumbers& numbers) {
+  std::ostringstream out;
+  out << std::hexfloat;
+  for (const SolverNumber& number : solver_numbers())
+    std::visit([&](auto member) { out << ' ' << number.name << '=' << numbers.*member; }, number.value);
+  return out.str();
+}
+
+}  // namespace sim
