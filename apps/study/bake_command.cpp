@@ -1,4 +1,4 @@
-/// vip-study bake: compute the frames of a scene, or of all scenes of a protocol, beforehand; check such
+/// vip-study bake: computes the frames of a scene, or of all stimuli of a protocol, in advance; checks such
 /// files.
 #include <cstdio>
 #include <memory>
@@ -27,7 +27,7 @@ struct BakeCommand {
   int frames = 600;
   double content_step_s = 0;
   bool force = false;
-  // With a protocol:
+  // Only with a protocol:
   std::optional<PictureSize> size;
   std::string keep = "particles";
   std::optional<double> screen_width_mm, viewing_distance_mm;

@@ -26,17 +26,17 @@ MeasuredPicture to_measure(const sim::Image& image, const std::vector<float>& de
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   for (std::size_t y = 0; y < height; ++y) {
     for (std::size_t x = 0; x < width; ++x) {
-      // Rec. 709 weights of the coded values: what a picture's detail looks like, not its light.
+      // Rec. 709 weights of the coded values: measures visible detail, not physical luminance.
       const std::uint8_t* c = &image.rgba[4 * (y * width + x)];
       out.luminance[y * width + x] = (0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2]) / 255;
-      // An image begins with its highest row, depth with its lowest.
+      // The image starts with its top row, depth with its bottom row.
       out.fluid[y * width + x] = std::isfinite(depth[(height - 1 - y) * width + x]);
     }
   }
   return out;
 }
 
-/// The middle of the fluid's pixels.
+/// Mean position of the fluid's pixels.
 std::pair<double, double> middle_of(const MeasuredPicture& picture) {
   double x_sum = 0, y_sum = 0, count = 0;
   for (std::size_t i = 0; i < picture.fluid.size(); ++i) {
@@ -48,7 +48,7 @@ std::pair<double, double> middle_of(const MeasuredPicture& picture) {
   return {x_sum / std::max(count, 1.0), y_sum / std::max(count, 1.0)};
 }
 
-/// Runs a cell and averages over what was measured.
+/// Runs a cell and averages its measured features.
 study::PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
   const sim::Offscreen target(width_px, height_px);
   study::PictureFeatures sum;
@@ -57,9 +57,9 @@ study::PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
   fluid.start(start_frame);
   for (std::int64_t step = 0; step <= steps + 1; ++step) {
     fluid.prepare(start_frame + step);
-    const std::int64_t phase = (step + 1) % between;  // 0, 1, 2: the three in a row
+    const std::int64_t phase = (step + 1) % between;  // 0, 1, 2: three pictures in a row
     const bool measured = step + 1 >= between && phase <= 2;
-    // The first one tells a method from where it is looked at.
+    // Methods that follow the picture need the first one.
     if (measured || step == 0 || fluid.follows_picture())
       fluid.draw({target.framebuffer(), width_px, height_px});
     if (!measured) continue;
@@ -83,7 +83,7 @@ std::string to_json(const std::string& key, const study::PictureFeatures& featur
          "\n";
 }
 
-/// None when the file is missing, damaged or of another key.
+/// None if the file is missing, damaged or of another key.
 std::optional<study::PictureFeatures> read_features(const std::filesystem::path& path,
                                                     const std::string& key) {
   if (!std::filesystem::exists(path)) return {};

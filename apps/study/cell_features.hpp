@@ -1,5 +1,5 @@
 #pragma once
-/// Features of the cells of a protocol, measured on their pictures and kept.
+/// Features of a protocol's cells, measured on their pictures and cached.
 
 #include <filesystem>
 #include <functional>
@@ -12,18 +12,18 @@
 namespace apps {
 
 /// Each cell is run live for 240 content steps from start_frame, its pictures drawn at 640 x 360 and measured
-/// three in a row at every 30th; features are the means. What was measured stands in `folder`, one file for
-/// each cell, keyed by cell, stimulus and program version, and is not measured again. The gaze rests on the
-/// middle of the fluid that is seen. Needs a GL context where something is left to measure.
+/// three in a row at every 30th; features are the means. Results are cached in `folder`, one file per cell,
+/// keyed by cell, stimulus and program version. The gaze is at the middle of the visible fluid. Needs a GL
+/// context if a cell is not cached.
 class CellFeatures final : public study::FeatureSource {
  public:
-  /// choice_of: the live stimulus of a cell.
+  /// choice_of: returns the live stimulus of a cell.
   CellFeatures(std::filesystem::path folder, std::function<StimulusChoice(const study::Cell&)> choice_of)
       : folder_(std::move(folder)), choice_of_(std::move(choice_of)) {}
 
-  /// Measures all cells of a protocol, with a progress bar, so that nothing is left to do in the session.
+  /// Measures all cells of a protocol, with a progress bar, so that the session need not measure.
   void measure(const study::Protocol& protocol);
-  /// base::Error for a cell that measure() was not asked for.
+  /// base::Error for a cell that measure() did not measure.
   study::PictureFeatures of(const study::StimulusSpec& stimulus) override;
 
  private:
@@ -34,7 +34,7 @@ class CellFeatures final : public study::FeatureSource {
   std::map<std::string, study::PictureFeatures> known_;
 };
 
-/// "scene, method, n_*", and where they are a factor ", effects foam": names a cell's stimulus.
+/// "scene, method, n_*", with ", effects foam" if effects are a factor: names a cell's stimulus.
 std::string stimulus_words(const study::StimulusSpec& stimulus);
 
 }  // namespace apps

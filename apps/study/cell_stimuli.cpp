@@ -12,7 +12,7 @@ namespace apps {
 
 namespace {
 
-/// Before anybody sits down, not when the cell's turn comes.
+/// Checks names before the session begins, not at the cell's first trial.
 void check_words(const study::Protocol& protocol) {
   for (const study::Cell& cell : protocol.design.cells) {
     sim::parse_method(cell.stimulus.method);
@@ -53,7 +53,7 @@ CellStimuli::CellStimuli(const RunOptions& options, const study::Protocol& proto
   description_ = describe(protocol);
 }
 
-/// A bake holds its own setting, and what is not shown has none.
+/// A bake has its own setting, and without a display there is nothing to set.
 void CellStimuli::check_settings_live(const study::Protocol& protocol) const {
   for (const study::Cell& cell : protocol.design.cells) {
     const SettingFile* setting = settings_.empty() ? nullptr : settings_.of(cell.stimulus);
@@ -69,7 +69,7 @@ void CellStimuli::check_settings_live(const study::Protocol& protocol) const {
   }
 }
 
-/// One bake for all cells, or nothing at all, describes itself.
+/// A single bake for all cells, or the empty stimulus, describes itself.
 std::string CellStimuli::describe(const study::Protocol& protocol) {
   const bool live = shown_ && !bakes_.whole();
   const std::string bakes = bakes_.description();

@@ -1,5 +1,5 @@
 #pragma once
-/// The stimulus of each cell, as a session asks for it.
+/// Provides the stimulus of each cell to a session.
 
 #include <memory>
 #include <optional>
@@ -12,27 +12,27 @@
 
 namespace apps {
 
-/// A bake where one stands for the cell, else live fluid, or nothing with --display none. What is shown is
-/// made anew when a cell needs another one than the last.
+/// A bake if there is one for the cell, else live fluid, or nothing with --display none. Makes a new stimulus
+/// only if a cell needs another one than the last cell.
 class CellStimuli final : public study::StimulusSource {
  public:
-  /// base::Error when a setting is for a cell that is not computed live.
+  /// base::Error if a setting is for a cell that is not computed live.
   CellStimuli(const RunOptions& options, const study::Protocol& protocol, const stats::PtpeModel& model,
               Viewing viewing, SessionBakes bakes = {}, SessionSettings settings = {});
 
   study::Stimulus& stimulus(const study::Cell& cell) override;
-  /// Whether the cell is computed while it is shown.
+  /// True if the cell is computed while it is shown.
   bool is_live(const study::Cell& cell) const { return shown_ && !bakes_.of(cell); }
-  /// Of all cells, for the record; does not depend on which of them were shown.
+  /// Description of all cells, for the record; independent of which were shown.
   std::string description() const { return description_; }
   const SessionBakes& bakes() const { return bakes_; }
   const SessionSettings& settings() const { return settings_; }
-  /// What live fluid of a cell is made of.
+  /// The choice from which the live fluid of a cell is made.
   StimulusChoice choice_of(const study::Cell& cell) const;
 
  private:
-  /// What the present stimulus was made for; the frame rate counts for methods with temporal acceleration
-  /// alone. Of a bake nothing but its path counts.
+  /// Key of the current stimulus. The frame rate is set only for methods with temporal acceleration; for a
+  /// bake only its path counts.
   struct Made {
     study::StimulusSpec what;
     std::optional<sim::FrameRate> rate;
@@ -48,7 +48,7 @@ class CellStimuli final : public study::StimulusSource {
   StimulusChoice choice_;
   SessionBakes bakes_;
   SessionSettings settings_;
-  bool shown_ = false;  ///< cells without a bake run live; else they are nothing
+  bool shown_ = false;  ///< true: cells without a bake run live; false: they show nothing
   std::string description_;
   std::optional<Made> made_;
   std::unique_ptr<study::Stimulus> stimulus_;

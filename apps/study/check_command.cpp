@@ -1,4 +1,4 @@
-/// vip-study check: what a protocol comes to, on a display and on this machine.
+/// vip-study check: checks a protocol on a display and on this machine.
 
 #include <memory>
 #include <string>
@@ -23,7 +23,7 @@ namespace apps {
 
 namespace {
 
-/// Frames of all settings up to which common refresh rates are looked at without being asked to.
+/// Up to this many frames in all settings, common refresh rates are checked without --compare.
 constexpr std::int64_t most_compared = 8000;
 
 struct CheckOptions {
@@ -37,7 +37,7 @@ struct CheckOptions {
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
-/// libstudy only passes scenes, methods, n_* and effects on; here they are looked at.
+/// Checks scenes, methods, n_* and effects, which libstudy only passes on.
 void check_stimuli(const study::Protocol& protocol, const std::string& file) {
   for (const auto& what : stimuli_of(protocol)) {
     try {
@@ -61,7 +61,7 @@ std::vector<RefreshCheck> check_common(const study::Protocol& protocol) {
   return checks;
 }
 
-/// Anew, on a display without a window.
+/// Measures without cached times, on a display without a window.
 MeasuredReport measure_here(const CheckOptions& options, const CheckReport& report, const Viewing& viewing) {
   const study::Protocol& protocol = report.protocol;
   RunOptions choice;
@@ -96,7 +96,7 @@ CheckReport make_report(const CheckOptions& options, const study::Protocol& prot
   return report;
 }
 
-/// Each scene once for each level of effects, which its name then tells.
+/// Each scene once for each level of effects, with the level in its name.
 std::vector<FramedScene> with_levels(const study::Protocol& protocol,
                                      const std::vector<FramedScene>& scenes) {
   if (protocol.design.effects.empty()) return scenes;

@@ -26,7 +26,7 @@ base::Json setting_json(const CheckedSetting& checked, const study::RefreshVerdi
   return json;
 }
 
-/// The level; null where the design does not vary effects.
+/// The level; null if the design does not vary effects.
 base::Json effects_json(const study::StimulusSpec& what) {
   return what.effects.empty() ? base::Json() : base::Json(what.effects);
 }
@@ -97,7 +97,7 @@ void add_measured(base::Json& json, const MeasuredReport& measured) {
   }
 }
 
-/// What vip-stats will tell of the study beside the answers by cell.
+/// The analyses that vip-stats will report besides the answers by cell.
 base::Json analyses_json(const study::Protocol& protocol) {
   auto tested = base::Json::array(), fitted = tested, not_tested = tested;
   const auto shown = hypotheses_of(protocol, {});

@@ -18,7 +18,7 @@ namespace {
 
 using study::TimingSource;
 
-/// Why a setting is not exact, with the stimulus where each has settings of its own.
+/// Why a setting is not exact, with the stimulus if each stimulus has its own setting.
 std::string remark_of(const CheckReport& report, std::size_t setting, const std::string& reason) {
   if (report.protocol.design.timing != TimingSource::Table2) return reason;
   const auto& cells = report.settings[setting].cells;
@@ -32,7 +32,7 @@ double longest_ms(const RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
 }
 
-/// What vip-stats will tell of the study. It describes the answers of any protocol.
+/// Prints the analyses that vip-stats will report; it describes the answers of any protocol.
 void print_analyses(const study::Protocol& protocol) {
   const auto shown = hypotheses_of(protocol, {});
   std::string ids;
@@ -45,7 +45,7 @@ void print_analyses(const study::Protocol& protocol) {
     std::printf("not tested: %s, as %s\n", id.c_str(), reason.c_str());
 }
 
-/// What else the longer of the two durations allows for.
+/// What the longer of the two durations additionally includes.
 std::string slower_words(const study::Protocol& protocol) {
   const auto any = [&](auto holds) {
     return std::any_of(protocol.blocks.begin(), protocol.blocks.end(), holds);
@@ -133,7 +133,7 @@ void print_speed(const CheckReport& report) {
               1000 * content.content_step_s);
 }
 
-/// A bake of particles holds nothing of them.
+/// True if the scene has free obstacles, which a bake of particles does not store.
 bool has_free_obstacles(const PlannedStimulus& one) {
   return sim::any_free(sim::read_scene(base::find_input(one.what.scene)).obstacles);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What `vip-study check` found, for people and as JSON.
+/// The result of `vip-study check`, as text and as JSON.
 
 #include <optional>
 #include <vector>
@@ -17,18 +17,18 @@ struct CheckReport {
   SessionOutline outline;
   Balance balance;
   std::vector<CheckedSetting> settings;  ///< none under TimingSource::Native
-  std::optional<RefreshCheck> refresh;   ///< on the display's own rate, when it was given
-  std::vector<RefreshCheck> common;      ///< on the common ones, where they were looked at
+  std::optional<RefreshCheck> refresh;   ///< at the display's own rate, if given
+  std::vector<RefreshCheck> common;      ///< at the common rates, if they were checked
   std::optional<MeasuredReport> measured;
   std::vector<FramedScene> scenes;
 };
 
-/// Words of the protocol for its mean, and for where its timing comes from.
+/// The protocol's words for its mean and its timing source.
 const char* mean_name(const study::Protocol& protocol);
 const char* timing_name(const study::Design& design);
-/// Of all showings: they are equally long.
+/// Overrun bound of all showings, which are equally long, s.
 double overrun_s(const study::Protocol& protocol);
-/// From the slowest to the fastest setting.
+/// Play speeds of the slowest and the fastest setting.
 Span play_speeds(const CheckReport& report);
 
 void print_report(const CheckReport& report);

@@ -1,5 +1,5 @@
 #pragma once
-/// What came of a clean-up after a withdrawal or a merge, for people.
+/// Prints the result of a clean-up after a withdrawal or a merge.
 
 #include <cstdio>
 #include <string>
@@ -15,7 +15,7 @@ inline void print_list(const char* title, const std::vector<std::string>& lines)
   for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
 }
 
-/// Of a study that is read with --incomplete.
+/// Prints what is missing in a study that is read with --incomplete.
 inline void print_lacking(const std::filesystem::path& database, const std::string& lacking) {
   if (!lacking.empty()) std::printf("%s is incomplete: %s\n", database.c_str(), lacking.c_str());
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// The commands of vip-study: each in a file of its own, each adds itself to the program.
+/// The commands of vip-study, one per source file; each function adds its command to the program.
 
 namespace CLI {
 class App;

@@ -1,4 +1,4 @@
-/// vip-study consent: what a participant allows, and changes of it.
+/// vip-study consent: shows and changes a participant's permissions.
 #include <cstdio>
 #include <memory>
 #include <optional>

@@ -1,4 +1,4 @@
-/// vip-study export: the database as tables of text.
+/// vip-study export: writes the database as text tables.
 #include <cstdio>
 #include <memory>
 #include <string>

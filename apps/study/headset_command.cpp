@@ -1,4 +1,4 @@
-/// vip-study headset: what the headset's runtime offers, and what a protocol comes to on it.
+/// vip-study headset: shows the runtime's features, and checks a protocol on the headset.
 
 #include <fmt/format.h>
 
@@ -63,7 +63,7 @@ void print_offer(const HeadsetOffer& offer) {
   row("extensions", listed(offer.extensions, [](const std::string& name) { return name; }));
 }
 
-/// One line a setting: "mean 40, SD 5 frames/s   exact at 90, 120 Hz".
+/// One line per setting: "mean 40, SD 5 frames/s exact at 90, 120 Hz".
 void print_exact_settings(const std::vector<CheckedSetting>& settings,
                           const std::vector<RefreshCheck>& checks) {
   for (std::size_t i = 0; i < settings.size(); ++i) {

@@ -25,10 +25,10 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-/// For READY, and for the farewell of a runtime.
+/// Longest wait for READY and for the runtime to end the session.
 constexpr Seconds most_idle{30};
 
-/// Degrees to the right of and above straight ahead of a head.
+/// Angles of a ray to the right and up from the head's forward direction, degrees.
 std::array<double, 2> angles_in_head(const HeadsetPose& head, const HeadsetPose& ray) {
   const auto axes = axes_of(head);
   const auto direction = direction_of(ray);
@@ -44,7 +44,7 @@ struct GazeCount {
   std::array<double, 2> sum_deg{};
 
   void add(const HeadsetGaze& gaze, const HeadsetPose& head) {
-    if (gaze.sampled_ns && *gaze.sampled_ns == last_ns) return;  // the tracker is slower than the display
+    if (gaze.sampled_ns && *gaze.sampled_ns == last_ns) return;  // a repeated sample of a slow tracker
     last_ns = gaze.sampled_ns.value_or(-1);
     ++samples;
     if (!gaze.ray.turn_valid || !head.turn_valid) return;
@@ -109,7 +109,7 @@ void print_report(const ShowReport& report) {
   row("ended", report.ended);
 }
 
-/// One session of the show, and maybe not the last.
+/// One headset session of the show; another may follow if it is lost.
 class Show {
  public:
   Show(std::unique_ptr<HeadsetSession> session, const TestScene& scene, const ShowChoice& choice,
@@ -133,7 +133,7 @@ class Show {
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
 
-  /// False: the session is lost, and another may be made.
+  /// False if the session is lost; another one may be made.
   bool run(double& seconds_left) {
     auto idle_since = std::chrono::steady_clock::now();
     while (true) {

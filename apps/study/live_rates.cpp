@@ -26,7 +26,7 @@ const study::Cell& first_cell(const study::Protocol& protocol, const MeasuredSti
   return protocol.design.cells.at(static_cast<std::size_t>(one.cells.front()));
 }
 
-/// Of a stimulus with some live cells, those.
+/// Stimuli with live cells, with only these cells.
 std::vector<MeasuredStimulus> live_stimuli(const study::Protocol& protocol, const CellStimuli& stimuli) {
   std::vector<MeasuredStimulus> out;
   for (const PlannedStimulus& planned : plan_bakes(protocol)) {
@@ -47,7 +47,7 @@ const FramedScene& framed(int cell, const MeasuringPlace& place) {
   throw std::logic_error("measure_live: a scene that was not framed");
 }
 
-/// How the display shows a cell: a headset frames nothing.
+/// How the display shows a cell; a headset has no framing.
 std::string look_of(int cell, const MeasuringPlace& place) {
   if (place.scenes.empty()) return place.display.description();
   const FramedScene& scene = framed(cell, place);
@@ -58,7 +58,7 @@ std::string look_of(int cell, const MeasuringPlace& place) {
   return out.str();
 }
 
-/// Everything that the times depend on: what is computed, how it is seen, on what, and how far.
+/// Cache key of all that the times depend on: stimulus, framing, machine and number of steps.
 std::string key_of(const study::Protocol& protocol, const CellStimuli& stimuli, const MeasuredStimulus& one,
                    const std::string& description, const MeasuringPlace& place) {
   const study::Cell& cell = first_cell(protocol, one);

@@ -1,4 +1,4 @@
-/// vip-study merge: the databases of several stations as one.
+/// vip-study merge: joins the databases of several stations.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -21,7 +21,7 @@ struct MergeCommand {
   bool incomplete = false;
 };
 
-/// The balance of all stations together, and on stderr where it is off and why it may be.
+/// Prints the balance of all stations together; on stderr, imbalances and their possible reasons.
 void print_balance(const study::Merge& done, const std::string& into) {
   std::vector<std::string> lines;
   for (const study::Balance& one : done.balance) lines.push_back(study::describe(one));

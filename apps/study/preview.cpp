@@ -20,7 +20,7 @@ namespace apps {
 
 namespace {
 
-constexpr std::int64_t particles = 4096;  // enough to know the water by
+constexpr std::int64_t particles = 4096;  // enough to recognise the water
 using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour kept{0, 150, 60}, lost{220, 30, 30}, fovea{250, 170, 0};
 
@@ -44,7 +44,7 @@ sim::Image draw_fluid(const FramedScene& framed, bool paint_temperature) {
   return target.read();
 }
 
-/// A square dot of three pixels; px from the lower left corner.
+/// Draws a dot of 3 x 3 pixels at a position in px from the lower left corner.
 void dot(sim::Image& image, double x, double y, const Colour& colour) {
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -56,7 +56,7 @@ void dot(sim::Image& image, double x, double y, const Colour& colour) {
   }
 }
 
-/// The twelve edges, in dots close enough to touch wherever the box is not much larger than the picture.
+/// Draws the box's twelve edges as dots, which touch unless the box is much larger than the picture.
 void outline(sim::Image& image, const FramedScene& framed, const sim::VisibleBox& box) {
   const auto corners = corners_of(box);
   const bool cut = std::find(framed.cut.begin(), framed.cut.end(), box.name) != framed.cut.end();
@@ -75,7 +75,7 @@ void outline(sim::Image& image, const FramedScene& framed, const sim::VisibleBox
   }
 }
 
-/// Where eccentricity reaches the fovea's rim for a gaze on the middle, in the eye's angle where it is known.
+/// Draws the fovea's rim for a gaze on the middle, by the visual angle if it is known, else the camera's.
 void circle(sim::Image& image, const Framing& framing) {
   constexpr double degree = std::numbers::pi / 180;
   const double angle = framing.visual_deg.value_or(framing.camera_deg);

@@ -1,4 +1,4 @@
-/// vip-study reference: every key of a protocol file.
+/// vip-study reference: lists every key of a protocol file.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,4 +1,4 @@
-/// vip-study resume: finish what a database says is left to do.
+/// vip-study resume: finishes the open sessions of a database.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -22,10 +22,10 @@ namespace {
 
 struct ResumeOptions {
   PlayOptions play;
-  std::vector<std::string> settings, stimuli;  ///< files; folders too
+  std::vector<std::string> settings, stimuli;  ///< setting files; bakes: files or folders
 };
 
-/// A protocol that an earlier version wrote may be of a format that is no longer read.
+/// Parses a stored protocol; an earlier version's format may no longer be supported.
 study::Protocol read_again(const study::OpenRun& run, const std::string& place) {
   try {
     return study::parse_protocol(run.protocol_text, "protocol " + run.protocol_name,
@@ -38,7 +38,7 @@ study::Protocol read_again(const study::OpenRun& run, const std::string& place) 
   }
 }
 
-/// The protocol from its text in the database; an error when it reads otherwise than it did.
+/// The protocol from its text in the database; base::Error if its hash has changed.
 study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& place) {
   study::Protocol protocol = read_again(run, place);
   if (run.trial_seconds) study::override_trial_seconds(protocol, *run.trial_seconds);
@@ -49,7 +49,7 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
   return protocol;
 }
 
-/// A session keeps the settings that it began with.
+/// Refuses settings other than those with which the sessions began.
 void check_settings(const std::vector<std::string>& files, const RunOptions& recorded,
                     const std::string& place) {
   for (const std::string& file : files) {
@@ -67,8 +67,7 @@ void check_settings(const std::vector<std::string>& files, const RunOptions& rec
   }
 }
 
-/// What is shown must be what was shown; a changed station is only noted, and how its display frames the
-/// scenes.
+/// Refuses changed stimuli. Only records a changed station and how its display frames the scenes.
 void check_unchanged(study::Store& store, const study::OpenRun& run, const SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {
@@ -90,7 +89,7 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
   }
 }
 
-/// What each run was given, its bake where it stands now.
+/// The options of each run, with the current path of its bake.
 std::vector<RunOptions> recorded_options(const std::vector<study::OpenRun>& runs,
                                          const std::vector<std::string>& stimuli, const std::string& place) {
   if (runs.empty()) return {};

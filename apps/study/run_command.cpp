@@ -1,4 +1,4 @@
-/// vip-study run: plan sessions, write the plan, play them.
+/// vip-study run: plans sessions, writes the plan, plays them.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -42,7 +42,7 @@ struct RunCommand {
   std::optional<PictureSize> size;
 };
 
-/// P01, P02, ... or the codes given.
+/// P01, P02, ... or the given codes.
 std::vector<std::string> participant_codes(const RunCommand& command, const study::Protocol& protocol) {
   if (!command.codes.empty()) return command.codes;
   if (command.run.observer.empty())
@@ -54,7 +54,7 @@ std::vector<std::string> participant_codes(const RunCommand& command, const stud
   return codes;
 }
 
-/// What was not said: a person sits at a window in real time, an observer needs neither.
+/// Default clock and display: real time and a window for a person, neither for an observer.
 void choose_defaults(RunOptions& run) {
   const bool person = run.observer.empty();
   if (run.display.empty()) run.display = person ? "window" : "none";
@@ -62,7 +62,7 @@ void choose_defaults(RunOptions& run) {
   if (run.gaze.empty()) run.gaze = run.display == "none" ? "none" : "fixed";
 }
 
-/// Without a size a window fills the monitor.
+/// Sets the size; without one, a window fills the monitor.
 void take_size(const std::optional<PictureSize>& size, RunOptions& run) {
   if (!size && run.display != "window") return;
   run.width_px = size ? size->width : 0;
@@ -81,7 +81,7 @@ std::optional<std::string> read_ptpe(const std::string& path) {
   return base::read_file(path, 1 << 20);
 }
 
-/// Read one by one, so that an error names its file.
+/// Checks the files one by one, so that an error names its file.
 std::vector<std::string> read_settings(const std::vector<std::string>& paths,
                                        const study::Protocol& protocol) {
   std::vector<std::string> texts;
@@ -117,7 +117,7 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   return session;
 }
 
-/// Each participant takes the slot that is least taken by then.
+/// Each participant takes the slot that is least used at that point.
 study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
                              study::SessionPlan session, const std::vector<std::string>& codes,
                              std::vector<int> taken) {
@@ -131,8 +131,8 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   return run;
 }
 
-/// A station deals its own share of the assignment alone: a session without the number of the sessions before
-/// it is refused, as another number is told.
+/// Refuses a run without a station number if former sessions have one, since a station deals only its own
+/// share of the assignment. Only warns of a different number.
 void check_station_number(study::Store& store, const study::Protocol& protocol,
                           const study::SessionPlan& common, const std::string& database) {
   std::optional<study::StationNumber> other;
@@ -195,7 +195,7 @@ void run(RunCommand& command) {
   open_mirror(command.play, setup);
   setup.rates = check_live(protocol, setup, command.play.accept_slow);
   command.run.accept_slow = command.play.accept_slow;
-  // Complete with today's defaults, which another version may change.
+  // Stored with this version's defaults, which another version may change.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
   if (!setup.departure().empty())

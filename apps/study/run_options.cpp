@@ -22,7 +22,7 @@ std::optional<double> optional_number(const base::Json& json) {
   throw base::Error(place, "options of its run cannot be read", "restore a backup of it");
 }
 
-/// Of a display; 0: the whole monitor.
+/// Width or height of a display, px; 0: the whole monitor.
 int side_of(const base::Json& json, const std::string& place) {
   const auto side = json.get<double>();
   if (side != 0 && !(side >= least_picture_side && side <= most_picture_side)) unreadable(place);
@@ -32,14 +32,14 @@ int side_of(const base::Json& json, const std::string& place) {
 int monitor_of(const base::Json& json, const std::string& place) {
   const auto found = json.find("monitor");
   if (found == json.end()) return 0;
-  // Any number that is no int converts to one without a word, or with undefined behaviour.
+  // Other numbers would convert to int silently or with undefined behaviour.
   if (!found->is_number_integer() || found->get<double>() < 0 ||
       found->get<double>() > std::numeric_limits<int>::max())
     unreadable(place);
   return found->get<int>();
 }
 
-/// What a damaged record would run at is not what was recorded.
+/// Reads the settings; base::Error for a damaged record, which would run other settings than recorded.
 std::vector<std::string> settings_of(const base::Json& json, const std::string& place) {
   std::vector<std::string> out;
   const auto found = json.find("settings");

@@ -1,6 +1,6 @@
 #pragma once
-/// What `vip-study run` was asked for, beyond the protocol: kept in the database as text, so that `resume`
-/// needs nothing but the database.
+/// Options of `vip-study run` besides the protocol, stored in the database as text, so that `resume` needs
+/// only the database.
 
 #include <optional>
 #include <string>
@@ -16,18 +16,18 @@ struct RunOptions {
   int monitor = 0;                      ///< of a window; 0: the primary one
   std::string bake;                     ///< absolute path of the bake played; empty = none
   std::string backend = "auto";
-  std::string answer;        ///< of a person in a headset: see AnswerWays
-  std::string gaze;          ///< "fixed": the middle of the picture, "mouse", or "none": not known
-  bool accept_slow = false;  ///< live cells that this machine does not show at their setting are played
+  std::string answer;        ///< ways of answering in a headset: see AnswerWays
+  std::string gaze;          ///< "fixed" (the middle of the picture), "mouse", "head", "tracked" or "none"
+  bool accept_slow = false;  ///< also play live cells that miss their setting on this machine
   std::string station;
   std::optional<double> screen_width_mm, viewing_distance_mm;
-  std::vector<std::string> settings;  ///< solver settings of live cells (SessionSettings), each file in full
+  std::vector<std::string> settings;  ///< solver settings of live cells (SessionSettings): full file texts
 
   bool operator==(const RunOptions&) const = default;
 };
 
-/// JSON. "settings" holds an object for each, with its text and its sha256, as the exports read them
-/// (libstudy/store/run_settings.hpp); without any the key is absent.
+/// JSON. "settings" has an object with text and sha256 for each setting, as read by the exports
+/// (libstudy/store/run_settings.hpp); the key is absent without settings.
 std::string format_run_options(const RunOptions& options);
 /// base::Error naming `place` for anything that format_run_options() does not write.
 RunOptions parse_run_options(const std::string& text, const std::string& place);

@@ -1,4 +1,4 @@
-/// vip-study salvage: a sound database from a damaged one and its journal of answers.
+/// vip-study salvage: makes a sound database from a damaged one and its journal of answers.
 #include <cstdio>
 #include <memory>
 #include <string>

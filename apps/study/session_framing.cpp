@@ -21,7 +21,7 @@ bool follows_gaze(const std::string& method) { return sim::traits_of(sim::parse_
 
 bool differ(double a, double b) { return std::abs(a - b) > same_angle_deg; }
 
-/// Levels that followed another angle than the eye sees now.
+/// Departure of a bake whose levels followed another visual angle than the present one.
 std::string levels_departure(const sim::BakeHeader& bake, const FramedScene& framed) {
   const auto &baked = bake.view.visual_angle_deg, &seen = framed.framing.visual_deg;
   if (!follows_gaze(bake.method)) return "";
@@ -53,7 +53,7 @@ FramedScene frame_live(const sim::Scene& scene, const Viewing& viewing, PictureS
   return out;
 }
 
-/// Pictures keep the camera that they were baked with, and are scaled into the display.
+/// Baked pictures retain their camera and are scaled into the display.
 FramedScene frame_pictures(const sim::Scene& scene, const sim::BakeHeader& bake, const Viewing& viewing,
                            PictureSize display) {
   const int width = bake.picture_width_px, height = bake.picture_height_px;
@@ -65,7 +65,7 @@ FramedScene frame_pictures(const sim::Scene& scene, const sim::BakeHeader& bake,
   out.view = sim::make_view(camera, width, height);
   out.shown = {to.x1 - to.x0, to.y1 - to.y0};
   out.framing.camera_deg = camera.vertical_fov_deg;
-  // The display is as wide as the screen that was measured.
+  // The display has the width of the measured screen.
   if (viewing.visual_angle_deg)
     out.framing.visual_deg = viewing.visual_angle_deg(display.width, out.shown.height);
   out.renderer = bake.view.renderer;
@@ -89,7 +89,7 @@ bool alike(const FramedScene& a, const FramedScene& b) {
          !differ(a.framing.camera_deg, b.framing.camera_deg);
 }
 
-/// The present one and the same scene otherwise: how they differ.
+/// How two framings of the same scene differ.
 std::string difference(const FramedScene& a, const FramedScene& b) {
   std::vector<std::string> all;
   const auto &one = a.view.viewport, &other = b.view.viewport;
@@ -119,7 +119,7 @@ Viewing screen_viewing(std::optional<double> width_mm, std::optional<double> dis
   viewing.visual_angle_deg = [width = *width_mm, distance = *distance_mm](int width_px, int height_px) {
     return vertical_fov_deg(picture_height_mm(width, width_px, height_px), distance);
   };
-  viewing.visual_angle_deg(16, 9);  // fails now if it ever does
+  viewing.visual_angle_deg(16, 9);  // throws now rather than later
   return viewing;
 }
 

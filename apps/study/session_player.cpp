@@ -157,7 +157,7 @@ class Steering {
     return hooks;
   }
 
-  /// Whether trials were opened again that are still to be shown.
+  /// True if reopened trials are still to be shown.
   bool take_reopened() { return console_ && console_->take_reopened(); }
 
  private:
@@ -177,7 +177,7 @@ class Steering {
   std::optional<ConsoleTerminal> terminal_;
 };
 
-/// On stderr, before the first step: how long what is left takes in real time.
+/// Prints the remaining duration in real time on stderr, before the first step.
 void print_length(const study::OpenRun& run, const study::Protocol& protocol, const SessionSetup& setup) {
   const bool person = !setup.participant->simulated();
   const auto showing_s = showing_times(protocol, setup.rates);
@@ -188,7 +188,7 @@ void print_length(const study::OpenRun& run, const study::Protocol& protocol, co
                base::duration_words(seconds).c_str());
 }
 
-/// The session as it stands in the store now; none when nothing is left of it.
+/// The session's current state in the store; none if it has no open unit.
 std::optional<study::OpenSession> read_open_session(study::Store& store, std::int64_t id) {
   for (study::OpenRun& run : store.open_runs()) {
     for (study::OpenSession& session : run.sessions) {
@@ -214,8 +214,8 @@ RunEnd tell_end(const EndedEarly& early) {
   return turned_away ? RunEnd::TurnedAway : RunEnd::Stopped;
 }
 
-/// When the console's screen is gone: which sessions are over, and what the database holds of each person's
-/// and of a single one.
+/// Call after the console's screen closed: prints which sessions ended early, and a summary of each person's
+/// session and of a single one.
 RunEnd tell_ends(const study::OpenRun& run, const std::vector<EndedEarly>& all,
                  const std::filesystem::path& database) {
   RunEnd end = RunEnd::Done;

@@ -1,5 +1,5 @@
 #pragma once
-/// Plays what a database says is left to do; shared by run and resume.
+/// Plays the open sessions of a database; shared by run and resume.
 
 #include <csignal>
 #include <filesystem>
@@ -12,8 +12,8 @@
 
 namespace apps {
 
-/// While it lives, SIGINT, SIGTERM, SIGHUP (unless it was ignored, as nohup does) and SIGPIPE ask the session
-/// to stop at the next frame: a terminal that goes away ends it in order.
+/// During its lifetime, SIGINT, SIGTERM, SIGHUP (unless ignored, as by nohup) and SIGPIPE ask the session to
+/// stop at the next frame, so that closing the terminal ends it cleanly.
 class StopSignals {
  public:
   StopSignals();
@@ -26,50 +26,51 @@ class StopSignals {
   std::vector<std::pair<int, struct sigaction>> before_;
 };
 
-/// Tells on stderr who keeps the database locked, after a second and every ten from then on; waits until the
-/// lock is gone or a stop is wished.
+/// Prints on stderr which program locks the database, after a second and then every ten seconds; waits until
+/// the lock is released or a stop is requested.
 study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database);
 
-/// Options of run and resume that say how they talk and how far the file may grow.
+/// Options of run and resume for output and the file's size.
 struct PlayOptions {
   std::filesystem::path database;
   std::int64_t max_pages = 0;  ///< 0 = no limit
   bool console = false;        ///< the experimenter's, in the terminal
   bool accept_slow = false;    ///< see RunOptions
-  bool events = false;         ///< a line on stdout for each unit done, once it is committed, without answers
+  bool events = false;         ///< a line on stdout for each committed unit, without answers
   bool mirror = false;         ///< the experimenter sees the participant's pages in a second window
-  bool mirror_reveal = false;  ///< and stimuli, which are black else
+  bool mirror_reveal = false;  ///< and also stimuli, which are otherwise black
 };
 
-/// Opens the mirror where it is asked for. base::Error when there is no window, or no room for a second one.
+/// Opens the mirror if requested. base::Error if there is no window, or no room for a second one.
 void open_mirror(const PlayOptions& options, const SessionSetup& setup);
 
-/// How a person's sessions ended, of several the last of these that fits one; those of observers are Done.
+/// How people's sessions ended: the last of these values that applies to any of them. Sessions of observers
+/// are Done.
 enum class RunEnd {
   Done,
-  TurnedAway,  ///< consent was refused, or an answer ruled the person out
+  TurnedAway,  ///< consent was refused, or an answer excluded the person
   Stopped      ///< by the participant, a stop rule or the experimenter
 };
 
-/// Plays all sessions of an open run with a progress bar, and says which ended early. base::Error that names
-/// resume when it was stopped on request.
+/// Plays all sessions of an open run with a progress bar, and prints which ended early. base::Error naming
+/// resume if it was stopped on request.
 RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
                 SessionSetup& setup, const PlayOptions& options);
 
-/// What is left to do when a command has played and closed its database.
+/// Work left after a command has played and closed its database.
 struct Played {
   RunEnd end = RunEnd::Done;
-  std::vector<std::string> withdraw;  ///< participants who wished it at the end
+  std::vector<std::string> withdraw;  ///< participants who requested it at the end
 };
 
 /// Carries out the withdrawals, then ends the command with the exit status of sessions that ended early: 3
 /// stopped, 4 turned away.
 void end_command(const std::filesystem::path& database, const Played& played);
-/// The same in words, for --help.
+/// The exit statuses as text for --help.
 extern const char* const exit_status_help;
 
-/// One line a setting; nothing where no schedule was played: nominal, realised mu and delta, late frames,
-/// verdicts, grade.
+/// One line per setting: nominal, realised mu and delta, late frames, verdicts, grade. Prints nothing if no
+/// schedule was played.
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,
                        const study::Protocol& protocol);
 

@@ -63,7 +63,7 @@ std::unique_ptr<study::Display> make_display(const RunOptions& options) {
   return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
 }
 
-/// Before anything is written.
+/// Refuses bakes with pictures; called before anything is written.
 void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol) {
   for (const study::Cell& cell : protocol.design.cells) {
     const FoundBake* bake = bakes.of(cell);
@@ -74,8 +74,8 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
   }
 }
 
-/// Its eye tracker is asked for where gaze is to be tracked, and not read before somebody allows it. Targets
-/// for its validation stand on a page.
+/// Requests the eye tracker for --gaze tracked; it is not read before a participant allows it. Its validation
+/// targets need a page.
 HeadsetChoice with_gaze(HeadsetChoice choice, const RunOptions& options) {
   constexpr int target_px = 128;
   if (options.gaze != "tracked") return choice;
@@ -84,7 +84,7 @@ HeadsetChoice with_gaze(HeadsetChoice choice, const RunOptions& options) {
   return choice;
 }
 
-/// What is recorded of the headset, and what the fluid follows.
+/// Sets up the headset's recording and the gaze that the fluid follows.
 void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionSetup& setup,
                     Viewing& viewing) {
   const bool tracked = options.gaze == "tracked";
@@ -100,7 +100,7 @@ void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionS
   viewing.ray = [recorder] { return recorder->ray(); };
 }
 
-/// Its slots are the clock.
+/// Sets up the headset as display; its slots drive the clock.
 void take_headset(const RunOptions& options, const study::Protocol& protocol, SessionSetup& setup,
                   Viewing& viewing) {
   const bool person = options.observer.empty();
@@ -116,9 +116,9 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
     display->clear();
     do {
       if (others() == study::Wish::Stop) return study::Wish::Stop;
-      display->turn();  // also at first: what was not seen may be told before the reason
+      display->turn();  // at least once: a frame may be reported unseen before its cause
     } while (!display->focused());
-    if (const auto more = display->take_spoilt()) study::note_cut(spoilt, *more);  // nothing was on any more
+    if (const auto more = display->take_spoilt()) study::note_cut(spoilt, *more);  // with nothing shown
     return *spoilt;
   };
   if (person) {
@@ -134,7 +134,7 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
   setup.display = std::move(headset);
 }
 
-/// Live pictures are measured before the session; without any, the table stands in.
+/// Measures live pictures before the session; without live pictures, uses the table.
 std::unique_ptr<study::FeatureSource> make_features(const RunOptions& options,
                                                     const study::Protocol& protocol,
                                                     const CellStimuli& stimuli) {
@@ -147,7 +147,7 @@ std::unique_ptr<study::FeatureSource> make_features(const RunOptions& options,
   return features;
 }
 
-/// tau of a scheduled cell follows from the cell's own mean, so it must be the mean of the model.
+/// The tau of a scheduled cell uses the protocol's kind of mean, so the model must have the same kind.
 stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place,
                           const study::Protocol& protocol) {
   if (!ptpe) return {};

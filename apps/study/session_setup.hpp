@@ -20,33 +20,33 @@ struct SessionSetup {
   bool virtual_clock = false;
   std::unique_ptr<study::Clock> clock;
   std::unique_ptr<study::Display> display;
-  std::unique_ptr<study::FeatureSource> features;  ///< of the observer that looks at pictures
+  std::unique_ptr<study::FeatureSource> features;  ///< for the frames observer
   std::unique_ptr<study::Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
-  std::shared_ptr<study::GazeSource> gaze;      ///< what is recorded of it; none: nothing is measured
-  std::shared_ptr<study::SlotSource> slots;     ///< of a headset
-  std::unique_ptr<study::GazeTargets> targets;  ///< of an eye tracker
-  WindowWish wish;                              ///< the window's or the headset's, or empty
-  std::function<std::optional<double>()> idle;  ///< likewise
-  std::function<void()> listen;  ///< from now on the terminal's keys answer a headset's pages, or empty
-  std::function<void(bool reveal)> open_mirror;  ///< the window's or the headset's, or empty
-  std::function<void()> poll;                    ///< the window's, or empty
-  std::optional<ScreenFacts> screen;             ///< likewise
+  std::shared_ptr<study::GazeSource> gaze;      ///< the recorded gaze source; null: no gaze is recorded
+  std::shared_ptr<study::SlotSource> slots;     ///< of a headset, or null
+  std::unique_ptr<study::GazeTargets> targets;  ///< of an eye tracker, or null
+  WindowWish wish;                              ///< of the window or the headset, or empty
+  std::function<std::optional<double>()> idle;  ///< of the window or the headset, or empty
+  std::function<void()> listen;  ///< makes the terminal's keys answer a headset's pages, or empty
+  std::function<void(bool reveal)> open_mirror;  ///< of the window or the headset, or empty
+  std::function<void()> poll;                    ///< of the window, or empty
+  std::optional<ScreenFacts> screen;             ///< of the window, or none
   std::vector<FramedScene> scenes;               ///< as the display frames them; none: nothing is drawn
   std::vector<std::string> warnings;  ///< of clock and database (warn_of_station), for console and log
   MeasuredReport rates;               ///< of live cells on this station; none: nothing was measured
 
-  /// In what a bake departs from what the protocol and the display ask for; empty: in nothing. Such data are
-  /// test data.
+  /// How bakes depart from the protocol and the display; empty: not at all. Data of such sessions are test
+  /// data.
   std::string departure() const;
 };
 
-/// Whether participants are asked for permission to record where they look.
+/// True if participants are asked for permission to record gaze.
 bool asks_gaze(const study::Protocol& protocol);
 
-/// `ptpe` is the text of the PTPE file in force, read as `ptpe_place`; none: the paper's model drives
-/// temporal acceleration. `setting_place` names the options' settings in errors. base::Error naming what is
-/// missing, wrong or does not go together.
+/// `ptpe` is the text of the PTPE file, which errors call `ptpe_place`; none: the paper's model drives
+/// temporal acceleration. `setting_place` names the options' settings in errors. base::Error naming a
+/// missing, wrong or inconsistent part.
 SessionSetup make_session_setup(const RunOptions& options, const study::Protocol& protocol,
                                 const std::optional<std::string>& ptpe, const std::string& ptpe_place,
                                 const std::string& setting_place = "--setting");

@@ -1,6 +1,5 @@
 #pragma once
-/// What is not as it should be of the station before a session: clock, place of the database, screen,
-/// computer.
+/// Warnings about the station before a session: clock, location of the database, screen, computer.
 
 #include <filesystem>
 #include <string>
@@ -11,16 +10,16 @@
 
 namespace apps {
 
-/// What speaks against the clock: `now` is before the day `built`, before `newest` (the latest time in the
-/// database; empty: none) or more than a year after it. Empty: nothing does.
+/// The problem of the clock: `now` is before the day `built`, before `newest` (the latest time in the
+/// database; empty: none) or more than a year after it. Empty: none.
 std::string clock_problem(const std::string& now, const std::string& newest, const std::string& built);
 
-/// This and place_problems(), printed on stderr; the experimenter may go on. Called before anything of the
-/// session is written.
+/// Prints clock_problem() and place_problems() on stderr and returns them; the experimenter may go on. Call
+/// before anything of the session is written.
 std::vector<std::string> warn_of_station(study::Store& store, const std::filesystem::path& database);
 
-/// Before the first step: writes those warnings into the log of each session, and at a window also what the
-/// screen and the computer are like, which is printed. Returns all that is not as it should be.
+/// Call before the first step: logs those warnings in each session; with a window, also logs and prints the
+/// facts of screen and computer. Returns all warnings.
 std::vector<std::string> check_station(study::Store& store, const study::OpenRun& run,
                                        const study::Protocol& protocol, const SessionSetup& setup,
                                        const std::filesystem::path& database);

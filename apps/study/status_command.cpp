@@ -1,4 +1,4 @@
-/// vip-study status: what a database holds.
+/// vip-study status: summarises a database.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ std::string state_of(const study::SessionRow& session) {
   return session.done > 0 ? "under way" : "planned";
 }
 
-/// Only what the protocol asks.
+/// Only permissions that the protocol asks for.
 std::string permissions_of(const study::SessionRow& session) {
   std::string text;
   if (session.gaze) text += *session.gaze ? ", gaze kept" : ", gaze not kept";

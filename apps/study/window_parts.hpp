@@ -1,5 +1,5 @@
 #pragma once
-/// What --display window brings: the participant's window with its pages, and the mouse as gaze.
+/// The parts of --display window: the participant's window with its pages, and the mouse as gaze.
 
 #include <functional>
 #include <memory>
@@ -18,30 +18,30 @@ namespace apps {
 
 class HeadsetDisplay;
 
-/// What is wished at the window, given what others wish; see SessionHooks::wish.
+/// The wish at the window, given the wishes of others; see SessionHooks::wish.
 using WindowWish = std::function<study::Wish(const std::function<study::Wish()>& others)>;
 
 /// Each part keeps the window alive.
 struct WindowParts {
   std::unique_ptr<study::Display> display;
-  std::unique_ptr<study::Participant> person;  ///< answers where no observer was named
+  std::unique_ptr<study::Participant> person;  ///< answers if no observer was named
   /// Viewing::gaze for --gaze mouse.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
-  std::unique_ptr<study::GazeSource> mouse;  ///< likewise, for the record
+  std::unique_ptr<study::GazeSource> mouse;  ///< the same, for the record
   WindowWish wish;
-  std::function<void(bool reveal)> open_mirror;  ///< for the experimenter; base::Error where no room is
+  std::function<void(bool reveal)> open_mirror;  ///< for the experimenter; base::Error if there is no room
   /// Seconds since the last key, button or movement of the mouse at the window.
   std::function<std::optional<double>()> idle;
-  /// Takes in what happened to the window while nothing is shown, so that it is not taken for dead.
+  /// Processes window events while nothing is shown, so that the window does not count as unresponsive.
   std::function<void()> poll;
   ScreenFacts screen;
   PictureSize size;  ///< of the window
 };
 
-/// base::Error where there is no window, of both.
+/// Both functions throw base::Error if there is no window.
 WindowParts make_window_parts(const RunOptions& options, const study::Protocol& protocol);
 
-/// The experimenter's window on what is seen in a headset, open as long as what is returned; see
+/// The experimenter's window on the headset's view, open during the returned object's lifetime; see
 /// HeadsetMirror.
 std::shared_ptr<void> open_headset_mirror(HeadsetDisplay& display, bool reveal);
 

@@ -1,4 +1,4 @@
-/// vip-study withdraw: a participant takes the data back.
+/// vip-study withdraw: deletes a participant's data.
 #include <unistd.h>
 
 #include <cstdio>
@@ -21,7 +21,7 @@ struct WithdrawCommand {
   bool yes = false;
 };
 
-/// Nothing brings the data back, so the code is asked for once more.
+/// Asks for the code once more, because the deletion is final.
 void confirm(const WithdrawCommand& command) {
   if (command.yes) return;
   std::string typed;

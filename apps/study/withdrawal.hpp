@@ -1,5 +1,5 @@
 #pragma once
-/// A withdrawal as the commands do it, with a word about all that was deleted.
+/// Withdrawals by the commands, with a report of all that was deleted.
 
 #include <filesystem>
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace apps {
 
-/// base::Error when something is left that could not be deleted.
+/// base::Error if something could not be deleted.
 void withdraw_and_tell(const std::filesystem::path& database, const std::string& participant);
 
-/// base::Error when somebody's wish is still to be carried out: nothing of theirs goes into an export.
+/// base::Error if a requested withdrawal is still to be done, so that none of that person's data go into an
+/// export.
 void check_no_withdrawal_is_due(const study::StudyFile& study);
 
 }  // namespace apps

@@ -6,8 +6,8 @@ namespace study {
 
 namespace {
 // A sleeper wakes some tens of microseconds late, on an idle virtual machine up to a few milliseconds,
-// because its halted processor must be scheduled again; the last stretch is spun. At 50 frames/s this costs
-// two fifths of one core.
+// because its halted processor must be scheduled again; so the last part of a wait spins. At 50 frames/s this
+// costs two fifths of one core.
 constexpr std::int64_t spin_ns = 8'000'000;
 }  // namespace
 

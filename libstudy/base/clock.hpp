@@ -1,5 +1,5 @@
 #pragma once
-/// Time as the runner sees it: real, or virtual so that the same code runs without waiting.
+/// The runner's clock: real, or virtual so that the same code runs without waiting.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ class Clock {
   virtual ~Clock() = default;
   /// Monotonic nanoseconds; CLOCK_MONOTONIC on the real clock.
   virtual std::int64_t now_ns() const = 0;
-  /// Returns at deadline_ns or as soon after it as possible (sleeps, then spins); at once when it has passed.
+  /// Returns at deadline_ns or as soon after it as possible (sleeps, then spins); at once if it has passed.
   virtual void wait_until(std::int64_t deadline_ns) = 0;
 };
 

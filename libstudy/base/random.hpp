@@ -19,7 +19,7 @@ std::uint64_t counter_random(std::uint64_t key, std::uint64_t counter);
 /// A 64-bit key of a text: the first 16 digits of its SHA-256.
 std::uint64_t random_key(std::string_view text);
 
-/// Draws in sequence: the counter runs.
+/// A sequence of draws; each draw advances the counter.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t key, std::uint64_t first_counter = 0)

@@ -10,14 +10,14 @@ namespace study {
 
 namespace {
 
-/// Interval orders of pairs come in couples of a random one and its mirror.
+/// Interval orders of pairs come in couples: a random order and its mirror.
 constexpr int rounds_of_intervals = 32;
 
 const StimulusSpec& stimulus_of(const Design& design, const std::vector<int>& group) {
   return design.cells[static_cast<std::size_t>(group.front())].stimulus;
 }
 
-/// Largest difference between how often two n_* of the design are met.
+/// Largest difference between the frequencies of two n_* in a sequence.
 int unevenness(const Design& design, const std::vector<std::vector<int>>& groups,
                const std::vector<int>& sequence) {
   std::map<std::string, int> count;
@@ -47,7 +47,7 @@ void extend(const Design& design, const std::vector<std::vector<int>>& groups, s
   }
 }
 
-/// Every order of groups with different scenes; balanced: those alone that spread n_* most evenly.
+/// Every sequence of groups with different scenes; `even`: only those that spread n_* most evenly.
 std::vector<std::vector<int>> sequences_of(const Design& design, bool even) {
   const auto groups = cell_groups(design);
   std::vector<std::vector<int>> out;
@@ -60,7 +60,7 @@ std::vector<std::vector<int>> sequences_of(const Design& design, bool even) {
   return out;
 }
 
-/// Rows of the square; 1 where there is none.
+/// Rows of the square; 1 if there is none.
 int rows_of(const Design& design) {
   if (design.order != TrialOrder::Latin && design.order != TrialOrder::Williams) return 1;
   int rows = 1;
@@ -104,7 +104,7 @@ Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
     RandomStream random(key, std::uint64_t{1} << 33);
     return {all[random.below(all.size())], slot, slot};
   }
-  // Within each round through all sequences, an order of its own.
+  // Each round goes through all sequences in its own random order.
   const auto count = static_cast<int>(all.size());
   std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
@@ -112,7 +112,7 @@ Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
   RandomStream random(random_key(protocol.sha256 + "\nround " + std::to_string(round)));
   shuffle(order, random);
   const int sequence = order[static_cast<std::size_t>(slot % count)];
-  // Both rounds of a couple, which mirror each other's intervals, take the same rows.
+  // Both rounds of a couple, whose intervals are mirrored, use the same rows.
   return {all[static_cast<std::size_t>(sequence)], round, sequence + (design.pairs ? round / 2 : round)};
 }
 

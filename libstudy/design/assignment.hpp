@@ -1,5 +1,5 @@
 #pragma once
-/// What a slot of the assignment stands for.
+/// What a slot of the assignment means: groups, round and row.
 
 #include <cstdint>
 #include <vector>
@@ -9,10 +9,10 @@
 namespace study {
 
 struct Deal {
-  std::vector<int> groups;  ///< in the order in which they are met, as indices of cell_groups()
-  int round = 0;            ///< how often the assignment went through all sequences before this slot
-  /// First row of the square; the k-th group met takes the k-th row after it. Over all slots each sequence
-  /// begins equally often with each row, for pairs in both interval orders.
+  std::vector<int> groups;  ///< in order of presentation, as indices into cell_groups()
+  int round = 0;            ///< number of complete passes through all sequences before this slot
+  /// First row of the square; the k-th group shown takes the k-th row after it. Over all slots, each sequence
+  /// begins equally often with each row; for pairs, in both interval orders.
   int row = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Orders of k things, as permutations of 0 .. k - 1.
+/// Orders of k items, as permutations of 0 .. k - 1.
 
 #include <functional>
 #include <vector>
@@ -8,18 +8,18 @@
 
 namespace study {
 
-/// Row `row` of the cyclic Latin square: over k rows each thing stands once at each place.
+/// Row `row` of the cyclic Latin square: over k rows, each item occurs once at each position.
 std::vector<int> latin_row(int k, int row);
 
 /// Rows of a Williams design: k when k is even, 2 k when it is odd.
 int williams_rows(int k);
-/// Row `row` of it: over all rows each thing stands equally often at each place and directly after each other
-/// thing (Williams 1949).
+/// Row `row` of a Williams design: over all rows, each item occurs equally often at each position and
+/// directly after each other item (Williams 1949).
 std::vector<int> williams_row(int k, int row);
 
-/// A random order in which no neighbours clash: built one after another from those that do not, started over
-/// where none is left. Empty when 10,000 starts (fewer where k is above 141) found none. Not every such order
-/// is equally likely.
+/// A random order without clashing neighbours. Each next item is drawn from those that do not clash with the
+/// last; if none is left, the search starts over. Empty after 10,000 failed starts (fewer if k is above 141).
+/// Not every such order is equally likely.
 std::vector<int> order_without_clashes(int k, const std::function<bool(int, int)>& clash,
                                        RandomStream& random);
 

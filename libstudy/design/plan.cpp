@@ -12,13 +12,13 @@ namespace study {
 
 namespace {
 
-// Seeds of schedules, practice, repeats and catches are drawn far from the counters of the shuffles.
+// Schedule seeds, practice, repeats and catches use counters far from those of the shuffles.
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
 constexpr std::uint64_t counters_per_group = 1ull << 20;
 
-/// Shares a level of one of the factors.
+/// True if both cells share a level of one of the never_adjacent factors.
 bool share_level(const Design& design, const Cell& a, const Cell& b) {
   return std::any_of(
       design.never_adjacent.begin(), design.never_adjacent.end(), [&](const std::string& factor) {
@@ -66,7 +66,7 @@ class Planner {
 
   void add_page(int index) { plan_.units.push_back({0, index, {}}); }
 
-  /// Takes its place in the session.
+  /// Appends the trial to the session.
   void add_trial(PlannedTrial trial) {
     trial.position = static_cast<int>(plan_.trials.size());
     plan_.units.push_back({0, trial.block, trial.position});
@@ -111,8 +111,8 @@ class Planner {
     return out;
   }
 
-  /// Whether a pair is shown second cell first: rounds come in couples of a random choice and its opposite,
-  /// the same for all participants of a round.
+  /// True if a pair shows its second cell first. Rounds come in couples: a random choice and its opposite,
+  /// equal for all participants of a round.
   bool mirrored(int g, int pair) const {
     const auto which = static_cast<std::uint64_t>(g) * counters_per_group + static_cast<std::uint64_t>(pair);
     if (design_.assignment == Assignment::PaperRandom)
@@ -147,14 +147,14 @@ class Planner {
                         first_extra_counter + static_cast<std::uint64_t>(index + 1) * counters_per_block);
   }
 
-  /// Drawn without return from the first group, then again.
+  /// Draws from the first group without replacement, and starts over when all are drawn.
   void add_practice(int index) {
     auto random = extra(index);
     const auto candidates = trials_of(0, index);
     add_drawn(candidates, block(index).count, index, random);
   }
 
-  /// The very stimuli that were shown, intervals included.
+  /// Repeats trials with the same stimuli and frame intervals.
   void add_repeats(int index) {
     auto random = extra(index);
     std::vector<PlannedTrial> shown;
@@ -177,7 +177,7 @@ class Planner {
     }
   }
 
-  /// Each catch page follows a trial of its own, drawn at random.
+  /// Puts each catch page after a different, randomly drawn trial.
   void scatter_catches() {
     for (std::size_t index = 0; index < protocol_.blocks.size(); ++index) {
       const Block& catches = protocol_.blocks[index];

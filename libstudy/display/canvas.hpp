@@ -1,18 +1,18 @@
 #pragma once
-/// What a stimulus is drawn on: one picture, or one for each eye of a headset.
+/// The target on which a stimulus is drawn: one picture, or one for each eye of a headset.
 
 #include <array>
 #include <span>
 
 namespace study {
 
-/// One eye of a headset, in metres from its anchor, which stands where the scene's camera stands and is
-/// turned to where that looks, but level: x right, y up, z back.
+/// One eye of a headset, in metres from its anchor. The anchor is at the scene's camera and faces the
+/// camera's heading, but level: x right, y up, z back.
 struct EyeView {
   std::array<double, 3> position_m{};             ///< of the eye
   std::array<double, 4> orientation{0, 0, 0, 1};  ///< x y z w of a unit quaternion; the eye looks along -z
-  /// Where the edges of its picture lie: angles from straight ahead in (-pi/2, pi/2), positive to the right
-  /// and up; left < right, down < up.
+  /// Edges of its picture: angles from straight ahead in (-pi/2, pi/2), positive to the right and up; left <
+  /// right, down < up.
   double left_rad = 0, right_rad = 0, up_rad = 0, down_rad = 0;
   int x_px = 0, y_px = 0, width_px = 0, height_px = 0;  ///< its part of the canvas, from the lower left
 };
@@ -20,7 +20,7 @@ struct EyeView {
 struct Canvas {
   unsigned framebuffer = 0;  ///< GL framebuffer object; its context is current
   int width_px = 0, height_px = 0;
-  std::span<const EyeView> eyes{};  ///< two; none: one picture from the scene's camera fills the canvas
+  std::span<const EyeView> eyes{};  ///< two, or none: one picture from the scene's camera
 };
 
 }  // namespace study

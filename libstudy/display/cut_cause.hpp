@@ -1,23 +1,23 @@
 #pragma once
-/// Why a showing was cut, so that its trial is shown again.
+/// Causes for which a showing is cut and its trial shown again.
 
 #include <optional>
 #include <string>
 
 namespace study {
 
-/// Each cut has one cause. A new one needs its words, and its way into the test over all causes.
+/// Each cut has one cause. A new cause needs its words and an entry in the test over all causes.
 enum class CutCause {
-  Experimenter,  ///< wished to have the trial shown again
-  Participant,   ///< was asked whether to stop, and went on
-  Minimised,     ///< the participant's window was
+  Experimenter,  ///< the experimenter asked to show the trial again
+  Participant,   ///< the participant opened the stop dialog and went on
+  Minimised,     ///< the participant's window was minimised
   Focus,         ///< another program had the headset's focus
-  TakenOff,      ///< the headset was
+  TakenOff,      ///< the headset was taken off
   NotDrawn,      ///< the headset's software drew no pictures
-  Pose,          ///< the headset did not know where the eyes are
+  Pose,          ///< the headset lost the position of the eyes
   Recentred,     ///< the origin of the headset's room moved
   Rate,          ///< the headset's refresh rate changed
-  SessionLost,   ///< the headset's software gave the session up
+  SessionLost,   ///< the headset's software lost the session
   Gaze,          ///< the eye tracker lost the eyes
   Last = Gaze
 };
@@ -28,8 +28,8 @@ struct CutWords {
 };
 CutWords words_of(CutCause cause);
 
-/// Keeps the first cause. Two say more than what they bring with them: a session that was lost, and a headset
-/// that was taken off after its focus went.
+/// Keeps the first cause, with two exceptions that explain an earlier one: a lost session replaces any cause,
+/// and a headset taken off replaces a lost focus.
 void note_cut(std::optional<CutCause>& noted, CutCause cause);
 
 }  // namespace study

@@ -1,5 +1,6 @@
 #pragma once
-/// Where the participant looks: the one way in which an eye tracker, a headset or the mouse reach a session.
+/// Where the participant looks: the interface through which an eye tracker, a headset or the mouse feeds a
+/// session.
 
 #include <array>
 #include <cstdint>
@@ -9,40 +10,40 @@
 
 namespace study {
 
-/// Whose samples they are. Neither mouse nor head is an eye: people often look where it is not.
+/// The device behind the samples. Mouse and head are only stand-ins: people often look elsewhere.
 enum class GazeOrigin { Tracker, Head, Mouse };
 
-/// A point of the picture: shares of its width from the left edge and of its height from the top edge.
+/// A point of the picture: fractions of its width from the left edge and of its height from the top edge.
 using GazePoint = std::pair<double, double>;
 
-/// The one ray of both eyes (cyclopean), in the head's frame: right, up and back of the middle between the
-/// eyes. The head's pose (headset.hpp) carries it into the room.
+/// The combined (cyclopean) ray of both eyes in the head's frame: x right, y up, z back from the midpoint of
+/// the eyes. The head's pose (headset.hpp) transforms it to the room.
 struct GazeRay {
   std::array<double, 3> origin_m{};
   std::array<double, 3> direction{0, 0, -1};  ///< unit vector
 };
 
 struct GazeSample {
-  std::int64_t sampled_ns = 0;            ///< when it came, on the session's clock
+  std::int64_t sampled_ns = 0;            ///< arrival time, on the session's clock
   std::optional<std::int64_t> device_ns;  ///< the device's own time stamp, if it gives one
-  bool valid = false;                     ///< the source knows where: no blink, no pointer off the picture
-  std::optional<GazePoint> point;         ///< may be known where it is not valid, as beside the picture
-  std::optional<bool> tracked{};  ///< false: a guess of the source (sub-nominal); none: it does not tell
-  std::optional<GazeRay> ray{};   ///< none: the source knows points of the picture alone
+  bool valid = false;                     ///< false during a blink or with the pointer off the picture
+  std::optional<GazePoint> point;         ///< may be set even if not valid, e.g. beside the picture
+  std::optional<bool> tracked{};  ///< false: estimated by the source (sub-nominal); none: not reported
+  std::optional<GazeRay> ray{};   ///< none: the source gives only points of the picture
 };
 
-/// A source of samples at its own rate. Calls come from the session's thread; a device with a thread of its
-/// own keeps its samples until they are taken.
+/// A source of samples at its own rate. Calls come from the session's thread; a device with its own thread
+/// buffers its samples until take().
 class GazeSource {
  public:
   virtual ~GazeSource() = default;
   virtual GazeOrigin origin() const = 0;
-  /// From here on samples are kept: the participant allows it. A source that tells changes alone begins with
-  /// what holds now.
+  /// Begins to buffer samples; the participant has allowed it. A source that reports only changes first adds
+  /// the current state.
   virtual void start() = 0;
-  /// Gives what came since start() or the last call, in the order of sampled_ns.
+  /// Returns the samples since start() or the last call, in the order of sampled_ns.
   virtual std::vector<GazeSample> take() = 0;
-  /// Nothing is kept any more; what was not taken is forgotten.
+  /// Stops buffering and discards the samples that were not taken.
   virtual void stop() = 0;
 };
 

@@ -18,13 +18,13 @@ Vector unit(const Vector& v) {
   return size > 0 ? Vector{v[0] / size, v[1] / size, v[2] / size} : v;
 }
 
-/// Exact for small angles too.
+/// Accurate for small angles too.
 double degrees_between(const Vector& a, const Vector& b) {
   const Vector across = cross(a, b);
   return std::atan2(std::sqrt(dot(across, across)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
-/// The gaze in a frame in which the target is straight ahead and up stays up.
+/// The gaze in a frame with the target straight ahead and up unchanged.
 Vector from_target(const TargetSample& sample) {
   const Vector ahead = unit(sample.target);
   const Vector right = unit(cross(ahead, {0, 1, 0}));

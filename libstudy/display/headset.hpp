@@ -1,5 +1,5 @@
 #pragma once
-/// What a session keeps of a headset: what it is, its slots, and where the head was.
+/// What a session records about a headset: its properties, its slots and the head's poses.
 
 #include <array>
 #include <cstdint>
@@ -16,22 +16,22 @@ struct EyeFacts {
   bool operator==(const EyeFacts&) const = default;
 };
 
-/// What a headset is and tells.
+/// What a headset and its runtime report.
 struct HeadsetFacts {
   std::string runtime, runtime_version, headset;
   std::array<EyeFacts, 2> eyes;  ///< left and right
-  std::string format;            ///< of the pictures handed over
+  std::string format;            ///< pixel format of the submitted pictures
   std::optional<double> refresh_told_hz, refresh_measured_hz;
-  std::string hold = "image";  ///< "image", "state" or "head_locked": what is seen between two frames
+  std::string hold = "image";  ///< "image", "state" or "head_locked" (Hold): what is shown between two frames
   std::string blend;           ///< environment blend mode: "opaque"
   bool times_convert = false;
-  bool position_tracking = false;  ///< the runtime says that it follows the head's place
-  bool eye_tracking = false;       ///< an eye tracker was asked for and is served
+  bool position_tracking = false;  ///< the runtime reports that it tracks the head's position
+  bool eye_tracking = false;       ///< an eye tracker was requested and is available
   bool operator==(const HeadsetFacts&) const = default;
 };
 
-/// Where the middle between the eyes is and how it is turned, in the room as the runtime fixed it: x right, y
-/// up, z back, m. What is not valid is not known; what is valid and not tracked is a guess.
+/// Position and orientation of the midpoint of the eyes in the runtime's room frame: x right, y up, z back,
+/// m. Not valid: unknown. Valid but not tracked: estimated.
 struct HeadPose {
   std::array<double, 3> place_m{};
   std::array<double, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
@@ -39,32 +39,32 @@ struct HeadPose {
   bool place_tracked = false, turn_tracked = false;
 };
 
-/// A change of the distance between the eyes that is kept, mm.
+/// Smallest change of the distance between the eyes that is recorded, mm.
 inline constexpr double ipd_change_mm = 0.2;
 
 /// A period of the headset's compositor.
 struct SlotRecord {
-  std::int64_t predicted_ns = 0;  ///< when it is to be seen, on the session's clock
-  std::int64_t period_ns = 0;     ///< as the runtime tells it
-  bool should_render = false;     ///< false: nothing of it would be seen
-  std::optional<HeadPose> head;   ///< none: not asked for
-  double ipd_mm = 0;              ///< distance of the eyes' places; 0: not known
+  std::int64_t predicted_ns = 0;  ///< predicted display time, on the session's clock
+  std::int64_t period_ns = 0;     ///< as the runtime reports it
+  bool should_render = false;     ///< false: nothing drawn now would be visible
+  std::optional<HeadPose> head;   ///< none: not requested
+  double ipd_mm = 0;              ///< distance between the eyes; 0: not known
 };
 
-/// A headset as the session reads it. Calls come from the session's thread.
+/// A headset as the session sees it. Calls come from the session's thread.
 class SlotSource {
  public:
   virtual ~SlotSource() = default;
-  /// As of now.
+  /// The current facts.
   virtual HeadsetFacts facts() const = 0;
-  /// From here on slots are kept; with_heads: and where the head is, which the participant allows.
+  /// Begins to record slots; with_heads: also the head's pose, which the participant has allowed.
   virtual void start_slots(bool with_heads) = 0;
-  /// Gives those that are over since start_slots() or the last call, in their order.
+  /// Returns the slots that ended since start_slots() or the last call, in order.
   virtual std::vector<SlotRecord> take_slots() = 0;
   virtual void stop_slots() = 0;
-  /// Distance of the eyes' places in the newest slot, mm; none: not known.
+  /// Distance between the eyes in the newest slot, mm; none: not known.
   virtual std::optional<double> ipd_mm() = 0;
-  /// What happened to the headset since the last call, in words for the log: facts() may be others now.
+  /// Events of the headset since the last call, in words for the log. facts() may have changed.
   virtual std::vector<std::string> take_news() = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Nothing to see: for plans, observers and stores that are tried without a fluid or a screen.
+/// A stimulus and a display that show nothing: to run plans, observers and stores without a fluid or a
+/// screen.
 
 #include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
@@ -25,7 +26,7 @@ class NullStimulus final : public Stimulus {
   double content_step_s_;
 };
 
-/// Takes frames at the instant they are handed over and draws none of them.
+/// Takes each frame at its scheduled time and draws nothing.
 class NullDisplay final : public Display {
  public:
   std::string description() const override { return "none"; }

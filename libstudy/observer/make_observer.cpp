@@ -15,7 +15,7 @@ namespace study {
 
 namespace {
 
-// Observers who tell nothing: a report should be able to say so.
+// Observers without information: a report should be able to detect them.
 
 /// "random": every score equally likely, whatever was shown.
 class RandomObserver final : public Observer {
@@ -26,7 +26,7 @@ class RandomObserver final : public Observer {
   }
 };
 
-/// "constant:4": always the score nearest to it.
+/// "constant:4": always the nearest score to 4.
 class ConstantObserver final : public Observer {
  public:
   explicit ConstantObserver(double score) : score_(score) {}
@@ -39,8 +39,8 @@ class ConstantObserver final : public Observer {
   double score_;
 };
 
-/// "dropout:0.2,OBSERVER": answers as that observer (random, if none is named) and leaves for good with this
-/// probability before each trial.
+/// "dropout:0.2,OBSERVER": answers as OBSERVER (default: random) and leaves for good with this probability
+/// before each trial.
 class DropoutObserver final : public Observer {
  public:
   DropoutObserver(double probability, std::unique_ptr<Observer> answers)
@@ -77,7 +77,7 @@ std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSo
                                            make_observer(rest.empty() ? "random" : rest, features));
 }
 
-/// Of "constant:4" and "dropout:0.2,constant:4".
+/// The score in "constant:4" or "dropout:0.2,constant:4"; none for other observers.
 std::optional<double> constant_of(std::string_view specification) {
   std::size_t at = 0;
   if (specification.starts_with(dropout))

@@ -38,7 +38,7 @@ std::optional<std::string> PtpeObserver::simulated() const {
   return std::string(ptpe_kind) + write_observer_keys(written(keys_of(copy)));
 }
 
-/// x - m of one stimulus.
+/// x - m of one stimulus (ptpe_observer.hpp).
 double PtpeObserver::latent(const Occasion& occasion, std::size_t interval) const {
   const std::uint64_t key = person_key(occasion);
   const stats::FpsMoments& seen = occasion.shown[interval].realised;

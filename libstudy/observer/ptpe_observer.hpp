@@ -13,13 +13,13 @@ namespace study {
 ///   x = m + slope tau + effects + participant + noise,   tau = mu - a exp(b delta)   (paper Eq. 11)
 ///
 /// with mu the harmonic mean and delta the standard deviation of the frames shown, participant ~ N(0,
-/// participant_sd^2) drawn once for each person and noise ~ N(0, noise^2) once for each trial; effects counts
-/// where they are a factor and the level is another than "none". The score is
-/// the category whose thresholds, m +- 1/2, 3/2, ..., hold x: symmetric about m, so that E[score] = m (4 on a
-/// 7-point scale) exactly on the contour tau = 0.
+/// participant_sd^2) drawn once for each person and noise ~ N(0, noise^2) once for each trial; effects is
+/// added if they are a factor and the level is not "none". The score is the category whose thresholds, m +-
+/// 1/2, 3/2, ..., hold x: symmetric about m, so that E[score] = m (4 on a 7-point scale) exactly on the
+/// contour tau = 0.
 ///
 /// The default slope and noise give cell means over 16 people from about 1 to 6.5 on the pilot's grid, the
-/// range of the paper's Fig. 6; what single people's scores scatter by is not printed there, so noise and
+/// range of the paper's Fig. 6; the scatter of single people's scores is not printed there, so noise and
 /// participant_sd are our choice.
 struct PtpeObserverParameters {
   double a = 0;                 ///< frames/s, > 0; must be given
@@ -27,7 +27,7 @@ struct PtpeObserverParameters {
   double slope = 0.14;          ///< scores per frame/s, > 0
   double noise = 1.0;           ///< scores, >= 0
   double participant_sd = 0.5;  ///< scores, >= 0
-  double effects = 0;           ///< scores that effects are worth over none; written where it is not 0
+  double effects = 0;           ///< scores that effects add; recorded only if not 0
 };
 
 /// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..][,effects=..]". base::Error naming the
@@ -35,8 +35,8 @@ struct PtpeObserverParameters {
 /// range.
 PtpeObserverParameters parse_ptpe_observer(std::string_view specification);
 
-/// The first question about a stimulus is answered by the model; of two stimuli the one with the larger x of
-/// its own noise is preferred. Everything else as by a bystander.
+/// The model answers the first question about a stimulus; of two stimuli it prefers the one with the larger
+/// x, each with its own noise. All other answers are bystander_score().
 class PtpeObserver final : public Observer {
  public:
   explicit PtpeObserver(const PtpeObserverParameters& parameters) : parameters_(parameters) {}

@@ -31,7 +31,7 @@ double population_sd(const std::vector<double>& values) {
   return static_cast<double>(std::sqrt(squares / static_cast<long double>(values.size())));
 }
 
-/// A setting while it is being solved.
+/// A setting to solve.
 struct Problem {
   FpsSetting setting;
   FpsMean mean;
@@ -48,7 +48,8 @@ struct Problem {
   }
 };
 
-/// Where `excess` is 0. Moments that double precision cannot tell apart leave it without a change of sign.
+/// The root of `excess`. Fails if double precision cannot distinguish the moments, so that the sign does not
+/// change.
 double root_of(const Problem& problem, const std::function<double(double)>& excess, double low, double high) {
   try {
     return stats::find_root(excess, low, high);
@@ -59,13 +60,13 @@ double root_of(const Problem& problem, const std::function<double(double)>& exce
   }
 }
 
-/// Distances y above the cut, scaled to rates low + scale y.
+/// Rates low + scale y of distances y above the cut.
 std::vector<double> scaled(const Problem& problem, std::vector<double> strata, double scale) {
   for (double& y : strata) y = problem.low + scale * y;
   return strata;
 }
 
-/// Without an upper cut the scale follows from the standard deviation in closed form, and the mean falls
+/// Without an upper bound the scale follows from the standard deviation in closed form, and the mean falls
 /// monotonically as the parent's lower cut (in its own standard deviations) rises.
 std::vector<double> solve_open(const Problem& problem) {
   const double sd = problem.setting.sd;
@@ -75,7 +76,7 @@ std::vector<double> solve_open(const Problem& problem) {
     return scaled(problem, std::move(strata), scale);
   };
   const auto excess = [&](double cut) { return problem.mean_of(rates(cut)) - problem.setting.mean; };
-  const double exponential = 1e4;  // the parent's mean this far below the cut: an exponential distribution
+  const double exponential = 1e4;  // the parent's mean so far below the cut gives an exponential distribution
   const double bell = -10 * (problem.setting.mean + sd) / sd;
   if (excess(exponential) > 0) {
     const double least = problem.setting.mean + excess(exponential);
@@ -87,7 +88,8 @@ std::vector<double> solve_open(const Problem& problem) {
   return rates(root_of(problem, excess, bell, exponential));
 }
 
-/// The parent whose window is `width` of its standard deviations wide and whose strata have the wished mean.
+/// Rates of the parent normal whose window is `width` standard deviations wide and that has the requested
+/// mean.
 std::vector<double> with_mean(const Problem& problem, double width) {
   const double scale = (problem.high - problem.low) / width;
   const auto rates = [&](double cut) {
@@ -108,7 +110,8 @@ std::vector<double> with_mean(const Problem& problem, double width) {
   return rates(root_of(problem, excess, left, right));
 }
 
-/// With an upper cut: the standard deviation falls as the window grows in the parent's standard deviations.
+/// With an upper bound: the standard deviation falls as the window, in the parent's standard deviations,
+/// grows.
 std::vector<double> solve_capped(const Problem& problem) {
   const auto excess = [&](double log_width) {
     return population_sd(with_mean(problem, std::exp(log_width))) - problem.setting.sd;

@@ -21,7 +21,8 @@ std::vector<double> gaussian(std::size_t n, RandomStream& random) {
   return out;
 }
 
-/// `sorted` (ascending) laid out so that its ranks are those of `pattern`; equal entries by `tie`.
+/// Orders `sorted` (ascending) so that its ranks equal those of `pattern`; `tie` decides between equal
+/// entries.
 std::vector<double> by_ranks(const std::vector<double>& sorted, const std::vector<double>& pattern,
                              const std::vector<std::uint64_t>& tie) {
   std::vector<std::size_t> place(pattern.size());
@@ -47,7 +48,7 @@ std::vector<double> ar1_order(const std::vector<double>& sorted, double wished, 
   std::vector<std::uint64_t> tie(sorted.size());
   for (auto& value : tie) value = random.bits();
   const auto at = [&](double coefficient) { return by_ranks(sorted, ar1_pattern(noise, coefficient), tie); };
-  // The correlation rises with the coefficient but for jumps of single ranks: bisect, keep the nearest.
+  // The correlation rises with the coefficient except for jumps of single ranks: bisect and keep the nearest.
   double low = -0.9999, high = 0.9999;
   auto best = at(wished);
   for (int i = 0; i < 60; ++i) {
@@ -81,7 +82,7 @@ double lag1(std::span<const double> values) {
     squares += (values[i] - mean) * (values[i] - mean);
     if (i) products += (values[i] - mean) * (values[i - 1] - mean);
   }
-  // Equal values: what is left is rounding, not variation.
+  // With equal values, the rest is rounding, not variation.
   const bool equal = squares <= 1e-24 * mean * mean * static_cast<double>(values.size());
   return equal ? 0 : products / squares;
 }

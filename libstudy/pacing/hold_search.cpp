@@ -7,7 +7,7 @@ namespace study {
 
 namespace {
 
-/// The list as counts, with the sums that its moments follow from.
+/// A list of holds as counts, with the sums for its moments.
 class Holds {
  public:
   explicit Holds(const HoldTarget& target)
@@ -18,7 +18,7 @@ class Holds {
     recount();
   }
 
-  /// Edges 0 ... edges() - 1 lie between hold shortest + edge and the next longer one.
+  /// Edge 0 ... edges() - 1 lies between hold shortest + edge and the next longer hold.
   int edges() const { return static_cast<int>(counts_.size()) - 1; }
   std::int64_t total() const { return total_; }
   double rate(int edge) const { return target_.refresh_hz / (target_.shortest + edge); }
@@ -38,7 +38,7 @@ class Holds {
            std::max(0.0, std::abs(sd() - target_.sd) - target_.sd_tolerance);
   }
 
-  /// How much a missed mean counts beside a missed standard deviation while searching.
+  /// Weight of the mean's miss relative to the standard deviation's in the search.
   void weigh_mean(double weight) { mean_weight_ = weight; }
 
   void set(int edge, std::int64_t count) { counts_[static_cast<std::size_t>(edge)] = count; }
@@ -68,7 +68,7 @@ class Holds {
     return holds;
   }
 
-  /// What mean() needs of new counts. The whole numbers of a harmonic mean need no pass over the frames.
+  /// Recounts the sums for mean(). A harmonic mean needs only integer sums, not a pass over the frames.
   void recount_for_mean() {
     if (target_.mean_kind == FpsMean::Arithmetic) return recount();
     total_ = 0;
@@ -102,8 +102,7 @@ class Holds {
 };
 
 /// Minimises the objective + spread x (sum of squared deviations from the mean) + price x (the mean's sum):
-/// frame i crosses an edge when its x_i lies above a threshold. Then the mean holds, and after recount() the
-/// rest.
+/// frame i crosses an edge if its x_i is above a threshold. Then mean() is valid; recount() updates the rest.
 void place(Holds& holds, const HoldTarget& target, double spread, double price) {
   std::int64_t last = 0;
   const auto& x = target.rates;
@@ -119,7 +118,7 @@ void place(Holds& holds, const HoldTarget& target, double spread, double price) 
   holds.recount_for_mean();
 }
 
-/// Finds the price at which the wished mean is passed; more price shortens holds.
+/// Bisects the price until the target mean is reached; a higher price shortens holds.
 void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   double low = -1, high = 1;
   const auto mean_at = [&](double price) {
@@ -136,7 +135,7 @@ void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   holds.recount();
 }
 
-/// Bisects the weight on the spread until the standard deviation is passed.
+/// Bisects the weight on the spread until the target standard deviation is reached.
 void place_with_moments(Holds& holds, const HoldTarget& target) {
   const auto sd_at = [&](double log_weight) {
     place_with_mean(holds, target, std::exp(log_weight) - 1);
@@ -152,7 +151,7 @@ void place_with_moments(Holds& holds, const HoldTarget& target) {
   }
 }
 
-/// Brings the total to the wished one by the moves that cost the objective least.
+/// Moves single frames, cheapest first by the objective, until the total is as given.
 void fix_total(Holds& holds, std::int64_t total) {
   while (holds.total() != total) {
     const int by = holds.total() > total ? 1 : -1;
@@ -171,7 +170,7 @@ void fix_total(Holds& holds, std::int64_t total) {
   }
 }
 
-/// First the moments' excess, then the objective.
+/// Compares by the moments' excess, then by the objective.
 struct Score {
   double excess, distance2;
   explicit Score(const Holds& holds) : excess(holds.excess()), distance2(holds.distance2()) {}
@@ -181,7 +180,7 @@ struct Score {
   }
 };
 
-/// One frame gives a period, another takes it: the total stays.
+/// Moves a period from one frame to another; the total is unchanged.
 bool exchange(Holds& holds, Score& score) {
   bool moved = false;
   for (int up = 0; up < holds.edges(); ++up) {
@@ -204,7 +203,7 @@ bool exchange(Holds& holds, Score& score) {
   return moved;
 }
 
-/// One frame's hold changes by a period: the total changes.
+/// Changes one frame's hold by a period; the total changes.
 bool adjust(Holds& holds, Score& score) {
   bool moved = false;
   for (int edge = 0; edge < holds.edges(); ++edge) {
@@ -239,7 +238,7 @@ HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total
           total > 0 && holds.total() != total ? HUGE_VAL : holds.excess()};
 }
 
-/// Two holds that bracket the mean are the extremes of the standard deviation: descend from each such pair.
+/// Lists of two holds that bracket the mean have extreme standard deviations: descends from each such pair.
 HoldList from_pairs(const HoldTarget& target, std::int64_t total, HoldList best) {
   const auto n = static_cast<std::int64_t>(target.rates.size());
   const auto first = static_cast<std::int64_t>(target.shortest);
@@ -271,7 +270,8 @@ HoldList search_holds(const HoldTarget& target, std::int64_t total) {
   auto best = result(holds, target, total);
   if (best.excess == 0) return best;
   if (total > 0) return from_pairs(target, total, std::move(best));
-  // A free total may trade the mean for the standard deviation and stop halfway: insist on the mean.
+  // With a free total, the search may trade the mean for the standard deviation and stop halfway: weight the
+  // mean.
   for (Holds* start : {&holds, &strict}) {
     start->weigh_mean(1000);
     descend(*start, total);

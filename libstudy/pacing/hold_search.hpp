@@ -1,5 +1,5 @@
 #pragma once
-/// Lists of whole hold counts near a target distribution of rates: what quantise() searches.
+/// Search for lists of whole hold counts near a target distribution of rates, for quantise().
 ///
 /// With N frames, hold k shows at the rate f_k = R / k. Objective: the mean squared difference of the sorted
 /// rates, 1/N sum_i (f_k(i) - x_i)^2, which is the squared 2-Wasserstein distance between the two
@@ -14,7 +14,7 @@
 
 namespace study {
 
-/// What is looked for.
+/// The target of the search.
 struct HoldTarget {
   std::vector<double> rates;  ///< x_i, frames/s, descending
   double refresh_hz = 0;      ///< R
@@ -30,7 +30,7 @@ struct HoldTarget {
 /// A list of holds, in descending rate.
 struct HoldList {
   std::vector<int> holds;
-  double mean = 0, sd = 0;  ///< frames/s; the mean that the target names
+  double mean = 0, sd = 0;  ///< frames/s; mean: of the target's mean_kind
   double distance = 0;      ///< root of the objective, frames/s
   double excess = 0;        ///< how far the moments miss their tolerances; 0 = both are met
 };

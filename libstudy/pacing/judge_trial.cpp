@@ -89,7 +89,7 @@ void judge_cut(Judgement& judgement, TimingVerdict& trial, const PlayedTrial& pl
   judgement.add(Verdict::Fail, reason);
 }
 
-/// False when the onsets do not ascend.
+/// False if the onsets do not ascend.
 bool measure(TimingVerdict& trial, const PlayedTrial& played) {
   const auto intervals_s = realised_intervals(played, trial.grade);
   if (*std::min_element(intervals_s.begin(), intervals_s.end()) <= 0) return false;

@@ -1,5 +1,5 @@
 #pragma once
-/// Plays a schedule on a clock and judges what came of it.
+/// Plays a schedule on a clock and judges the realised timing.
 
 #include <cstdint>
 #include <functional>
@@ -16,9 +16,9 @@ namespace study {
 
 enum class AtEnd { Loop, Hold };
 
-/// How content elapses. per_frame: frame i shows step start_frame + i (the paper's reading). real_time: frame
-/// i shows the step that the scheduled time since the first frame has come to. A process of finite length
-/// goes back to start_frame (Loop) or stays at its last step (Hold).
+/// How content advances. per_frame: frame i shows step start_frame + i (the paper's reading). real_time:
+/// frame i shows the step at the scheduled time since the first frame. A process of finite length goes back
+/// to start_frame (Loop) or stays at its last step (Hold).
 struct ContentRules {
   bool real_time = false;
   double content_step_s = 1.0 / 60;
@@ -32,7 +32,7 @@ struct FrameRecord {
   std::int64_t content_step = 0;
   std::int64_t scheduled_ns = 0;
   PresentTimes times;
-  bool late = false;  ///< placed_ns() over the protocol's lateness bound after `scheduled_ns`
+  bool late = false;  ///< placed_ns() is after `scheduled_ns` by more than the protocol's bound
   FrameFacts facts;
 };
 
@@ -40,13 +40,13 @@ struct FrameRecord {
 struct PlayedTrial {
   std::vector<FrameRecord> frames;
   std::int64_t end_ns = 0;
-  std::optional<std::int64_t> cut;  ///< it went on for too long: scheduled frames that were not shown
+  std::optional<std::int64_t> cut;  ///< the trial overran: number of scheduled frames not shown
 };
 
-/// What a trial is held to while it is shown.
+/// Timing bounds of a trial while it is shown.
 struct ShowingBounds {
-  std::int64_t late_after_ns = 0;  ///< of placed_ns() - scheduled; beyond it a frame is late
-  std::int64_t overrun_ns = 0;     ///< past the planned end; a trial that goes on for longer is cut
+  std::int64_t late_after_ns = 0;  ///< a frame is late if placed_ns() - scheduled exceeds this
+  std::int64_t overrun_ns = 0;     ///< a trial is cut if it goes on for longer past its planned end
 };
 
 /// Shows one trial. Frame i + 1 is prepared and rendered while frame i is on, then shown at its deadline.
@@ -62,8 +62,8 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
 
 /// Shows a trial without a schedule: every frame as soon as it is ready, until `duration_s` have passed since
 /// the first; scheduled_ns is the instant at which it was ready, and no frame is late. The last frame stays
-/// on until the one after it, which is no longer shown, is ready; when that takes longer than the overrun the
-/// trial counts as cut. base::Error when the clock stands still meanwhile (VirtualClock) or the content ends
+/// on until the next one, which is not shown, is ready; if that takes longer than the overrun, the trial
+/// counts as cut. base::Error if the clock does not advance meanwhile (VirtualClock) or the content ends
 /// before start_frame.
 PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
                         Clock& clock, std::int64_t overrun_ns,
@@ -74,16 +74,16 @@ struct TimingTolerance {
   double late_after_ms = 0.5;
   double mean_relative = 0.005;
   double sd_relative = 0.02;
-  double sd_absolute = 0.25;         ///< frames/s; the wider of the two sd bounds counts
+  double sd_absolute = 0.25;         ///< frames/s; the wider of the two sd bounds applies
   double fail_mean_relative = 0.05;  ///< beyond this the trial has failed, not only degraded
   double fail_sd_relative = 0.20;
-  double fail_sd_absolute = 2.5;  ///< frames/s; the wider of the two counts here too
+  double fail_sd_absolute = 2.5;  ///< frames/s; the wider of the two applies
   /// How long a trial may go on past its planned end before it is cut; none: as long as the trial, at least
   /// 5 s.
   std::optional<double> overrun_s;
 };
 
-/// What a trial of this length is held to.
+/// The bounds of a trial of this length.
 ShowingBounds showing_bounds(const TimingTolerance& tolerance, double duration_s);
 
 enum class Verdict { Pass, Degraded, Fail };
@@ -98,22 +98,22 @@ struct TimingVerdict {
   double lag1 = 0;  ///< autocorrelation of 1/dt at lag 1; 0 when delta is 0
   std::int64_t late = 0;
   double worst_late_ms = 0;
-  bool cut = false;    ///< it went on for too long
-  std::string reason;  ///< why it is not a pass
+  bool cut = false;    ///< it overran
+  std::string reason;  ///< why the verdict is not pass
 };
 
-/// Intervals in seconds between the onsets of successive frames, the last one up to end_ns: actual display
-/// times when the grade is A or B and every frame has one, placed_ns() otherwise.
+/// Intervals in seconds between the onsets of successive frames, the last one up to end_ns. Onsets are actual
+/// display times if the grade is A or B and every frame has one, else placed_ns().
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade);
 
 /// pass: no frame late and both realised moments within tolerance. fail: cut, or a moment beyond the fail_
-/// bounds. degraded: everything between. The mean is the one the rules name. Needs at least one frame; onsets
-/// that do not ascend are a fail with that reason.
+/// bounds. degraded: everything between. The mean is the one that the rules specify. Needs at least one
+/// frame; onsets that do not ascend are a fail with that reason.
 TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
                           const TimingTolerance& tolerance, TimingGrade grade);
 
-/// What was shown without a schedule: realised moments and intervals; the nominal moments are 0. A trial that
-/// was cut is a fail, else `verdict` says nothing.
+/// Timing of a trial without a schedule: realised moments and intervals; the nominal moments are 0. A cut
+/// trial is a fail; otherwise `verdict` has no meaning.
 TimingVerdict describe_trial(const PlayedTrial& played, TimingGrade grade);
 
 /// "pass", "degraded" or "fail".

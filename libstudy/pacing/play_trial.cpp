@@ -9,10 +9,10 @@ namespace study {
 
 namespace {
 
-// From the first frame's rendering to its deadline: long enough that it is waited for like any other.
+// Time from the first frame's rendering to its deadline: long enough to wait for it as for any other frame.
 constexpr std::int64_t lead_ns = 2'000'000;
 
-/// Which content step a frame shows.
+/// Computes which content step a frame shows.
 class ContentCourse {
  public:
   ContentCourse(const ContentRules& rules, Stimulus& stimulus) : rules_(rules), stimulus_(stimulus) {
@@ -38,7 +38,7 @@ class ContentCourse {
 
  private:
   std::int64_t step_at(std::int64_t index, std::int64_t onset_ns) const {
-    // A millionth of a step forgives rounding where an onset falls on a step's edge.
+    // A tolerance of a millionth of a step absorbs rounding if an onset falls on a step's edge.
     const double elapsed = 1e-9 * static_cast<double>(onset_ns) / rules_.content_step_s;
     const std::int64_t gone = rules_.real_time ? static_cast<std::int64_t>(elapsed + 1e-6) : index;
     if (length_ == 0) return rules_.start_frame + gone;
@@ -89,7 +89,7 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   const std::int64_t length_ns = std::accumulate(intervals_ns.begin(), intervals_ns.end(), std::int64_t{0});
   std::int64_t first_ns = 0;
   std::int64_t onset_ns = 0;
-  std::int64_t making_ns = 0;  // that a frame takes lately
+  std::int64_t making_ns = 0;  // recent time to make a frame
   for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
     if (i > 0) display.hold(first_ns + onset_ns - 2 * making_ns, clock);
     const std::int64_t begun_ns = clock.now_ns();

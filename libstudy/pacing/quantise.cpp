@@ -18,7 +18,7 @@ constexpr double sd_absolute = 0.25;  // frames/s
 constexpr double approximate_mean = 0.005;
 constexpr double arithmetic_mean_met = 1e-4;
 constexpr double harmonic_mean_met = 1e-9;
-constexpr double whole = 1e-6;  // periods; forgives rounding in refresh * frames / mean
+constexpr double whole = 1e-6;  // periods; tolerance for rounding in refresh * frames / mean
 
 HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, double refresh_hz) {
   HoldTarget target;
@@ -46,7 +46,7 @@ double wished_periods(const HoldTarget& target) {
 
 bool is_whole(double periods) { return std::abs(periods - std::round(periods)) <= whole * periods; }
 
-/// A list that meets the mean and the standard deviation; excess > 0 when none was found.
+/// A list that meets the mean and the standard deviation; excess > 0 if none was found.
 HoldList exact_list(const HoldTarget& target) {
   if (target.mean_kind == FpsMean::Arithmetic) return search_holds(target, 0);
   const double periods = wished_periods(target);
@@ -62,8 +62,8 @@ double sd_miss(const HoldList& list, const HoldTarget& target) {
 
 double mean_miss(const HoldList& list, const HoldTarget& target) { return std::abs(list.mean - target.mean); }
 
-/// Every total within 0.5 % of the wished one. The nearest delta wins; deltas that differ by less than the
-/// tolerance count as equally near unless one meets it, and then the nearest mu wins.
+/// Searches every total within 0.5 % of the target. The nearest delta wins; unless one meets its tolerance,
+/// deltas that differ by less than the tolerance count as equal. Among equal ones the nearest mu wins.
 HoldList approximate_list(HoldTarget target) {
   const double bound = approximate_mean * target.mean;
   std::vector<HoldList> found;
@@ -91,8 +91,7 @@ HoldList approximate_list(HoldTarget target) {
   return best;
 }
 
-/// What keeps every list with exactly this mean from the wished standard deviation; empty: nothing proven
-/// does.
+/// Proof that no list with exactly this mean has the target standard deviation, in words; empty: no proof.
 std::string what_bounds_sd(const HoldTarget& target) {
   const auto bounds = sd_bounds(target);
   if (bounds.low > bounds.high)
@@ -105,8 +104,8 @@ std::string what_bounds_sd(const HoldTarget& target) {
   return {};
 }
 
-/// Which moments the best list misses and by how much, and what forces that. `tried`: with exactly the wished
-/// mean; `target`: with the tolerances of an exact list.
+/// The moments that the best list misses, by how much, and why. `tried`: a list with exactly the target mean;
+/// `target`: with the tolerances of an exact list.
 std::string what_misses(const HoldTarget& target, const HoldList& tried, const HoldList& best) {
   std::string words;
   if (best.holds.empty())

@@ -5,9 +5,9 @@
 
 namespace study {
 
-/// While it lives, the calling thread has a timer slack of 1 ns and, where the system allows it, SCHED_FIFO
-/// with the lowest real-time priority (RLIMIT_RTPRIO or CAP_SYS_NICE), else a raised nice level. Where
-/// /dev/cpu_dma_latency may be opened, processors stay out of idle states that take time to leave. Threads it
+/// During its lifetime, the calling thread has a timer slack of 1 ns and, where the system allows it,
+/// SCHED_FIFO with the lowest real-time priority (RLIMIT_RTPRIO or CAP_SYS_NICE), else a raised nice level.
+/// If /dev/cpu_dma_latency may be opened, processors avoid idle states that are slow to leave. Threads it
 /// starts meanwhile do not inherit SCHED_FIFO. Nothing is an error: note() says what was granted, for the
 /// session's record. Memory is not locked: a mapped bake would be pinned with it.
 class RealTimeScheduling {
@@ -24,7 +24,7 @@ class RealTimeScheduling {
   int old_policy_ = -1;  // -1: unchanged
   bool niced_ = false;
   int old_nice_ = 0;
-  int latency_file_ = -1;  // -1: not held; the wish lasts while it is open
+  int latency_file_ = -1;  // -1: not open; the request lasts while it is open
 };
 
 }  // namespace study

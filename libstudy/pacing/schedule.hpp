@@ -1,5 +1,5 @@
 #pragma once
-/// FPS schedules with exact moments, and their certificate on a display with a fixed refresh.
+/// FPS schedules with exact moments, and their feasibility on a display with a fixed refresh.
 
 #include <cstdint>
 #include <optional>
@@ -18,16 +18,16 @@ enum class FrameOrder { White, Ar1, Trace };
 struct PacingRules {
   FpsMean mean = FpsMean::Harmonic;
   double fps_min = 4;               ///< lowest instantaneous rate, frames/s
-  std::optional<double> fps_max;    ///< highest, frames/s; none = no upper cut
-  bool fps_max_is_refresh = false;  ///< the upper cut is the display's refresh; see for_display()
+  std::optional<double> fps_max;    ///< highest, frames/s; none = no upper bound
+  bool fps_max_is_refresh = false;  ///< the upper bound is the display's refresh; see for_display()
   double max_interval_ms = 250;     ///< longest interval allowed
   FrameOrder order = FrameOrder::White;
   double ar1 = 0;                   ///< lag-1 correlation wanted with FrameOrder::Ar1, in (-1, 1)
   std::vector<double> trace_rates;  ///< order pattern with FrameOrder::Trace
 };
 
-/// The rules on a display of this fixed refresh (0 = frames are shown as they come): "refresh" becomes a
-/// number, or no upper cut where there is no fixed refresh.
+/// The rules on a display of this fixed refresh (0 = none): the bound "refresh" becomes a number, or no upper
+/// bound without a fixed refresh.
 PacingRules for_display(PacingRules rules, double refresh_hz);
 
 /// One cell of the design: mean and standard deviation of the frame rate, frames/s, and the trial's length.
@@ -49,23 +49,23 @@ struct Schedule {
 };
 
 /// N = round(mean * duration) stratified quantiles of a truncated normal in FPS whose parameters are solved
-/// so that the list has the wished moments exactly, ordered by `seed`. base::Error naming the setting when
+/// so that the list has the requested moments exactly, ordered by `seed`. base::Error naming the setting when
 /// there is no solution.
 Schedule compile_schedule(const FpsSetting& setting, const PacingRules& rules, std::uint64_t seed);
 
 enum class Feasibility { Exact, Approximate, Unreachable };
 
-/// What a fixed refresh makes of a setting.
+/// How well a fixed refresh reproduces a setting.
 struct RefreshVerdict {
   Feasibility feasibility = Feasibility::Unreachable;
   std::int64_t frames = 0;  ///< N
-  double mean = 0;          ///< best found, frames/s; the mean that the rules name
+  double mean = 0;          ///< best found, frames/s; harmonic or arithmetic by the rules
   double sd = 0;            ///< frames/s
   double distance = 0;      ///< 2-Wasserstein distance to the unquantised rates, frames/s
   int longest_hold = 0;     ///< periods
   /// Periods each frame is held, in the order of `seed`; empty when unreachable.
   std::vector<int> holds;
-  std::string reason;  ///< why it is not exact
+  std::string reason;  ///< why it is not Exact
 };
 
 /// exact: some N = round(mean * duration) hold counts whose sum is exactly R N / mean periods (R T where mean
@@ -74,11 +74,11 @@ struct RefreshVerdict {
 /// %, delta as near as possible, same bound on the holds. unreachable: neither, or no unquantised schedule.
 /// Of the lists that meet the moments, the one nearest to the unquantised rates is searched
 /// (hold_search.hpp). With the arithmetic mean, sums of R / k seldom hit a number exactly: there mu counts as
-/// met within 0.01 %. refresh_hz > 0. rules.fps_max_is_refresh is taken at its word.
+/// met within 0.01 %. refresh_hz > 0. Applies rules.fps_max_is_refresh.
 RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& rules, double refresh_hz,
                         std::uint64_t seed);
 
-/// The schedule that a list of holds makes.
+/// The schedule of a list of holds.
 Schedule schedule_of_holds(const std::vector<int>& holds, double refresh_hz);
 
 /// "exact", "approximate" or "unreachable".

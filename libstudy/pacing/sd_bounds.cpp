@@ -8,9 +8,10 @@ namespace study {
 
 namespace {
 
-/// Calls f(fast rate, slow rate, weight of the fast one) for every pair of holds that has the mean.
+/// Calls f(fast rate, slow rate, weight of the fast one) for every pair of holds that can have the target
+/// mean.
 void for_each_pair(const HoldTarget& target, const std::function<void(double, double, double)>& f) {
-  const auto value = [&](int hold) {  // what averages to the wished mean
+  const auto value = [&](int hold) {  // the quantity whose average gives the mean
     return target.mean_kind == FpsMean::Harmonic ? static_cast<double>(hold) : target.refresh_hz / hold;
   };
   const double wished = target.mean_kind == FpsMean::Harmonic ? target.refresh_hz / target.mean : target.mean;
@@ -44,7 +45,7 @@ SdBounds sd_bounds(const HoldTarget& target) {
   });
   if (!std::isfinite(least)) return bounds;
   bounds.low = least;
-  // Convex in c: a largest of parabolas.
+  // Convex in c: a maximum of parabolas.
   double left = target.refresh_hz / target.longest, right = target.refresh_hz / target.shortest;
   for (int i = 0; i < 100 && right - left > 1e-9 * right; ++i) {
     const double a = left + (right - left) / 3, b = right - (right - left) / 3;

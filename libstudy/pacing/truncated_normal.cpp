@@ -38,7 +38,7 @@ double hazard(double t) {
   return std::exp(-0.5 * t * t) / std::sqrt(2 * std::numbers::pi) / upper_tail(t);
 }
 
-/// y with log_survival(cut, y) = target < 0. log Q is concave, so Newton's method comes down monotonically
+/// y with log_survival(cut, y) = target < 0. log Q is concave, so Newton's method converges monotonically
 /// from the right after its first step.
 double quantile(double cut, double target, double guess) {
   double y = guess;
@@ -60,7 +60,7 @@ std::vector<double> truncated_normal_strata(double cut, double width, std::size_
   const double from = reflected ? -(cut + width) : cut;
   const double lost = std::isfinite(width) ? -std::expm1(log_survival(from, width)) : 1;
   std::vector<double> strata(n);
-  // Where the hazard is not yet flat, so that the first step stays finite; then each from its neighbour.
+  // Starts where the hazard is not yet flat, so that the first step is finite; then each from its neighbour.
   double y = std::max(0.0, -from);
   for (std::size_t i = 0; i < n; ++i) {
     const double p = (static_cast<double>(i) + 0.5) / static_cast<double>(n);

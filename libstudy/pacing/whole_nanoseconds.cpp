@@ -11,7 +11,7 @@ namespace {
 
 constexpr double bound = 1e-6;
 
-/// Sums from which both moments follow, so that a change of one interval costs nothing.
+/// Sums for both moments, so that changing one interval costs constant time.
 struct Sums {
   long double time = 0, rate = 0, square = 0;
 
@@ -46,7 +46,7 @@ std::vector<std::int64_t> rounded_deadlines(const std::vector<double>& intervals
   return out;
 }
 
-/// One pass of coordinate descent over all intervals; the error after it.
+/// One pass of coordinate descent over all intervals; returns the error after it.
 double descend(std::vector<std::int64_t>& intervals_ns, Sums& sums, double error, const FpsSetting& setting,
                FpsMean mean) {
   for (auto& interval : intervals_ns) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Intervals as a record keeps them: whole nanoseconds that still have the setting's moments.
+/// Rounds intervals to whole nanoseconds, as stored, and preserves the setting's moments.
 
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-/// Names that are known elsewhere. A name that nothing knows would be run, and found out after the study.
+/// Checks names that other parts must know. An unknown name would otherwise be noticed only after the study.
 #include <algorithm>
 #include <charconv>
 
@@ -10,7 +10,7 @@ namespace study {
 
 namespace {
 
-/// The readers of the design refuse it in their own words.
+/// Blank names are refused by the readers of the design.
 bool is_blank(const std::string& word) { return word.find_first_not_of(" \t\r\n") == std::string::npos; }
 
 bool among(const std::vector<std::string>& known, const std::string& word) {
@@ -26,7 +26,7 @@ void check_methods(const base::TomlTable& design) {
   }
 }
 
-/// A whole number, or one with k behind it.
+/// True for a positive whole number, optionally with the suffix k.
 bool is_particle_count(const std::string& word) {
   long long value = 0;
   const char* end = word.data() + word.size();

@@ -5,11 +5,11 @@
 
 namespace study {
 
-/// What a picture that stays on for several periods of the display does when the head moves. Data of
-/// different modes are not to be pooled.
+/// How a picture that is held for several display periods follows the head. Do not pool data of different
+/// modes.
 enum class Hold {
-  Image,      ///< it stays where it was drawn: the runtime turns the old picture
-  State,      ///< the content stands still and is drawn anew from where the head is
+  Image,      ///< it stays at the pose where it was drawn: the runtime reprojects the old picture
+  State,      ///< the fluid is frozen and redrawn from the new head pose
   HeadLocked  ///< it moves with the head
 };
 
@@ -18,10 +18,10 @@ const char* hold_name(Hold hold);
 
 struct HeadsetRules {
   Hold hold = Hold::Image;
-  /// Held pictures reach this far beyond what the eyes see when they are drawn, degrees on each side.
+  /// Held pictures extend this far beyond the eyes' field of view, degrees on each side.
   double hold_margin_deg = 0;
-  double world_scale = 1;            ///< metres of the room that a metre of the scene takes
-  std::optional<double> refresh_hz;  ///< that the headset must have; none: as it is
+  double world_scale = 1;            ///< metres in the room per metre of the scene
+  std::optional<double> refresh_hz;  ///< that the headset must have; none: any
 };
 
 }  // namespace study

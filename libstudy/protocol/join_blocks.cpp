@@ -11,7 +11,7 @@ namespace {
 
 using Tables = std::vector<base::TomlTable>;
 
-/// Asked again and again under the same id; the reader gives no other question such an id.
+/// Scales whose questions have the same ids in every block; the reader gives no other question such an id.
 bool is_scale_of_its_own(BlockKind kind) { return kind == BlockKind::Ssq || kind == BlockKind::Fms; }
 
 void check_ids(const Tables& tables, const std::vector<Block>& blocks) {
@@ -28,7 +28,7 @@ void check_ids(const Tables& tables, const std::vector<Block>& blocks) {
   }
 }
 
-/// A trial may ask for "fms" without saying which block's.
+/// A trial may ask for "fms" without naming a block, so all fms blocks must agree.
 void check_fms(const Tables& tables, const std::vector<Block>& blocks) {
   const Block* first = nullptr;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -41,7 +41,7 @@ void check_fms(const Tables& tables, const std::vector<Block>& blocks) {
   }
 }
 
-/// An answer that ends the session is asked before anything is shown.
+/// Checks that questions with `accept` come before anything is shown.
 void check_accepts(const Tables& tables, const std::vector<Block>& blocks) {
   bool shown = false;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -59,7 +59,7 @@ struct Asked {
   const Question* question;
 };
 
-/// The questions of each id; those of ssq and fms blocks of the first of them.
+/// Questions by id; those of ssq and fms blocks are from the first such block.
 std::map<std::string, Asked> questions_by_id(const std::vector<Block>& blocks) {
   std::map<std::string, Asked> out;
   for (const Block& block : blocks) {
@@ -90,7 +90,7 @@ void check_ask(const base::TomlTable& table, std::size_t step, const std::string
   }
 }
 
-/// Every question of the block is asked by its trials, and none of any block twice.
+/// Checks that the trials ask every question of the block, and no question of any block twice.
 void check_asks(const base::TomlTable& table, const Block& block,
                 const std::map<std::string, Asked>& questions) {
   std::set<std::string> asked;
@@ -116,14 +116,14 @@ void check_count(const base::TomlTable& table, const Block& block, const Design&
              "use at most " + std::to_string(trials));
 }
 
-/// Id of the one block that shows the design.
+/// Id of the only block of kind stimulus.
 std::string stimulus_block(const std::vector<Block>& blocks) {
   return std::find_if(blocks.begin(), blocks.end(),
                       [](const Block& block) { return block.kind == BlockKind::Stimulus; })
       ->id;
 }
 
-/// Practice, repeats and catches: like which block?
+/// Practice, Repeat, Catch: resolves `like` and copies from that block.
 void join_like(const base::TomlTable& table, const Design& design, std::vector<Block>& blocks,
                std::size_t index) {
   Block& block = blocks[index];

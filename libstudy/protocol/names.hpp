@@ -1,13 +1,13 @@
 #pragma once
-/// Names of a protocol that have a meaning elsewhere: of methods in libsim, of questions in the analyses.
+/// Names in protocols that other parts rely on: methods (libsim) and questions (analyses).
 
 #include <string>
 #include <vector>
 
 namespace study {
 
-/// The methods that libsim computes. libstudy does not include it: a test of the programs holds both lists
-/// equal.
+/// The methods that libsim implements. libstudy does not include libsim; a test of the programs compares both
+/// lists.
 const std::vector<std::string>& method_names();
 
 /// Ids of questions that a program or a shipped analysis looks for: realism and the four items of

@@ -1,5 +1,5 @@
 #pragma once
-/// A study as its file describes it: plain structs, checked, hashed. One translation unit reads the file.
+/// A study as described by its file: plain structs, checked and hashed. One translation unit reads the file.
 
 #include <cstdint>
 #include <filesystem>
@@ -30,35 +30,34 @@ struct Protocol {
   TimingTolerance timing;
   HeadsetRules headset;
   bool accept_approximate = false;
-  /// Also compare stimuli whose pictures differ in renderer, size or angle, as baked and live ones can.
+  /// Allows comparing stimuli whose pictures differ in renderer, size or angle, as baked and live ones can.
   bool accept_mixed_pictures = false;
-  /// Participants are told to look at the middle of the picture: where they look is known beforehand.
+  /// Participants are instructed to look at the middle of the picture, so the gaze point is known in advance.
   bool fixation = false;
-  /// H1 and H5 need to know where people looked: without tracked gaze they are labelled not testable.
+  /// H1 and H5 need gaze: without tracked gaze they are labelled not testable.
   bool needs_gaze = false;
-  /// The camera has the angle that the picture fills of the eye's view, instead of each scene's own.
+  /// The camera uses the visual angle of the picture instead of each scene's own angle.
   bool true_angle = false;
-  /// True when the command line changed it (--trial-seconds ...): data are marked as test and the hash
-  /// differs.
+  /// True if the command line changed it (--trial-seconds ...): data are marked as test and the hash differs.
   bool test_data = false;
-  /// What override_trial_seconds() was given; none = every trial is as long as the file says. text and this
-  /// together rebuild the protocol.
+  /// Argument of override_trial_seconds(); none = trial lengths of the file. `text` and this rebuild the
+  /// protocol.
   std::optional<double> trial_seconds;
 
-  std::string place;   ///< stands for the file in messages; empty: rebuilt from tables
-  std::string text;    ///< the file as read, kept in every database
+  std::string place;   ///< name of the file in messages; empty: rebuilt from tables
+  std::string text;    ///< the file as read, stored in every database
   std::string sha256;  ///< of `text`, or of text + overrides when there are any
 };
 
 /// Every question of the protocol with its block's index, in the order of the file.
 std::vector<std::pair<int, const Question*>> all_questions(const Protocol& protocol);
 
-/// Earlier versions took any name of a method and any id of a question, and asked gaze_question and
-/// sharing_question in any way: what they stored is still read.
+/// Stored: accepts protocols of earlier versions, which allowed any method name and question id and any form
+/// of gaze_question and sharing_question.
 enum class ProtocolUse { New, Stored };
 
 /// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range
-/// or two keys that contradict each other. `name` stands for the file in messages.
+/// or two keys that contradict each other. `name` names the file in messages.
 Protocol parse_protocol(std::string_view text, const std::string& name, ProtocolUse use = ProtocolUse::New);
 Protocol read_protocol(const std::filesystem::path& path);
 /// Sets the length of every trial, 0.1 to 3600 s; changes the hash and marks the data as test. Equal texts

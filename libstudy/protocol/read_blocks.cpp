@@ -43,7 +43,7 @@ bool any_of(BlockKind kind, std::initializer_list<BlockKind> kinds) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-/// What a page shows and how long.
+/// Reads a page's content and duration.
 void read_page(const base::TomlTable& table, Block& block) {
   if (block.kind == BlockKind::GazeValidation) return;
   if (block.kind != BlockKind::Black) block.title = table.string_or("title", "");

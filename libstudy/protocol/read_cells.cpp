@@ -1,4 +1,4 @@
-/// The cells of a design: its factors and the moments of each.
+/// Reads the cells of a design: factors and moments.
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -36,7 +36,7 @@ using Moments = std::pair<double, double>;  // mean, standard deviation, frames/
 std::string too_small(double sd) { return "= " + shown(sd) + " is too small to be told from 0"; }
 std::string use_more() { return "use 0, or at least " + shown(least_sd_fps); }
 
-/// Every mean with every standard deviation below it.
+/// Every mean with every smaller standard deviation.
 std::vector<Moments> read_moments(const base::TomlTable& table) {
   const auto means = distinct_numbers(table, "mean_fps", fps_range);
   const auto sds = distinct_numbers(table, "sd_fps", {0, fps_range.max});
@@ -53,7 +53,7 @@ std::vector<Moments> read_moments(const base::TomlTable& table) {
   return out;
 }
 
-/// What the cells are made of beside their moments.
+/// The factors of the cells besides their moments.
 struct Factors {
   std::vector<std::string> scenes, sizes, methods;
 };
@@ -67,7 +67,7 @@ void check_level(const base::TomlTable& row, std::string_view key, const std::st
   }
 }
 
-/// [[design.moments]]: one for each cell, whatever its effects.
+/// [[design.moments]]: one for each cell, independent of effects.
 class PublishedMoments {
  public:
   PublishedMoments(const base::TomlTable& design, const Factors& factors) : design_(design) {
@@ -105,7 +105,7 @@ class PublishedMoments {
   std::map<std::tuple<std::string, std::string, std::string>, Moments> moments_;
 };
 
-/// Keys that this source of moments does not read.
+/// Refuses keys that this source of moments does not read.
 void refuse_idle_keys(const base::TomlTable& table, TimingSource timing) {
   const bool reads_lists = timing == TimingSource::Settings || timing == TimingSource::Equal;
   for (const char* key : {"mean_fps", "sd_fps"}) {

@@ -34,7 +34,7 @@ std::size_t distinct_levels(const Design& design, Level level) {
   return levels.size();
 }
 
-/// Orders in which a participant can meet groups of different scenes, before n_* is spread evenly.
+/// Number of sequences of groups with different scenes, before selecting those that spread n_* evenly.
 double sequences_at_most(const Design& design) {
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
   const auto sizes = distinct_levels(design, [](const StimulusSpec& what) { return what.n_star; });
@@ -44,7 +44,7 @@ double sequences_at_most(const Design& design) {
   return out;
 }
 
-/// Different scenes come first: a participant never meets one twice.
+/// Checks the number of groups: a participant never sees a scene twice.
 void check_groups(const base::TomlTable& table, const Design& design) {
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
   if (static_cast<std::size_t>(design.groups) > scenes) {
@@ -72,7 +72,7 @@ void check_trials(const base::TomlTable& table, const Design& design) {
   }
 }
 
-/// The assignment counts how often each of its places is taken.
+/// Limits the number of slots, because the assignment counts the uses of each.
 void check_places(const base::TomlTable& table, const Design& design) {
   const bool rows = design.order == TrialOrder::Latin || design.order == TrialOrder::Williams;
   const double places =
@@ -90,7 +90,7 @@ std::string level_of(const Cell& cell, const std::string& factor) {
   return shown(factor == "mean_fps" ? cell.setting.mean : cell.setting.sd);
 }
 
-/// More than half of the trials with one level leave no order in which it never stands beside itself.
+/// If more than half of the trials share a level, every order has equal neighbours.
 void check_never_adjacent(const base::TomlTable& table, const Design& design) {
   const auto group = cell_groups(design).front();
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {

@@ -1,4 +1,4 @@
-/// The factor effects: its levels and what each holds.
+/// Reads the factor effects: its levels and their content.
 #include <algorithm>
 
 #include "libstudy/protocol/readers.hpp"
@@ -33,7 +33,7 @@ std::vector<std::string> read_levels(const base::TomlTable& design) {
   return levels;
 }
 
-/// A table as in a scene's file, "foam emission_per_s = 0.3": which keys a kind has is libsim's to say.
+/// An effect's table as in a scene file, as words: "foam emission_per_s = 0.3". libsim checks its keys.
 std::string read_effect(const base::TomlTable& table, const std::string& kind) {
   std::string words = kind;
   for (const std::string& key : table.keys()) {
@@ -62,7 +62,7 @@ EffectSet read_set(const base::TomlTable& table, const std::string& name) {
   return set;
 }
 
-/// [[design.effect_set]], each a level that `effects` names.
+/// Reads [[design.effect_set]]; `effects` must name each.
 std::vector<EffectSet> read_tables(const base::TomlTable& design, const std::vector<std::string>& levels) {
   std::vector<EffectSet> out;
   for (const auto& table : design.tables("effect_set")) {

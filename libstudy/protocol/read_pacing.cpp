@@ -32,7 +32,7 @@ void read_order(const base::TomlTable& table, PacingRules& rules) {
   }
 }
 
-/// Cuts that no list of intervals with these means could keep.
+/// Refuses bounds that no list of intervals with these means can satisfy.
 void check_cuts(const base::TomlTable& table, const PacingRules& rules,
                 const std::vector<FpsSetting>& settings) {
   // A relative margin for a limit that was written with a few digits, such as 333.333 for fps_min = 3.

@@ -8,7 +8,7 @@ namespace study {
 
 namespace {
 
-/// A key as a whole number; none: it is something else.
+/// A key as a whole number; none if it is not one.
 std::optional<int> score_of(const std::string& key) {
   int score = 0;
   const char* end = key.data() + key.size();
@@ -79,7 +79,7 @@ void read_scores(const base::TomlTable& table, Question& question) {
   }
 }
 
-/// A score that can be given as an answer.
+/// True if the score is a possible answer.
 bool can_be_given(const Question& question, int score) {
   if (question.kind != AnswerKind::Choice) return score >= question.scale_min && score <= question.scale_max;
   return std::any_of(question.anchors.begin(), question.anchors.end(),
@@ -98,7 +98,7 @@ std::optional<int> read_score(const base::TomlTable& table, std::string_view key
   return score;
 }
 
-/// Which answers let the participant go on.
+/// Reads `accept`: the answers that let the participant go on.
 void read_accept(const base::TomlTable& table, BlockKind block, Question& question) {
   if (!table.has("accept")) return;
   if (block != BlockKind::Screening && block != BlockKind::Consent && block != BlockKind::Demographics) {
@@ -114,7 +114,7 @@ void read_accept(const base::TomlTable& table, BlockKind block, Question& questi
   if (score > high) table.fail("accept", "holds no answer", "use scores that anchors lists");
 }
 
-/// What only catch pages have: the answer that attention gives.
+/// Reads `expect` of catch pages: the answer of an attentive person.
 void read_expect(const base::TomlTable& table, BlockKind block, Question& question) {
   question.expect = read_score(table, "expect", question);
   if (block != BlockKind::Catch && question.expect) {
@@ -159,7 +159,7 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   return question;
 }
 
-/// Why the program could not obey the answers to a question; empty: it can.
+/// Why the program cannot obey the answers to a question; empty if it can.
 std::string why_not_obeyed(BlockKind block, const Question& question) {
   if (block != BlockKind::Consent) return "stands in a block of kind " + block_kind_name(block);
   if (question.kind != AnswerKind::Choice) return "is not of kind choice";

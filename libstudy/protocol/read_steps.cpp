@@ -46,7 +46,7 @@ class StepReader {
 
   int interval() {
     std::string which;
-    if (!pairs_) return 0;  // what follows is refused with the rest of the line
+    if (!pairs_) return 0;  // the caller refuses the rest of the line
     words_ >> which;
     if (which != "first" && which != "second") {
       fail("does not say which of the pair",
@@ -70,7 +70,7 @@ class StepReader {
   bool pairs_;
 };
 
-/// All stimuli, first before second, then something to ask.
+/// Checks that the steps show all stimuli, first before second, and then ask a question.
 void check_steps(const base::TomlTable& table, const std::vector<TrialStep>& steps, bool pairs) {
   int seen = 0;
   bool asked = false;

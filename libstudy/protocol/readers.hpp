@@ -1,5 +1,5 @@
 #pragma once
-/// Parts of a protocol file, each read by one translation unit. Errors as parse_protocol().
+/// Readers of the parts of a protocol file, one translation unit each. Errors as parse_protocol().
 
 #include <string>
 #include <string_view>
@@ -14,44 +14,44 @@ inline constexpr base::Range fps_range{0.1, 1000};
 inline constexpr base::Range duration_range{0.1, 3600};
 inline constexpr base::Range pause_range{0, 3600};
 
-/// A text that holds more than white space.
+/// Reads a text that is not blank.
 std::string text_of(const base::TomlTable& table, std::string_view key);
-/// A name that steps and tables of data can hold: a letter, then letters, digits and '_', 64 at most.
+/// Reads an id that is valid in steps and data tables: a letter, then letters, digits and '_', at most 64.
 std::string id_of(const base::TomlTable& table, std::string_view key);
-/// Whether it is such a name.
+/// True if `word` is such an id.
 bool is_id(std::string_view word);
-/// A number as messages show it.
+/// A number as text for messages.
 std::string shown(double value);
 
-/// Everything but the text itself; `root` is not finished, so that it can still tell what was asked of it.
+/// Reads all fields but `text`. Does not finish `root`, so that its asked keys can still be listed.
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
 Design read_design(const base::TomlTable& table);
-/// Levels of the factor effects; none where the design does not vary them.
+/// Levels of the factor effects; empty if the design does not vary them.
 std::vector<EffectSet> read_effect_sets(const base::TomlTable& design);
-/// Every combination of the factors, by scene, n_*, method, effects and moments.
+/// Every combination of the factors, ordered by scene, n_*, method, effects and moments.
 std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
                              const std::vector<EffectSet>& effects);
-/// A list of words, none empty or twice.
+/// A list of words without empty or repeated ones.
 std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key);
 HeadsetRules read_headset(const base::TomlTable& table);
 PacingRules read_pacing(const base::TomlTable& table, const Design& design);
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
                                ProtocolUse use);
-/// What each trial of a block does.
+/// The steps of each trial of a block.
 std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs);
-/// The questions that the program obeys are asked so that it can. tables: those that the blocks were read
-/// from.
+/// Checks that gaze_question and sharing_question are asked in a form that the program can obey. tables: the
+/// blocks' TOML tables.
 void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
-/// Methods are those of method_names(), and n_star holds numbers of particles.
+/// Checks that methods are in method_names() and that n_star holds particle counts.
 void check_design_names(const base::TomlTable& design);
-/// No id is a misspelling of one of known_question_ids() that the protocol lacks.
+/// Checks that no id is a misspelling of one of known_question_ids() that the protocol lacks.
 void check_question_ids(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
 /// The questions of a block of this kind.
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);
-/// What only all blocks together tell: ids, and what `like` and `ask` name. Fills in the steps that blocks
-/// take over. tables: those that the blocks were read from.
+/// Checks across all blocks: ids, and the names in `like` and `ask`. Copies steps to blocks with `like`.
+/// tables: the blocks' TOML tables.
 void join_blocks(const std::vector<base::TomlTable>& tables, const Design& design,
                  std::vector<Block>& blocks);
 

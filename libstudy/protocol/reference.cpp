@@ -6,7 +6,7 @@ namespace study {
 
 namespace {
 
-// Words for keys that only some files need.
+// Fallback text of keys that only some files need.
 constexpr const char* where_needed = "see right";
 
 struct TableText {

@@ -1,5 +1,5 @@
 #pragma once
-/// Every key of a protocol file. A test holds this against what the readers ask for.
+/// Reference of all keys of a protocol file. A test compares it with the keys that the readers ask for.
 
 #include <string>
 #include <vector>
@@ -7,11 +7,11 @@
 namespace study {
 
 struct KeyReference {
-  std::string table;  ///< "", "design", "block.question": the [table] or [[tables]] it stands in
+  std::string table;  ///< "", "design", "block.question": the [table] or [[tables]] that holds it
   std::string key;
   std::string type;      ///< as base::AskedKey::type; several with " or "
   std::string values;    ///< range or choices; empty: any
-  std::string fallback;  ///< for an absent key; empty: the key is needed
+  std::string fallback;  ///< value of an absent key; empty: the key is required
   std::string meaning;
 };
 

@@ -8,7 +8,7 @@ namespace study {
 
 namespace {
 
-// After pictures nobody is sent away at once: a rest of at least this long, then until they feel well.
+// Least rest after stimuli were shown, s; participants stay until they feel well.
 constexpr double stop_rest_s = 60;
 
 class Farewell {
@@ -33,7 +33,7 @@ class Farewell {
  private:
   bool offer(Offer what) { return run_.parts.participant.offer(what, run_.parts.clock, check_); }
 
-  /// Items may be left out: nobody is held who does not feel well.
+  /// All items are optional, so that nobody who feels unwell must stay.
   void ask_how_they_feel(std::span<const OpenUnit> left) {
     const auto last = std::find_if(left.rbegin(), left.rend(), [this](const OpenUnit& unit) {
       return run_.block(unit).kind == BlockKind::Ssq;
@@ -67,7 +67,7 @@ void say_farewell(const Running& run, Questioning& questioning, const Ending& en
       case EarlyEnd::DroppedOut:
         return;
     }
-  } catch (const Stopped&) {  // the session is over all the same
+  } catch (const Stopped&) {  // the session has ended anyway
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a participant is told and asked once a session has ended before its last unit.
+/// The pages that a participant sees after a session ended before its last unit.
 
 #include <span>
 
@@ -7,11 +7,10 @@
 
 namespace study {
 
-/// Call it when the end is committed; `left`: units that are not done. Refused and ruled out: a page of
-/// thanks. Stopped: it is over, rest until well; where something was shown, the last page of the SSQ that was
-/// planned after it, if they wish; keep or delete what was given, which becomes an event (withdrawal_wish);
-/// thanks. Whoever left is told nothing. What the experimenter wishes no longer matters but Wish::Stop, which
-/// skips the rest of it.
+/// Call it once the end is committed; `left`: units that are not done. Refused and NotEligible: a page of
+/// thanks. Stopped: a page with a rest; if a stimulus was shown, an offer to answer the last planned SSQ
+/// page; a choice to keep or delete the data (delete logs withdrawal_wish); thanks. DroppedOut: nothing.
+/// Ignores the experimenter's wishes but Wish::Stop, which skips the remaining pages.
 void say_farewell(const Running& run, Questioning& questioning, const Ending& ending,
                   std::span<const OpenUnit> left);
 

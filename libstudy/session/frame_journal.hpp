@@ -1,6 +1,6 @@
 #pragma once
-/// Keeps the frames of a running trial, and what is recorded beside them, without touching the disk between
-/// two frames.
+/// Buffers the frames of a running trial and their recordings, so that the session's thread never waits for
+/// the disk between two frames.
 
 #include <atomic>
 #include <condition_variable>
@@ -17,7 +17,7 @@
 
 namespace study {
 
-/// What is not in the store yet.
+/// Records that are not in the store yet.
 struct Unwritten {
   std::vector<FrameRecord> frames;
   std::vector<GazeSample> gaze;
@@ -25,27 +25,27 @@ struct Unwritten {
   std::vector<IpdChange> ipds;
 };
 
-/// The rows that a journal's belong to.
+/// The session and presentation that a journal writes for.
 struct JournalPlace {
   std::int64_t session = 0, presentation = 0;
   std::int64_t start_ns = 0;  ///< of the presentation
 };
 
-/// In the background a thread commits what has gathered every half second, so that a killed program loses
-/// less than that; the store belongs to that thread until finish(). Otherwise all waits for finish().
+/// In the background, a thread commits the buffered records every half second, so that a killed program loses
+/// less than that; only that thread uses the store until finish(). Otherwise all is buffered until finish().
 class FrameJournal {
  public:
-  /// origin: of the gaze that add() is given.
+  /// origin: source of the gaze samples passed to add().
   FrameJournal(Store& store, const JournalPlace& place, GazeOrigin origin, bool in_background);
   ~FrameJournal();
   FrameJournal(const FrameJournal&) = delete;
   FrameJournal& operator=(const FrameJournal&) = delete;
 
-  /// Takes one frame and what was recorded until then, in memory. Throws what stopped the thread, such as a
-  /// full disk.
+  /// Buffers one frame and the recordings up to it in memory. Rethrows the error that stopped the thread,
+  /// such as a full disk.
   void add(const FrameRecord& frame, const Recorded& recorded);
-  /// Ends the thread, commits what is left of the recording and `last`, and gives back the frames that are
-  /// not yet in the store.
+  /// Ends the thread, commits the rest of the recordings and `last`, and returns the frames that are not yet
+  /// in the store.
   std::vector<FrameRecord> finish(const Recorded& last);
 
  private:
@@ -61,7 +61,7 @@ class FrameJournal {
   std::mutex mutex_;
   std::condition_variable wake_;
   Unwritten pending_;
-  std::vector<std::int64_t> onsets_ns_;  ///< of the frames so far, as predicted
+  std::vector<std::int64_t> onsets_ns_;  ///< predicted onsets of the frames so far
   bool stopping_ = false;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;

@@ -9,10 +9,10 @@ namespace study {
 
 namespace {
 
-/// For a saccade and the eyes to settle; then the samples.
+/// Time for a saccade and for the eyes to settle, then for the samples.
 constexpr double settle_s = 0.8, sample_s = 1;
 
-/// Of a grid from -1 to 1, the middle first: eyes that jump from corner to corner are slower.
+/// Targets on a grid from -1 to 1, the middle first, then neighbours: jumps between corners take longer.
 constexpr std::array<std::array<int, 2>, 9> grid{
     {{0, 0}, {-1, 1}, {0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}}};
 
@@ -48,7 +48,7 @@ std::vector<ValidatedPoint> look_at_all(const Running& run, const Block& block, 
   return points;
 }
 
-/// None: a target had no valid sample.
+/// None if a target had no valid sample.
 std::optional<double> mean_accuracy(const std::vector<ValidatedPoint>& points) {
   double sum = 0;
   for (const ValidatedPoint& point : points) {

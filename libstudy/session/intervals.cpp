@@ -7,7 +7,7 @@ namespace study {
 
 namespace {
 
-/// Hold counts as nanoseconds that add up without drift.
+/// Converts hold counts to nanoseconds without accumulating rounding errors.
 std::vector<std::int64_t> holds_ns(const std::vector<int>& holds, double refresh_hz) {
   std::vector<std::int64_t> intervals;
   std::int64_t periods = 0, before = 0;

@@ -1,11 +1,11 @@
 #pragma once
-/// The station, as it stands in a session's record.
+/// The station's description for a session's record.
 
 #include <string>
 
 namespace study {
 
-/// Operating system, processor and number of cores; no name that tells the machine or its user.
+/// Operating system, processor and number of cores; no name of the machine or its user.
 std::string describe_machine();
 /// Name and offset of the local time zone, e.g. "CET +0100".
 std::string local_time_zone();

@@ -1,5 +1,5 @@
 #pragma once
-/// Questions of a page or of a trial's step: asked, checked against their rules, kept.
+/// Asks the questions of a page or of a trial's step, checks the answers and stores them.
 
 #include <optional>
 #include <span>
@@ -9,19 +9,19 @@
 
 namespace study {
 
-/// The score is on the scale, one of the choices, or left out where that is allowed; words stand alone.
+/// True if the score is on the scale, one of the choices, or left out where allowed. Only Text has words.
 bool is_valid(const Question& question, const Answer& answer);
 
 class Questioning {
  public:
   explicit Questioning(const Running& run) : run_(run) {}
 
-  /// Asks those of `questions` that have no answer in `unit` yet, on one page, and commits the answers
-  /// together; personal ones go to the personal file and are not asked of a person it knows. With `last` the
+  /// Asks the `questions` without an answer in `unit` yet, on one page, and commits the answers together.
+  /// Personal answers go to the personal file; questions that it already answers are skipped. With `last` the
   /// unit is then done. attempt: showing of the trial that is judged, 0: a page. Returns how the answers end
-  /// the session, if they do; that is then committed with the answers, and before personal ones, so that
-  /// whoever shall not go on is not shown more if the program ends in between. Refused consent keeps no
-  /// answers. base::Error for an answer that breaks its question's rules: nothing is kept of that page.
+  /// the session, if they do. The ending is committed with the answers, but before personal ones, so that an
+  /// excluded person sees no more if the program ends in between. Refused consent stores no answers.
+  /// base::Error for an invalid answer: nothing of that page is stored.
   std::optional<Ending> ask(const OpenUnit& unit, int attempt, const std::vector<Question>& questions,
                             const Occasion& occasion, bool last, const Check& check);
 

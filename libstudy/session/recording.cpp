@@ -7,12 +7,12 @@ namespace study {
 
 namespace {
 
-// Between two looks at what the eye tracker has told, s.
+// Interval between two polls of the eye tracker, s.
 constexpr double look_again_s = 0.02;
 
 bool allowed(const Running& run) { return run.parts.store.allows_gaze(run.session.id); }
 
-/// Keeps samples while it lives.
+/// Buffers samples during its lifetime.
 class Listening {
  public:
   explicit Listening(GazeSource& gaze) : gaze_(gaze) { gaze_.start(); }

@@ -1,5 +1,5 @@
 #pragma once
-/// What is recorded beside the frames of a presentation: gaze and head of who allows it, slots of a headset.
+/// Records gaze and head poses (if the participant allows it) and headset slots during a presentation.
 
 #include <cstdint>
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace study {
 
-/// An eye tracker that loses the eyes for longer than this spoils what they see, ns.
+/// A longer gap of the eye tracker invalidates a showing, ns.
 inline constexpr std::int64_t longest_gaze_gap_ns = 100'000'000;
 
-/// A distance between the eyes that another one was before.
+/// A change of the distance between the eyes.
 struct IpdChange {
   std::int64_t clock_ns = 0;
   double ipd_mm = 0;
@@ -25,8 +25,7 @@ struct Recorded {
   std::vector<IpdChange> ipds{};
 };
 
-/// The recording of one presentation, while it lives. Whether the participant allows gaze is asked anew each
-/// time.
+/// Records one presentation for its lifetime. Checks anew each time whether the participant allows gaze.
 class Recording {
  public:
   explicit Recording(const Running& run);
@@ -34,15 +33,15 @@ class Recording {
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
-  /// Of the gaze that is recorded.
+  /// Source of the recorded gaze.
   GazeOrigin origin() const { return gaze_ ? gaze_->origin() : GazeOrigin::Mouse; }
-  /// What came since the last call.
+  /// Returns the records since the last call.
   Recorded take();
-  /// Throws TrialAgain when what was taken shows that an eye tracker lost the eyes for too long.
+  /// Throws TrialAgain if the records taken show that an eye tracker lost the eyes for too long.
   void require_gaze() const;
 
-  /// What the fluid follows in this session now: the head, or the middle of the picture, stands in for a
-  /// tracker whose gaze may not be recorded, for then it is not read either.
+  /// The gaze source that the fluid follows now. A tracker that may not be recorded is not read either: the
+  /// head ("head") or the middle of the picture ("fixed") replaces it.
   static std::string followed(const Running& run);
 
  private:
@@ -51,20 +50,20 @@ class Recording {
   const Running& run_;
   GazeSource* gaze_;
   SlotSource* slots_;
-  std::int64_t seen_ns_;  ///< the last sample that was valid
+  std::int64_t seen_ns_;  ///< time of the last valid sample
   bool lost_ = false;
   std::optional<double> ipd_mm_;
 };
 
-/// Whether an eye tracker gives a valid sample within this time; the display is black meanwhile. Also true
-/// where no tracker is recorded: there is none, or the participant does not allow it.
+/// True if an eye tracker gives a valid sample within this time; the display is black meanwhile. Also true if
+/// no tracker is recorded: there is none, or the participant does not allow it.
 bool sees_eyes(const Running& run, double within_s, const Check& check);
 
-/// At the start of a session: what the headset is, and the distance between the eyes.
+/// Stores the headset's facts and the distance between the eyes, e.g. at the start of a session.
 void record_headset(const Running& run);
 
-/// Logs what happened to the headset since the last call, and keeps what it is now; what was logged, with
-/// commas between.
+/// Logs the headset's events since the last call and stores its current facts. Returns the events,
+/// comma-separated.
 std::string log_news(const Running& run);
 
 }  // namespace study

@@ -1,5 +1,5 @@
 #pragma once
-/// What the parts of a running session share: who is in it, and what ends it early.
+/// State that the parts of a running session share, and the exceptions that end it early.
 
 #include <functional>
 #include <string>
@@ -30,14 +30,14 @@ struct Running {
 /// Thrown to cut a trial and show it again.
 struct TrialAgain {
   CutCause cause;
-  std::string news{};  ///< what else happened to the headset; may be empty
+  std::string news{};  ///< further events of the headset; may be empty
 
   /// For notes and the log.
   std::string reason() const { return words_of(cause).happened + (news.empty() ? news : ": " + news); }
 };
 
-/// Heeds what the experimenter wishes at once: Stopped or Ending. TrialAgain too where there is a trial. Logs
-/// what happened to a headset.
+/// Acts on the current wish: throws Stopped or Ending, and TrialAgain if `in_trial`. Logs headset events
+/// first.
 void heed(const Running& run, bool in_trial);
 
 }  // namespace study

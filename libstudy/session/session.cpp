@@ -12,12 +12,12 @@ namespace study {
 
 namespace {
 
-/// One session under way.
+/// A running session.
 class SessionRun {
  public:
   explicit SessionRun(const Running& run) : run_(run), questioning_(run), trials_(run, questioning_) {}
 
-  /// Returns how the session ended early, if it did; that is committed.
+  /// Returns how the session ended early, if it did; the end is committed.
   std::optional<Ending> go() {
     try {
       return units();

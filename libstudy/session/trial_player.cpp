@@ -14,7 +14,7 @@ int cell_index(const PlannedTrial& trial, int interval) {
   return interval == 0 ? trial.first : trial.second.value();
 }
 
-/// Simulated time that went by from frame to frame over the time they took; a rewind counts nothing.
+/// Simulated time elapsed between frames divided by display time; rewinds do not count.
 double play_speed(const PlayedTrial& played, TimingGrade grade) {
   double simulated_s = 0;
   for (std::size_t i = 1; i < played.frames.size(); ++i) {
@@ -37,7 +37,7 @@ std::vector<Question> questions_of(const Protocol& protocol, const std::vector<s
   return out;
 }
 
-/// Why the exception that is being handled cuts a showing, for the log.
+/// Why the current exception cuts a showing, for the log.
 std::string reason_of_cut() {
   try {
     throw;
@@ -52,7 +52,7 @@ std::string reason_of_cut() {
   }
 }
 
-/// Takes what was shown off the display, however it ends.
+/// Clears the display at the end of its lifetime.
 class Cleared {
  public:
   explicit Cleared(Display& display) : display_(display) {}
@@ -114,7 +114,7 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
   for (std::size_t i = 0; i < block.steps.size(); ++i) {
     const TrialStep& step = block.steps[i];
     check();
-    // Once it is seen: after a cut the display may show another rate.
+    // Computed at the first step, because after a cut the display may have another rate.
     if (i == 0) showing.intervals = intervals_of(*showing.unit.trial);
     switch (step.kind) {
       case StepKind::Black:
@@ -135,7 +135,7 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
   return {};
 }
 
-/// What takes long is made while the screen is black.
+/// Prepares a slow stimulus while the screen is black.
 void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows) {
   const Check check = [this] { heed(run_, true); };
   const std::int64_t begun_ns = run_.now_ns();
@@ -147,7 +147,7 @@ void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows)
   run_.parts.participant.pause({PauseKind::Black, std::max(0.0, seconds - gone_s)}, run_.parts.clock, check);
 }
 
-/// Which of a pair follows, off the picture.
+/// Announces which stimulus of a pair follows, outside the picture.
 void TrialPlayer::announce(int interval) {
   const PauseKind word = interval == 0 ? PauseKind::First : PauseKind::Second;
   run_.parts.participant.pause({word, word_s}, run_.parts.clock, [this] { heed(run_, true); });
@@ -215,8 +215,8 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
     shown.play_speed = play_speed(played, verdict.grade);
     return verdict;
   } catch (...) {
-    // What cut it is the error to tell; should keeping the rest fail too, the next opening marks the cut.
-    // Gaze that came after the last frame was on what cut it.
+    // Reports the exception that cut it. If storing the rest fails too, the next opening marks the cut. Drops
+    // gaze after the last frame, which belongs to the cut.
     const std::string reason = reason_of_cut();
     try {
       parts.store.add_frames(presentation, start_ns, journal.finish({}));

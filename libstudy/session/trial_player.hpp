@@ -1,5 +1,5 @@
 #pragma once
-/// One trial: its steps in order, again after each cut (repeats.hpp).
+/// Plays one trial: its steps in order, again after each cut (repeats.hpp).
 
 #include <array>
 #include <vector>
@@ -14,12 +14,12 @@ class TrialPlayer {
   TrialPlayer(const Running& run, Questioning& questioning)
       : run_(run), questioning_(questioning), repeats_(run) {}
 
-  /// Plays the steps until the last one; TrialAgain starts over with a new attempt, for which everything is
-  /// asked anew. Returns how an answer ends the session, if it does.
+  /// Plays all steps; TrialAgain starts over with a new attempt, which asks all questions anew. Returns how
+  /// an answer ends the session, if it does.
   std::optional<Ending> play(OpenUnit unit);
 
  private:
-  /// What one showing of a trial consists of.
+  /// State of one showing of a trial.
   struct Showing {
     OpenUnit& unit;
     int attempt = 1;

@@ -41,8 +41,8 @@ void AnswerJournal::follow() {
       database_.handle(), [](void* self) { static_cast<AnswerJournal*>(self)->changed_.clear(); }, this);
 }
 
-/// A file that is gone, or that another program wrote, is no second copy: a new one is begun with what is
-/// about to be committed, and gets all the rest after the commit.
+/// If the journal is missing or was written by another program, begins a new one with the rows about to be
+/// committed; it gets all other rows after the commit.
 void AnswerJournal::look_after_file() {
   const std::string trouble = file_.trouble();
   if (trouble.empty()) return;
@@ -64,7 +64,7 @@ void AnswerJournal::write() {
     const std::vector<std::int64_t> ids(rows.begin(), rows.end());
     journal::each_row(database_, *table, ids, add);
     if (table->name != std::string("protocol")) continue;
-    // What stands in tables without row numbers comes with its protocol.
+    // Rows of tables without row numbers are written with their protocol.
     for (const std::int64_t protocol : ids) {
       for (const char* part : {"ask", "cell"})
         journal::each_row_of_protocol(database_, *journal::find_table(part), protocol, add);
@@ -79,7 +79,7 @@ void AnswerJournal::write() {
 }
 
 void AnswerJournal::kept() {
-  changed_.clear();  // what is never kept stands in the next batch again, for the last one alone is redone
+  changed_.clear();  // rows not kept are in the next batch again, because only the last batch is redone
   if (waiting_) blank_ = false;
   unmarked_ = unmarked_ || anew_ || waiting_;
   waiting_ = false;
@@ -94,7 +94,7 @@ void AnswerJournal::write_mark() {
   anew_ = false;
 }
 
-/// False when the journal still lacks what was committed.
+/// False if the journal still lacks committed rows.
 bool AnswerJournal::try_mark() {
   try {
     write_mark();
@@ -127,7 +127,7 @@ void AnswerJournal::remove_if_blank() noexcept {
   try {
     if (blank_) replace_journal(file_.path(), "");
   } catch (const base::Error&) {
-    // What is left says nothing that was kept.
+    // The remaining file holds no kept row.
   }
 }
 

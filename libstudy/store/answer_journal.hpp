@@ -2,27 +2,23 @@
 /// "<database>.answers.jsonl": a readable copy of all answers beside the database, from which `vip-study
 /// salvage` rebuilds them when the database is damaged or gone. Mode 0600; links are not followed.
 ///
-/// One JSON object a line, each the row of a table as it stands after a commit (journal_rows.hpp), the last
-/// line of a row counts: answers, and all that says what counts of them (plans, exclusions, endings, notes,
-/// permissions, the log). Frames and gaze are too many for it; personal answers have their own file and stand
-/// in neither.
+/// One JSON object per line: a table row after a commit (journal_rows.hpp). Of several lines of a row, the
+/// last one is valid. It holds answers and all that decides which answers count (plans, exclusions, endings,
+/// notes, permissions, the log), but no frames and gaze, which are too many. Personal answers are only in the
+/// personal file.
 ///
-/// Order, for each commit: the rows and {"ready": n}, brought to the disk where answers are concerned; the
-/// commit;
-/// {"kept": n}. So nothing that is said to be kept stands in one place alone. Rows that are ready and not
-/// kept, the last in the file, were under way when the program ended: the next AnswerJournal commits
-/// them, so that they are neither lost nor asked again. A cut last line is left out. Rows that were kept and
-/// are not in the database mean that the database is not the one that was written: opening it for writing is
-/// then an error that names salvage.
+/// Order for each commit: append the rows and {"ready": n}, flushed to disk if the batch has answers; commit;
+/// append {"kept": n}. So every acknowledged row is in both files. A last batch that is ready but not kept
+/// was under way when the program ended: the next AnswerJournal commits it, so that its answers are neither
+/// lost nor asked again. A truncated last line is ignored. Kept rows that are not in the database show that
+/// it is not the database that was written: opening it for writing is then an error that names salvage.
 ///
-/// For who writes the database:
-/// - Store::commit() does all this; a method of Store that changes rows ends in it and needs nothing else.
-/// - What cannot be committed any more, since the file was replaced or is locked: call write() and not
-/// kept(), then end
-///   the session. The answers are then in the journal and wait there for the database.
-/// - Commands that change many rows without a Store (withdraw, merge): prepare_rewrite() before their
-/// transaction,
-///   rewrite_journal() after it.
+/// For code that writes the database:
+/// - Store::commit() does all this; a method of Store that changes rows must end with it.
+/// - If a change can no longer be committed, because the file was replaced or is locked: call write() but not
+///   kept(), then end the session. The journal then holds the answers until the database can take them.
+/// - Commands that change many rows without a Store (withdraw, merge): call prepare_rewrite() before their
+///   transaction and rewrite_journal() after it.
 
 #include <cstdint>
 #include <filesystem>
@@ -38,27 +34,28 @@
 
 namespace study {
 
-/// Follows what one connection changes. Not before the writer's lock is held, and gone before the connection.
+/// Records the changes of one connection. Construct it while holding the writer's lock; destroy it before the
+/// connection.
 class AnswerJournal {
  public:
-  /// Brings journal and database together as described above. base::Error when the journal holds more than
-  /// the database, or cannot be written.
+  /// Reconciles journal and database as described above. base::Error if the journal holds more than the
+  /// database or cannot be written.
   explicit AnswerJournal(sqlite::Connection& database);
   ~AnswerJournal();
   AnswerJournal(const AnswerJournal&) = delete;
   AnswerJournal& operator=(const AnswerJournal&) = delete;
 
-  /// Before the commit: appends what the open transaction changed. base::Error, with the file as it was, when
-  /// it cannot be written.
+  /// Call before the commit: appends the rows that the open transaction changed. base::Error, with the file
+  /// unchanged, if it cannot be written.
   void write();
-  /// After the commit. What cannot be written now is said, and tried again by the next write(), by
-  /// require_written() and at the end.
+  /// Call after the commit. Reports a failed write; the next write(), require_written() and the destructor
+  /// retry it.
   void kept();
-  /// base::Error when the journal still lacks what was committed.
+  /// base::Error if the journal still lacks committed rows.
   void require_written();
-  /// Who is to be told, in one line, of a journal that is not as it should be; without: stderr.
+  /// Sets the receiver of one-line warnings about the journal; default: stderr.
   void tell_with(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
-  /// Removes the file when nothing in it was ever kept.
+  /// Removes the file if nothing in it was ever kept.
   void remove_if_blank() noexcept;
 
  private:
@@ -73,18 +70,18 @@ class AnswerJournal {
   std::function<void(const std::string&)> tell_;
   std::map<const journal::Table*, std::set<std::int64_t>> changed_;  // row numbers
   std::int64_t number_ = 0;                                          // of the last rows written
-  bool waiting_ = false;                                             // written and not kept
-  bool unmarked_ = false;  // committed, and the journal does not say so yet
-  bool anew_ = false;      // the file was lost: it holds a part of what the database does
-  std::string trouble_;    // why the last mark could not be written; said already
+  bool waiting_ = false;                                             // rows were written but not yet kept
+  bool unmarked_ = false;  // committed, but the journal lacks the "kept" mark
+  bool anew_ = false;      // the file was lost and begun anew: it holds only a part of the database's rows
+  std::string trouble_;    // why the last mark could not be written; already reported
   bool blank_ = true;
 };
 
-/// Says in the journal that the database is about to be changed as a whole and that these people are to be
-/// forgotten: from here on a journal that does not match is written anew, and salvage leaves these people
-/// out. base::Error as AnswerJournal().
+/// Marks in the journal that the whole database is about to change and that these people are withdrawn. From
+/// then on a journal that does not match is rewritten, and salvage omits these people. base::Error as
+/// AnswerJournal().
 void prepare_rewrite(sqlite::Connection& database, const std::vector<std::string>& persons = {});
-/// Makes the journal anew from what the database holds now; the old bytes are overwritten first.
+/// Rewrites the journal from the database's current rows and overwrites the old bytes.
 void rewrite_journal(sqlite::Connection& database);
 
 }  // namespace study

@@ -20,11 +20,11 @@ using sqlite::Transaction;
 
 namespace {
 
-/// Rows that go with a session; temp.gone lists the sessions.
+/// Rows deleted with a session; temp.gone lists the sessions.
 struct Dependant {
   const char* table;
   const char* rows;
-  std::int64_t since = 1, until = 99;  ///< schemas that have them so
+  std::int64_t since = 1, until = 99;  ///< schema versions with these rows
 };
 
 constexpr const char* of_session = "session_id IN temp.gone";
@@ -77,14 +77,13 @@ std::vector<std::int64_t> sessions_of(Connection& database, const std::string& p
   return sessions;
 }
 
-/// Schema 1 does not know who is who: its upgrade tells, and keeps the sessions' numbers.
+/// Schema 1 has no persons: take them from an upgraded copy, which has the same session numbers.
 std::vector<std::int64_t> sessions_in_schema_1(const fs::path& backup, const std::string& person) {
   const auto upgraded = open_database(backup, Open::Read, read_schema_steps());
   return sessions_of(*upgraded, person);
 }
 
-/// Schema 1 knows no tombstone and keeps its log whatever happens: the trigger steps aside in the
-/// transaction.
+/// Schema 1 has no tombstones, and a trigger protects its log: drop the trigger within the transaction.
 void bury_in_schema_1(Connection& backup, const std::vector<std::int64_t>& sessions) {
   const std::string trigger = backup.text("SELECT sql FROM sqlite_schema WHERE name = 'event_is_kept'");
   Transaction transaction(backup);
@@ -138,7 +137,7 @@ bool delete_from_backup(const fs::path& path, const std::string& person) {
   const auto sessions = version == 1 ? sessions_in_schema_1(path, person) : sessions_of(backup, person);
   if (version == 1 && !sessions.empty()) bury_in_schema_1(backup, sessions);
   if (version > 1 && !sessions.empty()) bury_later(backup, person, version);
-  // A deletion may have been cut short here; schema 1 does not tell.
+  // An earlier deletion may have been interrupted before VACUUM; schema 1 does not record that.
   if (sessions.empty() && !(version == 1 ? ::access(path.c_str(), W_OK) == 0 : is_buried(backup, person)))
     return false;
   backup.execute("VACUUM");

@@ -76,7 +76,7 @@ std::vector<Balance> read_balance(sqlite::Connection& database) {
       if (!row.is_null(4)) override_trial_seconds(protocol, row.real(4));
       count_uses(protocol, slots, balance);
     } catch (const base::Error&) {
-      // An earlier version wrote it: describe() says so.
+      // Written by an earlier version: describe() says so.
     }
     out.push_back(std::move(balance));
   }

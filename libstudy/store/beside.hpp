@@ -1,16 +1,16 @@
 #pragma once
-/// What stands beside a database: its name with something appended.
+/// Files beside a database: its name with a suffix.
 
 #include <filesystem>
 #include <string>
 
 namespace study {
 
-/// The file that a path leads to through symbolic links of files, there or not; a path without them as it is.
-/// Whatever link a database is opened through, it is one database with one set of files beside it.
+/// Resolves symbolic links to files; the target need not exist. Other paths are returned unchanged. So a
+/// database has one set of files beside it, whatever link it is opened through.
 std::filesystem::path real_file(const std::filesystem::path& path);
 
-/// The neighbour of a database's real file: "<database><suffix>".
+/// The path "<database><suffix>" of the database's real file.
 std::filesystem::path beside(const std::filesystem::path& database, const std::string& suffix);
 
 }  // namespace study

@@ -1,5 +1,5 @@
-/// Where people looked, as BIDS 1.11 keeps it. An eye recording says whose eye and on what screen; the mouse
-/// and the direction of a head are no eyes, so they stand as behaviour.
+/// Gaze in BIDS 1.11. An eye recording states the eye and the screen; the mouse and the head's direction are
+/// not eyes, so they are exported as behaviour.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -19,14 +19,14 @@ constexpr const char* as_share = "1";
 struct Samples {
   Table rows;
   std::vector<std::int64_t> times_ns;
-  bool rays = false;  ///< of a headset: angles in the head's frame, else points of a screen
+  bool rays = false;  ///< true: angles in a headset's head frame; false: points of a screen
 };
 
 const std::vector<std::string> screen_columns{"timestamp", "x_coordinate", "y_coordinate", "valid"};
 const std::vector<std::string> ray_columns{"timestamp", "x_coordinate", "y_coordinate", "valid",
                                            "tracked",   "picture_x",    "picture_y"};
 
-/// Azimuth and elevation of a direction, degrees; n/a where there is none.
+/// Azimuth and elevation of a direction, degrees; n/a if it is missing.
 std::pair<std::string, std::string> angles_of(const Statement& row, int column) {
   if (row.is_null(column)) return {"n/a", "n/a"};
   const double x = row.real(column), y = row.real(column + 1), z = row.real(column + 2);
@@ -60,7 +60,7 @@ Samples samples_of(Connection& database, std::int64_t session, const std::string
   return samples;
 }
 
-/// How well the tracker did in the last validation that was passed.
+/// Adds the tracker's accuracy in the last passed validation.
 void add_validation(Connection& database, std::int64_t session, Json& json) {
   Statement row(
       database,
@@ -99,7 +99,7 @@ Json ray_columns_meaning() {
 
 void write_eye(Connection& database, const Samples& samples, const LabelledSession& session, Writer& writer) {
   const double hz = rate_hz(database, session.id, samples.times_ns);
-  if (hz == 0) return;  // BIDS knows no recording without a rate; the tables of CSV hold it
+  if (hz == 0) return;  // a BIDS recording needs a rate; the CSV export has the samples
   const std::string name = stem_of(session) + "_recording-eye1_physio";
   writer.compressed_table(name + ".tsv.gz", samples.rows);
   Json json{{"PhysioType", "eyetrack"},
@@ -123,10 +123,10 @@ void write_mouse(const Samples& samples, const std::string& stem, Writer& writer
   writer.json(name + ".json", json);
 }
 
-/// Its place in the room is in the motion recording.
+/// Writes the head's direction; its position is in the motion recording.
 void write_head(const Samples& samples, const std::string& stem, Writer& writer) {
   const std::string name = stem + "_acq-head_beh";
-  Table rows;  // the angles are those of straight ahead
+  Table rows;  // the angles of the straight-ahead direction
   for (const auto& row : samples.rows) rows.push_back({row[0], row[5], row[6], row[3], row[4]});
   rows.front() = {"timestamp", "x_coordinate", "y_coordinate", "valid", "tracked"};
   writer.table(name + ".tsv", rows);
@@ -141,7 +141,7 @@ void write_head(const Samples& samples, const std::string& stem, Writer& writer)
 
 }  // namespace
 
-/// When each presentation of a session began, from the first stimulus.
+/// Onset of each presentation of a session since its first stimulus.
 std::map<std::int64_t, std::int64_t> onsets_of(Connection& database, std::int64_t session) {
   Statement row(database,
                 "SELECT presentation_id, start_ns, end_ns FROM presentation JOIN trial USING (trial_id) "
@@ -156,8 +156,8 @@ std::map<std::int64_t, std::int64_t> onsets_of(Connection& database, std::int64_
   return onsets;
 }
 
-/// Of the usual interval: between two stimuli nothing is recorded. One sample has none: it came with a slot
-/// of the display, whose rate stands in. 0: that is not known either.
+/// Rate by the median interval, since nothing is recorded between stimuli. A single sample has no interval:
+/// the display's rate is used. 0 if that is unknown too.
 double rate_hz(Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns) {
   std::vector<std::int64_t> gaps;
   for (std::size_t i = 1; i < times_ns.size(); ++i) {

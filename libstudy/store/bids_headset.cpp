@@ -1,4 +1,4 @@
-/// Headsets as BIDS 1.11 keeps them: what was worn beside the events, how the head moved as motion.
+/// Headsets in BIDS 1.11: the headset's facts beside the events, head poses as motion.
 #include <array>
 
 #include "libstudy/store/bids_writer.hpp"
@@ -14,7 +14,7 @@ struct Channel {
   const char *name, *component, *type, *units, *meaning;
 };
 
-/// Columns of the recording in their order.
+/// Columns of the recording, in order.
 constexpr std::array channels{
     Channel{"latency", "n/a", "LATENCY", "s", "predicted display time on the scale of the events' onset"},
     Channel{"x", "x", "POS", "m", "to the right"},
@@ -91,7 +91,7 @@ void write_motion(Connection& database, const LabelledSession& session, Writer& 
     for (int i = 2; i < row.columns(); ++i) rows.back().push_back(field(row, i));
   }
   const double hz = rate_hz(database, session.id, times_ns);
-  if (hz == 0) return;  // nothing, or one pose on a display whose rate nobody knows
+  if (hz == 0) return;  // no pose, or one pose on a display of unknown rate
   const std::string stem = stem_of(session, "motion") + "_tracksys-headset";
   writer.bare_table(stem + "_motion.tsv", rows);
   writer.json(stem + "_motion.json", motion_json(session, hz));

@@ -13,7 +13,7 @@ using sqlite::Statement;
 
 namespace {
 
-/// A page in a session, before its columns' names and behind their meanings.
+/// Identifies a page in a session: prefix of its columns' names and suffix of their meanings.
 struct Page {
   std::string prefix, words;
 };
@@ -29,10 +29,10 @@ Page page_of(const LabelledSession& session, const std::string& block, int time 
   return page;
 }
 
-/// All pages of one questionnaire: a line for each participant, columns for each page that anybody answered.
+/// All pages of one questionnaire: one line per participant, columns for each page that anybody answered.
 class Questionnaire {
  public:
-  /// `page`: its place among the participant's, as columns and words name it.
+  /// `page`: names the page in columns and meanings.
   void add_page(const std::string& subject, const Page& page, const std::vector<Item>& asked,
                 const std::vector<std::string>& answers) {
     for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -66,7 +66,7 @@ class Questionnaire {
   Json meaning_{{"MeasurementToolMetadata", described("pages of a vip-study protocol")}};
 };
 
-/// The page of the SSQ at a place of a session; nullptr: it has no answers.
+/// The SSQ page at a position of a session; nullptr if it has no answers.
 const SsqPage* ssq_page(const std::vector<SicknessSession>& sickness, std::int64_t session,
                         std::int64_t position) {
   for (const SicknessSession& one : sickness) {
@@ -78,7 +78,7 @@ const SsqPage* ssq_page(const std::vector<SicknessSession>& sickness, std::int64
   return nullptr;
 }
 
-/// Puts the scores of an SSQ page behind its items.
+/// Appends the scores of an SSQ page to its items.
 void add_scores(const SsqPage* page, std::vector<Item>& asked, std::vector<std::string>& answers) {
   for (const SicknessColumn& column : ssq_score_columns())
     asked.push_back({0, column.name, column.meaning, ""});

@@ -1,5 +1,5 @@
 #pragma once
-/// Parts of export_bids(): what was asked, as columns, and the pages of questionnaires.
+/// Parts of export_bids(): questions as columns, and the pages of questionnaires.
 
 #include <string>
 #include <utility>
@@ -15,15 +15,16 @@ struct Item {
   std::string code, wording, anchors;
 };
 
-/// With the words that stand at its scores.
+/// Describes the column, including the words at its scores.
 Json question_column(const Item& item);
-/// Questions with scores that are asked at trials, or on pages of a block; `of`: a condition on unit u.
+/// Questions with scores asked in trials or on pages of a block; `of`: SQL condition on unit u.
 std::vector<Item> items(sqlite::Connection& database, std::int64_t session, const std::string& of);
-/// Score and response time of a question at a showing.
+/// Score and response time of a question at a showing (`attempt`).
 std::pair<std::string, std::string> answer_of(sqlite::Connection& database, std::int64_t unit,
                                               std::int64_t question, std::int64_t attempt);
 
-/// The scales by their kind, SSQ with its scores, other pages by their block; FMS also with mean and peak.
+/// Writes the pages as phenotype tables: SSQ with its scores and FMS with mean and peak by kind, other pages
+/// by block.
 void write_phenotypes(sqlite::Connection& database, const std::vector<LabelledSession>& sessions,
                       Writer& writer);
 

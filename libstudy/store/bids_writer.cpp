@@ -21,7 +21,7 @@ std::string lines_of(const Table& rows, std::size_t first) {
   return text;
 }
 
-/// zlib writes a gzip header without name and time when its window is given 16 more.
+/// zlib writes a gzip header without name and time if 16 is added to the window bits.
 std::string gzip(std::string text, const std::string& name) {
   z_stream stream{};
   bool good =

@@ -1,5 +1,5 @@
 #pragma once
-/// Parts of export_bids(): tables and sidecars in a draft, and when things happened in a session.
+/// Parts of export_bids(): tables and sidecars in a draft, and the times of a session.
 
 #include <cstdint>
 #include <map>
@@ -17,17 +17,17 @@ using Json = base::Json;
 /// A table of texts, the first line its header.
 using Table = std::vector<std::vector<std::string>>;
 
-/// A field of a TSV file, which knows no quotes; "n/a" when there is nothing. Texts are formula_guarded().
+/// A field of a TSV file, which has no quoting; "n/a" if empty. Texts are formula_guarded().
 std::string field(std::string text);
 std::string field(const sqlite::Statement& row, int column);
 /// Seconds as text.
 std::string seconds(std::int64_t ns);
 
-/// What a column means; where the schema says "empty", BIDS writes n/a.
+/// The description of a column; the schema's "empty" becomes BIDS's n/a.
 Json described(const std::string& meaning);
 Json described(const std::string& meaning, const std::string& unit);
 
-/// Folder and beginning of the name of a session's files.
+/// Folder and file name prefix of a session's files.
 std::string stem_of(const LabelledSession& session, const std::string& data_type = "beh");
 
 /// Puts files into a draft and remembers the tables.
@@ -49,13 +49,13 @@ class Writer {
   const ExportDraft& draft_;
 };
 
-/// Times from the first stimulus of a session, over all processes that played it: what another process shows
-/// follows as if there had been no pause.
+/// Times since the first stimulus of a session, across all processes that played it. A later process
+/// continues where the former ended, without the pause between.
 class SessionTime {
  public:
-  /// Of the session's next presentation, on the clock of its process; no end: cut short.
+  /// Onset of the session's next presentation. Arguments are on the clock of its process; no end: it was cut.
   std::int64_t onset_of(std::int64_t start_ns, std::optional<std::int64_t> end_ns);
-  /// The end of that presentation.
+  /// End of that presentation.
   std::int64_t end_ns() const { return end_ns_; }
 
  private:
@@ -63,19 +63,19 @@ class SessionTime {
   std::int64_t end_ns_ = 0;
 };
 
-/// When each presentation of a session began, from the first stimulus.
+/// Onset of each presentation of a session since its first stimulus.
 std::map<std::int64_t, std::int64_t> onsets_of(sqlite::Connection& database, std::int64_t session);
-/// Of the usual interval, Hz: between two stimuli nothing is recorded. Of fewer than two times the display's;
-/// 0: that is not known either.
+/// Sampling rate by the usual interval, Hz, since nothing is recorded between stimuli. With fewer than two
+/// times, the display's rate; 0 if that is unknown.
 double rate_hz(sqlite::Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns);
 
-/// What the headset of a session was, and the distances between the eyes; empty: none was worn.
+/// The facts of a session's headset and the distances between the eyes; empty without a headset.
 Json headset_of(sqlite::Connection& database, std::int64_t session);
-/// How the head moved, as a recording of motion ("motion/..._tracksys-headset_motion.tsv").
+/// Writes head poses as a motion recording ("motion/..._tracksys-headset_motion.tsv").
 void write_motion(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
-/// Where the participant of a session looked: samples of an eye tracker as a recording of the eye
-/// ("recording-eye1_physio.tsv.gz"), the mouse, which is none, as behaviour ("acq-mouse_beh.tsv").
+/// Writes gaze: samples of an eye tracker as an eye recording ("recording-eye1_physio.tsv.gz"), of the mouse,
+/// which is no eye tracker, as behaviour ("acq-mouse_beh.tsv").
 void write_gaze(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
 }  // namespace study::bids

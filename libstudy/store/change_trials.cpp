@@ -1,4 +1,4 @@
-/// Trials that are shown again, and those that analyses leave out.
+/// Store: repeats and excludes trials.
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -49,7 +49,7 @@ void Store::leave_out_trial(std::int64_t session, const OpenUnit& unit, const st
   Transaction transaction(*database_);
   mark_excluded(session, unit.trial_id, reason);
   mark_done(session, unit.id, base::utc_now(), {});
-  // Done, but nobody judged it.
+  // The unit is done, but the trial has no answer.
   Statement(*database_,
             "UPDATE trial SET state = 'planned' WHERE trial_id = ?1 AND NOT EXISTS (SELECT 1 FROM response "
             "r JOIN unit u USING (unit_id) WHERE u.trial_id = ?1 AND r.attempt > trial.set_aside)")

@@ -17,7 +17,7 @@ using sqlite::Transaction;
 
 namespace {
 
-/// One row; of renames, all of a batch.
+/// One row, or all renames of a batch.
 struct Chore {
   std::vector<std::int64_t> rows;
   std::string kind, batch, person, participant;
@@ -46,7 +46,7 @@ std::vector<Chore> pending(Connection& database) {
   return chores;
 }
 
-/// Its own bytes are left in the file where it stood, so the file is to be rewritten.
+/// Deletes the chore's rows. Their bytes remain in the file, so a rewrite is planned.
 void strike_out(Connection& database, const Chore& chore) {
   Transaction transaction(database);
   for (const std::int64_t row : chore.rows)
@@ -55,7 +55,7 @@ void strike_out(Connection& database, const Chore& chore) {
   transaction.commit();
 }
 
-/// Each backup by itself: one that cannot be cleaned keeps no other from it.
+/// Cleans each backup on its own: a failure does not stop the others.
 bool clean_backups(const fs::path& database, const std::string& person, CleanUp& done) {
   bool all = true;
   for (const fs::path& backup : backups_of(database)) {
@@ -82,7 +82,7 @@ void clean_personal(const fs::path& database, const Chore& chore, CleanUp& done)
 
 void do_chores(Connection& database, CleanUp& done) {
   const fs::path path = database.path();
-  bool personal_waits = false;  // its chores keep their order
+  bool personal_waits = false;  // its chores must run in order
   for (const Chore& chore : pending(database)) {
     try {
       if (chore.kind == "backups") {

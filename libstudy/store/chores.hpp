@@ -1,7 +1,7 @@
 #pragma once
-/// What is to be done in other files when a withdrawal or a merge is committed. It stands in the table
-/// `chore` of the same commit, is done afterwards, and is deleted when done; what a kill or a full disk
-/// leaves is done at the next opening for writing.
+/// Work in other files that a withdrawal or a merge requires. It is committed in the table `chore` with the
+/// change, done afterwards, and then deleted. Work that a kill or a full disk left over is done when the
+/// database is next opened for writing.
 
 #include <filesystem>
 #include <map>
@@ -12,28 +12,28 @@
 
 namespace study {
 
-/// What came of a clean-up.
+/// The result of a clean-up.
 struct CleanUp {
   std::vector<std::filesystem::path> cleaned;  ///< backups and personal files changed, exports deleted
-  /// What still holds somebody who withdrew, or an old code: each with its place, the reason and the mend.
+  /// Files that still hold a withdrawn person or an old code: each with place, reason and remedy.
   std::vector<std::string> left;
 };
 
-/// base::Error that says how much is left, where something is: its lines were shown before.
+/// base::Error with the number of lines in `left` unless it is empty. Show the lines before.
 void check_nothing_left(const std::filesystem::path& database, const std::vector<std::string>& left);
 
-/// Rows of `chore`, within a transaction of the caller.
+/// Adds rows to `chore` within the caller's transaction.
 class ChorePlan {
  public:
   explicit ChorePlan(sqlite::Connection& database);
-  /// A person is to be deleted from the files beside the database, which know them by `participant`.
+  /// Deletes a person from the files beside the database, where `participant` is the code.
   void forget(const std::string& person, const std::string& participant);
-  /// Those who stay get new codes there, all at once. Codes by person: now, and to be.
+  /// Changes codes in those files, all at once.
   struct Rename {
     std::string before, now;
   };
   void rename(const std::map<std::string, Rename>& people);
-  /// The file itself is to be written anew, so that nothing stands in it but what its tables hold.
+  /// Rewrites the database file, so that it holds no bytes of deleted rows.
   void rewrite();
 
  private:
@@ -44,15 +44,15 @@ class ChorePlan {
   std::string batch_;
 };
 
-/// Whether clean_up() has anything to do.
+/// True if clean_up() has anything to do.
 bool is_anything_left(sqlite::Connection& database);
 
 /// Does all chores of a database that is open for writing under its WriterLock, deletes the exports of those
 /// who withdrew (export_register.hpp), and rewrites the file when anything changed. Compare the database with
-/// its journal first (AnswerJournal): another file in its place has nothing done for it. Never throws for
-/// what cannot be done: that is `left`.
+/// its journal first (AnswerJournal), so that no chores are done for a file put in its place. Does not throw
+/// for failed chores: they are in `left`.
 CleanUp clean_up(sqlite::Connection& database);
-/// The same with the journal of answers made anew, as prepare_rewrite() announced (answer_journal.hpp).
+/// The same, and rewrites the journal of answers as announced by prepare_rewrite() (answer_journal.hpp).
 CleanUp clean_up_all(sqlite::Connection& database);
 
 }  // namespace study

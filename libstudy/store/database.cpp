@@ -53,17 +53,17 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-/// A power cut in the very first transaction leaves any bytes, and a journal that makes them none again.
+/// A power cut in the first transaction leaves arbitrary bytes and a journal that makes the file empty again.
 bool was_empty_before(const fs::path& journal) {
-  // The head of a rollback journal (sqlite.org/fileformat.html, section 3): 8 bytes of magic; at byte 16, how
-  // many pages the file had.
+  // The head of a rollback journal (sqlite.org/fileformat.html, section 3): 8 bytes of magic; at byte 16, the
+  // number of pages that the file had.
   std::ifstream file(journal, std::ios::binary);
   std::string head(20, '\0');
   constexpr std::string_view magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
   return file.read(head.data(), 20) && head.starts_with(magic) && big_endian(head, 16) == 0;
 }
 
-/// Throws unless the database is ours, or blank where one may be made, and not newer than the program.
+/// Throws unless the database is ours, or blank if one may be made, and not newer than the program.
 void recognise(const fs::path& path, const Identity& found, Open how, std::size_t newest) {
   const bool blank = found.empty && found.application == 0 && found.version == 0;
   if (blank && how == Open::Create) return;
@@ -90,8 +90,8 @@ bool has_bytes(const fs::path& path) {
   return !ignored && bytes > 0;
 }
 
-/// Throws for what the file's own first bytes show not to be ours, before SQLite has used its log or journal.
-/// They are ours from the first commit on, which no log ever holds.
+/// Throws if the file's own first bytes are not ours, before SQLite uses its log or journal. They are ours
+/// from the first commit on, which is never in a log.
 void recognise_header(Connection& database, Open how, std::size_t newest) {
   const std::string head = database.header();
   if (head.empty() && how == Open::Create) return;
@@ -100,14 +100,14 @@ void recognise_header(Connection& database, Open how, std::size_t newest) {
   if (head.size() == header_bytes && head.starts_with(sqlite_magic)) {
     found.application = big_endian(head, application_at);
     found.version = big_endian(head, version_at);
-    // SQLite tells whether there are tables; not where it would first undo what another program left.
+    // SQLite can tell whether there are tables, but not while a journal is to be rolled back first.
     found.empty = !has_bytes(journal);
   }
   if (how == Open::Create && was_empty_before(journal)) return;
   recognise(database.path(), found, how, newest);
 }
 
-/// Whole under its name or not there: a kill leaves a draft, which the next upgrade removes.
+/// The backup is complete or missing: a kill leaves a draft, which the next upgrade removes.
 void back_up(Connection& database, std::int64_t version) {
   const std::string path = database.path().string(), draft = path + ".bak.tmp",
                     copy = path + ".v" + std::to_string(version) + "-" + base::utc_now() + ".bak";
@@ -126,17 +126,17 @@ void back_up(Connection& database, std::int64_t version) {
   }
 }
 
-/// A number by chance, by which a log is known to be of this database (foreign_log.hpp).
+/// Sets a random number that identifies this database in its log (foreign_log.hpp).
 void give_identity(Connection& database) {
   if (database.integer("PRAGMA schema_version") >= first_identity) return;
   std::mt19937 chance{std::random_device()()};
   const std::int64_t number = std::uniform_int_distribution<std::int64_t>(first_identity, 1 << 30)(chance);
-  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);  // which keeps the number
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);  // it protects the number
   database.execute("PRAGMA schema_version = " + std::to_string(number));
   sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
 }
 
-/// A step may make tables anew, so that rows point nowhere until it ends: they are checked before the commit.
+/// A step may recreate tables, so that references dangle until it ends: checks them before the commit.
 void take_step(Connection& database, const SchemaSteps& steps, std::size_t version) {
   sqlite::Transaction transaction(database);
   database.execute(steps.at(version - 1));
@@ -151,7 +151,7 @@ void take_step(Connection& database, const SchemaSteps& steps, std::size_t versi
   transaction.commit();
 }
 
-/// An older database as this program reads it: the file stays as it is.
+/// An upgraded copy of an older database; the file is unchanged.
 std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps) {
   auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
   copy->copy_from(database);
@@ -192,7 +192,7 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
 bool holds_nothing(const fs::path& path) {
   if (!has_bytes(path)) return true;
   if (!was_empty_before(path.string() + "-journal")) return false;
-  // Beside a database that has more than its first step, such a journal is of another file.
+  // Such a journal beside a database with more than its first step belongs to another file.
   std::string head(header_bytes, '\0');
   const bool whole = bool(std::ifstream(path, std::ios::binary).read(head.data(), header_bytes));
   return !whole || !head.starts_with(sqlite_magic) ||
@@ -209,7 +209,7 @@ SchemaSteps read_schema_steps() {
 }
 
 void upgrade(Connection& database, const SchemaSteps& steps) {
-  // The switch has no effect within a transaction.
+  // This pragma has no effect within a transaction.
   database.execute("PRAGMA foreign_keys = OFF");
   for (auto step = static_cast<std::size_t>(database.integer("PRAGMA user_version")); step < steps.size();
        ++step)
@@ -229,7 +229,7 @@ std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);
   recognise_header(*database, how, steps.size());
-  // A reader changes nothing; a writer compares the log with the journal of answers before (AnswerJournal).
+  // A reader changes nothing; a writer first compares the log with the journal of answers (AnswerJournal).
   database->keep_log(has_bytes(path.string() + "-wal"));
   database->distrust();
   if (how == Open::Read && !database->can_read()) {

@@ -33,7 +33,7 @@ EarlierShape placed(const Shape& shape, const std::vector<Shape>& now, std::size
   return out;
 }
 
-/// Those of every schema before this program's.
+/// The shapes of every schema before this program's.
 std::vector<Shape> shapes_before() {
   std::vector<Shape> out;
   const SchemaSteps steps = read_schema_steps();

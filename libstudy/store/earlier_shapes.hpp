@@ -1,5 +1,5 @@
 #pragma once
-/// Part of salvage(): rows that an earlier schema wrote, read off the pages of a damaged database.
+/// Part of salvage(): rows of an earlier schema, read from the pages of a damaged database.
 
 #include <optional>
 #include <vector>
@@ -8,18 +8,18 @@
 
 namespace study::salvaging {
 
-/// A table as an earlier schema had it.
+/// A table in an earlier schema.
 struct EarlierShape {
   Shape shape;
-  std::size_t now = 0;                             ///< index of the table's present shape
-  std::vector<std::optional<std::size_t>> source;  ///< of each present column: the column it is taken from
+  std::size_t now = 0;                             ///< index of the table's current shape
+  std::vector<std::optional<std::size_t>> source;  ///< by current column: earlier column copied; none: NULL
 };
 
-/// Of schemas 2 and newer, those tables that have changed since. A column is taken where name, type and
-/// NOT NULL are as they were; one that may be NULL since then was not measured before.
+/// Tables of schemas 2 and newer that have changed since. A column is copied if name, type and NOT NULL are
+/// unchanged; a newer nullable column becomes NULL (not measured).
 std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now);
 
-/// The row as the present schema holds it.
+/// The row in the current schema.
 Values as_now(const EarlierShape& earlier, const Values& row);
 
 }  // namespace study::salvaging

@@ -23,11 +23,11 @@ namespace {
 
 struct CsvTable {
   const char* name;         // in the schema
-  const char* file;         // of the export
-  const char* order;        // makes equal databases equal files
-  const char* left = "";    // column left out
-  bool free_words = false;  // written on demand alone
-  bool gaze = false;        // likewise: of whom gaze may be recorded
+  const char* file;         // in the export
+  const char* order;        // so that equal databases give equal files
+  const char* left = "";    // omitted column
+  bool free_words = false;  // written only on request
+  bool gaze = false;        // likewise, and only where gaze is allowed
 };
 
 constexpr std::array tables{
@@ -56,7 +56,7 @@ constexpr std::array tables{
     CsvTable{"event", "events.csv", "event_id"},
 };
 
-/// A column of an exported table that the schema's views tell of its rows.
+/// A column of an exported table computed from the schema's views.
 struct AddedColumn {
   const char *table, *name, *type, *expression, *meaning;
 };
@@ -105,7 +105,7 @@ bool is_csv_name(const std::string& name) {
   return false;
 }
 
-/// Whether a dictionary stands there that begins like ours.
+/// True if the folder has a dictionary that begins like ours.
 bool is_csv_export(const fs::path& folder) {
   std::ifstream dictionary(folder / dictionary_file, std::ios::binary);
   std::string begin(std::strlen(dictionary_header), '\0');
@@ -115,7 +115,7 @@ bool is_csv_export(const fs::path& folder) {
 
 constexpr ExportKind csv_kind{"csv", is_csv_export, is_csv_name};
 
-/// Found once for each table: each column of the ratings asks again for those of a table.
+/// Cached per table, because each column of the ratings asks for its table's columns.
 const std::vector<ColumnMeaning>& known_meanings(const std::string& table, const std::string& create_sql) {
   thread_local std::map<std::pair<std::string, std::string>, std::vector<ColumnMeaning>> known;
   const auto [found, fresh] = known.try_emplace({table, create_sql});
@@ -191,8 +191,8 @@ void write_protocols(Connection& database, const ExportDraft& draft) {
   }
 }
 
-/// SQLite writes a column that a later schema step adds behind the last one, before that one's comment. Here
-/// it stands on a line of its own at the end, with its meaning as the others have it.
+/// SQLite inserts a column of a later schema step after the last one but before its comment. Moves it to its
+/// own line at the end, with its comment in the usual form.
 std::string with_added_last(const std::string& create_sql) {
   static const base::Pattern added(R"(, (\w+ \w+) /\* ([^*]*) \*/)");
   std::string last;
@@ -229,7 +229,7 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
     if (types.count(type)) {
       columns.push_back({table, name, type, meaning});
     } else if (!columns.empty() && columns.back().meaning.empty()) {
-      // A column that runs over two lines has its comment on the second.
+      // A column on two lines has its comment on the second.
       columns.back().meaning = meaning;
     }
   }

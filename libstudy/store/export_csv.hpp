@@ -1,6 +1,6 @@
 #pragma once
-/// The database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data dictionary. Texts
-/// are formula_guarded(), which the dictionary's first line explains; numbers stay numbers.
+/// Exports the database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data
+/// dictionary. Texts are formula_guarded(), as the dictionary's first line explains; numbers are unchanged.
 
 #include <filesystem>
 #include <string>
@@ -12,36 +12,35 @@
 
 namespace study {
 
-/// What is written on demand alone.
+/// Optional parts of the export.
 struct CsvChoice {
-  bool words = false;       ///< free words of participants and the experimenter's notes: words.csv, notes.csv
+  bool words = false;       ///< free text of participants, notes of the experimenter: words.csv, notes.csv
   bool gaze = false;        ///< gaze.csv, heads.csv, gaze_validations.csv
-  CsvDialect dialect = {};  ///< excel_dialect() for spreadsheets; dictionary.csv says which was taken
+  CsvDialect dialect = {};  ///< excel_dialect() for spreadsheets; dictionary.csv names it
 };
 
-/// Writes one file for each table, ratings.csv with one line for each planned trial and question joined from
-/// them, the scores of sickness_tables(), dictionary.csv with what each column means, and the text of each
-/// protocol as protocol_<hash>.toml. This is the lab's own copy: it holds everybody; sessions.csv says who
-/// may stand in public exports.
+/// Writes one file per table, ratings.csv with one joined line per planned trial and question, the scores of
+/// sickness_tables(), dictionary.csv with the meaning of each column, and the text of each protocol as
+/// protocol_<hash>.toml. This is the lab's own copy with all participants; sessions.csv says who may be in
+/// public exports.
 ///
-/// Folder and files are the owner's alone.
-/// All is written to a neighbour of `folder` and put in place by one rename, so that `folder` never holds a
-/// part. `folder` may be absent, empty or an earlier export as it was written, which is replaced;
-/// base::Error, with nothing changed, when a file was added or changed, or when the database cannot be
-/// written: the folder is registered in it with whom it holds, and a withdrawal of one of them deletes it
-/// (export_register.hpp).
+/// Only the owner can read folder and files. All is written beside `folder` and put in place by one rename,
+/// so that `folder` is never partial. `folder` may be absent, empty or an unchanged earlier export, which is
+/// replaced; base::Error, with nothing changed, if a file in it was added or changed, or if the database
+/// cannot be written. The database registers the folder with its participants; a withdrawal of one of them
+/// deletes the folder (export_register.hpp).
 std::vector<ExportedFile> export_csv(const StudyFile& study, const std::filesystem::path& folder,
                                      const CsvChoice& choice = {});
 
-/// A column of the schema with the comment that stands beside it.
+/// A column of the schema with its comment.
 struct ColumnMeaning {
   std::string table, column, type, meaning;
 };
 
-/// The columns of a CREATE TABLE text in their order; lines without a comment have an empty meaning.
+/// The columns of a CREATE TABLE text in order; columns without a comment have an empty meaning.
 std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::string& create_sql);
 
-/// What a column of a joined table means, from the schema of `database`.
+/// The meaning of a column of a joined table, from the schema of `database`.
 ColumnMeaning meaning_of(sqlite::Connection& database, const RatingColumn& column);
 
 }  // namespace study

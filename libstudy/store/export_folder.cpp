@@ -38,7 +38,7 @@ fs::path whole_path(const fs::path& folder) {
   return target.has_filename() ? target : target.parent_path();
 }
 
-/// SHA-256 by name, as an export's own list says; empty: it has none.
+/// SHA-256 by name from an export's own list; empty if it has none.
 std::map<std::string, std::string> listed_files(const fs::path& folder, const ExportKind& kind) {
   const fs::path marker = folder / marker_of(kind.name);
   std::map<std::string, std::string> files;
@@ -52,7 +52,7 @@ std::map<std::string, std::string> listed_files(const fs::path& folder, const Ex
   return files;
 }
 
-/// What is wrong with a folder as an earlier export that is to be replaced; empty: nothing.
+/// Why a folder is not an unchanged earlier export; empty if it is.
 std::string strange_file(const fs::path& folder, const ExportKind& kind) {
   const auto listed = listed_files(folder, kind);
   std::set<std::string> added, changed;
@@ -104,17 +104,17 @@ void ExportDraft::put_in_place() {
   base::sync_folders(path_);
   record_->will_be(base::sha256_hex(list));
   replace_target();
-  // The earlier export: it may hold people who do not stand in this one.
+  // The earlier export may hold people who are not in this one.
   base::remove_durably(path_);
   record_->is_in_place();
 }
 
-// After the exchange the earlier export lies under the draft's name.
+// After the exchange the earlier export has the draft's name.
 void ExportDraft::replace_target() {
   std::error_code ignored;
   const unsigned flags = fs::exists(target_, ignored) ? RENAME_EXCHANGE : RENAME_NOREPLACE;
   if (base::rename_durably(path_, target_, flags)) return;
-  // Network file systems know the plain rename alone: the earlier export steps aside first.
+  // Network file systems support only plain renames: move the earlier export aside first.
   if (errno != EINVAL || !replace_in_two_steps()) fail("cannot be put in place");
 }
 

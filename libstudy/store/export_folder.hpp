@@ -1,5 +1,5 @@
 #pragma once
-/// Folders of exports: made whole beside their place, then put there by one rename.
+/// Export folders: written completely beside the target, then put in place by one rename.
 
 #include <cstdint>
 #include <cstdio>
@@ -25,59 +25,59 @@ struct ExportedFile {
 /// Who may read an export; the folders of Readers::Owner are 0700.
 using base::Readers;
 
-/// An export that others may read, and whom it leaves out.
+/// An export that others may read, with the number of people in it and left out.
 struct PublicExport {
   std::vector<ExportedFile> files;
   SharingCount people;
 };
 
-/// A kind of folder, and how one is known that an earlier version wrote, without a list of its files.
+/// A kind of export folder. The functions recognise folders of earlier versions, which have no list of files.
 struct ExportKind {
   const char* name;                                 ///< csv, bids, psych-ds
-  bool (*is_export)(const std::filesystem::path&);  ///< whether a folder was written by this program
-  bool (*is_name)(const std::string&);              ///< whether a file of that name may be of it
+  bool (*is_export)(const std::filesystem::path&);  ///< true if this program wrote the folder
+  bool (*is_name)(const std::string&);              ///< true if such a folder may hold a file of that name
 };
 
-/// How the CSV files of an export are written.
+/// Format of the CSV files of an export.
 struct CsvDialect {
   char separator = ',';
-  char decimal = '.';  ///< in numbers that are no whole ones
-  bool mark = false;   ///< a byte-order mark first, by which spreadsheets know UTF-8
+  char decimal = '.';  ///< in numbers that are not integers
+  bool mark = false;   ///< begin with a byte-order mark, so that spreadsheets detect UTF-8
 };
 
-/// What a spreadsheet of this computer's locale (LC_ALL, LC_NUMERIC or LANG) reads at a double click: with a
-/// byte-order mark, and where the decimal mark is a comma with semicolons. base::Error: that locale is not
-/// installed.
+/// The dialect that a spreadsheet opens correctly in this computer's locale (LC_ALL, LC_NUMERIC or LANG): a
+/// byte-order mark, and semicolons if the decimal mark is a comma. base::Error: that locale is not installed.
 CsvDialect excel_dialect();
 
-/// What is exported, and for whom.
+/// The source of an export and its readers.
 struct ExportSource {
   std::filesystem::path database;
   const ExportKind& kind;
-  std::set<std::string> people;  ///< who stands in the export (session.person)
+  std::set<std::string> people;  ///< people in the export (session.person)
   Readers readers;
   CsvDialect dialect = {};
 };
 
-/// A folder beside the target that is gone unless put in place, so that the target never holds a part. It is
+/// A draft folder beside the target, deleted unless put in place, so that the target is never partial. It is
 /// registered in the database before it is made.
 class ExportDraft {
  public:
-  /// base::Error, with nothing made, unless the target is absent, an empty folder or an earlier export of
-  /// that kind as it was written, and when the database cannot be written (RegisteredExport). The error names
-  /// the file that was added or changed.
+  /// base::Error, with nothing made, unless the target is absent, an empty folder or an unchanged earlier
+  /// export of that kind, or if the database cannot be written (RegisteredExport). The error names the added
+  /// or changed file.
   ExportDraft(const ExportSource& source, const std::filesystem::path& target);
   ~ExportDraft();
   ExportDraft(const ExportDraft&) = delete;
   ExportDraft& operator=(const ExportDraft&) = delete;
 
-  /// Where the export goes, as an absolute path.
+  /// The target of the export, as an absolute path.
   const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& path() const { return path_; }
   Readers readers() const { return readers_; }
   const CsvDialect& dialect() const { return dialect_; }
-  /// Adds the list of files (own_exports.hpp) and makes the draft the target; an earlier export there goes.
-  /// It is on the disk then. base::Error, and the target is gone, when one of its people withdrew meanwhile.
+  /// Adds the list of files (own_exports.hpp) and renames the draft to the target, replacing an earlier
+  /// export. Returns once it is on disk. base::Error, with the target deleted, if one of its people withdrew
+  /// meanwhile.
   void put_in_place();
 
  private:
@@ -92,8 +92,8 @@ class ExportDraft {
   std::optional<RegisteredExport> record_;
 };
 
-/// A file of a draft, with the folders above it; an error unless every byte of it came to the disk, and where
-/// the name leads out of the draft or is none that every computer takes (base::check_file_name).
+/// A file of a draft; makes its parent folders. base::Error if not every byte reached the disk, or if the
+/// name leads out of the draft or is not portable (base::check_file_name).
 class ExportFile {
  public:
   ExportFile(const ExportDraft& draft, const std::string& name);
@@ -111,28 +111,28 @@ class ExportFile {
   std::FILE* file_ = nullptr;
 };
 
-/// A whole file of a draft.
+/// Writes a whole file of a draft.
 void write_file(const ExportDraft& draft, const std::string& name, const std::string& text);
 
-/// Text with an apostrophe before it where a spreadsheet would take it for a formula: where it begins with
-/// = + - @ (also in full width), a tab or a line end, or with apostrophes and one of these. Whoever reads it
-/// takes one apostrophe away where apostrophes and one of these begin a field, and has what it was.
+/// Prefixes an apostrophe if a spreadsheet would read the text as a formula: if it begins with = + - @ (also
+/// in full width), a tab or a line end, or with apostrophes and one of these. A reader restores the text by
+/// removing one apostrophe from fields that begin with apostrophes and one of these.
 std::string formula_guarded(const std::string& text);
-/// The same in words, for the descriptions of an export.
+/// The same rule as text for the descriptions of an export.
 extern const char* const formula_guard_meaning;
-/// A text as a field of CSV: formula_guarded(), quoted where RFC 4180 asks for it or where it was guarded.
+/// A text as a CSV field: formula_guarded(), quoted if RFC 4180 requires it or if it was guarded.
 std::string csv_field(const std::string& text, const CsvDialect& dialect = {});
-/// The shortest text that reads back as the same number.
+/// The shortest text that parses to the same number.
 std::string number_text(double value);
 /// A number's text with the dialect's decimal mark.
 std::string csv_number(std::string text, const CsvDialect& dialect);
-/// A value of a row: a text as csv_field(), a number as csv_number(), empty for NULL.
+/// A column's value: a text as csv_field(), a number as csv_number(), empty for NULL.
 std::string csv_value(const sqlite::Statement& row, int column, const CsvDialect& dialect = {});
-/// A line of fields that are ready.
+/// Joins finished fields to a line.
 std::string csv_line(const std::vector<std::string>& fields, const CsvDialect& dialect);
-/// The byte-order mark, where there is one, and the line of names.
+/// The byte-order mark, if any, and the header line.
 std::string csv_head(const std::vector<std::string>& names, const CsvDialect& dialect);
-/// The rows that `sql` selects, under a line with the names of its columns; returns their number.
+/// Writes the rows that `sql` selects under a header line; returns their number.
 std::int64_t write_csv(sqlite::Connection& database, const std::string& sql, const ExportDraft& draft,
                        const std::string& name);
 

@@ -26,7 +26,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Labels while they are given. Two that differ in case alone would be one file on many computers.
+/// Assigns labels. Labels that differ only in case would be one file on many computers.
 class Giving {
  public:
   bool has(const std::string& kind, const std::string& owner) const {
@@ -35,7 +35,7 @@ class Giving {
   bool is_taken(const std::string& kind, const std::string& label) const {
     return taken_.contains({kind, lower(label)});
   }
-  /// The label, or with x2 and so on where it is taken.
+  /// Assigns the label, with the suffix x2 and so on if it is taken.
   void give(const std::string& kind, const std::string& owner, const std::string& wished) {
     const std::string start = wished.empty() ? "x" : wished;
     std::string label = start;
@@ -57,7 +57,7 @@ Giving stored_labels(Connection& database) {
   Giving labels;
   for (Statement row(database, "SELECT kind, owner, label FROM label ORDER BY kind, owner"); row.step();)
     labels.give(row.text(0), row.text(1), row.text(2));
-  // A published label is not given to somebody else after a withdrawal.
+  // A published label is not reused after a withdrawal.
   for (Statement row(database, "SELECT participant FROM tombstone"); row.step();)
     labels.reserve("person", letters_of(row.text(0)));
   return labels;
@@ -76,7 +76,7 @@ const std::string& Labels::of(const std::string& text) {
 
 std::vector<GivenLabel> labels_of(Connection& database) {
   Giving labels = stored_labels(database);
-  // The order in which versions without stored labels gave them at each export.
+  // The order in which versions without stored labels assigned them at each export.
   Statement row(database,
                 "SELECT s.person, s.participant, p.sha256, p.name FROM session s JOIN protocol p USING "
                 "(protocol_id) ORDER BY s.participant, s.session_id");

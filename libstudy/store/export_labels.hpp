@@ -1,6 +1,6 @@
 #pragma once
-/// Names that BIDS and Psych-DS allow: letters and digits alone. Those of people and protocols are given once
-/// and stored in the table `label`, so that no later participant takes over what was published.
+/// Labels for BIDS and Psych-DS, which allow only letters and digits. Labels of people and protocols are
+/// assigned once and stored in the table `label`, so that no later participant gets a published label.
 
 #include <cstdint>
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace study {
 
-/// Gives each text a label of letters and digits, distinct from those of other texts.
+/// Maps each text to a label of letters and digits that no other text has.
 class Labels {
  public:
   const std::string& of(const std::string& text);
@@ -27,17 +27,17 @@ struct GivenLabel {
   std::string kind, owner, label;
 };
 
-/// The labels of a database: those that are given, then what others without one get, in the order of codes.
+/// The labels of a database: the stored ones, then new ones for those without, in the order of codes.
 std::vector<GivenLabel> labels_of(sqlite::Connection& database);
-/// Stores what labels_of() adds, in a transaction of the caller.
+/// Stores the new labels of labels_of() within the caller's transaction.
 void give_labels(sqlite::Connection& database);
-/// The labels of several databases together. All of the first stay as they are; of the others each in turn
-/// that is not given yet, with "x2" and so on behind it where it is taken.
+/// Joins the labels of several databases. Those of `first` stay unchanged. Those of `others` are added in
+/// turn for owners without one; a label that is taken gets the suffix "x2" and so on.
 std::vector<GivenLabel> joined_labels(const std::vector<GivenLabel>& first,
                                       const std::vector<GivenLabel>& others);
 void store_labels(sqlite::Connection& database, const std::vector<GivenLabel>& labels);
 
-/// A session as exports name it.
+/// A session with its labels for exports.
 struct LabelledSession {
   std::int64_t id = 0;
   std::string person;                      ///< as in session
@@ -45,11 +45,11 @@ struct LabelledSession {
   std::string subject, session, protocol;  ///< labels; session: protocol and visit
 };
 
-/// The sessions that may stand in a public export, by participant, then in the order of planning. Whoever
-/// refused that in one session, or was asked and has not answered, is left out with all of them. base::Error
-/// where one has no label (give_labels).
+/// The sessions allowed in a public export, by participant, then in the order of planning. A participant who
+/// refused in one session, or was asked and has not answered, is left out with all sessions. base::Error if
+/// one has no label (give_labels).
 std::vector<LabelledSession> shared_sessions(sqlite::Connection& database);
-/// Whose they are: session.person.
+/// The persons of these sessions (session.person).
 std::set<std::string> people_of(const std::vector<LabelledSession>& sessions);
 
 }  // namespace study

@@ -66,7 +66,7 @@ bool is_psych_ds_name(const std::string& name) {
 
 constexpr ExportKind psych_ds_kind{"psych-ds", is_psych_ds_export, is_psych_ds_name};
 
-/// Each column that stands in a file, once; two files may share one. `scored`: the sessions of the export.
+/// Each column of the files, once; two files may share one. `scored`: the sessions of the export.
 Json variables(Connection& database, std::span<const SicknessSession> scored) {
   std::map<std::string, std::string> meanings;
   for (const RatingColumn& column : rating_columns())
@@ -74,7 +74,7 @@ Json variables(Connection& database, std::span<const SicknessSession> scored) {
   for (const RatingColumn& column : page_columns)
     meanings.emplace(column.name, meaning_of(database, column).meaning);
   for (const SicknessTable& table : sickness_tables(scored)) {
-    if (table.rows.empty()) continue;  // no file: Psych-DS refuses what stands in none
+    if (table.rows.empty()) continue;  // no file: Psych-DS refuses variables without one
     for (const SicknessColumn& column : table.columns) meanings.emplace(column.name, column.meaning);
   }
   Json list = Json::array();
@@ -116,7 +116,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
 }  // namespace
 
 PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
-  open_study(study);  // refuses a file that is not sound before anything is written to it
+  open_study(study);  // refuses a damaged file before anything is written to it
   label_everybody(study.path);
   const auto database = open_to_export(study);
   database->execute("BEGIN");
@@ -136,7 +136,7 @@ PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
     files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
     files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
     for (const RunSetting& setting : run_settings(*database, session.id)) {
-      // Tools keep off what is no data there.
+      // Tools ignore files there, which are not data.
       const std::string name = "materials/" + setting_file_name(setting);
       if (named.insert(name).second) write_file(draft, name, setting.text);
     }

@@ -47,7 +47,7 @@ void check_writable(const fs::path& file) {
                     "let somebody export who may write the database and its folder");
 }
 
-/// The database for a short write beside a session that may be running; an older one is upgraded first.
+/// Opens the database for a short write, even during a session; upgrades an older one first.
 std::unique_ptr<Connection> open_register(const fs::path& database) {
   const fs::path file = real_file(database);
   check_writable(file);
@@ -79,7 +79,7 @@ std::int64_t enter(Connection& database, const std::string& kind, const fs::path
   return id;
 }
 
-/// Exports that another one took the place of, and what earlier ones that were never finished left.
+/// Removes replaced exports and unfinished earlier ones at the same path from the register.
 void forget_replaced(const OwnExport& by) {
   try {
     std::set<std::string> replaced;
@@ -90,7 +90,7 @@ void forget_replaced(const OwnExport& by) {
     }
     forget_own_exports(replaced);
   } catch (const base::Error&) {
-    // What is registered of an export that is not there does no harm.
+    // Entries of missing exports do no harm.
   }
 }
 
@@ -151,7 +151,7 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
   keep_own();
   Transaction transaction(*file);
   enter(*file, own_.kind, own_.path, own_.people);
-  // Rows that the journal alone holds, of a commit that was cut short or lost, keep their numbers.
+  // Does not reuse the numbers of rows that only the journal holds, from an interrupted or lost commit.
   Statement(*file,
             "INSERT INTO event (event_id, utc, kind, detail) SELECT max(coalesce(max(event_id), 0), ?) + 1, "
             "?, 'export', ? FROM event")
@@ -160,7 +160,7 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
   transaction.commit();
 }
 
-/// Without it the export is made all the same, and a withdrawal names it.
+/// If this fails, the export is made all the same, and a withdrawal names it.
 void RegisteredExport::keep_own() {
   try {
     keep_own_export(own_);
@@ -183,7 +183,7 @@ RegisteredExport::~RegisteredExport() {
     std::error_code ignored;
     if (!fs::exists(own_.draft, ignored)) forget_own_exports({own_.id});
   } catch (const std::exception&) {
-    // The row of an export that is not there does no harm.
+    // The row of a missing export does no harm.
   }
 }
 
@@ -198,7 +198,7 @@ void RegisteredExport::will_be(const std::string& sha256) {
   named_ = true;
 }
 
-// A withdrawal either sees the export in its place or is seen here.
+// Either a withdrawal sees the export in place, or this sees the withdrawal.
 void RegisteredExport::is_in_place() {
   base::sync_folder_of(own_.path);
   const auto file = open_register(database_);
@@ -238,7 +238,7 @@ void RegisteredFiles::write(const std::string& kind, const fs::path& path, const
   record.is_in_place();
 }
 
-// A kill between the two leaves an empty folder, which holds nobody.
+// A kill between mkdir and the registration leaves an empty folder, which holds no data.
 void RegisteredFiles::make_folder(const fs::path& folder) const {
   const fs::path path = without_links(folder);
   std::error_code ignored;
@@ -257,7 +257,7 @@ void RegisteredFiles::make_folder(const fs::path& folder) const {
                      .draft = {},
                      .sha256 = {},
                      .people = {}});
-  } catch (const base::Error&) {  // it stays when it is empty
+  } catch (const base::Error&) {  // then it is not removed when it is empty
   }
   const auto file = open_register(database_);
   Statement(*file,

@@ -1,6 +1,6 @@
 #pragma once
-/// Which files and folders outside the database hold data of whom: written down before their first byte, so
-/// that a withdrawal finds them again.
+/// Register of files and folders outside the database and the people whose data they hold. An entry is
+/// written before the first byte of a file, so that a withdrawal finds it.
 
 #include <filesystem>
 #include <memory>
@@ -14,18 +14,19 @@
 
 namespace study {
 
-/// session.person of everybody who stands in a database.
+/// session.person of all people in a database.
 std::set<std::string> everybody(sqlite::Connection& database);
 
-/// Stores labels of whom and what has none yet (export_labels.hpp), before a public export is read. The
-/// database is written for a moment; base::Error as RegisteredExport.
+/// Stores missing labels (export_labels.hpp) before the data of a public export are read. Writes the database
+/// briefly; base::Error as RegisteredExport.
 void label_everybody(const std::filesystem::path& database);
 
-/// A study that is read while its export is registered. A database without a log, as other programs may leave
-/// it, is given one: no write would be let in while it is read. base::Error as RegisteredExport.
+/// Opens a study for reading while its export is registered. Switches a database without a log, as other
+/// programs may leave it, to WAL mode; otherwise it could not be written while it is read. base::Error as
+/// RegisteredExport.
 std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 
-/// One export while it is made: `people` stand in it.
+/// Registers one export while it is made; `people` are the people in it.
 ///
 ///   RegisteredExport record(database, "csv", folder, people);  // before the first byte
 ///   ... write record.draft() ...
@@ -33,29 +34,29 @@ std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 ///   ... rename ...
 ///   record.is_in_place();
 ///
-/// It stands in two registers: in the database, where a withdrawal looks, and in that of this installation
-/// (own_exports.hpp), without which nothing is deleted. The first is written for a moment each time; a
-/// database of an older schema is upgraded. base::Error: the database cannot be written, so that the export
-/// could not be found again. When the second cannot be written the export is made all the same.
+/// It is entered in two registers: in the database, where a withdrawal looks, and in that of this
+/// installation (own_exports.hpp), without which nothing is deleted. Each step writes the database briefly
+/// and upgrades an older schema. base::Error if the database cannot be written, because the export could then
+/// not be found again. If the second register cannot be written, the export is made all the same.
 class RegisteredExport {
  public:
-  /// draft: where it is written first; empty: draft() gives a name.
+  /// draft: path that is written first; empty: a generated name, see draft().
   RegisteredExport(const std::filesystem::path& database, const std::string& kind,
                    const std::filesystem::path& path, const std::set<std::string>& people,
                    const std::filesystem::path& draft = {});
-  /// Strikes the export out again unless it came so far that something of it may be in place.
+  /// Removes the entry unless will_be() was called, after which the export may be in place.
   ~RegisteredExport();
   RegisteredExport(const RegisteredExport&) = delete;
   RegisteredExport& operator=(const RegisteredExport&) = delete;
 
   const std::string& id() const { return own_.id; }
-  /// Where it is written first: beside its place, under a name that nobody can guess.
+  /// Path that is written first: beside the target, under a name that cannot be guessed.
   const std::filesystem::path& draft() const { return own_.draft; }
-  /// What is put in place next; a withdrawal deletes nothing else there. sha256: of a file's bytes, or of a
-  /// folder's list_of_files().
+  /// Declares the content that is put in place next; a withdrawal deletes nothing else at that path. sha256:
+  /// of a file's bytes, or of a folder's list_of_files().
   void will_be(const std::string& sha256);
-  /// It is there, and that is on the disk. base::Error, and it is gone again, when one of its people withdrew
-  /// in the meantime.
+  /// Call after the rename; flushes it to disk. base::Error, with the export deleted, if one of its people
+  /// withdrew in the meantime.
   void is_in_place();
 
  private:
@@ -66,14 +67,14 @@ class RegisteredExport {
   bool named_ = false;
 };
 
-/// Writes single files that hold values of people, such as a report; make it before their data are read.
+/// Writes single files with people's data, such as a report. Construct it before the data are read.
 class RegisteredFiles {
  public:
   explicit RegisteredFiles(const StudyFile& study);
-  /// Makes a missing folder for such files, 0700, with those above it. What is made here is removed by the
-  /// withdrawal that leaves it empty.
+  /// Makes a missing folder for such files, 0700, and its parents. A withdrawal that empties such a folder
+  /// removes it.
   void make_folder(const std::filesystem::path& folder) const;
-  /// Puts a file in place, 0600 whatever the umask and whatever stood there.
+  /// Puts a file in place, mode 0600 whatever the umask, replacing an earlier one.
   void write(const std::string& kind, const std::filesystem::path& path, const std::string& bytes) const;
 
  private:
@@ -81,17 +82,15 @@ class RegisteredFiles {
   std::set<std::string> people_;
 };
 
-/// True when a registered export holds somebody who withdrew and can be dealt with on this computer.
+/// True if a registered export holds somebody who withdrew and can be handled on this computer.
 bool holds_withdrawn(sqlite::Connection& database);
 
-/// Deletes every registered export that holds somebody who withdrew, with what a kill left of it beside its
-/// place, and then the folders that were made for such files and are empty. Each deletion is on the disk
-/// before its row is struck out.
+/// Deletes every registered export that holds somebody who withdrew, with drafts that a kill left beside it,
+/// and then the empty folders made for such files. Each deletion is on disk before its row is deleted.
 ///
-/// Only what stands in the register of this installation, with the same content and with somebody who
-/// withdrew, is deleted. Named as left: what is on another computer, what this installation did not register,
-/// what was changed, and what cannot be deleted; and once, what is no longer there, since it may have been
-/// moved.
+/// Deletes only exports in the register of this installation with unchanged content and with somebody who
+/// withdrew. Lists in done.left: exports on another computer, not registered by this installation, changed,
+/// or not deletable; and once, missing ones, since they may have been moved.
 void delete_exports_of_withdrawn(sqlite::Connection& database, CleanUp& done);
 
 }  // namespace study

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t longest_path = 4096;
 
-/// What a kill left of exports, or of a deletion that had begun: under names that this installation drew.
+/// Removes what a kill left of exports or of begun deletions, under draft names that this installation chose.
 void remove_drafts(const std::vector<OwnExport>& made) {
   for (const OwnExport& one : made) {
     if (!base::is_draft_name(one.draft.string(), one.path.string())) continue;
@@ -36,7 +36,7 @@ void remove_drafts(const std::vector<OwnExport>& made) {
   }
 }
 
-/// Aside first: the place never holds a part of it, which would not be recognised.
+/// Moves it aside first, so that the path never has a partial export, which would not be recognised.
 void remove_whole(const OwnExport& made) {
   const bool is_folder = !marker_of(made.kind).empty();
   if (is_folder && !base::rename_durably(made.path, made.draft))
@@ -85,7 +85,7 @@ void forget(const std::vector<OwnExport>& made) {
   forget_own_exports(ids);
 }
 
-/// Of what stands there no longer, the register keeps what this program deleted itself.
+/// Of missing exports, the register keeps only those that this program deleted.
 void settle_gone(const std::vector<OwnExport>& made) {
   std::vector<OwnExport> moved;
   for (const OwnExport& one : made) {
@@ -97,8 +97,8 @@ void settle_gone(const std::vector<OwnExport>& made) {
   forget(moved);
 }
 
-/// Whether this database has a say in what this installation made at a place: somebody of it withdrew from
-/// here, or it was made of this very file.
+/// True if this database may decide on exports that this installation made at a path: one has a person who
+/// withdrew here, or was made from this very file.
 bool concerns(Connection& database, const std::vector<OwnExport>& made) {
   const fs::path here = fs::weakly_canonical(database.path());
   return std::any_of(made.begin(), made.end(), [&](const OwnExport& one) {
@@ -106,7 +106,7 @@ bool concerns(Connection& database, const std::vector<OwnExport>& made) {
   });
 }
 
-/// Why what stands at its place is not deleted; empty: it is gone, or holds nobody who withdrew.
+/// Why the file or folder at its path is not deleted; empty: it is deleted, or holds nobody who withdrew.
 std::string remove_standing(Connection& database, const Leftover& one, const std::vector<OwnExport>& made) {
   if (made.empty())
     return "was not registered by this installation (" + own_exports_file().string() +
@@ -130,7 +130,7 @@ std::string remove_standing(Connection& database, const Leftover& one, const std
   return "";
 }
 
-/// Why it is not deleted; empty: it is gone.
+/// Why it is not deleted; empty if it is gone.
 std::string remove_leftover(Connection& database, const Leftover& one) {
   if (one.host != this_host() && !one.host.empty()) {
     return "is on the computer '" + base::shortened(one.host) +
@@ -150,7 +150,7 @@ std::string remove_leftover(Connection& database, const Leftover& one) {
   return "is no longer there\n  mend: where it was moved or copied to, delete it";
 }
 
-/// Only those that this installation made.
+/// Removes only folders that this installation made.
 void remove_empty_folders(Connection& database) {
   std::vector<std::pair<std::int64_t, fs::path>> folders;
   Statement row(database,

@@ -1,5 +1,5 @@
 #pragma once
-/// Rows of the table `export`, for those who write the register and those who work it off.
+/// Rows of the table `export`, shared by the register and the deletion of exports.
 
 #include <cstdint>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace study::export_rows {
 
-/// Kind of a folder that was made for registered files. It holds nobody itself: it goes when it is empty.
+/// Kind of a folder made for registered files. It holds no people itself and is removed when it is empty.
 inline constexpr const char* folder_kind = "folder";
 
-/// Name of this computer; empty where it has none.
+/// Name of this computer; empty if it has none.
 std::string this_host();
 
 void strike_out(sqlite::Connection& database, std::int64_t id);

@@ -12,11 +12,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Where the shared memory of a log says how far it was copied (sqlite.org/walformat.html, section 2.2).
+// Offsets in a log's shared memory that say how far it was copied (sqlite.org/walformat.html, section 2.2).
 constexpr int salt_at = 32, copied_at = 96, being_copied_at = 128;
 constexpr int shared_region_bytes = 32768, copy_lock = 1;
 
-/// None where the file has no shared memory.
+/// Null if the file has no shared memory.
 sqlite3_file* main_file(sqlite3* database) {
   sqlite3_file* file = nullptr;
   sqlite3_file_control(database, "main", SQLITE_FCNTL_FILE_POINTER, &file);
@@ -33,8 +33,8 @@ bool keeps_a_log(sqlite3* database) {
   return mode == "wal";
 }
 
-/// The shared memory that the connection has mapped already. Without a log SQLite would open it for this call
-/// and never close it.
+/// The shared memory that the connection has already mapped. Without a log, SQLite would open it for this
+/// call and never close it.
 const volatile char* shared_memory(sqlite3* database) {
   sqlite3_file* file = main_file(database);
   if (!file || !keeps_a_log(database)) return nullptr;
@@ -68,7 +68,7 @@ std::optional<FileWatch::Id> FileWatch::id_of(const fs::path& path) {
 std::optional<FileWatch::Look> FileWatch::seen_now() const {
   const volatile char* memory = shared_memory(database_);
   if (!memory) return {};
-  // The mark of a copy under way is set before its first byte is written, so it is read after the file.
+  // SQLite marks a copy as under way before it writes the first byte, so read the mark after the file.
   struct stat file {};
   if (::stat(path_.c_str(), &file) != 0) return {};
   Look seen;
@@ -84,11 +84,11 @@ std::string FileWatch::trouble() {
   const auto file = id_of(path_);
   if (!file) return "was deleted or moved away while it was in use";
   if (file != file_id_) return "was replaced by another file while it was in use";
-  // Gone on purpose where the connection no longer keeps one.
+  // If the connection has left WAL mode, the log is missing on purpose.
   if (id_of(log_) != log_id_)
     return keeps_a_log(database_) ? "lost its log " + log_.string() + " while it was in use" : "";
   if (!written_by_somebody()) return {};
-  // Whoever copies the log holds this lock; then it is judged at the next look.
+  // A program that copies the log holds this lock; in that case judge at the next call.
   const auto lock = [this](int how) {
     sqlite3_file* main = main_file(database_);
     return main && main->pMethods->xShmLock(main, copy_lock, 1, how | SQLITE_SHM_EXCLUSIVE) == SQLITE_OK;
@@ -103,7 +103,7 @@ bool FileWatch::written_by_somebody() {
   const auto now = seen_now();
   if (!now) return false;
   const bool written = last_ && (now->bytes != last_->bytes || now->written_ns != last_->written_ns);
-  // Any program may copy the log into the file, and says so in the shared memory.
+  // Any program may copy the log into the file; the shared memory shows it.
   const bool by_the_log = last_ && (now->salt[0] != last_->salt[0] || now->salt[1] != last_->salt[1] ||
                                     now->copied != last_->copied || now->being_copied != last_->being_copied);
   if (written && !by_the_log) return true;

@@ -1,5 +1,6 @@
 #pragma once
-/// Notices when a file that SQLite has open with a log is deleted, replaced or written over by somebody else.
+/// Detects that a file that SQLite has open in WAL mode was deleted, replaced or overwritten by another
+/// program.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,22 +13,22 @@ namespace study {
 
 class FileWatch {
  public:
-  /// `database` has `path` open, in WAL mode. As the file is now, it is right.
+  /// `database` has `path` open in WAL mode. The file's current state is the reference.
   FileWatch(std::filesystem::path path, sqlite3* database);
 
-  /// What happened to the file since the last look, e.g. "was deleted or moved away ..."; empty: nothing.
+  /// What happened to the file since the last call, e.g. "was deleted or moved away ..."; empty: nothing.
   std::string trouble();
-  /// Takes the log away from beside the path, where it would be copied into whatever file stands there next:
-  /// to `kept`, or for good. Neither is touched where it is not the one that SQLite has open.
+  /// Moves the log to `kept`, or deletes it, and deletes the shared memory, so that SQLite does not copy the
+  /// log into the next file at the path. Does not touch a file that is not the one SQLite has open.
   void take_log_away(const std::optional<std::filesystem::path>& kept) const;
 
  private:
-  /// Which file stands at a path.
+  /// Identity of the file at a path.
   struct Id {
     std::uint64_t device = 0, number = 0;
     bool operator==(const Id&) const = default;
   };
-  /// The main file as it was last seen, and how far the log has been copied into it.
+  /// State of the main file at the last look, and how far the log was copied into it.
   struct Look {
     std::int64_t bytes = 0, written_ns = 0;
     std::uint32_t salt[2] = {}, copied = 0, being_copied = 0;

@@ -21,16 +21,15 @@ namespace {
 
 constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
 constexpr std::string_view journal_magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
-// Places in the first page.
+// Offsets in the first page.
 constexpr std::size_t page_bytes_at = 16, format_at = 18, counter_at = 24, cookie_at = 40, version_at = 60,
                       application_at = 68;
 constexpr char format_of_logs = 2;
-/// The first schema whose programs write the first page with each commit.
+/// The first schema whose programs write the first page in each commit.
 constexpr std::uint32_t first_marked_version = 7;
-/// A cookie goes on by one for each change of the schema and each VACUUM.
+/// A cookie increases by one with each change of the schema and each VACUUM.
 constexpr std::int64_t most_changes = 10'000;
-/// Commits of single statements, and of other programs, write the first page where they change its counts
-/// alone.
+/// Commits of single statements and of other programs write the first page only if its counts change.
 constexpr std::size_t most_unmarked = 8;
 constexpr int tries = 5;
 constexpr std::chrono::milliseconds between_tries{20};
@@ -52,7 +51,7 @@ bool same_identity(std::string_view one, std::string_view other) {
 
 bool has_identity(std::string_view header) { return u32(header, cookie_at) >= first_identity; }
 
-/// How far `counter` is behind `other`; negative where it is ahead. Counters go round.
+/// How far `counter` is behind `other`; negative if ahead. Counters wrap around.
 std::int32_t behind(std::string_view counter, std::string_view other) {
   return static_cast<std::int32_t>(u32(other, counter_at) - u32(counter, counter_at));
 }
@@ -71,14 +70,14 @@ std::string problem_of_log(const Log& log, std::string_view header) {
     if (has_identity(header) && has_identity(head) && !same_identity(head, header))
       return "is of another database";
   }
-  // The log in which an older database was given its number holds commits from before.
+  // The log in which an older database got its number also holds earlier commits.
   if (has_identity(header) && !has_identity(heads.back())) return "is of another database";
   if (behind(header, heads.front()) > 1) return "is of a later state of the database than the file";
   if (behind(heads.back(), header) > 0) return "is of an earlier state of the database than the file";
   return {};
 }
 
-/// The first page as it stands in a journal; empty: none of its first part.
+/// The first page in a journal; empty if the journal's first part lacks it.
 std::string first_page_of(const File& journal, std::string_view head, std::size_t bytes) {
   const std::size_t record = 4 + bytes + 4;
   for (std::size_t at = u32(head, 20); at + record <= journal.size(); at += record) {
@@ -92,7 +91,7 @@ std::string first_page_of(const File& journal, std::string_view head, std::size_
 std::string problem_of_journal(const fs::path& path, std::string_view header) {
   const File journal(path);
   const std::string head = journal.read(0, 28);
-  // SQLite would look into a file that the journal names, and may delete that.
+  // SQLite would read a file that the journal names, and may delete it.
   if (journal.size() >= 16 && journal.read(journal.size() - 8, 8) == journal_magic)
     return "names a further file to be deleted";
   if (head.size() < 28 || !head.starts_with(journal_magic) || !is_ours(header)) return {};
@@ -122,7 +121,7 @@ std::optional<ForeignLog> look(const fs::path& database, const std::string& head
 
 std::optional<ForeignLog> foreign_log(const fs::path& database, const std::function<std::string()>& header) {
   auto found = look(database, header());
-  // While somebody writes, the parts may be of two moments.
+  // During a write, the parts may be of different moments.
   for (int i = 1; found && i < tries; ++i) {
     std::this_thread::sleep_for(between_tries);
     found = look(database, header());
@@ -143,7 +142,7 @@ void refuse_orphaned_log(const fs::path& database) {
     std::error_code ignored;
     return !fs::exists(database, ignored) || fs::file_size(database, ignored) == 0;
   };
-  // Asked again behind the log: another program may be making the database.
+  // Checked again after the log, because another program may be making the database.
   if (!is_empty() || Log(log).is_empty() || !is_empty()) return;
   throw base::Error(log.string(), "stands there without its database",
                     "put the database back beside it, or save what the log and the journal of answers hold: "

@@ -1,10 +1,10 @@
 #pragma once
-/// Whether the log "<database>-wal" and the journal "<database>-journal" that stand beside a database are its
-/// own. SQLite knows no such question: it takes whatever is sound by itself into the database.
+/// Checks that the log "<database>-wal" and the journal "<database>-journal" beside a database belong to it.
+/// SQLite does not check that: it applies any log or journal that is valid in itself.
 ///
-/// Databases of this program answer it in the first page, which each of their commits writes again. The
-/// schema cookie is a number that a database was given by chance when it was made (`identity_at`); the change
-/// counter goes on where the database stands. The format: https://www.sqlite.org/fileformat2.html
+/// Databases of this program identify themselves in the first page, which each commit rewrites. The schema
+/// cookie is a random number (>= first_identity) chosen when the database was made or upgraded; the log's
+/// change counter must continue the database's. The format: https://www.sqlite.org/fileformat2.html
 
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace study {
 
-/// Cookies below it count the changes of a schema: the database was given none by chance yet.
+/// Smaller cookies count schema changes: the database has no random identity yet.
 inline constexpr std::int64_t first_identity = 1 << 16;
 
 struct ForeignLog {
@@ -23,16 +23,16 @@ struct ForeignLog {
   std::string problem;
 };
 
-/// None: they are the database's own, or there are none. `header` gives the first 100 bytes of the database
-/// as they are at that time: another program may be writing. Nothing is changed.
+/// None: both belong to the database or do not exist. `header` returns the current first 100 bytes of the
+/// database, since another program may be writing. Changes nothing.
 std::optional<ForeignLog> foreign_log(const std::filesystem::path& database,
                                       const std::function<std::string()>& header);
 
-/// base::Error where there is a foreign one.
+/// base::Error if foreign_log() finds one.
 void refuse_foreign_log(const std::filesystem::path& database, const std::function<std::string()>& header);
 
-/// base::Error where no database, or an empty one, stands beside a log that holds something: SQLite would
-/// delete that when it makes a database there.
+/// base::Error if the database is missing or empty but its log is not: SQLite would delete that log when it
+/// makes a database there.
 void refuse_orphaned_log(const std::filesystem::path& database);
 
 }  // namespace study

@@ -1,6 +1,6 @@
 #pragma once
-/// What the frames of live stimuli cost on a session's station, as its event log holds it: measured before
-/// the session, at full speed, on the display that it plays on (docs/records.md).
+/// Frame costs of live stimuli on a session's station, stored in its event log: measured before the session,
+/// at full speed, on the session's display (docs/records.md).
 
 #include <string>
 #include <vector>
@@ -11,8 +11,7 @@ namespace study {
 
 inline constexpr const char* frame_costs_event = "frame costs";
 
-/// Of one stimulus under one wish for its frame rate. A frame is computed and drawn, with nothing to wait
-/// for.
+/// Costs of one stimulus: the time to compute and draw a frame without waiting.
 struct FrameCosts {
   StimulusSpec what;
   double mean_ms = 0, p95_ms = 0;

@@ -91,7 +91,7 @@ std::string whole(const fs::path& path, bool& exists) {
   return bytes;
 }
 
-/// Takes a journal line by line.
+/// Parses a journal line by line.
 class Reader {
  public:
   void line(const std::string& text, std::uintmax_t end) {
@@ -122,7 +122,7 @@ class Reader {
       return true;
     }
     if (const auto ready = mark.find("ready"); ready != mark.end() && ready->is_number_integer()) {
-      // What was ready before and is followed by more, without having been kept, failed to be committed.
+      // An earlier batch that was not kept before this one was not committed.
       content.last_number = std::max(content.last_number, ready->get<std::int64_t>());
       waiting_ = ready->get<std::int64_t>();
       content.torn = skipped_ > 0;
@@ -267,7 +267,7 @@ namespace {
 
 fs::path draft_of(const fs::path& journal) { return journal.string() + ".new"; }
 
-/// Deleting a file leaves its bytes on the disk: they are overwritten before.
+/// Deleting a file leaves its bytes on the disk, so overwrites them first.
 void overwrite(const Descriptor& file, const fs::path& path) {
   const std::string zeros(1 << 16, '\0');
   for (std::uintmax_t left = size_of(file.get(), path); left > 0;) {
@@ -314,7 +314,7 @@ void replace_journal(const fs::path& path, const std::string& text) {
     return base::sync_folder_of(path);
   }
   write_draft(draft, path, text);
-  // A power cut leaves the one or the other under the name, and both whole.
+  // A power cut leaves one of the two under the name, and both complete.
   if (base::rename_durably(draft, path, fs::exists(fs::symlink_status(path)) ? RENAME_EXCHANGE : 0))
     return remove_journal_draft(path);
   // Network file systems cannot exchange two names, so the new journal replaces the old one.

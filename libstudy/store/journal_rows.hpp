@@ -12,51 +12,51 @@
 
 namespace study::journal {
 
-/// A table that the journal follows.
+/// A table whose rows the journal records.
 struct Table {
   const char* name;
-  std::vector<std::string> key;  ///< columns that tell its rows apart
-  bool answers = true;           ///< a change of it counts: on the disk before its commit
-  const char* context = "";      ///< columns that say in words what a row belongs to ...
-  const char* joins = "";        ///< ... and the tables in which they stand
+  std::vector<std::string> key;  ///< columns that identify a row
+  bool answers = true;           ///< a change must be on disk before its commit
+  const char* context = "";      ///< readable columns that say what a row belongs to ...
+  const char* joins = "";        ///< ... and the joins to their tables
 };
 
-/// All that counts, parents first: everything but frames, gaze, exports and what is still to be cleaned up.
-/// Rows of these tables are deleted by withdrawal alone.
+/// All journalled tables, parents first: all but frames, gaze, exports and chores. Only withdrawals delete
+/// rows of these tables.
 std::span<const Table> tables();
-/// Null: a table that is not followed.
+/// Null if the table is not journalled.
 const Table* find_table(const std::string& name);
 
-/// A row as it stands in the journal: a JSON object of one line, {"table": name, column: value, ...,
-/// "of": {participant, session, unit, block, question}}. Equal rows make equal lines.
+/// A row in the journal: a JSON object on one line, {"table": name, column: value, ..., "of": {participant,
+/// session, unit, block, question}}. Equal rows make equal lines.
 struct Row {
   const Table* table = nullptr;
-  std::string key;  ///< of this row among those of the table
+  std::string key;  ///< of this row, unique in its table
   std::string line;
 };
 
-/// Rows of a table as they stand in the database, by their keys.
+/// Calls `take` for each row of a table in the database, ordered by key.
 void each_row(sqlite::Connection& database, const Table& table, const std::function<void(Row)>& take);
-/// The same for some rows; which are gone are left out. Tables without row numbers: none.
+/// The same for some rows; missing ones are skipped. No rows for tables without row numbers.
 void each_row(sqlite::Connection& database, const Table& table, std::span<const std::int64_t> row_ids,
               const std::function<void(Row)>& take);
-/// Rows of a table that belong to a protocol: question, ask, cell.
+/// The same for the rows of a protocol in question, ask or cell.
 void each_row_of_protocol(sqlite::Connection& database, const Table& table, std::int64_t protocol_id,
                           const std::function<void(Row)>& take);
-/// The row as the database has it now; none: it is not there.
+/// The row in the database now; none if it is missing.
 std::optional<Row> stands_as(sqlite::Connection& database, const Row& row);
 
-/// Levels of JSON in a line; a deeper one is none of a journal.
+/// Maximum nesting of JSON in a line; a deeper line is not a journal line.
 inline constexpr int most_levels = 8;
 
-/// None: not a line of a row that this program follows.
+/// None if the line is not a row of a journalled table.
 std::optional<Row> read_row(const std::string& line);
-/// The value of a column as text; empty for NULL and for a column that is not there.
+/// The value of a column as text; empty for NULL and for a missing column.
 std::string column(const Row& row, const std::string& name);
 
 enum class Put { Insert, Replace };
-/// Writes a row into the database. False: a row of that key, or one that excludes it, stands there (Insert),
-/// or a value is not what the column takes.
+/// Writes a row into the database. False if a row with that key or a conflicting row exists (Insert), or if a
+/// value does not fit its column.
 bool put(sqlite::Connection& database, const Row& row, Put how);
 
 }  // namespace study::journal

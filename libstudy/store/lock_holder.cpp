@@ -13,7 +13,7 @@ namespace study {
 
 namespace {
 
-/// A file as /proc/locks names it; empty when there is none.
+/// A file's name in /proc/locks; empty if there is no file.
 std::string kernel_name(const std::string& path) {
   struct stat file {};
   if (::stat(path.c_str(), &file) != 0) return {};
@@ -22,7 +22,8 @@ std::string kernel_name(const std::string& path) {
 
 }  // namespace
 
-// The list of all locks is read instead of asking with a descriptor: closing that would give SQLite's away.
+// Reads the list of all locks instead of asking with a descriptor, because closing that would release
+// SQLite's locks.
 std::string lock_holder(const std::filesystem::path& database) {
   const std::string file = kernel_name(database.string()), shared = kernel_name(database.string() + "-shm");
   std::set<long> holders;

@@ -1,13 +1,13 @@
 #pragma once
-/// Who holds the lock that a write waits for.
+/// Names the program that holds the lock that a write waits for.
 
 #include <filesystem>
 #include <string>
 
 namespace study {
 
-/// Programs that hold a lock for writing on a SQLite database or the shared memory of its log, e.g.
-/// "sqlitebrowser (process 4711)"; "another program" where the system does not say.
+/// The programs with a write lock on a SQLite database or its shared memory, e.g. "sqlitebrowser (process
+/// 4711)"; "another program" if the system does not tell.
 std::string lock_holder(const std::filesystem::path& database);
 
 }  // namespace study

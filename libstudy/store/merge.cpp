@@ -24,7 +24,7 @@ using sqlite::Statement;
 
 namespace {
 
-/// Somebody who stands in `into` before the merge.
+/// A person in `into` before the merge.
 struct Resident {
   std::string person, participant;
   Stock stock;
@@ -54,7 +54,7 @@ Content read_all(const std::vector<fs::path>& sources, const fs::path& into, boo
   if (!holds_nothing(into)) paths.push_back(into);
   for (const fs::path& path : paths) {
     auto source = open_study({path, incomplete && path != into}).database;
-    source->execute("BEGIN");  // one moment of it, though a session may be running
+    source->execute("BEGIN");  // a consistent state, even during a session
     merging::add_source(content, std::move(source));
   }
   return content;
@@ -87,7 +87,7 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   return merge;
 }
 
-/// What an earlier merge or withdrawal could not do yet comes first: codes are those of its time.
+/// Copies the open chores of an earlier merge or withdrawal first, because they use the codes of that time.
 void carry_chores_over(Connection& into, Connection& result) {
   Statement row(into, "SELECT kind, batch, person, participant, renamed FROM chore ORDER BY chore_id");
   Statement insert(result,
@@ -98,7 +98,7 @@ void carry_chores_over(Connection& into, Connection& result) {
   }
 }
 
-/// For the files beside `into`: who withdrew is deleted there too, and a changed code is changed there too.
+/// Plans chores for the files beside `into`: deletes people who withdrew and changes codes there too.
 void plan_chores(Connection& result, const std::vector<Resident>& residents,
                  const std::map<std::string, std::string>& names, const Content& content, Merge& merge) {
   sqlite::Transaction transaction(result);
@@ -117,7 +117,7 @@ void plan_chores(Connection& result, const std::vector<Resident>& residents,
   transaction.commit();
 }
 
-/// Backups and exports of `into` that hold gaze which a refusal of another station deleted here.
+/// Adds backups and exports of `into` that hold gaze that was deleted here by a refusal at another station.
 void name_refused(Connection& into, const std::set<std::string>& had_gaze, CleanUp& beside) {
   std::set<std::string> deleted;
   for (const std::string& person : people_without_gaze(into)) {
@@ -147,7 +147,7 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool in
   prepare_rewrite(*target, withdrawn);
   const std::set<std::string> had_gaze = people_with_gaze(*target);
   target->execute("PRAGMA secure_delete = ON");
-  // Exports are registered beside whoever holds the lock of writers: also those of this very moment.
+  // Exports can be registered despite the writer's lock: also takes those of this moment.
   target->copy_from(*result, [&] {
     Connection standing(into, Open::Read);
     sqlite::Transaction transaction(*result);

@@ -11,36 +11,35 @@
 
 namespace study {
 
-/// What a merge came to.
+/// The result of a merge.
 struct Merge {
-  std::int64_t sessions = 0;       ///< that the result holds
-  std::int64_t recognised = 0;     ///< copies of a session that stands there already, not counted twice
-  std::int64_t test_sessions = 0;  ///< among `sessions`: marked as test data, and kept so
-  /// Codes that stood for several people: "P07 of station north is P07-north".
+  std::int64_t sessions = 0;       ///< in the result
+  std::int64_t recognised = 0;     ///< further copies of a session, not counted twice
+  std::int64_t test_sessions = 0;  ///< among `sessions`: still marked as test data
+  /// Codes that several people had: "P07 of station north is P07-north".
   std::vector<std::string> renamed;
-  /// Codes of all who withdrew; no data of theirs were taken over.
+  /// Codes of all who withdrew; none of their data are in the result.
   std::vector<std::string> withdrawn;
-  /// What the tombstones deleted from `into` itself, by code.
+  /// Data that the tombstones deleted from `into` itself, by code.
   std::vector<std::pair<std::string, Stock>> buried;
   CleanUp beside;  ///< backups, personal data and exports of `into`
-  /// Datasets that go by one name and version with different texts; they stay apart.
+  /// Datasets with equal name and version but different texts; they stay separate.
   std::vector<std::string> namesakes;
   std::vector<Balance> balance;               ///< of the result, by protocol
-  std::vector<std::string> station_troubles;  ///< why it may be off: sentences without a full stop
+  std::vector<std::string> station_troubles;  ///< why the balance may be off: sentences without a full stop
 };
 
-/// Joins `sources` and what `into` holds already, in `into`.
+/// Joins `sources` with the content of `into`, in `into`.
 ///
-/// Equal protocol hash = one dataset. A session that stands in several of them counts once, as its furthest
-/// copy; base::Error when two copies went on differently. A code given to several people becomes
-/// "<code>-<station>" for each of them, or "<code>-<four hexadecimal digits>" where that is not distinct. Who
-/// withdrew in one of them is deleted from all, also from backups and personal data beside `into` and from
-/// every registered export. The result depends on what is joined, not on the order; merged again, nothing
-/// changes. Sources stay as they are, `into` changes in one transaction or not at all; what is to follow
-/// beside it is written down in that transaction (chores.hpp), so that a kill leaves nothing forgotten.
-/// Personal data stay at their stations. base::Error, with nothing changed: a source with rows that belong to
-/// nothing, or with rows of one session that point into another; one that lacks what its journal holds,
-/// unless `incomplete`.
+/// Equal protocol hash = one dataset. A session with several copies counts once, as the copy that went
+/// furthest; base::Error if two copies diverged. A code of several people becomes "<code>-<station>" for
+/// each, or "<code>-<four hexadecimal digits>" where that is not distinct. A person who withdrew in one
+/// database is deleted from all, also from backups and personal data beside `into` and from every registered
+/// export. The result does not depend on the order of joining; merging again changes nothing. Sources stay
+/// unchanged; `into` changes in one transaction or not at all. That transaction also records the work on
+/// other files (chores.hpp), so that a kill loses none of it. Personal data stay at their stations.
+/// base::Error, with nothing changed: a source has rows without a parent or rows of one session that point
+/// into another, or, unless `incomplete`, lacks rows of its journal.
 Merge merge(const std::vector<std::filesystem::path>& sources, const std::filesystem::path& into,
             bool incomplete = false);
 

@@ -1,5 +1,5 @@
-/// Labels of people and protocols after a merge: none that the database which takes the others in has given
-/// moves, whatever the others gave.
+/// Labels of people and protocols after a merge: labels of the receiving database never change, whatever
+/// labels the others have.
 #include <algorithm>
 #include <filesystem>
 #include <tuple>
@@ -11,7 +11,7 @@ namespace study::merging {
 
 namespace {
 
-/// By when somebody was first planned, then by identity: the same in whatever order the sources are named.
+/// Sorts by the time of the first plan, then by identity: independent of the order of the sources.
 void sort_labels(std::vector<GivenLabel>& labels, const Content& content) {
   std::map<std::string, std::string> planned;
   for (const SessionCopy& copy : content.copies) {

@@ -18,7 +18,7 @@ struct Person {
   std::string uid, code, station;
 };
 
-/// Everybody who is or was here, each with the station of the first session.
+/// All people including withdrawn ones, each with the station of the first session.
 std::vector<Person> people_of(const Content& content) {
   std::map<std::string, Person> people;
   std::map<std::string, std::pair<std::string, std::string>> first;  // planned, session
@@ -49,7 +49,7 @@ std::string with_digits(const Person& person) {
          base::sha256_hex(person.uid).substr(0, digits);
 }
 
-/// "<code>-<station>", or with digits where there is no station or no room.
+/// "<code>-<station>", or with digits if there is no station or no room.
 std::string with_station(const Person& person) {
   const std::string name = person.code + '-' + as_code(person.station);
   return person.station.empty() || name.size() > longest_code ? with_digits(person) : name;

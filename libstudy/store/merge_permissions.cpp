@@ -1,6 +1,6 @@
-/// Changes of permissions in a merge. A change is recognised by all that never changes of it. What can only
-/// grow (superseded, and how much of the session it knew) is taken as the largest of all copies, so that
-/// neither the order nor the number of merges matters.
+/// Permission changes in a merge. A change is identified by its constant fields. Fields that only grow
+/// (superseded, and how much of the session it knew) take the largest value of all copies, so that neither
+/// the order nor the number of merges matters.
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -16,7 +16,7 @@ using sqlite::Statement;
 
 namespace {
 
-/// what, when, whether refused, identity.
+/// What, when, refused or not, identity.
 using Key = std::tuple<std::string, std::string, bool, std::optional<std::string>>;
 
 struct Known {
@@ -43,8 +43,8 @@ void read_changes(Connection& source, std::int64_t session, std::map<Key, Known>
   }
 }
 
-/// The order of rows in each source, and one that depends on them alone where sources did not know of each
-/// other.
+/// Keeps the row order of each source. Changes from sources that did not know of each other are ordered by
+/// their content alone.
 std::vector<std::pair<Key, Known>> in_order(const std::map<Key, Known>& changes) {
   std::vector<std::pair<Key, Known>> rows(changes.begin(), changes.end());
   std::stable_sort(rows.begin(), rows.end(),

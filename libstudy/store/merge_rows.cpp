@@ -16,13 +16,13 @@ using sqlite::Statement;
 
 namespace {
 
-/// New row numbers by the old ones, for each column that holds them ("trial_id", ...).
+/// New row numbers by old ones, for each column that holds them ("trial_id", ...).
 using RowNumbers = std::map<std::string, std::unordered_map<std::int64_t, std::int64_t>>;
 
 /// A table that belongs to a session; ?1 is the session's row.
 struct Table {
   const char* name;
-  const char* key;  // the row number that others refer to; empty: none
+  const char* key;  // the row number that other tables refer to; empty: none
   const char* rows;
 };
 
@@ -48,7 +48,7 @@ const Table session_tables[] = {
     {"event", "event_id", "session_id = ?1 AND kind <> 'permission changed'"},
 };
 
-/// A row that points to one of another session: SQLite sees nothing wrong with it.
+/// Throws for a row that refers to another session, which SQLite accepts.
 [[noreturn]] void throw_stray(const Connection& source, const Statement& row, const std::string& table,
                               const std::string& key, int column) {
   throw base::Error(source.path().string(),
@@ -57,7 +57,7 @@ const Table session_tables[] = {
                     "make a sound copy with vip-study salvage, or leave this database out");
 }
 
-/// Copies the rows of one table: row numbers become new ones, `changed` columns their new values.
+/// Copies the rows of one table with new row numbers and new values for `changed` columns.
 void copy_rows(Connection& source, Connection& target, const Table& table, std::int64_t parent,
                RowNumbers& numbers, const std::map<std::string, std::string>& changed = {}) {
   const std::string name = table.name, key = table.key, columns = listed(columns_of(name));
@@ -115,7 +115,7 @@ class Union {
     }
   }
 
-  /// Events of no session, such as exports: each once.
+  /// Adds events without a session, such as exports, each once.
   void add_common_events() {
     using Event = std::tuple<std::string, std::optional<std::int64_t>, std::string, std::string>;
     std::set<Event> events;
@@ -158,7 +158,7 @@ class Union {
     return out;
   }
 
-  /// The protocol as the first source has it; of the others, what that one lacks.
+  /// Adds the protocol of the first source, and from the others only what that one lacks.
   void add_protocol(std::size_t index, const std::string& sha256) {
     Connection& source = *content_.sources[index];
     RowNumbers& numbers = numbers_[index];
@@ -194,7 +194,7 @@ class Union {
     }
   }
 
-  /// Tables without a row number; equal in all sources that hold sessions of the protocol.
+  /// Adds tables without a row number; they are equal in all sources with sessions of the protocol.
   void add_dependants(Connection& source, std::int64_t protocol, RowNumbers& numbers, const char* table) {
     Statement there(target_, std::string("SELECT 1 FROM ") + table + " WHERE protocol_id = ?");
     if (there.bind_all(numbers["protocol_id"].at(protocol)).step()) return;

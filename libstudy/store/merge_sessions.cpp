@@ -1,4 +1,4 @@
-/// What stands in the sources of a merge, and which copy of each session counts.
+/// Reads the sources of a merge and chooses the copy of each session that counts.
 #include <algorithm>
 #include <tuple>
 
@@ -28,7 +28,7 @@ constexpr const char* merged_sessions_sql =
     "(SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id) "
     "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
 
-/// Without changes of permissions, which go on in any copy: Union::add_permissions joins them.
+/// Without permission changes, which may happen in any copy: add_permissions() joins them.
 std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   Statement row(source,
                 "SELECT utc || ' ' || coalesce(clock_ns, '') || ' ' || kind || ' ' || detail FROM event "
@@ -39,13 +39,13 @@ std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   return log;
 }
 
-/// Of copies that went equally far, the one that kept its gaze: what a refusal concerns is left out of the
-/// union in any case (drop_unallowed_gaze).
+/// Of equally far copies, prefers the one that still has its gaze; refused gaze is omitted from the union
+/// anyway (drop_unallowed_gaze).
 bool less_far(const SessionCopy& a, const SessionCopy& b) {
   return std::tie(a.events, a.frames, a.played, a.gaze) < std::tie(b.events, b.frames, b.played, b.gaze);
 }
 
-/// Each entry of the log is one commit, so that a copy is as old as its log is short.
+/// Each log entry is one commit, so the copy with the shorter log is the earlier one.
 void check_earlier(Content& content, const SessionCopy& earlier, const SessionCopy& later) {
   const auto before = log_of(*content.sources[earlier.source], earlier.id);
   const auto after = log_of(*content.sources[later.source], later.id);
@@ -70,7 +70,7 @@ void check_visits(Content& content, const std::vector<SessionCopy>& chosen) {
   }
 }
 
-/// The rows of a table without row numbers are told by what they point to.
+/// Rows of a table without row numbers are identified by their reference.
 std::string dangling_row(Connection& source, const std::string& table, const std::string& parent,
                          std::int64_t foreign_key) {
   Statement link(source, "SELECT \"from\" FROM pragma_foreign_key_list(?) WHERE id = ?");
@@ -81,7 +81,7 @@ std::string dangling_row(Connection& source, const std::string& table, const std
   return "a row of " + table + " with " + column + " " + (lost.step() ? lost.text(0) : "");
 }
 
-/// Rows that belong to nothing would be lost in the union, or end it.
+/// Rows without a parent would be lost in the union, or make it fail.
 void check_references(Connection& source) {
   Statement lost(source, "PRAGMA foreign_key_check");
   if (!lost.step()) return;

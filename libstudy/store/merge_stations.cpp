@@ -1,4 +1,4 @@
-/// Whether the stations of a merge dealt shares of one assignment.
+/// Checks that the stations of a merge dealt disjoint shares of one assignment.
 #include <algorithm>
 #include <set>
 
@@ -30,7 +30,7 @@ std::vector<Dealt> dealt_by_sources(const Content& content, const std::string& p
   return all;
 }
 
-/// Each has a session that the other lacks: neither is an earlier copy of the other.
+/// True if each has a session that the other lacks, so that neither is an earlier copy of the other.
 bool went_apart(const Dealt& a, const Dealt& b) {
   const auto holds = [](const Dealt& one, const Dealt& other) {
     return std::includes(one.sessions.begin(), one.sessions.end(), other.sessions.begin(),
@@ -44,7 +44,7 @@ std::string files_of(const Content& content, const Dealt& a, const Dealt& b) {
   return a.source == b.source ? file(a) : file(a) + " and " + file(b);
 }
 
-/// Empty: none.
+/// The problem of two shares; empty: none.
 std::string trouble_of(const Content& content, const Dealt& a, const Dealt& b) {
   const std::string files = files_of(content, a, b);
   if (a.source != b.source && a.number == b.number && went_apart(a, b))

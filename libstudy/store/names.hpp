@@ -1,5 +1,5 @@
 #pragma once
-/// How verdicts, grades and some events stand in the database, the certificate and the exports.
+/// Names of verdicts, grades and some events in the database, the certificate and the exports.
 
 #include <string>
 
@@ -10,10 +10,10 @@ namespace study {
 /// Events after which the experimenter was not blind to a session.
 inline constexpr const char* revealed_event = "setting revealed";
 inline constexpr const char* mirror_event = "mirror opened";
-/// The experimenter saw the pages and no stimulus, and stayed blind.
+/// The experimenter saw the pages but no stimulus, and stayed blind.
 inline constexpr const char* pages_mirror_event = "pages mirrored";
 
-/// The inverse of verdict_name(); what the schema's CHECK keeps out counts as a failed trial.
+/// The inverse of verdict_name(); other names, which the schema's CHECK excludes, give Fail.
 inline Verdict verdict_of(const std::string& name) {
   if (name == "pass") return Verdict::Pass;
   return name == "degraded" ? Verdict::Degraded : Verdict::Fail;

@@ -1,4 +1,4 @@
-/// What a database says is left to do.
+/// Store: reads the open runs and sessions.
 #include "libstudy/store/store.hpp"
 #include "libstudy/store/withdraw.hpp"
 

@@ -27,7 +27,7 @@ bool stands(Connection& database, const Row& row) {
   return now && now->line == row.line;
 }
 
-/// Persons with sessions in the database of whom the journal says that they withdrew.
+/// Persons with sessions in the database who withdrew according to the journal.
 std::vector<std::string> withdrawn(Connection& database, const JournalContent& content) {
   std::set<std::string> named;
   for (const JournalRows* rows : {&content.kept, &content.pending}) {
@@ -45,8 +45,8 @@ std::vector<std::string> withdrawn(Connection& database, const JournalContent& c
   return here;
 }
 
-/// Changes of permissions and answers on consent pages that the database has not, or otherwise. What they
-/// belong to may be missing as well: then there is nothing that they could keep back.
+/// Takes permission changes and consent answers that are missing or different in the database. Rows without a
+/// parent are skipped: then there is no data to withhold.
 void take_decisions(Connection& copy, const JournalRows& rows) {
   Statement asks(copy,
                  "SELECT 1 FROM question WHERE question_id = ? AND code IN ('gaze_kept', 'data_shared')");
@@ -60,7 +60,7 @@ void take_decisions(Connection& copy, const JournalRows& rows) {
   }
 }
 
-/// How one moment of a database stands to its journal.
+/// Comparison of a consistent state of a database with its journal.
 struct Findings {
   bool ahead = false;   ///< the journal holds more than the database
   bool begun = false;   ///< a commit was under way
@@ -72,7 +72,7 @@ Findings look(Connection& database, const JournalContent& content) {
   Findings found;
   if (!content.exists) return found;
   found.withdrawn = withdrawn(database, content);
-  if (content.rewriting) return found;  // its rows are those of before
+  if (content.rewriting) return found;  // its rows are older
   const Comparison comparison = compare(database, content.kept);
   found.ahead = is_ahead(comparison, content, database);
   if (found.ahead) found.lacking = words_of(comparison);
@@ -81,7 +81,7 @@ Findings look(Connection& database, const JournalContent& content) {
   return found;
 }
 
-/// What a writer would make of database and journal.
+/// The state that a writer would make from database and journal.
 std::unique_ptr<Connection> as_settled(Connection& database, const JournalContent& content,
                                        const Findings& found) {
   auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
@@ -116,13 +116,13 @@ std::unique_ptr<Connection> as_settled(Connection& database, const JournalConten
 OpenedStudy open_study(const StudyFile& study) {
   const fs::path path = real_file(study.path);
   for (int round = 1;; ++round) {
-    // The journal first: what it calls kept by then is in the database.
+    // Read the journal first: rows that it marks as kept are then in the database.
     const JournalContent content = read_journal(journal_beside(path));
     auto database = open_database(path, Open::Read, read_schema_steps());
     database->execute("BEGIN");
     const Findings found = look(*database, content);
     if (found.ahead && round < rounds) {
-      // Unless somebody withdrew in between.
+      // Read again if the journal changed meanwhile, e.g. by a withdrawal.
       const JournalContent now = read_journal(journal_beside(path));
       if (now.rewriting || now.end != content.end) continue;
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// How every reader opens a study, so that none of them says more, or less, than whoever writes would.
+/// Opens a study for reading, so that every reader sees the same data as a writer would.
 
 #include <memory>
 #include <string>
@@ -12,23 +12,21 @@ namespace study {
 /// A database that is open for reading.
 struct OpenedStudy {
   std::unique_ptr<sqlite::Connection> database;
-  /// What its journal alone holds, as "3 answers and 9 other rows stand in the journal alone"; empty:
-  /// nothing.
+  /// Rows that only its journal holds: "3 answers and 9 other rows stand in the journal alone"; empty: none.
   std::string lacking;
 };
 
 /// Opens a database as open_database() does for reading, and compares it with the journal beside it.
 ///
-/// base::Error where the journal holds more than the database: its log was lost, or a backup was put back.
-/// With StudyFile::incomplete it is opened nevertheless, and `lacking` says what is not in it.
+/// base::Error if the journal holds more than the database: its log was lost, or a backup was restored. With
+/// StudyFile::incomplete it is opened nevertheless, and `lacking` says what is missing.
 ///
-/// What the next opening for writing would make of the two is what a reader sees, in a temporary copy where
-/// the file itself is not so: a commit that a kill cut short is in it; whoever has a tombstone in the
-/// journal, or is named in a withdrawal that was not finished, is not, nor is gaze of whoever refused it
-/// there. That holds for an incomplete study as well.
+/// A reader sees the state that the next opening for writing would produce, in a temporary copy if the file
+/// differs: it has a commit that a kill interrupted, but no people with a tombstone in the journal or in an
+/// unfinished withdrawal, and no gaze that was refused there. This holds for an incomplete study as well.
 OpenedStudy open_study(const StudyFile& study);
 
-/// OpenedStudy::lacking of a study, whether or not it may be incomplete.
+/// OpenedStudy::lacking of a study; does not fail for an incomplete one.
 std::string lacking_of(const std::filesystem::path& database);
 
 }  // namespace study

@@ -67,7 +67,7 @@ std::optional<OwnExport> read_line(const std::string& line) {
   }
 }
 
-/// Who else may write it could have anything deleted.
+/// Another user who can write the register could have any file deleted.
 void check_owner(const fs::path& file) {
   struct stat found {};
   if (::lstat(file.c_str(), &found) != 0) return;
@@ -87,7 +87,7 @@ std::vector<OwnExport> read_all(const fs::path& file) {
   return all;
 }
 
-/// The folder is made 0700, as the paths of exports say something of their own.
+/// The folder is made 0700, because the paths of exports are private too.
 void change(const std::function<void(std::vector<OwnExport>&)>& how) {
   const fs::path file = own_exports_file();
   if (file.empty()) {
@@ -177,7 +177,7 @@ bool was_deleted_here(const fs::path& path, const std::string& sha256) {
 }
 
 std::string marker_of(const std::string& kind) {
-  // Where the standards let other files be.
+  // Paths where the standards allow other files.
   static const std::map<std::string, std::string> names{
       {"csv", "export.sha256"}, {"bids", "code/export.sha256"}, {"psych-ds", "materials/export.sha256"}};
   const auto name = names.find(kind);

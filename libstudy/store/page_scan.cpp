@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t most_payload_bytes = std::size_t{1} << 30;
 
-/// Reads numbers of one to nine bytes; none: behind the end.
+/// Reads numbers of one to nine bytes; none past the end.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
@@ -45,8 +45,8 @@ class Cursor {
   std::size_t at_;
 };
 
-/// Further pages that may still be read. Each belongs to one row, but a made-up file may have every cell
-/// point to all of them: rows beyond are as good as destroyed.
+/// Number of overflow pages that may still be read. Each belongs to one row, but in a forged file every cell
+/// could point to all of them; rows beyond the limit count as destroyed.
 class Allowance {
  public:
   explicit Allowance(std::size_t pages) : left_(most_readings * pages) {}
@@ -57,7 +57,7 @@ class Allowance {
   std::size_t left_;
 };
 
-/// The payload of a cell, with what of it stands on further pages.
+/// The payload of a cell, including its overflow pages.
 std::optional<std::string> payload_at(const Pages& pages, std::string_view page, Cursor cell,
                                       std::uint64_t size, bool table, Allowance& allowance) {
   const std::size_t usable = pages.usable();
@@ -88,7 +88,7 @@ std::optional<Value> value_of(std::uint64_t type, Cursor& body) {
   constexpr std::size_t bytes_of[] = {0, 1, 2, 3, 4, 6, 8, 8, 0, 0};
   if (type >= 12) {
     const auto text = body.take((type - 12) / 2);
-    if (!text || type % 2 == 0) return {};  // bytes: no table of ours holds any
+    if (!text || type % 2 == 0) return {};  // a blob: none of our tables has any
     return Value(std::string(*text));
   }
   if (type >= 10) return {};
@@ -134,7 +134,7 @@ bool fits(const Shape::Column& column, const Value& value) {
 bool fits(const Shape& shape, const Values& values) {
   if (values.size() != shape.columns.size()) return false;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    // The row number stands before the record, which has NULL in its place.
+    // The row number precedes the record, which has NULL in its column.
     const bool number = static_cast<int>(i) == shape.row_number_column;
     if (number ? !std::holds_alternative<std::monostate>(values[i]) : !fits(shape.columns[i], values[i]))
       return false;
@@ -142,7 +142,7 @@ bool fits(const Shape& shape, const Values& values) {
   return true;
 }
 
-/// All cells of one page, if it is one that holds rows.
+/// Scans all cells of one page if it holds rows.
 void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>& shapes, Allowance& allowance,
                const std::function<void(const Shape&, Values)>& take) {
   const std::string page = pages.read(number);

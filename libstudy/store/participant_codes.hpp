@@ -1,5 +1,5 @@
 #pragma once
-/// Codes that people and other programs take for another one, or for a missing value.
+/// Codes that people or other programs could mistake for another code or a missing value.
 
 #include <string>
 
@@ -7,16 +7,15 @@
 
 namespace study {
 
-/// Whether R, pandas, spreadsheets or BIDS read a code as "no value": NA, n-a, NaN, null, none, nil, missing,
+/// True if R, pandas, spreadsheets or BIDS read a code as "no value": NA, n-a, NaN, null, none, nil, missing,
 /// undefined, in upper or lower case.
 bool reads_as_missing(const std::string& code);
 
-/// Whether two codes differ in case, in punctuation or in leading zeros of a number alone: P01, p01, P-01,
-/// P1.
+/// True if two codes differ only in case, punctuation or leading zeros of a number: P01, p01, P-01, P1.
 bool are_alike(const std::string& one, const std::string& other);
 
-/// base::Error, with the mend, unless a code stands in the database or may be added: it reads as no missing
-/// value, and is like none that stands there or withdrew.
+/// base::Error, with a remedy, unless a code is in the database or may be added: it must not read as a
+/// missing value or be alike to a code in the database or of a withdrawn person.
 void check_new_code(sqlite::Connection& database, const std::string& code);
 
 }  // namespace study

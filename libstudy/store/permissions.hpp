@@ -1,7 +1,6 @@
 #pragma once
-/// What people allowed: answered on the consent page (gaze_kept, data_shared), or changed later by the
-/// experimenter. gaze: where they look and how their head moves is recorded here; sharing: they stand in
-/// public exports.
+/// Permissions of participants: answered on the consent page (gaze_kept, data_shared), or changed later by
+/// the experimenter. gaze: gaze and head poses may be recorded; sharing: data may be in public exports.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,10 +14,10 @@
 
 namespace study {
 
-/// The kind of the log's entries about a change.
+/// Kind of the log's events about a change.
 inline constexpr const char* permission_event = "permission changed";
 
-/// What holds for a session. True: allowed; false: refused, or asked and not answered yet; none: not asked.
+/// Permissions of a session. True: allowed; false: refused, or asked and not answered yet; none: not asked.
 struct SessionPermission {
   std::string protocol;  ///< name
   int visit = 1;
@@ -32,35 +31,34 @@ std::vector<SessionPermission> read_permissions(const StudyFile& study, const st
 /// read_permissions().
 GazeElsewhere find_gaze_elsewhere(const StudyFile& study, const std::string& participant);
 
-/// What the experimenter changes; none: left as it is.
+/// The change that the experimenter requests; none: unchanged.
 struct PermissionWish {
   std::optional<bool> gaze, sharing;
 };
 
-/// What a change did, and what is left to the experimenter.
+/// The result of a change, and the work left to the experimenter.
 struct PermissionChange {
-  std::int64_t gaze_deleted = 0;     ///< samples, with those of an earlier refusal that was cut short
-  std::vector<std::string> backups;  ///< that hold gaze of the participant still: delete them
-  std::vector<std::string> left;     ///< what could not be cleaned: place, reason and mend
-  std::vector<std::string>
-      gaze_exports;                  ///< that may hold gaze of the participant: delete or make them again
-  std::vector<std::string> exports;  ///< public ones that hold the participant: delete or make them again
+  std::int64_t gaze_deleted = 0;          ///< samples, including those of an earlier, interrupted refusal
+  std::vector<std::string> backups;       ///< that still hold gaze of the participant: delete them
+  std::vector<std::string> left;          ///< files that could not be cleaned: place, reason and remedy
+  std::vector<std::string> gaze_exports;  ///< that may hold gaze of the participant: delete or redo them
+  std::vector<std::string> exports;       ///< public ones with the participant: delete or redo them
 };
 
-/// Writes down, for all sessions of a participant, what is allowed from now on; an answer that is given later
-/// on a consent page counts again. A refusal of gaze deletes samples, head poses and validations, and
-/// overwrites where they stood; what a kill leaves of it is done when the database is next opened for
-/// writing. base::Error as read_permissions(), or the database is in use.
+/// Records the new permissions for all sessions of a participant; a later answer on a consent page overrides
+/// them. A refusal of gaze deletes samples, head poses and validations and overwrites their bytes; if a kill
+/// interrupts this, the next opening for writing finishes it. base::Error as read_permissions(), or the
+/// database is in use.
 PermissionChange change_permissions(const std::filesystem::path& database, const std::string& participant,
                                     const PermissionWish& wish);
 
-/// Writes down what is allowed in a session from now on, within a transaction of the caller. It counts
-/// instead of all that the database holds about `what` ("gaze" or "sharing"): the order of rows decides, and
-/// no clock. delete_refused_gaze() (refusals.hpp) is to follow.
+/// Records a permission of a session within the caller's transaction. It supersedes all that the database
+/// holds about `what` ("gaze" or "sharing"): the order of rows decides, not a clock. Call
+/// delete_refused_gaze() (refusals.hpp) afterwards.
 void record_permission(sqlite::Connection& database, std::int64_t session, const std::string& what,
                        bool allowed, const std::string& utc);
 
-/// How many people a public export holds and leaves out.
+/// Numbers of people in a public export and left out.
 struct SharingCount {
   std::int64_t allowed = 0, not_asked = 0;     ///< in it
   std::int64_t refused = 0, not_answered = 0;  ///< left out, with all their sessions

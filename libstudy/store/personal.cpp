@@ -20,7 +20,7 @@ using sqlite::Transaction;
 
 namespace {
 
-// A journal that goes with each commit instead of a log: nothing beside the file keeps what was deleted.
+// A rollback journal instead of a log is deleted with each commit, so no file beside it holds deleted data.
 constexpr const char* opening =
     "PRAGMA journal_mode = DELETE; PRAGMA secure_delete = ON; PRAGMA synchronous = EXTRA";
 constexpr std::array<const char*, 2> tables{
@@ -28,7 +28,7 @@ constexpr std::array<const char*, 2> tables{
     "answer TEXT NOT NULL, PRIMARY KEY (participant, question)) STRICT",
     "renaming (batch TEXT PRIMARY KEY) STRICT"};
 
-/// Made, or taken over, with no rights for others before anything stands in it.
+/// Makes the file, or takes over an existing one, without rights for others before anything is written.
 void make_private(const fs::path& path) {
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   const bool done = fd >= 0 && ::fchmod(fd, 0600) == 0;
@@ -46,7 +46,7 @@ void make_private(const fs::path& path) {
       "restore a backup of it, or keep it elsewhere: nothing but personal answers stands in it");
 }
 
-/// A trigger or another shape would let stand what is said to be deleted.
+/// A trigger or another table layout could leave data that is reported as deleted.
 void check_schema(sqlite::Connection& file) {
   file.distrust();
   {
@@ -109,7 +109,7 @@ void PersonalFile::rename(const std::string& batch, const std::map<std::string, 
   const bool again = !done.bind_all(batch).step();
   done.reset();
   if (again) return;
-  // In two steps, since one may take the code that another gives up.
+  // In two steps, because one new code may be another's old code.
   Statement aside(*file_, "UPDATE personal SET participant = ' ' || ? WHERE participant = ?");
   for (const auto& [before, now] : codes) aside.bind_all(now, before).run();
   file_->execute("UPDATE personal SET participant = substr(participant, 2) WHERE participant LIKE ' %'");

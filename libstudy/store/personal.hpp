@@ -1,5 +1,5 @@
 #pragma once
-/// Personal data apart from the study's database, joined to it by the participant code alone.
+/// Personal data, stored apart from the study's database and linked to it only by the participant code.
 
 #include <filesystem>
 #include <map>
@@ -11,31 +11,31 @@
 
 namespace study {
 
-/// What a question marked as personal was answered with.
+/// An answer to a question marked as personal.
 struct PersonalEntry {
   std::string participant, question, wording, answer;
 };
 
-/// All that stands beside the database, which is not changed, in the order of participants and questions;
-/// empty where there is no such file. base::Error: it cannot be read.
+/// All entries of the personal file beside a database, ordered by participant and question; empty if there is
+/// no such file. Changes nothing. base::Error: it cannot be read.
 std::vector<PersonalEntry> read_personal(const std::filesystem::path& database);
 
-/// "<database>.personal": a SQLite file of its own, readable by its owner only. Deleting it takes nothing
-/// from the study.
+/// "<database>.personal": a SQLite file of its own, readable by its owner only. Deleting it loses no study
+/// data.
 class PersonalFile {
  public:
   explicit PersonalFile(const std::filesystem::path& database);
 
-  /// Commits; an answer to the same question replaces the former one.
+  /// Stores and commits entries; an answer to the same question replaces the former one.
   void keep(const std::vector<PersonalEntry>& entries);
   std::vector<PersonalEntry> read(const std::string& participant);
-  /// Gives participants other codes (by the one before), all at once. What was done under the same `batch` is
-  /// not done again: the new code of one may be the former one of another.
+  /// Renames participants (new code by old code), all at once. A `batch` that was done is not repeated,
+  /// because the new code of one may be the old code of another.
   void rename(const std::string& batch, const std::map<std::string, std::string>& codes);
-  /// Deletes what stands of a participant and overwrites where it stood.
+  /// Deletes the entries of a participant and overwrites their bytes.
   void forget(const std::string& participant);
 
-  /// Beside the real file, whatever link leads to it.
+  /// The path of the personal file, beside the real file if `database` is a link.
   static std::filesystem::path beside(const std::filesystem::path& database);
 
  private:

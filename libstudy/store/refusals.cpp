@@ -18,7 +18,7 @@ namespace {
 constexpr std::array of_showings{"gaze", "head"};
 constexpr std::array all_tables{"gaze", "head", "gaze_validation"};
 
-/// Condition on the rows of one of the tables: of sessions that are `from`.
+/// SQL condition on the rows of one of the tables: their session is in `from`.
 std::string of_sessions(const std::string& table, const std::string& from) {
   const std::string sessions = "session_id IN (SELECT session_id FROM " + from + ")";
   if (table == "gaze_validation") return sessions;
@@ -39,7 +39,7 @@ std::set<std::string> persons(Connection& database, const std::string& sql) {
   return found;
 }
 
-/// In sessions that meet a condition.
+/// People with gaze in the sessions of a table or condition.
 std::set<std::string> people_with_gaze_in(Connection& database, const std::string& condition) {
   std::set<std::string> found;
   for (const std::string table : all_tables) {
@@ -59,7 +59,7 @@ bool any_row(Connection& database, const std::string& rows, const std::string& p
   return row.bind_all(person).step();
 }
 
-/// A backup may be of any schema.
+/// The backup may be of any schema.
 bool holds_gaze(const fs::path& path, const std::string& person) {
   Connection backup(path, Open::Read);
   Statement there(backup, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?");
@@ -71,7 +71,7 @@ bool holds_gaze(const fs::path& path, const std::string& person) {
   return false;
 }
 
-/// One that cannot be read may hold it.
+/// A backup that cannot be read may hold gaze.
 std::vector<std::string> backups_with_gaze(const fs::path& database, const std::string& person) {
   std::vector<std::string> found;
   for (const fs::path& backup : backups_of(database)) {
@@ -96,7 +96,7 @@ std::set<std::string> delete_refused_gaze(Connection& database) {
 
 void drop_unallowed_gaze(Connection& database) {
   for (const char* table : all_tables) database.execute("DELETE FROM " + rows_of(table, refused_now));
-  // A refusal concerns as many showings, in their order, as had begun when it was recorded.
+  // A refusal applies to the showings that had begun when it was recorded: the first n of the session.
   for (const std::string table : of_showings) {
     database.execute(
         "DELETE FROM " + table +
@@ -105,7 +105,7 @@ void drop_unallowed_gaze(Connection& database) {
         "JOIN trial USING (trial_id)) p JOIN permission_change c USING (session_id) WHERE c.what = 'gaze' "
         "AND c.granted = 0 AND coalesce(c.showings, p.place) >= p.place)");
   }
-  // Validations are of no showing: one refusal in any copy is enough.
+  // Validations have no showing: a refusal in any copy deletes them.
   database.execute("DELETE FROM " +
                    rows_of("gaze_validation", "permission_change WHERE what = 'gaze' AND granted = 0"));
 }

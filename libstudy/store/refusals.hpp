@@ -1,7 +1,7 @@
 #pragma once
-/// What a refusal of gaze takes with it: samples of gaze, poses of the head, validations of the eye tracker.
-/// What is to go follows from the permissions that stand (permissions.hpp), not from the command that
-/// recorded them, so that no kill leaves gaze of somebody who refused.
+/// Deletes gaze data after a refusal: gaze samples, head poses and validations of the eye tracker. The rows
+/// to delete follow from the stored permissions (permissions.hpp), not from the command that recorded them,
+/// so that a kill cannot leave gaze of somebody who refused.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,19 +13,19 @@
 
 namespace study {
 
-/// Deletes what was recorded in sessions in which gaze is not allowed now, and plans the rewriting of the
-/// file (chores.hpp). Whoever opens a database for writing calls it, and whoever records an answer or a
-/// change, in the same transaction. Returns the persons whose gaze was deleted.
+/// Deletes gaze data of sessions in which gaze is not allowed now, and plans a rewrite of the file
+/// (chores.hpp). Call it when a database is opened for writing, and in the transaction of each answer or
+/// change. Returns the persons whose gaze was deleted.
 std::set<std::string> delete_refused_gaze(sqlite::Connection& database);
 
-/// The same for a union of databases, with what was recorded before a refusal that was taken back later:
-/// it may come from a copy that did not know of either.
+/// The same for a union of databases. Also deletes gaze recorded before a refusal that was later withdrawn,
+/// because it may come from a copy that has neither change.
 void drop_unallowed_gaze(sqlite::Connection& database);
 
-/// Condition on the rows of gaze, head or gaze_validation: recorded in a session in which gaze is allowed
-/// now. Exports go by it themselves, whatever was deleted before.
+/// SQL condition on rows of gaze, head or gaze_validation: gaze is allowed now in their session. Exports
+/// apply it too and do not rely on earlier deletions.
 std::string gaze_allowed_sql(const std::string& table);
-/// The same of a session.
+/// True if gaze is allowed now in a session.
 bool is_gaze_allowed(sqlite::Connection& database, std::int64_t session);
 
 std::int64_t count_gaze(sqlite::Connection& database, const std::string& person);
@@ -33,13 +33,13 @@ std::set<std::string> people_with_gaze(sqlite::Connection& database);
 /// Persons with a session in which gaze is refused now.
 std::set<std::string> people_without_gaze(sqlite::Connection& database);
 
-/// What holds gaze of a person still and no program deletes.
+/// Files that may still hold gaze of a person and that no program deletes.
 struct GazeElsewhere {
   std::vector<std::string> backups;  ///< beside the database
-  std::vector<std::string> exports;  ///< all that hold the person: the register does not tell which have gaze
+  std::vector<std::string> exports;  ///< all with the person: the register does not say which have gaze
 };
 GazeElsewhere find_gaze_elsewhere(sqlite::Connection& database, const std::string& person);
-/// The same as lines for who is to delete them, for several persons.
+/// The same for several persons, as lines for the experimenter, who must delete them.
 std::vector<std::string> name_gaze_elsewhere(sqlite::Connection& database,
                                              const std::set<std::string>& persons);
 

@@ -35,7 +35,7 @@ using sqlite::Statement;
 
 namespace {
 
-/// A folder beside the result, for its owner only, gone in the end.
+/// A folder beside the result, readable by its owner only and deleted in the end.
 class Workplace {
  public:
   explicit Workplace(const fs::path& into) : path_(into.string() + ".salvage-XXXXXX") {
@@ -73,15 +73,15 @@ void copy(const fs::path& from, const fs::path& to) {
     throw base::Error(from.string(), "cannot be copied: " + error.message(), "check the disk and its room");
 }
 
-/// Held on the damaged file while it is read, where it is there and may be written to: a program that goes on
-/// writing would have parts of two moments salvaged.
+/// Locks the damaged file while it is read, if it exists and is writable: otherwise a writing program could
+/// mix two states in the salvage.
 std::unique_ptr<WriterLock> lock_out_writers(const fs::path& database) {
   std::error_code ignored;
   if (!fs::is_regular_file(database, ignored) || ::access(database.c_str(), W_OK) != 0) return {};
   return std::make_unique<WriterLock>(database);
 }
 
-/// The rows of our tables out of a copy that has more than these.
+/// The rows of our tables from a copy that has other parts too.
 std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
                                                        std::vector<std::string>& left_out) {
   Connection foreign(copied, Open::Write);
@@ -92,7 +92,7 @@ std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
   return own;
 }
 
-/// A copy of the database as SQLite reads it; null: it is damaged, or none.
+/// A copy of the database as SQLite reads it; null if it is damaged or not a database.
 std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path& copied, bool use_log,
                                        std::vector<std::string>& left_out) {
   for (const std::string beside : {"", "-wal", "-journal"})
@@ -113,7 +113,7 @@ std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path&
   }
 }
 
-/// False, and told, where the log or the journal beside the database is of another one.
+/// False, and noted in `told`, if the log or journal beside the database belongs to another one.
 bool may_use_log(const fs::path& database, Salvage& told) {
   const auto foreign = foreign_log(
       database, [&] { return salvaging::File(database).read(0, salvaging::Pages::header_bytes); });
@@ -142,13 +142,13 @@ void read_sound(Connection& database, const std::vector<Shape>& shapes, bool lar
   }
 }
 
-/// What is read page by page.
+/// The damaged files to read page by page.
 struct Damaged {
   const fs::path& database;
   bool use_log;
 };
 
-/// Rows of the tables that are large, or of those that are not.
+/// Reads the rows of the large tables, or of all others.
 void read_rows(Connection* sound, const Damaged& damaged, const std::vector<Shape>& shapes,
                const std::vector<EarlierShape>& earlier, bool large, const Take& take) {
   if (sound) return read_sound(*sound, shapes, large, take);
@@ -193,7 +193,7 @@ void check(Connection& made) {
                     "report this with the damaged file");
 }
 
-/// The file alone is put in place, and closing it says nothing of a log that could not be copied back.
+/// Only the file is put in place, and closing it would not report a log that could not be copied back.
 void leave_no_log(Connection& made) {
   made.unwatch();
   if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
@@ -201,7 +201,7 @@ void leave_no_log(Connection& made) {
                     "free space, and do this again");
 }
 
-/// A link fails where something stands already.
+/// link() fails if the target exists.
 void put_in_place(const fs::path& made, const fs::path& into) {
   if (::chmod(made.c_str(), 0600) == 0 && ::link(made.c_str(), into.c_str()) == 0)
     return base::sync_folder_of(into);

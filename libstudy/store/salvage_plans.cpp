@@ -1,4 +1,4 @@
-/// Part of salvage(): plans whose rows are gone are made again, since they are a function of what is left.
+/// Part of salvage(): recomputes plans with lost rows, since they are a function of the remaining data.
 #include "libstudy/design/plan.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/salvage_rows.hpp"
@@ -39,7 +39,7 @@ std::vector<Planned> sessions_of(Connection& database) {
   return all;
 }
 
-/// Row number of position 0: rows of one session follow each other. None: no row is left, or they do not.
+/// Row number of position 0: the rows of a session are consecutive. None if no row is left or they are not.
 std::optional<std::int64_t> first_row(Connection& database, const std::string& table, std::int64_t session) {
   Statement row(database, "SELECT min(" + table + "_id - position), max(" + table +
                               "_id - position), count(*) FROM " + table + " WHERE session_id = ?");
@@ -47,7 +47,7 @@ std::optional<std::int64_t> first_row(Connection& database, const std::string& t
   return row.integer(0);
 }
 
-/// The trials that are left are those of this plan.
+/// True if the remaining trials match this plan.
 bool agrees(Connection& database, std::int64_t session, const Plan& plan) {
   Statement row(database,
                 "SELECT position, first_cell, second_cell, schedule_seed FROM trial WHERE session_id = ?");
@@ -64,7 +64,7 @@ bool agrees(Connection& database, std::int64_t session, const Plan& plan) {
 }
 
 std::optional<Plan> plan_of(Connection& database, const Planned& session, const Protocol& protocol) {
-  // A merge changes codes; the plan was made with one of the two.
+  // A merge may change codes; the plan was made with one of the two.
   for (const std::string& code : {session.participant, session.code}) {
     Plan plan = make_plan(protocol, code, static_cast<std::uint64_t>(session.seed), session.slot);
     if (agrees(database, session.session, plan)) return plan;
@@ -103,8 +103,7 @@ void add_units(Connection& database, std::int64_t session, std::int64_t first,
 
 }  // namespace
 
-// A plan of which no row is left stays away: the numbers of its rows, by which answers know them, are not
-// known.
+// A plan without any remaining row is not restored: the row numbers, to which answers refer, are unknown.
 void Rebuild::complete_plans(bool units) {
   for (const Planned& session : sessions_of(target_)) {
     const auto first = first_row(target_, units ? "unit" : "trial", session.session);
@@ -121,7 +120,7 @@ void Rebuild::complete_plans(bool units) {
       else if (plan)
         add_trials(target_, session.session, *first, *plan);
     } catch (const base::Error&) {
-      // A protocol of a format that is no longer read: what is left of its plan stays.
+      // The protocol's format is no longer read: its plan is not completed.
     }
   }
 }

@@ -24,8 +24,8 @@ std::size_t index_of(const Shape& shape, const std::string& column) {
   return static_cast<std::size_t>(found - shape.columns.begin());
 }
 
-/// The column that points to a row without which one of this table still says most of what it says; none:
-/// nullptr.
+/// The column of an optional reference: without that parent, a row of this table is still useful; nullptr:
+/// none.
 const char* without_which(const std::string& table) {
   if (table == "event") return "presentation_id";
   return table == "presentation" ? "framing_id" : nullptr;
@@ -49,7 +49,8 @@ void bind(Statement& statement, int index, const Value& value) {
     statement.bind_at(index, std::nullopt);
 }
 
-/// A row found twice is an old copy and the one that counts; what happens to a row later fills its columns.
+/// If a row is found twice, one is an old copy. Columns of a row are filled over time, so prefers the fuller
+/// one.
 void fuller_first(std::vector<Values>& rows) {
   const auto empty = [](const Values& row) {
     return std::count_if(row.begin(), row.end(), [](const Value& v) { return v.index() == 0; });
@@ -58,7 +59,7 @@ void fuller_first(std::vector<Values>& rows) {
                    [&](const Values& a, const Values& b) { return empty(a) < empty(b); });
 }
 
-/// What tells a row apart in copies of the database.
+/// The column that identifies a row across copies of the database.
 const char* identity_of(const Table& table) {
   const std::string name = table.name;
   if (name == "protocol") return "sha256";
@@ -88,7 +89,7 @@ void Rebuild::take(RowsByTable rows) {
   std::int64_t last = 0;
   for (const Values& row : rows["event"]) last = std::max(last, std::get<std::int64_t>(row[0]));
   journal_is_newer_ = last_event(journal_.kept) >= last;
-  // Who withdrew, before anything of theirs is met.
+  // Tombstones first, before rows of people who withdrew.
   std::vector<std::string> order{"tombstone"};
   for (const Table& table : journal::tables()) {
     if (table.name != order.front()) order.emplace_back(table.name);
@@ -192,7 +193,7 @@ void Rebuild::sum_up() {
   told_.frames_lost = target_.integer(
       "SELECT coalesce(sum(max(0, p.frames - (SELECT count(*) FROM frame f WHERE f.presentation_id = "
       "p.presentation_id))), 0) FROM presentation p WHERE p.state = 'played'");
-  // A page between two groups bears the name of their block and asks nothing.
+  // A page between two groups has the name of their block but asks nothing.
   Statement lost(target_,
                  "SELECT s.participant, count(*) FROM unit u JOIN session s USING (session_id) "
                  "JOIN ask a ON a.protocol_id = s.protocol_id AND a.block = u.block "

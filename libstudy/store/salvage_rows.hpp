@@ -1,5 +1,5 @@
 #pragma once
-/// Part of salvage(): rows of a damaged database and of its journal as one database.
+/// Part of salvage(): joins the rows of a damaged database and its journal in one database.
 
 #include <map>
 #include <set>
@@ -14,21 +14,22 @@ namespace study::salvaging {
 
 using RowsByTable = std::map<std::string, std::vector<Values>>;
 
-/// Tables with rows by the thousand for each trial, never held in memory, and all that the journal does not
-/// follow.
+/// True for tables with thousands of rows per trial, which are never held in memory, and for all tables that
+/// are not journalled.
 bool is_large(const std::string& table);
 
-/// Fills an empty database of the newest schema, table by table, parents first: what stands in the database,
-/// then what stands in the journal alone.
+/// Fills an empty database of the newest schema, table by table, parents first: the database's rows, then
+/// those only in the journal.
 class Rebuild {
  public:
   Rebuild(sqlite::Connection& target, const JournalContent& journal, Salvage& told);
 
-  /// All tables but the large ones. base::Error when database and journal are of different studies.
+  /// Takes the rows of all tables but the large ones. base::Error if database and journal are of different
+  /// studies.
   void take(RowsByTable rows);
-  /// A row of a large table. Those of presentations that are gone are left out.
+  /// Takes a row of a large table. Skips rows of missing presentations.
   void take_large(const Shape& shape, const Values& values);
-  /// Counts what stands in the result and what is missing from it.
+  /// Counts the rows in the result and those missing from it.
   void sum_up();
 
  private:

@@ -13,19 +13,19 @@ using sqlite::Statement;
 namespace {
 
 constexpr std::size_t longest_name = 60;
-// SQLite's answers to a crafted file end somewhere; no schema of ours has so many rows.
+// Limits the result for a crafted file; none of our schemas has so many rows.
 constexpr std::size_t most_objects = 2000;
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
 
-/// The place behind a quoted text or name that begins at `at`.
+/// The position after a quoted text or name that begins at `at`.
 std::size_t end_of_quoted(const std::string& sql, std::size_t at) {
   const char end = sql[at] == '[' ? ']' : sql[at];
   const std::size_t found = sql.find(end, at + 1);
   return found == std::string::npos ? sql.size() : found + 1;
 }
 
-/// The place behind a comment that begins at `at`; `at` itself where none does.
+/// The position after a comment that begins at `at`; `at` if there is none.
 std::size_t end_of_comment(const std::string& sql, std::size_t at) {
   if (sql.compare(at, 2, "--") == 0) return std::min(sql.find('\n', at), sql.size());
   if (sql.compare(at, 2, "/*") != 0) return at;
@@ -51,7 +51,7 @@ using Key = std::pair<std::string, std::string>;
   const std::string path = database.path().string();
   std::string mend =
       "keep it elsewhere and make one without it: vip-study salvage --db " + path + " --into NEW";
-  // SQLite makes the index of a constraint itself and drops it with its table alone.
+  // SQLite makes the index of a constraint itself and drops it only with its table.
   if (is_plain(extra.second) && !extra.second.starts_with("sqlite_auto")) {
     mend = "if it is yours, copy the file and take it out: sqlite3 " + path + " 'DROP " + upper(extra.first) +
            " " + extra.second + "; VACUUM'; or " + mend;
@@ -74,7 +74,7 @@ SchemaSteps first_steps(const SchemaSteps& steps, std::int64_t version) {
   return {steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(version)};
 }
 
-/// What the steps make. Made once for each list of them.
+/// The schema that the steps make, cached for each list of steps.
 const Schema& schema_after(const SchemaSteps& steps) {
   static std::mutex turn;
   static std::map<SchemaSteps, Schema> known;
@@ -167,7 +167,7 @@ std::unique_ptr<Connection> without_foreign_parts(Connection& foreign, const Sch
   for (const auto& [key, object] : found) {
     if (!wanted.contains(key)) left_out.push_back(named(key));
   }
-  // Rows of a table alone: a trigger of the new database would refuse none of them, and none of the old runs.
+  // Copies rows of tables only: no trigger of the new database refuses them, and none of the old ones runs.
   for (const auto& [key, object] : wanted) {
     if (key.first != "table") continue;
     const auto there = found.find(key);

@@ -20,7 +20,7 @@ namespace {
 
 std::int64_t schema_of(Connection& database) { return database.integer("PRAGMA user_version"); }
 
-/// Rows as one batch that is kept.
+/// The rows as one kept batch.
 std::string batch(const std::string& rows, std::int64_t number) {
   return rows + ready_line(number) + kept_line(number);
 }
@@ -36,7 +36,7 @@ bool is_response(const Row& row) { return row.table->name == std::string("respon
           " --into NEW.db puts both together; if the journal is of another study, move it away");
 }
 
-/// The end of a showing whose last frames went with the program: the journal holds no frames.
+/// True for the end of a showing whose last frames were lost with the program: the journal has no frames.
 bool lacks_frames(Connection& database, const Row& row) {
   if (row.table->name != std::string("presentation") || journal::column(row, "state") != "played")
     return false;
@@ -46,8 +46,8 @@ bool lacks_frames(Connection& database, const Row& row) {
   return lacks.bind_all(row.key, journal::column(row, "frames")).step() && lacks.integer(0) == 1;
 }
 
-/// Commits what was under way when the program ended. A showing without its frames stays as it was, and is
-/// then marked as cut.
+/// Commits rows that were under way when the program ended. A showing without its frames is left unchanged
+/// and later marked as cut.
 void take_over(Connection& database, const JournalRows& pending) {
   for (const auto& [key, row] : pending) {
     const auto now = journal::stands_as(database, row);
@@ -114,7 +114,7 @@ std::string words_of(const Comparison& found) {
 }
 
 std::set<std::string> finish_what_was_begun(Connection& database, const JournalContent& content) {
-  // A power cut kept a part of a torn batch, which was not yet brought to the disk: no commit had begun.
+  // A torn batch was not completely flushed before a power cut, so its commit had not begun.
   if (!content.rewriting && !content.torn) take_over(database, content.pending);
   if (content.rewriting) finish_withdrawals(database, content.forgotten);
   return delete_refused_gaze(database);
@@ -152,7 +152,7 @@ Settled bring_together(Connection& database, JournalFile& file) {
 Settled settle(Connection& database, JournalFile& file) {
   Settled settled = bring_together(database, file);
   remove_journal_draft(file.path());
-  database.keep_log(false);  // it holds nothing that the journal does not hold too
+  database.keep_log(false);  // all its rows are in the journal too
   return settled;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// How a database and its journal of answers stand to each other, and how whoever opens the database for
-/// writing brings them together: AnswerJournal says what is in the journal when.
+/// Compares a database with its journal of answers and reconciles them when the database is opened for
+/// writing. AnswerJournal describes the journal.
 
 #include <cstdint>
 #include <set>
@@ -12,39 +12,38 @@
 
 namespace study {
 
-/// The first line of a journal beside this database.
+/// The first line of this database's journal.
 std::string head_for(sqlite::Connection& database);
 
 struct Comparison {
-  std::string news;            ///< rows that the database has and the journal has not, or otherwise
-  std::int64_t lost = 0;       ///< rows that were kept and that the database does not have
+  std::string news;            ///< rows of the database that are missing or different in the journal
+  std::int64_t lost = 0;       ///< kept rows that the database lacks
   std::int64_t answers = 0;    ///< responses among them
-  std::int64_t different = 0;  ///< answers that the database has otherwise than they were kept
+  std::int64_t different = 0;  ///< answers that differ between database and journal
 };
-/// Of a database with the rows that its journal says are kept.
+/// Compares a database with the kept rows of its journal.
 Comparison compare(sqlite::Connection& database, const JournalRows& kept);
-/// Whether the journal knows more than the database. One of an older schema has the same rows with other
-/// columns.
+/// True if the journal holds more than the database. Differences do not count if the journal is of an older
+/// schema, whose rows have other columns.
 bool is_ahead(const Comparison& found, const JournalContent& content, sqlite::Connection& database);
 /// "2 answers and 7 other rows stand in the journal alone".
 std::string words_of(const Comparison& found);
 
-/// Does what the journal calls for and no longer depends on the program that began it, each within a
-/// transaction of the caller: rows whose commit was under way are put in, and whoever is named in a
-/// withdrawal that was not finished is deleted. Then what was recorded of people who refuse gaze is deleted.
-/// Returns the persons whose gaze was deleted.
+/// Finishes what an ended program began, by its journal, within the caller's transaction: inserts rows whose
+/// commit was under way and deletes people of an unfinished withdrawal. Then deletes gaze data of people who
+/// refuse gaze. Returns the persons whose gaze was deleted.
 std::set<std::string> finish_what_was_begun(sqlite::Connection& database, const JournalContent& content);
 
-/// What settle() did.
+/// The result of settle().
 struct Settled {
   std::int64_t last_number = 0;        ///< largest number of a batch in use
-  std::set<std::string> gaze_deleted;  ///< persons whose gaze was deleted, as they refuse it
+  std::set<std::string> gaze_deleted;  ///< persons whose gaze was deleted because they refuse it
 };
-/// Brings both together. base::Error: the journal knows more than the database, or cannot be written.
+/// Reconciles both. base::Error: the journal holds more than the database, or cannot be written.
 Settled settle(sqlite::Connection& database, JournalFile& file);
 
-/// settle() before anything else is written, for who keeps no journal open. Returns lines that name the
-/// backups and exports that hold what was deleted.
+/// Calls settle() before anything else is written, for callers without an open journal. Returns lines that
+/// name backups and exports that hold deleted gaze.
 std::vector<std::string> settle_before_writing(sqlite::Connection& database);
 
 }  // namespace study

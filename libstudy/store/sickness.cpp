@@ -26,7 +26,7 @@ constexpr const char* sickness_answers_sql =
     "WHERE q.code = 'fms' OR q.code LIKE 'ssq\\_%' ESCAPE '\\' "
     "ORDER BY p.protocol_id, s.participant, s.visit, r.response_id";
 
-/// "ssq_7" -> 6; base::Error for what is no item.
+/// "ssq_7" -> 6; base::Error if it is not an item.
 std::size_t item_of(const std::string& code, const std::string& shown) {
   int number = 0;
   const char* const end = code.data() + code.size();
@@ -94,7 +94,7 @@ class SicknessReader {
     session().fms.push_back(answer);
   }
 
-  /// On the scale that the question has here; the SSQ's is fixed.
+  /// The score; base::Error outside the question's scale (the SSQ's is fixed).
   int score() const {
     const bool fms = row_.text(11) == "fms";
     const std::int64_t score = row_.integer(12), least = fms ? row_.integer(16) : 0,

@@ -1,6 +1,6 @@
 #pragma once
-/// How sick people felt: the pages of the Simulator Sickness Questionnaire (SSQ) and the answers on the Fast
-/// Motion Sickness scale (FMS), of all sessions. Read-only: nothing in the database is changed.
+/// Sickness data of all sessions: pages of the Simulator Sickness Questionnaire (SSQ) and answers on the Fast
+/// Motion Sickness scale (FMS). Read-only.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,21 +16,21 @@ namespace study {
 
 /// One showing of the SSQ's items.
 struct SsqPage {
-  int position = 0;  ///< of its page or trial among all that the session goes through, from 0
+  int position = 0;  ///< of its unit in the session, from 0
   std::string block;
   bool before = false;  ///< before the session's first trial
   std::string answered_utc;
   stats::SsqAnswers answers;
 };
 
-/// One answer on the FMS. Those about trials that are excluded or set aside count as well: they tell how the
-/// person felt, whatever was shown.
+/// One answer on the FMS. Answers at excluded or repeated trials count as well: they say how the person felt,
+/// whatever was shown.
 struct FmsAnswer {
   int position = 0;  ///< as in SsqPage
   std::string block;
-  std::optional<int> trial;  ///< its position among the trials; empty: a page
+  std::optional<int> trial;  ///< position among the trials; empty: a page
   std::string answered_utc;
-  double minutes = 0;  ///< since the session's first answer of any kind, of the clock on the wall
+  double minutes = 0;  ///< wall-clock time since the session's first answer of any kind
   int score = 0;       ///< 0 to 20
 };
 
@@ -41,10 +41,10 @@ struct SicknessSession {
   int visit = 1;
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
-  std::vector<SsqPage> ssq;    ///< in the order of answering, as all here
-  std::vector<FmsAnswer> fms;  ///< those left out are absent
+  std::vector<SsqPage> ssq;    ///< in the order of answering, like fms
+  std::vector<FmsAnswer> fms;  ///< without unanswered ones
 
-  /// Answered last before the first trial, and last of all after it; nullptr: there is none.
+  /// The last page before the first trial, and the last one after it; nullptr if there is none.
   const SsqPage* ssq_before() const;
   const SsqPage* ssq_after() const;
 };

@@ -1,6 +1,6 @@
 #pragma once
-/// The scores of read_sickness() as tables of an export: ssq.csv with one line for each page, fms.csv with
-/// one for each answer, fms_summary.csv with mean and peak of each session and of its blocks.
+/// The scores of read_sickness() as export tables: ssq.csv with one line per page, fms.csv with one per
+/// answer, fms_summary.csv with mean and peak of each session and of its blocks.
 
 #include <span>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace study {
 
-/// A column with its meaning for the dictionary; type as in SQL.
+/// A column with its meaning for the dictionary; SQL type.
 struct SicknessColumn {
   std::string name, type, meaning;
 };
@@ -24,10 +24,10 @@ struct SicknessTable {
 
 /// All three, in that order; a table may have no rows.
 std::vector<SicknessTable> sickness_tables(std::span<const SicknessSession> sessions);
-/// The last of them. After the columns of the session: block, number of answers, mean, peak.
+/// The table "fms_summary". After the columns of the session: block, number of answers, mean, peak.
 SicknessTable fms_summary_table(std::span<const SicknessSession> sessions);
 
-/// The scores of a page in the order of stats::ssq_scales: as columns, and as texts.
+/// The scores of a page in the order of stats::ssq_scales: columns, and values as text.
 std::vector<SicknessColumn> ssq_score_columns();
 std::vector<std::string> ssq_texts(const stats::SsqAnswers& answers);
 

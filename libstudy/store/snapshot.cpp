@@ -21,7 +21,7 @@ namespace {
 constexpr std::array parts{"", "-wal", "-journal"};
 constexpr int rounds = 5;
 
-/// For the owner alone, and gone with all that is in it.
+/// A folder for the owner only, deleted with its content.
 class PrivateFolder {
  public:
   PrivateFolder() : path_((fs::temp_directory_path() / "vip-study-XXXXXX").string()) {
@@ -40,7 +40,7 @@ class PrivateFolder {
   std::string path_;
 };
 
-/// Sizes and times of writing: the same before and after a copy, if it is of one moment.
+/// Sizes and modification times: equal before and after a copy if it is consistent.
 std::vector<std::tuple<long long, long long, long long>> state_of(const fs::path& path) {
   std::vector<std::tuple<long long, long long, long long>> state;
   for (const char* part : parts) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A database read where SQLite may write nothing beside it.
+/// Reads a database in a folder that SQLite cannot write.
 
 #include <filesystem>
 #include <memory>
@@ -8,9 +8,9 @@
 
 namespace study {
 
-/// A temporary copy of a file together with its log and journal, as SQLite recovers it. For read-only media
-/// and folders, where SQLite can make neither the shared memory of a log nor undo a journal. base::Error when
-/// it cannot be read, or is written to all the while.
+/// A temporary copy of a file with its log and journal, as recovered by SQLite. For read-only media and
+/// folders, where SQLite can neither make a log's shared memory nor roll back a journal. base::Error if it
+/// cannot be read, or is being written all the time.
 std::unique_ptr<sqlite::Connection> snapshot(const std::filesystem::path& path);
 
 }  // namespace study

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t second_ns = 1'000'000'000, longest_wait_ns = 5 * second_ns;
 constexpr std::chrono::milliseconds between_tries{20};
-constexpr int pages_of_a_log = 1000;  // after which it is copied into the file, as SQLite has it
+constexpr int pages_of_a_log = 1000;  // after which it is copied into the file; SQLite's default
 
 std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -54,7 +54,7 @@ Connection::Connection(const fs::path& path, Open how) : path_(path) {
     refuse_orphaned_log(path);
     create_private(path);
   }
-  // Readers take part in the log like writers where they may, so that nothing is left beside the file.
+  // Readers open the file for writing if allowed, so that SQLite can remove the log's files afterwards.
   const bool write = how != Open::Read || writable(path);
   const int code = sqlite3_open_v2(
       fs::absolute(path).c_str(), &handle_,
@@ -81,7 +81,7 @@ Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
     throw base::Error(path_.string(), "cannot be copied: out of memory", "close other programs");
   }
   protect();
-  // Its journal and tables on the side would be files even where it is small.
+  // Otherwise even a small database would have its journal and temporary tables in files.
   execute("PRAGMA journal_mode = MEMORY; PRAGMA temp_store = MEMORY");
 }
 
@@ -99,7 +99,7 @@ Connection::~Connection() {
 std::string Connection::header() {
   sqlite3_file* file = nullptr;
   check(sqlite3_file_control(handle_, "main", SQLITE_FCNTL_FILE_POINTER, &file));
-  // SQLite itself takes a file of one byte for an empty one.
+  // SQLite treats a file of one byte as empty.
   std::string header(static_cast<std::size_t>(std::min<std::uintmax_t>(fs::file_size(path_), 100)), '\0');
   if (!header.empty()) check(file->pMethods->xRead(file, header.data(), static_cast<int>(header.size()), 0));
   return header;
@@ -139,7 +139,7 @@ void Connection::check(int code) {
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
   const std::string message = sqlite3_errmsg(handle_);
   const int system_error = sqlite3_system_errno(handle_);
-  // What another program did to the file is told rather than what came of it.
+  // Report another program's change of the file rather than the error that it caused.
   if (watch_ && !lost_) {
     if (const std::string trouble = watch_->trouble(); !trouble.empty()) abandon(trouble);
   }
@@ -177,7 +177,7 @@ void Connection::fail(int code, const std::string& message, int system_error) co
                   "use a file and a folder that you may write to");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-    case SQLITE_PROTOCOL:  // of the log, which SQLite tries to take for ten seconds
+    case SQLITE_PROTOCOL:  // lock of the log, which SQLite tries to take for ten seconds
       throw LockedOut(path_.string(), "is locked by " + lock_holder(path_), "close it there, then " + go_on_);
     default:
       throw error("database error: " + message, "report this with the file");
@@ -205,7 +205,7 @@ void Connection::copy_from(Connection& other, const std::function<void()>& compl
     other.execute("PRAGMA page_size = " + std::to_string(page_bytes) + "; VACUUM");
   const std::unique_ptr<sqlite3_backup, int (*)(sqlite3_backup*)> copy(
       sqlite3_backup_init(handle_, "main", other.handle_, "main"), sqlite3_backup_finish);
-  int code = copy ? sqlite3_backup_step(copy.get(), 0) : sqlite3_errcode(handle_);  // takes the lock
+  int code = copy ? sqlite3_backup_step(copy.get(), 0) : sqlite3_errcode(handle_);  // takes the write lock
   if (code == SQLITE_OK && complete) complete();
   if (code == SQLITE_OK) code = sqlite3_backup_step(copy.get(), -1);
   if (code != SQLITE_DONE) fail(code, sqlite3_errstr(code), sqlite3_system_errno(handle_));
@@ -228,7 +228,7 @@ bool Connection::in_transaction() const { return sqlite3_get_autocommit(handle_)
 void Connection::unwatch() { watch_.reset(); }
 
 void Connection::watch() {
-  integer("SELECT 1 FROM sqlite_schema LIMIT 1");  // the log is made by the first look into the file
+  integer("SELECT 1 FROM sqlite_schema LIMIT 1");  // the first read makes the log
   watch_ = std::make_unique<FileWatch>(path_, handle_);
 }
 
@@ -242,7 +242,7 @@ void Connection::commit() {
   if (marked_ && sqlite3_total_changes64(handle_) != changes_before_)
     execute("PRAGMA user_version = " + std::to_string(integer("PRAGMA user_version")));
   std::string trouble = watch_ ? watch_->trouble() : "";
-  // The commit then goes into the log alone, and from there into the copy beside the file.
+  // The commit then goes only into the log, and from there into the rescued copy.
   if (!trouble.empty()) sqlite3_wal_autocheckpoint(handle_, 0);
   execute("COMMIT");
   if (watch_ && trouble.empty()) trouble = watch_->trouble();
@@ -286,7 +286,7 @@ Transaction::Transaction(Connection& connection) : connection_(&connection), tur
 }
 
 Transaction::~Transaction() {
-  // A full disk may already have undone it.
+  // A full disk may already have rolled it back.
   if (open_ && connection_->in_transaction()) {
     sqlite3_exec(connection_->handle(), "ROLLBACK", nullptr, nullptr, nullptr);
   }

@@ -1,9 +1,9 @@
 #pragma once
-/// The few things of SQLite that the store uses, with owners for its handles. Every failure is a base::Error
-/// that names the database file.
+/// RAII wrappers for the parts of SQLite that the store uses. Every failure is a base::Error that names the
+/// database file.
 ///
-/// While a connection is open, nothing else in this process may open and close the file: that would take away
-/// the locks which SQLite holds on it.
+/// While a connection is open, nothing else in this process may open and close the file: that would release
+/// SQLite's locks on it.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,34 +28,34 @@ namespace study::sqlite {
 
 /// How a database is opened.
 enum class Open {
-  Create,  ///< for writing; made when missing, for its owner only
+  Create,  ///< for writing; created if missing, readable by its owner only
   Write,   ///< for writing; must exist
-  Read     ///< must exist; nothing that it holds can be changed
+  Read     ///< must exist; its content cannot be changed
 };
 
-/// Chooses a database without a name: in memory, on the disk where it is large, gone with its connection.
+/// Selects a database without a name: in memory, or on disk if large, deleted with its connection.
 struct Temporary {};
 
-/// How much may be done with a file that may be anybody's.
+/// Limit on the work with an untrusted file.
 enum class Work { OfASchema, Any };
 
 /// Called about once a second while another program holds a lock that is needed; `holder` names it, e.g.
 /// "sqlitebrowser (process 4711)". False: waits no longer, the statement fails.
 using Waiting = std::function<bool(const std::string& holder)>;
 
-/// Another program kept the database locked for longer than was waited.
+/// Another program kept the database locked for longer than the wait.
 class LockedOut : public base::Error {
   using Error::Error;
 };
 
-/// What to do about a file that SQLite itself cannot make whole again.
+/// The remedy for a file that SQLite cannot recover.
 std::string salvage_mend(const std::filesystem::path& path);
 
-/// One connection. Two threads may share it where each keeps to Transactions, which take turns.
+/// One connection. Two threads may share it if each works only within Transactions, which take turns.
 class Connection {
  public:
   Connection(const std::filesystem::path& path, Open how);
-  /// Empty; messages name `shown`.
+  /// An empty database; messages name `shown`.
   Connection(const std::filesystem::path& shown, Temporary);
   ~Connection();
   Connection(const Connection&) = delete;
@@ -63,44 +63,45 @@ class Connection {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// The first 100 bytes, or as many as there are. Asked before anything else, nothing of the file, its log
-  /// or its journal has been used or changed by then.
+  /// The first 100 bytes of the file, or fewer if it is shorter. As the first call, it neither uses nor
+  /// changes the file's log or journal.
   std::string header();
-  /// Whether SQLite can read it where it stands; not where it would have to write beside it and may not.
+  /// True if SQLite can read it in place; false if it would have to write beside the file and may not.
   bool can_read();
-  /// Whether a log stays beside the file as it is, so that no page of it is copied into the file. At first:
-  /// no.
+  /// If `keep`, the log stays unchanged beside the file: none of its pages is copied into the file. Default:
+  /// false.
   void keep_log(bool keep);
-  /// The file may be anybody's: until recognise() nothing is changed, no view and no trigger of it is run,
-  /// and with Work::OfASchema what takes longer than the reading of a schema is ended with a base::Error.
+  /// Treats the file as untrusted: until recognise() nothing can be changed and none of its views and
+  /// triggers run. With Work::OfASchema, work that takes longer than reading a schema ends with a
+  /// base::Error.
   void distrust(Work limit = Work::OfASchema);
-  /// The schema is ours.
+  /// Trusts the file: its schema is ours.
   void recognise();
-  /// From now on tables, views and triggers of the file stay as they are, and no other file is attached.
+  /// From now on the file's tables, views and triggers cannot be changed and no other file can be attached.
   void seal();
-  /// From now on each commit that changes rows says in its pages of which database it is (foreign_log.hpp).
+  /// From now on each commit that changes rows writes the page that identifies the database
+  /// (foreign_log.hpp).
   void mark_commits() { marked_ = true; }
-  /// Lets the file grow to so many pages.
+  /// Limits the file to this many pages.
   void limit_pages(std::int64_t pages);
-  /// Waits for locks as long as `waiting` says, and not for five seconds.
+  /// Waits for locks as long as `waiting` returns true, instead of five seconds.
   void wait_with(Waiting waiting);
-  /// What the user is to do once a fault is mended, for messages. At first: "give the command again".
+  /// Sets what the user should do after fixing a fault, for messages. Default: "give the command again".
   void go_on_with(const std::string& words) { go_on_ = words; }
-  /// In WAL mode: from now on no commit is copied into a file that was deleted, replaced or written over.
-  /// What stands in this connection is then saved as "<file>.rescued-<UTC time>.db", the log is taken away
-  /// from beside the path, and that commit and all later ones are a base::Error.
+  /// In WAL mode: from now on detects that the file was deleted, replaced or overwritten, and copies no
+  /// commit into it. Then saves this connection's content as "<file>.rescued-<UTC time>.db" and removes the
+  /// log from beside the path; that commit and all later ones throw a base::Error.
   void watch();
-  /// Ends it. Before the log is given up: a log that could be given up by half cannot be watched.
+  /// Ends watch(). Call it before leaving WAL mode, which may remove only part of the log's files.
   void unwatch();
 
-  /// Runs statements that give no rows.
+  /// Runs statements without result rows.
   void execute(const std::string& sql);
-  /// base::Error unless all pages, rows and indices are sound. Reads the whole file.
+  /// base::Error unless all pages, rows and indices are valid. Reads the whole file.
   void check_integrity();
-  /// Takes over all that stands in another database, in one transaction; what stood here is gone. A log fixes
-  /// the size of pages: where it differs, `other` is written anew, and must be a temporary one. `complete` is
-  /// called once nobody else can write here any more, and may change `other`; it reads what stood here
-  /// through another connection.
+  /// Replaces the content by that of another database in one transaction. WAL mode fixes the page size: if it
+  /// differs, `other` is rewritten and must be a temporary database. `complete` is called once no other
+  /// program can write here; it may change `other` and may read the old content through another connection.
   void copy_from(Connection& other, const std::function<void()>& complete = {});
   /// First column of the first row; 0 when there is no row.
   std::int64_t integer(const std::string& sql);
@@ -109,7 +110,7 @@ class Connection {
   /// True between the start of a transaction and its end.
   bool in_transaction() const;
   sqlite3* handle() const { return handle_; }
-  /// Throws what `code` of SQLite means for this file; returns when it is none.
+  /// Throws the error for SQLite's `code` on this file; returns if it is no error.
   void check(int code);
 
  private:
@@ -133,18 +134,18 @@ class Connection {
   bool limited_ = false, marked_ = false;
   enum class Trust { Free, Unknown, Sealed };
   Trust trust_ = Trust::Free;
-  int work_ = 0;                     ///< done since distrust(), in steps of the progress handler
+  int work_ = 0;                     ///< work since distrust(), in steps of the progress handler
   std::int64_t changes_before_ = 0;  ///< rows changed when the open transaction began
   std::string go_on_ = "give the command again";
   std::unique_ptr<FileWatch> watch_;
   struct Lost {
     std::string problem, mend;
   };
-  std::optional<Lost> lost_;   ///< nothing more is written
-  std::recursive_mutex turn_;  ///< of transactions; one that is over may still stand above the next
+  std::optional<Lost> lost_;   ///< set: nothing more is written
+  std::recursive_mutex turn_;  ///< of transactions; one that is over may outlive the next one's start
 };
 
-/// Bytes that are no text.
+/// Bytes that are not text.
 struct Blob {
   std::string_view bytes;
 };
@@ -168,24 +169,24 @@ class Statement {
     return *this;
   }
 
-  /// One value alone, where the statement is not known beforehand.
+  /// One value alone, for statements that are built at run time.
   Statement& bind_at(int index, std::int64_t value);
   Statement& bind_at(int index, int value) { return bind_at(index, static_cast<std::int64_t>(value)); }
-  /// Not a number becomes NULL.
+  /// NaN becomes NULL.
   Statement& bind_at(int index, double value);
   Statement& bind_at(int index, std::string_view value);
   Statement& bind_at(int index, const std::string& value) { return bind_at(index, std::string_view(value)); }
   Statement& bind_at(int index, const char* value) { return bind_at(index, std::string_view(value)); }
   Statement& bind_at(int index, Blob value);
   Statement& bind_at(int index, std::nullopt_t);
-  /// The value of a column of another statement's row.
+  /// Binds a column of another statement's row.
   Statement& bind_from(int index, const Statement& row, int column);
   template <class Value>
   Statement& bind_at(int index, const std::optional<Value>& value) {
     return value ? bind_at(index, *value) : bind_at(index, std::nullopt);
   }
 
-  /// True when there is a row. After the last one the statement is reset and its values are kept.
+  /// True if there is a row. After the last row the statement is reset; its bound values remain.
   bool step();
   /// Runs a statement without rows and returns the new row's id.
   std::int64_t run();
@@ -208,8 +209,8 @@ class Statement {
   sqlite3_stmt* handle_ = nullptr;
 };
 
-/// A transaction that takes the write lock at once and is undone unless committed. It waits for that of
-/// another thread on the same connection.
+/// A transaction that takes the write lock at once and rolls back unless committed. It waits for another
+/// thread's transaction on the same connection.
 class Transaction {
  public:
   explicit Transaction(Connection& connection);

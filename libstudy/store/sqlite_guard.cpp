@@ -1,4 +1,4 @@
-/// What a database may make SQLite do: a file from elsewhere runs no code of its own.
+/// Limits what a database file can make SQLite do: a foreign file cannot run its own code.
 #include <sqlite3.h>
 
 #include <algorithm>
@@ -11,15 +11,15 @@ namespace study::sqlite {
 
 namespace {
 
-// Far beyond what a study holds. In bytes: a text or a row; the SQL of a statement.
+// Limits far beyond a study's content. In bytes: a text or row; the SQL of a statement.
 constexpr int longest_value = 1 << 26, longest_sql = 1 << 21;
 constexpr int most_columns = 500, deepest_trigger = 8, most_attached = 2;
-// A schema of ours is read in a few thousand operations.
+// Reading one of our schemas takes a few thousand operations.
 constexpr int operations_a_step = 10'000, most_steps = 1'000;
 
 bool is(const char* text, std::string_view other) { return text && text == other; }
 
-/// Reach beyond the database.
+/// True for functions that reach beyond the database.
 bool is_dangerous(const char* function) {
   constexpr std::array<std::string_view, 5> names{"load_extension", "readfile", "writefile", "edit",
                                                   "fts3_tokenizer"};

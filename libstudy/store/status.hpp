@@ -1,5 +1,5 @@
 #pragma once
-/// What a database holds, in counts. Read-only; errors as read_tasks().
+/// Counts of what a database holds. Read-only; errors as read_tasks().
 
 #include <cstdint>
 #include <filesystem>
@@ -45,11 +45,11 @@ struct StudyStatus {
   std::vector<std::string> withdrawn;  ///< codes of those who withdrew
   std::int64_t frames = 0;
   std::int64_t gaze = 0;  ///< samples
-  std::string lacking;    ///< what its journal alone holds (open_study.hpp); empty: nothing
+  std::string lacking;    ///< rows that only its journal holds (open_study.hpp); empty: none
 };
 StudyStatus read_status(const StudyFile& study);
 
-/// Timing of all answered presentations of one cell: a line of the certificate.
+/// Timing of all answered presentations of one cell: one line of the certificate.
 struct CertificateRow {
   StimulusSpec what;
   FpsSetting nominal;       ///< moments 0: as fast as the method ran, without verdicts
@@ -61,10 +61,10 @@ struct CertificateRow {
   std::int64_t frames = 0, late = 0;
   double worst_late_ms = 0;
   std::int64_t pass = 0, degraded = 0, fail = 0;
-  std::string grades;  ///< the evidence's grades that occur, best first
+  std::string grades;  ///< grades of the evidence that occur, best first
 };
 
-/// Of the sessions that run `run_id` planned; `mean` is the one that the protocol's settings mean.
+/// Certificate rows of the sessions of run `run_id`; `mean` is the kind of mean in the protocol's settings.
 std::vector<CertificateRow> read_certificate(const std::filesystem::path& database, std::int64_t run_id,
                                              FpsMean mean);
 

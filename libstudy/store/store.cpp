@@ -52,12 +52,12 @@ Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, con
   }
   statements_ = std::make_unique<Statements>(*database_);
   journal_ = std::make_unique<AnswerJournal>(*database_);
-  // A new database may have a plan: the journal's, whose commit was under way when an earlier one was given
-  // up.
+  // A new database may already have a plan, taken from the journal: its commit was under way when an earlier
+  // database was abandoned.
   if (!lock_->made() || database_->integer("SELECT EXISTS (SELECT 1 FROM run)") == 1) keep_file();
 }
 
-// Members go in the reverse of their order: the lock is given back after SQLite has closed the file.
+// Members are destroyed in reverse order, so the lock is released after SQLite has closed the file.
 Store::~Store() {
   if (lock_ && lock_->made()) journal_->remove_if_blank();
 }

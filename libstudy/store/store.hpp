@@ -1,6 +1,6 @@
 #pragma once
-/// A study's database as the session writes it: the whole plan first, one commit for each answer.
-/// All failures are base::Error and name the file; what was committed before stays.
+/// Writes a study's database during sessions: first the whole plan, then one commit per answer. All failures
+/// are base::Error and name the file; what was committed before stays.
 
 #include <atomic>
 #include <cstdint>
@@ -26,24 +26,24 @@ namespace study {
 
 class AnswerJournal;
 
-/// A new participant code is 1 to 32 of A-Z a-z 0-9 _ and -, and begins with a letter or digit, so that it is
-/// never taken for an option or a formula. base::Error otherwise. Earlier databases may hold others.
+/// base::Error unless a new participant code is 1 to 32 of A-Z a-z 0-9 _ and - and begins with a letter or
+/// digit, so that it is never read as an option or a formula. Earlier databases may hold other codes.
 void check_participant_code(const std::string& code);
 
-/// How a session's display frames a scene, for those of its cells that it frames alike.
+/// How a session's display frames a scene, for cells with equal framing.
 struct SceneFraming {
   std::string scene;                            ///< scene file as the protocol names it
   int width_px = 0, height_px = 0;              ///< of the picture as it is drawn
-  int shown_width_px = 0, shown_height_px = 0;  ///< on the display; others where a bake's pictures are scaled
+  int shown_width_px = 0, shown_height_px = 0;  ///< on the display; differs for scaled pictures of a bake
   double camera_angle_deg = 0;                  ///< vertical, in (0, 180)
-  std::optional<double> visual_angle_deg;       ///< that the picture fills of the eye's view; none: not known
-  std::vector<int> cells;                       ///< of the protocol's design
+  std::optional<double> visual_angle_deg;  ///< angle that the picture subtends at the eye; none: not known
+  std::vector<int> cells;                  ///< of the protocol's design
   std::vector<int>
-      copied;            ///< those of them whose pictures are a bake's; the others are drawn in the session
-  std::string renderer;  ///< what draws or drew them; empty: not known
+      copied;            ///< of these, the cells whose pictures come from a bake; the others are drawn live
+  std::string renderer;  ///< that draws or drew them; empty: not known
 };
 
-/// What is written of a session before its first unit.
+/// Facts of a session that are written before its first unit.
 struct SessionPlan {
   std::string participant;
   int visit = 1;
@@ -55,17 +55,17 @@ struct SessionPlan {
   std::optional<std::string> ptpe;              ///< the PTPE file in full
   std::string gaze_source = "none";             ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
   std::string station;                          ///< where it is recorded
-  std::optional<StationNumber> station_number;  ///< not read back: slot and seed are its work
+  std::optional<StationNumber> station_number;  ///< not read back: slot and seed follow from it
   std::optional<double> screen_width_mm, viewing_distance_mm;
   std::optional<double> refresh_hz;   ///< of the display; none: frames are shown as they come
   std::vector<SceneFraming> framing;  ///< not read back; empty: nothing is drawn
   Plan plan;
 };
 
-/// What is written of a run: one command for one or more participants.
+/// Facts of a run that are written: one command for one or more participants.
 struct RunPlan {
   Protocol protocol;
-  std::string options;  ///< text from which the program rebuilds the run
+  std::string options;  ///< text from which the program restores the run's options
   std::vector<SessionPlan> sessions;
 };
 
@@ -73,22 +73,22 @@ struct RunPlan {
 struct OpenUnit {
   std::int64_t id = 0;
   PlannedUnit plan;
-  std::int64_t trial_id = 0;          ///< 0: a page
-  std::optional<PlannedTrial> trial;  ///< none: a page
+  std::int64_t trial_id = 0;          ///< 0 for a page
+  std::optional<PlannedTrial> trial;  ///< none for a page
   int attempts = 0;                   ///< showings of the trial so far
-  bool begun = false;                 ///< the trial was shown since it was last set aside: it was cut
-  std::vector<std::string> answered;  ///< ids of questions that have an answer: not asked again
+  bool begun = false;                 ///< the trial was shown since it was last set aside, and was cut
+  std::vector<std::string> answered;  ///< ids of answered questions: not asked again
 };
 
-/// A session with units to do, in the order of their positions.
+/// A session with its open units, in the order of their positions.
 struct OpenSession {
   std::int64_t id = 0;
-  SessionPlan plan;  ///< its units and trials are left empty; the slot is there
+  SessionPlan plan;  ///< without units and trials; the slot is set
   std::size_t planned = 0, done = 0;
   std::vector<OpenUnit> units;
 };
 
-/// Unfinished sessions that share a run, with what that run was given.
+/// Unfinished sessions of one run, with the run's options and protocol.
 struct OpenRun {
   std::int64_t id = 0;
   std::string options;
@@ -97,11 +97,11 @@ struct OpenRun {
   std::vector<OpenSession> sessions;
 };
 
-/// How a session came to its end before its last unit.
+/// How a session ended before its last unit.
 enum class EarlyEnd {
   Refused,      ///< no consent
   NotEligible,  ///< ruled out by screening
-  Stopped,      ///< by a stop rule or on the participant's wish; the data stay
+  Stopped,      ///< by a stop rule or at the participant's request; the data stay
   DroppedOut    ///< did not come back; the slot is free again
 };
 
@@ -110,128 +110,129 @@ struct Ending {
   std::string reason;  ///< may be empty
 };
 
-/// A slot, and the frame that was on in it; none: black.
+/// A headset slot and the frame shown in it; none: black.
 struct ShownSlot {
   SlotRecord slot;
   std::optional<std::int64_t> frame;
 };
 
-/// What a validation of the eye tracker found at one of its targets.
+/// The result of an eye tracker's validation at one target.
 struct ValidatedPoint {
   std::int64_t clock_ns = 0;                  ///< when its samples began
   double azimuth_deg = 0, elevation_deg = 0;  ///< of the target
-  std::int64_t samples = 0, valid = 0;        ///< taken, and of those valid
+  std::int64_t samples = 0, valid = 0;        ///< all samples, and the valid ones
   std::optional<double> accuracy_deg;         ///< none: no valid sample
   std::optional<double> sd_deg, rms_s2s_deg;  ///< precision; none: too few samples
 };
 
-/// What a question was answered with, ready to be kept.
+/// An answer to be stored.
 struct KeptAnswer {
   std::string question;  ///< id
   TimedAnswer answer;
 };
 
-/// The only writer of a database: a second Store on the same file is an error while the first lives. Every
-/// call that commits may come from any thread; they take turns.
+/// The only writer of a database: a second Store on the same file is an error while the first exists. Calls
+/// that commit may come from any thread; they take turns.
 class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
-  /// is removed again when nothing comes to stand in it. What a withdrawal or a merge left to be done is done
-  /// first (chores.hpp), and the withdrawals that were wished (withdraw.hpp). waiting: for locks of other
-  /// programs, five seconds without it.
+  /// is removed again if nothing is stored in it. First does the chores that a withdrawal or a merge left
+  /// (chores.hpp) and the requested withdrawals (withdraw.hpp). waiting: for locks of other programs; five
+  /// seconds without it.
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0,
         const sqlite::Waiting& waiting = {});
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// What is still left of it, each with reason and mend: a session may go on, the command ends as an error.
+  /// Clean-ups that failed, each with reason and remedy: a session may go on, but the command should fail.
   std::vector<std::string> left_to_clean() const { return left_; }
 
-  /// Who is to be told, in one line, when the journal of answers cannot be written or was lost; without:
+  /// Sets the receiver of one-line warnings if the journal of answers cannot be written or was lost; default:
   /// stderr.
   void tell_of_journal(const std::function<void(const std::string&)>& tell);
-  /// At the end of a command: base::Error when the journal still lacks what was committed.
+  /// Call at the end of a command: base::Error if the journal still lacks committed rows.
   void require_journal();
 
   /// Writes protocol, sessions and every trial of every session in one transaction; returns the run's id.
-  /// base::Error when one of the participants has that visit under that protocol already, or a code that
-  /// differs from another's in upper and lower case alone, or when the same name and version stand there with
-  /// another text.
+  /// base::Error if a participant already has that visit under that protocol, or a code that differs from
+  /// another only in case, or if the protocol's name and version are stored with another text.
   std::int64_t add_run(const RunPlan& run);
 
-  /// For a session that is resumed: how the display frames its scenes now, where that is not as it was. What
-  /// is shown from now on is known by it.
+  /// For a resumed session: stores how the display frames its scenes now, if that changed. Later
+  /// presentations refer to it.
   void add_framing(std::int64_t session, const std::vector<SceneFraming>& framing);
-  /// What headset a session is played on, where that does not stand already as it is.
+  /// Stores the facts of a session's headset unless equal facts are stored already.
   void add_headset(std::int64_t session, const HeadsetFacts& headset);
-  /// The distance between the eyes from now on, mm, where it is more than 0.2 mm from the last one.
+  /// Stores the distance between the eyes from now on, mm, if it differs by more than 0.2 mm from the last
+  /// one.
   void add_ipd(std::int64_t session, std::int64_t clock_ns, double ipd_mm);
 
-  /// The latest time that stands in the database, by whatever clock; empty: nothing stands there.
+  /// The latest time stored in the database, by any clock; empty if there is none.
   std::string newest_utc();
 
-  /// What is left to do, of all runs; cuts of an earlier process are marked as interrupted first.
+  /// The open runs. First marks presentations that an earlier process left running as interrupted.
   std::vector<OpenRun> open_runs();
 
   /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
   /// refused, not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
-  /// Station numbers of those sessions, each once; none: sessions without a number.
+  /// Station numbers of those sessions, each once; an entry of none: sessions without a number.
   std::vector<std::optional<StationNumber>> station_numbers(const std::string& protocol_sha256);
 
-  /// Commits that a stimulus is about to be shown; returns the presentation's id. gaze_source: what the fluid
-  /// follows; none: as the session was planned.
+  /// Commits that a stimulus is about to be shown; returns the presentation's id. gaze_source: the gaze that
+  /// the fluid follows; none: as planned for the session.
   std::int64_t begin_presentation(std::int64_t session, std::int64_t trial, int attempt, int interval,
                                   int cell, std::int64_t start_ns,
                                   const std::optional<std::string>& gaze_source = {});
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
-  /// Who wished, at the end of a session, that all be deleted: to be done once this Store is closed.
+  /// Participants who asked at a session's end to delete all their data: do it once this Store is closed.
   std::vector<std::string> wished_withdrawals();
-  /// Whether anything was shown in this session, and whether anything was answered to it.
+  /// True if this session has any presentation, or any answer.
   bool has_shown(std::int64_t session);
   bool has_answers(std::int64_t session);
-  /// Whether the participant allows that gaze is recorded in this session, as it stands now.
+  /// True if the participant currently allows recording gaze in this session.
   bool allows_gaze(std::int64_t session);
-  /// Commits samples of a presentation, after those that it has. base::Error, with nothing kept, unless the
-  /// participant allows it.
+  /// Commits samples of a presentation, appended to its former ones. base::Error, with nothing stored, unless
+  /// the participant allows it.
   void add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
                 std::span<const GazeSample> samples);
-  /// Commits slots of a presentation, after those that it has. base::Error, with nothing kept, for a head's
-  /// pose unless the participant allows gaze to be recorded.
+  /// Commits slots of a presentation, appended to its former ones. base::Error, with nothing stored, for a
+  /// head pose unless the participant allows recording gaze.
   void add_slots(std::int64_t presentation, std::int64_t start_ns, std::span<const ShownSlot> slots);
-  /// Commits a validation of the eye tracker, after those of the session. base::Error as add_gaze().
+  /// Commits a validation of the eye tracker, appended to the session's former ones. base::Error as
+  /// add_gaze().
   void add_validation(std::int64_t session, std::span<const ValidatedPoint> points, bool passed);
-  /// Commits the rest of the frames and the verdict; where nothing was scheduled (nominal mean 0) it
-  /// is kept of a trial that was cut alone.
+  /// Commits the rest of the frames and the verdict. Without a schedule (nominal mean 0) the verdict is
+  /// stored only for a cut trial.
   void end_presentation(std::int64_t presentation, std::int64_t start_ns, std::int64_t end_ns,
                         std::span<const FrameRecord> frames, const TimingVerdict& verdict);
   /// Commits that a presentation was cut short, and why; its frames stay.
   void interrupt_presentation(std::int64_t session, std::int64_t presentation, const std::string& why,
                               std::int64_t clock_ns);
   /// Commits the answers of one page in one transaction. attempt: showing of the trial that was judged; 0:
-  /// not a trial. `last`: the unit is then done, and with the last unit of a session the session as well;
-  /// not so where the trial was set aside since that showing.
-  /// An `ending` to which the answers led is kept with them. What they allow counts from then on.
-  /// base::Error, with nothing kept, for a question that is personal, unknown or answered here before.
+  /// not a trial. `last`: the unit is then done, and with its last unit the session, unless the trial was set
+  /// aside since that showing. An `ending` caused by the answers is stored with them. Permissions in them
+  /// hold from then on. base::Error, with nothing stored, for a question that is personal, unknown or already
+  /// answered here.
   void answer(std::int64_t session, const OpenUnit& unit, int attempt, std::span<const KeptAnswer> answers,
               bool last, std::int64_t clock_ns, const std::optional<Ending>& ending = {});
   /// Commits that a unit without answers is done.
   void finish_unit(std::int64_t session, std::int64_t unit, std::int64_t clock_ns);
-  /// Ends a session before its last unit; what is not done stays planned. The reason becomes a note.
+  /// Ends a session before its last unit; open units stay planned. The reason becomes a note.
   void end_session(std::int64_t session, const Ending& ending, std::int64_t clock_ns);
-  /// Opens a trial again, done or under way: it is shown once more as a new attempt, and the answers it has
-  /// are kept apart. The reason becomes a note.
+  /// Reopens a trial, done or under way: it is shown once more as a new attempt, and its former answers are
+  /// set aside. The reason becomes a note.
   void repeat_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
-  /// Opens every trial of a block again that is done or under way, as repeat_trial does, in one transaction.
+  /// Reopens every trial of a block that is done or under way, as repeat_trial does, in one transaction.
   void restart_block(std::int64_t session, int block, const std::string& reason);
-  /// A trial that was begun is not shown again: it is excluded, its unit is done; what was answered stays.
+  /// Excludes a begun trial instead of showing it again: its unit is done, its answers stay.
   void leave_out_trial(std::int64_t session, const OpenUnit& unit, const std::string& reason);
-  /// Marks a trial so that analyses leave it out.
+  /// Marks a trial as excluded from analyses.
   void exclude_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
-  /// The experimenter's words, beside the log; withdrawal deletes them.
+  /// Stores a note of the experimenter, apart from the log; withdrawal deletes it.
   void note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   /// Appends to the event log. `detail` never holds answers or free text of participants.
   void log(std::optional<std::int64_t> session, const std::string& kind, const std::string& detail,
@@ -240,8 +241,8 @@ class Store {
  private:
   struct Statements;
 
-  /// A copy of a database that is locked by another program: what is written to it goes into the journal
-  /// alone, from which the next opening takes it over.
+  /// A copy of a database that another program has locked. Its changes go only into the journal; the next
+  /// opening of the database takes them over.
   explicit Store(Store& locked);
   /// Makes a change that cannot be repeated: an answer or a note. If the file is locked, makes it in such a
   /// copy and then throws LockedOut.
@@ -250,7 +251,7 @@ class Store {
                      std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns,
                      const std::optional<Ending>& ending);
   void write_note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
-  /// Every change ends here: into the journal, then into the database.
+  /// Ends every change: writes it to the journal, then to the database.
   void commit(sqlite::Transaction& transaction);
   std::int64_t find_or_add_protocol(const RunPlan& run);
   void add_session(std::int64_t run_id, std::int64_t protocol_id, const Protocol& protocol,
@@ -276,13 +277,13 @@ class Store {
   void keep_file();
 
   std::filesystem::path path_;
-  std::optional<WriterLock> lock_;  ///< none: a copy
+  std::optional<WriterLock> lock_;  ///< none for a copy
   std::unique_ptr<sqlite::Connection> database_;
   std::unique_ptr<Statements> statements_;
   std::unique_ptr<AnswerJournal> journal_;
-  std::mutex copying_;                  ///< of copy_: the console writes notes from a thread of its own
+  std::mutex copying_;                  ///< guards copy_: the console writes notes from its own thread
   std::unique_ptr<Store> copy_;         ///< see make()
-  std::atomic<bool> given_up_ = false;  ///< there is one: nothing more goes into the file
+  std::atomic<bool> given_up_ = false;  ///< copy_ exists: nothing more goes into the file
   std::vector<std::string> left_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The statements of a Store that are given for every frame, showing or answer.
+/// The prepared statements of a Store that run for every frame, showing or answer.
 
 #include "libstudy/store/store.hpp"
 
@@ -24,7 +24,8 @@ struct Store::Statements {
             "UPDATE presentation SET state = 'played', end_ns = ?, verdict = ?, grade = ?, reason = ?, "
             "frames = ?, mean_fps = ?, mean_arithmetic_fps = ?, sd_fps = ?, p95_ms = ?, longest_ms = ?, "
             "shortest_ms = ?, lag1 = ?, late_frames = ?, worst_late_ms = ? WHERE presentation_id = ?"),
-        // No answer to what is personal, done, of another session or answered since it was last set aside.
+        // Inserts no answer if the question is personal, the unit is done or of another session, or the
+        // question was answered since the trial was last set aside.
         response(database,
                  "INSERT INTO response (unit_id, attempt, question_id, score, words, response_time_s, "
                  "answered_utc, input) SELECT u.unit_id, ?3, q.question_id, ?5, ?6, ?7, ?8, ?9 "

@@ -1,5 +1,5 @@
 #pragma once
-/// A dataset's protocol as its database tells it.
+/// Reads a dataset's protocol from its database.
 
 #include <cstdint>
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace study {
 
-/// From the text kept in the database, overrides included. A file of the first format, which named no methods
-/// and is no longer read, is rebuilt from the tables as far as analyses need it: name, version, hash, cells
-/// (without stimuli) and the questions asked about them; `participants` is 0, not known. `where` stands for
-/// the database in messages; base::Error as parse_protocol().
+/// Parses the stored text and applies overrides. A protocol of the first format, which named no methods and
+/// can no longer be parsed, is rebuilt from the tables as far as analyses need it: name, version, hash, cells
+/// (without stimuli) and the questions asked about them; `participants` is 0, not known. `where` names the
+/// database in messages; base::Error as parse_protocol().
 Protocol stored_protocol(sqlite::Connection& database, std::int64_t protocol_id, const std::string& where);
 
 }  // namespace study

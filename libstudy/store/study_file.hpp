@@ -1,19 +1,19 @@
 #pragma once
-/// Which study a reader opens, and on what terms.
+/// The study that a reader opens, and whether it may be incomplete.
 
 #include <concepts>
 #include <filesystem>
 
 namespace study {
 
-/// A path alone will do: the study must then be whole.
+/// Converts from a path alone: the study must then be complete.
 struct StudyFile {
   template <class Path>
     requires std::convertible_to<const Path&, std::filesystem::path>
   StudyFile(const Path& database, bool go_on = false) : path(database), incomplete(go_on) {}
 
   std::filesystem::path path;
-  bool incomplete = false;  ///< go on with what the database holds where its journal holds more
+  bool incomplete = false;  ///< accept a database with fewer rows than its journal
 };
 
 }  // namespace study

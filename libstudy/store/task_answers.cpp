@@ -59,7 +59,7 @@ constexpr const char* catches_sql =
     "LEFT JOIN response r ON r.unit_id = u.unit_id AND r.question_id = q.question_id "
     "WHERE u.session_id = ?1 AND u.kind = 'catch' ORDER BY u.position, k.place";
 
-/// True when it is new.
+/// True if it is new.
 bool add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) != list.end()) return false;
   list.push_back(item);
@@ -217,7 +217,7 @@ std::vector<Question> trial_questions(const Protocol& protocol) {
   return out;
 }
 
-/// Asked once on a page, not of a trial.
+/// Questions asked once on a page, not about a trial.
 std::vector<Question> questions_about_people(const Protocol& protocol) {
   std::set<std::string> asked;
   for (const Block& block : protocol.blocks)
@@ -232,7 +232,7 @@ std::vector<Question> questions_about_people(const Protocol& protocol) {
   return out;
 }
 
-/// Those that stand in the database itself, in words as the file of personal data has them.
+/// Adds the answers in the database itself, as words like in the personal file.
 void add_stored(Connection& database, const TaskProtocol& protocol, std::vector<PersonalEntry>& out) {
   Statement row(
       database,

@@ -20,7 +20,7 @@ using sqlite::Statement;
 
 namespace {
 
-/// None when nobody of that code was ever here. A code is one person's.
+/// The person with a code; none if the code was never used. A code belongs to one person.
 std::optional<std::string> person_of(Connection& database, const std::string& participant) {
   Statement row(database,
                 "SELECT person FROM session WHERE participant = ?1 UNION "
@@ -73,7 +73,7 @@ Withdrawal withdraw(Connection& database, const std::string& participant) {
   const auto person = person_of(database, participant);
   if (!person) {
     { const AnswerJournal compared(database); }
-    clean_up(database);  // of others
+    clean_up(database);  // of other people
     throw base::Error(database.path().string(), "knows no participant " + participant,
                       "vip-study status lists the codes");
   }
@@ -97,7 +97,7 @@ Withdrawal withdraw(const fs::path& given, const std::string& participant) {
   JournalFile journal(journal_beside(path));
   const std::set<std::string> gaze_deleted = settle(*database, journal).gaze_deleted;
   Withdrawal done = withdraw(*database, participant);
-  const auto named = name_gaze_elsewhere(*database, gaze_deleted);  // of who is still there
+  const auto named = name_gaze_elsewhere(*database, gaze_deleted);  // of people who are still in it
   done.beside.left.insert(done.beside.left.end(), named.begin(), named.end());
   return done;
 }

@@ -1,4 +1,4 @@
-/// Frames of a presentation, as the session writes them.
+/// Store: writes the frames of a presentation.
 #include "libstudy/store/store_statements.hpp"
 
 namespace study {
@@ -8,7 +8,7 @@ using sqlite::Transaction;
 
 namespace {
 
-/// A time relative to another; nothing when it is not known.
+/// A time relative to another; none if it is not known.
 std::optional<std::int64_t> after(std::int64_t time_ns, std::int64_t origin_ns) {
   if (time_ns < 0) return {};
   return time_ns - origin_ns;
@@ -21,7 +21,7 @@ std::optional<std::string> particles_text(const std::vector<std::int64_t>& parti
   return text;
 }
 
-/// One value of what a frame may lack as a whole; empty where it does.
+/// A member of an optional part of a frame; none if the frame lacks the part.
 template <class Part, class Value>
 std::optional<Value> part(const std::optional<Part>& whole, Value Part::*member) {
   if (!whole) return {};

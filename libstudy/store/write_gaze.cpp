@@ -1,4 +1,4 @@
-/// What a participant allows, as the session writes it, and gaze where it is allowed.
+/// Store: writes permissions of participants, and gaze if it is allowed.
 #include <array>
 #include <tuple>
 
@@ -13,7 +13,7 @@ using sqlite::Transaction;
 
 bool Store::allows_gaze(std::int64_t session) { return is_gaze_allowed(*database_, session); }
 
-/// Of a presentation that is being shown.
+/// The session of a running presentation.
 std::int64_t Store::session_of(std::int64_t presentation) {
   Statement row(*database_,
                 "SELECT session_id FROM presentation JOIN trial USING (trial_id) WHERE presentation_id = ?");
@@ -53,8 +53,8 @@ void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigi
   commit(transaction);
 }
 
-/// Who answers a consent page after the experimenter changed a permission has the last word. A refusal takes
-/// with it what was recorded before.
+/// A consent answer given after the experimenter changed a permission overrides that change. A refusal
+/// deletes earlier recordings.
 void Store::answer_over_change(std::int64_t session, const std::string& question, const std::string& now) {
   if (question != gaze_question && question != sharing_question) return;
   const std::string what = question == gaze_question ? "gaze" : "sharing";

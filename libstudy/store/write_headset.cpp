@@ -1,4 +1,4 @@
-/// What a headset was and brought in, as the session writes it.
+/// Store: writes the facts and recordings of a headset.
 #include <array>
 
 #include "libstudy/store/store.hpp"
@@ -23,7 +23,7 @@ void insert_head(Statement& insert, std::int64_t presentation, std::int64_t slot
 
 }  // namespace
 
-/// What does not stand already as the session's last row.
+/// Inserts a row unless the session's last row is equal.
 void Store::add_headset(std::int64_t session, const HeadsetFacts& headset) {
   const auto& [left, right] = headset.eyes;
   Transaction transaction(*database_);

@@ -1,4 +1,4 @@
-/// Writing a run: protocol, sessions, units and trials, all before the first of them is shown.
+/// Store: writes a run (protocol, sessions, units and trials) before the first trial is shown.
 #include <set>
 
 #include "libstudy/store/export_labels.hpp"
@@ -44,7 +44,7 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   Statement insert(database,
                    "INSERT INTO question (protocol_id, code, wording, language, kind, scale_min, scale_max, "
                    "anchors, personal) VALUES (?,?,?,?,?,?,?,?,?)");
-  std::set<std::string> written;  // a questionnaire asked before and after is one set of questions
+  std::set<std::string> written;  // a questionnaire asked twice is one set of questions
   for (const auto& [block, question] : all_questions(protocol)) {
     if (!written.insert(question->id).second) continue;
     insert
@@ -55,7 +55,7 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   }
 }
 
-/// Ids of what a block asks: in the steps of its trials, or on its page.
+/// Ids of the questions that a block asks: in the steps of its trials, or on its page.
 std::vector<std::string> asked_by(const Block& block) {
   std::vector<std::string> ids;
   for (const TrialStep& step : block.steps) ids.insert(ids.end(), step.asks.begin(), step.asks.end());
@@ -89,7 +89,7 @@ void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Pro
   }
 }
 
-/// Row of each trial, by position.
+/// Inserts the trials; returns their row numbers by position.
 std::vector<std::int64_t> add_trials(sqlite::Connection& database, std::int64_t session, const Plan& plan) {
   Statement insert(database,
                    "INSERT INTO trial (session_id, position, group_index, first_cell, second_cell, "
@@ -123,7 +123,8 @@ std::string listed(const std::vector<int>& cells) {
   return out;
 }
 
-/// What does not stand already: the last row of its cells, which are shown alike, so that the first tells.
+/// Inserts a framing unless the last row of its cells is equal. Its cells are framed alike, so the first cell
+/// identifies that row.
 void insert_framing(sqlite::Connection& database, std::int64_t session,
                     const std::vector<SceneFraming>& framing) {
   Statement insert(

@@ -43,7 +43,7 @@ bool locked_here(const fs::path& path) {
   return own_locks().files.contains(id_of(file));
 }
 
-/// False where another file, or none, stands at the path by now.
+/// True if the path still leads to this file; false if it now has another file or none.
 bool leads_to(const fs::path& path, int fd) {
   struct stat there {
   }, held{};
@@ -70,7 +70,7 @@ WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(datab
     base::make_folder_of(path_);
     refuse_orphaned_log(path_);
   }
-  // Another round when the file was made, or removed by who had made it, between two steps.
+  // Tries again if the file was made, or removed by its maker, between two steps.
   for (int round = 0;; ++round) {
     if (locked_here(path_)) throw_busy(path_);
     if (how == sqlite::Open::Create) {
@@ -93,7 +93,7 @@ WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(datab
   }
   struct stat held {};
   ::fstat(fd_, &held);
-  // Another start may have made the file and lost the race for its lock: the duty to remove it comes here.
+  // Another process may have made the file and lost the race for its lock: then this one must remove it.
   if (how == sqlite::Open::Create && held.st_size == 0) made_ = true;
   const std::lock_guard guard(own_locks().mutex);
   own_locks().files.insert(id_of(held));

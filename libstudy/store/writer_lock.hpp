@@ -1,5 +1,5 @@
 #pragma once
-/// One writer for each database, which alone makes the file and alone may remove it again.
+/// Lock for the only writer of a database, which alone may create the file and remove it again.
 
 #include <filesystem>
 
@@ -7,22 +7,22 @@
 
 namespace study {
 
-/// Held on the file itself, so that it ends with the process however that ends. Must be there before SQLite
-/// opens the file and outlive every connection to it: closing its descriptor takes away SQLite's own locks in
-/// this process.
+/// Held on the file itself, so that it ends with the process in any case. Take it before SQLite opens the
+/// file and release it after every connection: closing its descriptor releases SQLite's own locks in this
+/// process.
 class WriterLock {
  public:
-  /// Open::Create makes a missing file, empty and 0600, and takes over one that it finds empty. base::Error
-  /// while another vip-study writes, and when the file cannot be opened for writing.
+  /// Open::Create makes a missing file, empty and 0600, and takes over an empty one. base::Error if another
+  /// vip-study writes, or if the file cannot be opened for writing.
   explicit WriterLock(const std::filesystem::path& database, sqlite::Open how = sqlite::Open::Write);
-  /// Removes a file that was made or taken over here, unless something came to stand in it.
+  /// Removes a file that was made or taken over here, unless something was stored in it.
   ~WriterLock();
   WriterLock(const WriterLock&) = delete;
   WriterLock& operator=(const WriterLock&) = delete;
 
-  /// Something stands in the file now: it stays.
+  /// Call once something is stored in the file: it stays.
   void keep() { made_ = false; }
-  /// Whether the file was empty at first and may go again.
+  /// True if the file was empty at first and may be removed again.
   bool made() const { return made_; }
 
  private:

@@ -28,7 +28,7 @@ std::string words_of(const sim::BakedView& view) {
   return view.gaze == "scene" ? "gaze along the scene's keys" : "gaze on the middle of the picture";
 }
 
-/// Collects what is shown instead of what is wanted.
+/// Collects differences between what is shown and what is wanted.
 class Departures {
  public:
   void add(const std::string& what, const std::string& shown, const std::string& wanted) {
@@ -62,7 +62,7 @@ sim::BakedView view_of(const BakeOrder& order, const sim::Scene& scene, bool fol
   return view;
 }
 
-/// The most that the scene's foam can be.
+/// Maximum number of the scene's foam particles; 0 without foam.
 std::int64_t foam_of(const sim::Scene& scene) {
   const auto effects = sim::coefficients_of(scene.effects);
   if (effects[sim::EffectKind::Foam] == 0) return 0;
@@ -142,7 +142,7 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
   if (found.scene_sha256 == wanted.scene_sha256) {
     out.add("", effects_words(found), effects_words(wanted));
     out.add("", picture_words(found), picture_words(wanted));
-    const bool drawn = found.has_pictures();  // they show foam whether its particles are kept or not
+    const bool drawn = found.has_pictures();  // pictures show foam even if its particles are not stored
     if (wanted.max_foam > 0 && found.max_foam == 0 && !drawn && effects_words(found) == effects_words(wanted))
       out.add("", "no particles of foam", "foam (bakes before format 4 kept none)");
     if (drawn)
@@ -150,7 +150,7 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
     else if (!wanted.overlay.empty() && !found.reference_k && effects_words(found) == effects_words(wanted))
       out.add("", "no temperatures", "temperatures to paint (bakes before format 5 kept none)");
   }
-  // A file rounds the step of a protocol.
+  // The file stores a rounded step.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)
     out.add("content step", fmt::format("{:.6g} s", found.frame_dt_s),
             fmt::format("{:.6g} s", wanted.frame_dt_s));

@@ -30,8 +30,7 @@ std::string why_live(const study::Protocol& protocol, const PlannedStimulus& one
   return "";
 }
 
-/// "single_dam_32k_HiRes.bake"; with the level of effects and the frame rate that tau follows from, where
-/// there is one.
+/// "single_dam_32k_HiRes.bake"; with the level of effects and the frame rate for tau, if there is one.
 std::string file_name(const PlannedStimulus& one) {
   std::string out =
       std::filesystem::path(one.what.scene).stem().string() + "_" + one.what.n_star + "_" + one.what.method;
@@ -40,7 +39,7 @@ std::string file_name(const PlannedStimulus& one) {
   return out + ".bake";
 }
 
-/// Scenes of one name in several folders, and frame rates that are written alike, are told apart by a number.
+/// Appends a number to equal names, from scenes in several folders or frame rates with equal text.
 void make_distinct(std::vector<PlannedStimulus>& all) {
   for (auto one = all.begin(); one != all.end(); ++one) {
     if (one->file.empty()) continue;
@@ -84,7 +83,7 @@ std::vector<PlannedStimulus> plan_bakes(const study::Protocol& protocol) {
 BakeOrder order_of(const study::Protocol& protocol, const PlannedStimulus& one, const SessionLook& look) {
   BakeOrder order;
   order.fluid = look.common;
-  order.fluid.viewing.gaze = {};  // fixation: on the middle
+  order.fluid.viewing.gaze = {};  // fixation: the gaze is at the middle
   order.fluid.scene = base::find_input(one.what.scene);
   order.fluid.method = one.what.method;
   order.fluid.n_star = one.what.n_star;

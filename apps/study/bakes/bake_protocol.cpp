@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Positions of 16 bit an axis, which no frame packs worse than that.
+/// Positions of 16 bits per axis, the largest that a frame can be.
 constexpr std::uint64_t bytes_of_particle = 6;
 constexpr std::uint64_t bytes_of_temperature = 2;
-/// Place and radius.
+/// Position and radius.
 constexpr std::uint64_t bytes_of_foam = 8;
-/// Pictures of the scenes take about 0.6 a pixel.
+/// Pictures of the scenes take about 0.6 bytes per pixel.
 constexpr std::uint64_t bytes_of_pixel = 1;
 
 struct Task {
@@ -32,7 +32,7 @@ struct Task {
   sim::BakeHeader header;
   fs::path out;
 
-  /// What its making takes, as a part of the others'.
+  /// Relative cost of making this bake.
   double weight() const {
     return static_cast<double>(header.frame_count) *
            static_cast<double>(sim::particle_count(sim::parse_method(header.method), header.n_star));
@@ -74,13 +74,13 @@ std::vector<std::string> all_departures(const sim::BakeHeader& found, const sim:
   return out;
 }
 
-/// Without what to do about it: it is done here.
+/// The error's first line, without the remedy, which is applied here.
 std::string problem_of(const base::Error& error) {
   const std::string text = error.what();
   return text.substr(0, text.find('\n'));
 }
 
-/// Why what lies there must be made again; empty: it is good.
+/// Why the existing bake must be made again; empty if it is valid.
 std::string fault_of(const Task& task, const std::function<void()>& stop) {
   try {
     const sim::BakeReader bake(task.out);
@@ -89,12 +89,12 @@ std::string fault_of(const Task& task, const std::function<void()>& stop) {
     read_whole(bake, stop);
     return "";
   } catch (const base::Error& error) {
-    stop();  // a wish to stop is no fault of the bake's
+    stop();  // a request to stop is not a fault of the bake
     return problem_of(error);
   }
 }
 
-/// Those that are not there or not good, each with a word on stdout.
+/// Tasks whose bake is missing or invalid; prints on stdout which bakes are kept or made again.
 std::vector<Task> left_to_make(std::vector<Task> tasks, const std::function<void()>& stop) {
   std::vector<Task> out;
   for (Task& task : tasks) {

@@ -1,5 +1,5 @@
 #pragma once
-/// All bakes of a protocol: made, kept where they are good, made again where they are not.
+/// Makes all bakes of a protocol; keeps valid ones and replaces invalid ones.
 
 #include <filesystem>
 #include <functional>
@@ -12,17 +12,16 @@ struct ProtocolBakes {
   std::string file;  ///< of the protocol
   std::filesystem::path folder;
   SessionLook look;
-  bool pictures = false;  ///< keep them too
+  bool pictures = false;  ///< store pictures too
 };
 
-/// Bytes that a bake takes at most, by the particles and pixels of its header; max_particles is not asked.
+/// Upper bound of a bake's size, bytes, from the particles and pixels of its header; ignores max_particles.
 std::uint64_t most_bytes(const sim::BakeHeader& header);
 
-/// Makes the bakes of plan_bakes() in `folder`, which is made where it is missing; says on stdout what it
-/// keeps, makes and leaves out. A bake that is there is read whole and kept when it holds what is wanted,
-/// made by this version and renderer. `stop` is asked before each frame and ends the work by throwing: what
-/// is complete stays. base::Error: nothing can be baked, too little room on the disk, what write_bake()
-/// meets.
+/// Makes the bakes of plan_bakes() in `folder`, which is made if missing; prints on stdout which bakes it
+/// keeps, makes and leaves out. An existing bake is read completely and kept if it holds the wanted fluid and
+/// was made by this version and renderer. `stop` is called before each frame and may throw to end the work:
+/// complete bakes stay. base::Error: nothing can be baked, too little disk space, errors of write_bake().
 void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& wish,
                    const std::function<void()>& stop);
 

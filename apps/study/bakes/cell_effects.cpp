@@ -27,7 +27,7 @@ bool lists(const std::vector<PictureEffect>& effects, PictureEffectKind kind) {
   return sim::strength_of(effects, kind) > 0;
 }
 
-/// The picture's behind the water's.
+/// Kinds of the water, then of the picture.
 std::vector<std::string> all_kinds() {
   std::vector<std::string> out;
   for (std::size_t k = 0; k < sim::effect_count; ++k)
@@ -43,7 +43,7 @@ std::optional<PictureEffectKind> picture_effect_named(const std::string& word) {
   return static_cast<PictureEffectKind>(found - words.begin());
 }
 
-/// The entry of a kind that the scene lists.
+/// The scene's entry of a kind; base::Error if it has none.
 template <class Listed, class Kind>
 Listed kept(const base::TomlTable& set, std::size_t place, const std::vector<Listed>& listed, Kind kind,
             const std::string& scene) {
@@ -61,7 +61,7 @@ struct Kept {
   std::vector<PictureEffect> picture;
 };
 
-/// keep: kinds that stay as the scene lists them.
+/// Reads `keep`: kinds that remain as the scene lists them.
 Kept kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
   Kept out;
   const auto words = set.has("keep") ? set.strings("keep") : std::vector<std::string>();
@@ -80,7 +80,7 @@ Kept kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
   return out;
 }
 
-/// Its coefficient's key and those of its options.
+/// Keys of a kind: its coefficient and its options.
 std::vector<std::string> keys_of(const std::string& word) {
   if (picture_effect_named(word)) return {"strength"};
   const EffectKind kind = *sim::effect_named(word);
@@ -92,7 +92,7 @@ std::vector<std::string> keys_of(const std::string& word) {
   return out;
 }
 
-/// Keys that a kind of effect lacks.
+/// Refuses keys that a kind of effect does not have.
 void check_keys(const base::TomlTable& set) {
   for (const auto& table : set.tables("effect")) {
     const std::string word = table.choice("kind", all_kinds());
@@ -137,7 +137,7 @@ bool names_picture(const base::TomlTable& set) {
                      [](const auto& table) { return picture_effect_named(table.string("kind")); });
 }
 
-/// Whether levels differ in effects of the picture; else each level has the scene's.
+/// True if a level names effects of the picture; otherwise each level has the scene's.
 bool varies_picture(const base::TomlTable& design) {
   const auto sets = design.tables("effect_set");
   return std::any_of(sets.begin(), sets.end(), names_picture);
@@ -151,7 +151,7 @@ std::string effect_words(const CellEffects& effects) {
   return words.empty() ? "no effects" : words;
 }
 
-/// No two levels look the same.
+/// Checks that no two levels look the same.
 void check_levels(const study::Protocol& protocol, const sim::Scene& scene) {
   const auto& levels = protocol.design.effects;
   const char* same_as =
@@ -173,7 +173,7 @@ void check_levels(const study::Protocol& protocol, const sim::Scene& scene) {
   }
 }
 
-/// Of the water of each level, or of the scene's own.
+/// Temperature scale of each level's water, or of the scene's own.
 std::vector<TemperatureScale> scales_of(const study::Protocol& protocol, const sim::Scene& scene) {
   if (protocol.design.effects.empty()) return {TemperatureScale(scene)};
   std::vector<TemperatureScale> out;
@@ -183,7 +183,7 @@ std::vector<TemperatureScale> scales_of(const study::Protocol& protocol, const s
   return out;
 }
 
-/// All that is compared has temperatures, in the same colours.
+/// Checks that all levels have temperatures, painted in the same colours.
 void check_temperatures(const study::Protocol& protocol, const sim::Scene& scene) {
   const auto scales = scales_of(protocol, scene);
   const auto& levels = protocol.design.effects;

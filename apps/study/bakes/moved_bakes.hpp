@@ -1,20 +1,20 @@
 #pragma once
-/// Bakes that were moved since sessions began with them.
+/// Finds bakes that were moved since sessions began with them.
 
 #include <string>
 #include <vector>
 
 namespace apps {
 
-/// What sessions that are resumed were played from.
+/// The bakes that resumed sessions were played from.
 struct RecordedBake {
   std::string path;   ///< file or folder; empty: no bake
-  std::string shown;  ///< what they were shown, in the record's words, with the hash of each bake
+  std::string shown;  ///< recorded description of the stimuli, with the hash of each bake
 };
 
-/// For each of `recorded` the path at which its bakes stand now: the first of `given` (options --stimulus)
-/// that holds all of them, by their hashes, else the recorded path. base::Error, with the hashes, for a path
-/// of `given` that is of no use, and for a recorded path that is not there any more.
+/// For each of `recorded`, the current path of its bakes: the first of `given` (options --stimulus) that
+/// holds all of them, by their hashes, else the recorded path. base::Error, with the hashes, for an unused
+/// path of `given`, and for a recorded path that no longer exists.
 std::vector<std::string> find_bakes(const std::vector<RecordedBake>& recorded,
                                     const std::vector<std::string>& given, const std::string& database);
 

@@ -13,7 +13,7 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Calls read(frame) for all frames; frames a second.
+/// Calls read(frame) for all frames; returns frames per second.
 template <typename Read>
 double read_all(const char* label, std::int64_t frames, const std::function<void()>& stop, Read read) {
   Progress progress(label, static_cast<std::size_t>(frames));

@@ -7,15 +7,15 @@
 
 namespace apps {
 
-/// Frames a second that were read, checked and decoded.
+/// Frames per second that were read, checked and decoded.
 struct ReadingSpeed {
   double particles = 0;
-  double pictures = 0;             ///< 0: there are none
-  double temperature_error_k = 0;  ///< that the temperatures of any frame are off by at most
+  double pictures = 0;             ///< 0 if there are none
+  double temperature_error_k = 0;  ///< largest error of the temperatures of any frame
 };
 
-/// With a progress bar where it takes long. `stop` is asked before each frame; it ends the work by throwing.
-/// base::Error for the first frame that is damaged.
+/// Shows a progress bar if it takes long. `stop` is called before each frame and may throw to end the work.
+/// base::Error for the first damaged frame.
 ReadingSpeed read_whole(
     const sim::BakeReader& bake, const std::function<void()>& stop = [] {});
 

@@ -27,8 +27,8 @@ bool shows(const PlannedStimulus& planned, const study::Cell& cell) {
   return !planned.rate || (planned.rate->mean == cell.setting.mean && planned.rate->sd == cell.setting.sd);
 }
 
-/// Where nothing says which rate tau follows from, none that a bake went by is the right one. Pictures are as
-/// good as particles.
+/// The order to compare a bake with. If the protocol gives no rate for tau, no rate of a bake can match. A
+/// bake may hold pictures or particles.
 BakeOrder order_for(const study::Protocol& protocol, const PlannedStimulus& one, const SessionLook& look,
                     const sim::BakeHeader& found) {
   BakeOrder order = apps::order_of(protocol, one, look);
@@ -48,7 +48,7 @@ void check_one_stimulus(const std::vector<PlannedStimulus>& plan, const fs::path
   }
 }
 
-/// What `vip-study bake` is told of the session, so that it bakes for it.
+/// Options of `vip-study bake` that match this session.
 std::string bake_options(const SessionLook& look) {
   std::string out = "--size " + std::to_string(look.size.width) + "x" + std::to_string(look.size.height);
   if (look.common.viewing.visual_angle_deg) out += " --screen-width-mm and --viewing-distance-mm as here";
@@ -79,8 +79,8 @@ void SessionBakes::use_file(const study::Protocol& protocol, const SessionLook& 
   for (Source& source : sources_) {
     source.bake = bake;
     sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look, bake->header));
-    wanted.frame_count = std::min(wanted.frame_count, bake->header.frame_count);  // at_end says what follows
-    wanted.frame_dt_s = bake->header.frame_dt_s;  // make_stimulus() asks for it
+    wanted.frame_count = std::min(wanted.frame_count, bake->header.frame_count);  // at_end does the rest
+    wanted.frame_dt_s = bake->header.frame_dt_s;                                  // make_stimulus() checks it
     for (const std::string& one : fluid_departures(bake->header, wanted)) {
       if (std::find(departures.begin(), departures.end(), one) == departures.end()) departures.push_back(one);
     }

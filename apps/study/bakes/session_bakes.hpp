@@ -1,5 +1,5 @@
 #pragma once
-/// The bakes that a session plays: which stand for which cells, and what is said of the others.
+/// The bakes that a session plays: which bake shows which cell, and notes about the other cells.
 
 #include <filesystem>
 #include <map>
@@ -12,33 +12,33 @@
 
 namespace apps {
 
-/// A bake that stands for a stimulus.
+/// A bake that shows a stimulus.
 struct FoundBake {
   std::filesystem::path path;
   sim::BakeHeader header;
   std::string hash;  ///< BakeReader::content_hash
 };
 
-/// Of one file, which stands for every cell, or of a folder of `vip-study bake --protocol`, or none.
+/// Bakes from one file, which shows every cell, or from a folder of `vip-study bake --protocol`, or none.
 class SessionBakes {
  public:
   SessionBakes() = default;
   /// `path`: of `vip-study run --stimulus`; empty: no bake. base::Error: a file for several stimuli, a folder
-  /// without any bake of the protocol, a bake in it that holds another fluid than the session wants, or
-  /// levels that followed a picture or an angle other than the session's.
+  /// without any bake of the protocol, or a bake in it whose fluid differs from the session's or whose levels
+  /// followed another picture or angle.
   SessionBakes(const std::filesystem::path& path, const study::Protocol& protocol, const SessionLook& look);
 
-  /// None: the cell runs live.
+  /// The bake of a cell; null if the cell runs live.
   const FoundBake* of(const study::Cell& cell) const;
-  /// No cell runs live.
+  /// True if no cell runs live.
   bool whole() const;
-  /// In what a single file departs from the protocol, such as "n_* 2048 instead of 32768"; empty: in nothing.
-  /// Data of such a session are test data.
+  /// How a single file departs from the protocol, such as "n_* 2048 instead of 32768"; empty: not at all.
+  /// Data of a departing session are test data.
   const std::string& departure() const { return departure_; }
-  /// Of a folder: how many stimuli are baked and live and why, and which could be baked and are missing. A
-  /// line each. protocol_file: as on the command line.
+  /// For a folder: how many stimuli are baked, which run live and why, and which bakes are missing. One line
+  /// each. protocol_file: as on the command line.
   std::vector<std::string> notes(const std::string& protocol_file) const;
-  /// Of a folder: each stimulus with the hash of its bake, or "live"; for the record.
+  /// For a folder: each stimulus with the hash of its bake, or "live"; for the record.
   std::string description() const;
 
  private:

@@ -11,7 +11,7 @@ namespace apps {
 
 namespace {
 
-/// Rows from the bottom up, as a bake keeps them.
+/// Reads a picture with rows from the bottom up, as in a bake.
 std::vector<std::uint8_t> read_upwards(const sim::Offscreen& from) {
   std::vector<std::uint8_t> picture = from.read().rgba;
   const auto row = static_cast<std::ptrdiff_t>(4 * from.width());
@@ -20,7 +20,7 @@ std::vector<std::uint8_t> read_upwards(const sim::Offscreen& from) {
   return picture;
 }
 
-/// The point of the picture where the scene's keys lie at each frame.
+/// The picture's point of the scene's gaze keys at each frame.
 auto gaze_by_keys(const BakeOrder& order, const sim::Scene& scene, const std::int64_t& frame,
                   double frame_dt_s) {
   const sim::Camera camera = order.fluid.overview ? scene.overview : scene.view;

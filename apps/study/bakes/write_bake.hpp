@@ -10,15 +10,16 @@ namespace apps {
 
 struct BakeHooks {
   std::function<void(int, int)> settling;    ///< as SimulationOptions::settling
-  std::function<void(std::int64_t)> frames;  ///< how many frames are written; after each
-  std::function<void()> stop = [] {};        ///< asked before each frame; ends the work by throwing
+  std::function<void(std::int64_t)> frames;  ///< called after each frame with the number written
+  std::function<void()> stop = [] {};        ///< called before each frame; may throw to end the work
 };
 
-/// Whether a bake with this header takes an OpenGL context to make: pictures are kept or followed.
+/// True if making a bake with this header needs an OpenGL context: pictures are stored or followed.
 inline bool draws(const sim::BakeHeader& header) { return header.view.drawn(); }
 
-/// Writes the bake whose header_of() is `header` to `out`, completely or not at all. A GL context is current
-/// where draws(). Errors as header_of() and sim::BakeWriter; water that broke is one too.
+/// Writes the bake whose header_of() is `header` to `out`, completely or not at all. Needs a current GL
+/// context if draws(). Errors as header_of() and sim::BakeWriter, and base::Error if the fluid has non-finite
+/// values.
 sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const std::filesystem::path& out,
                           bool overwrite, const BakeHooks& hooks);
 

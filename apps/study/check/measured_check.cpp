@@ -13,10 +13,10 @@ namespace apps {
 
 namespace {
 
-/// Of the refresh: a method this near to it shows what the display shows.
+/// Fraction of the refresh from which a method counts as reaching it.
 constexpr double at_refresh = 0.98;
 
-/// Least tau over windows of 30 frames, as the solver sees it.
+/// Least tau over windows of 30 frames, as in the solver.
 double least_tau(const std::vector<double>& intervals_s) {
   stats::FpsWindow window;
   double least = HUGE_VAL;
@@ -40,7 +40,7 @@ void judge_rate(MeasuredCell& out, const study::Protocol& protocol, double alone
   }
 }
 
-/// What the trial's own rules say of it.
+/// Judges the rehearsed trial by the protocol's rules.
 void judge_showing(MeasuredCell& out, const study::Protocol& protocol, const study::PlayedTrial& played,
                    double refresh_hz) {
   if (out.too_slow) return;
@@ -67,7 +67,7 @@ MeasuredCell judge(const study::Protocol& protocol, const MeasuredStimulus& meas
     shown_s.push_back(refresh_hz > 0 ? std::max(s, 1 / refresh_hz) : s);
   out.fps = stats::fps_moments(shown_s);
   out.tau_min = least_tau(shown_s);
-  // The mean that stands for the rest of a trial has no spread of its own.
+  // Excludes unmeasured frames, whose mean time has no spread.
   if (rehearsal.measured > 0) sorted.resize(rehearsal.measured);
   std::sort(sorted.begin(), sorted.end());
   for (const double s : sorted) out.mean_ms += 1000 * s / static_cast<double>(sorted.size());
@@ -77,7 +77,7 @@ MeasuredCell judge(const study::Protocol& protocol, const MeasuredStimulus& meas
   return out;
 }
 
-/// temporal: by cell of the report.
+/// Why the conditions collapse; empty if not. temporal: true for temporal acceleration, by cell.
 std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<int, bool>& temporal,
                         double refresh_hz) {
   std::set<std::string> methods, levels;
@@ -89,7 +89,7 @@ std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<i
     any_temporal = any_temporal || temporal.at(one.cell);
     accelerates = accelerates || (temporal.at(one.cell) && one.tau_min < 0);
   }
-  // Where one method is shown with several levels of effects, its cells differ at any rate.
+  // Cells of one method with several levels of effects differ at any rate.
   if (all_reach && !(methods.size() == 1 && levels.size() > 1))
     return fmt::format("every method reaches the {:g} Hz of the display", refresh_hz);
   if (any_temporal && !accelerates) return "tau of the accelerated methods never falls below zero";

@@ -14,7 +14,7 @@ const study::Cell& cell_of(const study::Protocol& protocol, int index) {
 
 double seconds(const study::Clock& clock) { return 1e-9 * static_cast<double>(clock.now_ns()); }
 
-/// Whether a cell needs this step, and may still come to it in time.
+/// True if a cell needs this step and may still reach it in time.
 bool wants(const study::Protocol& protocol, const study::Cell& cell, double refresh_hz, std::int64_t step,
            double gone_s) {
   const std::int64_t steps = content_steps(protocol, cell.setting, refresh_hz);

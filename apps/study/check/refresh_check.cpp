@@ -44,7 +44,7 @@ RefreshCheck check_refresh(const study::Protocol& protocol, double refresh_hz) {
   check.asked_hz = refresh_hz;
   check.refresh_hz = study::nominal_refresh(refresh_hz);
   for (const auto& [setting, cells] : checked_settings(protocol)) {
-    // The seed orders the holds; nothing that is reported depends on it.
+    // The seed orders the holds; the report does not depend on it.
     check.verdicts.push_back(study::quantise(setting, protocol.pacing, check.refresh_hz, 0));
     const auto& verdict = check.verdicts.back();
     check.exact += verdict.feasibility == study::Feasibility::Exact;

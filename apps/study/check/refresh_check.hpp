@@ -1,5 +1,5 @@
 #pragma once
-/// What displays with a fixed refresh make of a protocol: the data behind `vip-study check`.
+/// Checks a protocol on displays with a fixed refresh: the data of `vip-study check`.
 
 #include <string>
 #include <vector>
@@ -14,32 +14,32 @@ struct CheckedSetting {
   std::vector<int> cells;  ///< indices into Design::cells, ascending
 };
 
-/// The different settings of a protocol in the order of its cells; none under TimingSource::Native.
+/// The distinct settings of a protocol in the order of its cells; none under TimingSource::Native.
 std::vector<CheckedSetting> checked_settings(const study::Protocol& protocol);
 
-/// A protocol on one refresh rate.
+/// The result of a protocol at one refresh rate.
 struct RefreshCheck {
   double asked_hz = 0;                          ///< as it was given
-  double refresh_hz = 0;                        ///< that schedules are counted by: study::nominal_refresh
+  double refresh_hz = 0;                        ///< nominal rate of the schedules: study::nominal_refresh
   std::vector<study::RefreshVerdict> verdicts;  ///< one for each of checked_settings()
   int exact = 0, approximate = 0, unreachable = 0;
   double distance = 0;  ///< mean distance to the unquantised rates over the reachable settings, frames/s
 };
 
-/// The schedule of one of these settings by its verdict, nanoseconds; empty where it has none.
+/// The schedule of one of these settings by its verdict, nanoseconds; empty if it has none.
 std::vector<std::int64_t> intervals_on(const RefreshCheck& check, const std::vector<CheckedSetting>& settings,
                                        const study::FpsSetting& setting);
 
 RefreshCheck check_refresh(const study::Protocol& protocol, double refresh_hz);
 
-/// Refresh rates that displays and headsets commonly have, Hz.
+/// Common refresh rates of displays and headsets, Hz.
 inline const std::vector<double> common_refreshes{60, 72, 80, 90, 100, 120, 144, 165, 200, 240, 360};
 
-/// The rate that serves the protocol best: most exact settings, then fewest unreachable ones, then the least
+/// The best rate for the protocol: most exact settings, then fewest unreachable ones, then the least
 /// distance. `checks` must not be empty.
 const RefreshCheck& best_refresh(const std::vector<RefreshCheck>& checks);
 
-/// Play speed of a setting as a part of real time: mean x content_step_s, or 1 with real_time content.
+/// Play speed of a setting relative to real time: mean x content_step_s, or 1 with real_time content.
 double play_speed(const study::Protocol& protocol, const study::FpsSetting& setting);
 
 }  // namespace apps

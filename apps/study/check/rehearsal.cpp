@@ -10,9 +10,9 @@ namespace apps {
 
 namespace {
 
-constexpr std::size_t last_steps = 30;  // whose mean stands for what was not measured
+constexpr std::size_t last_steps = 30;  // their mean replaces steps that were not measured
 
-/// What each content step takes.
+/// Time of each content step.
 class Costs {
  public:
   explicit Costs(const std::vector<double>& measured_s) : measured_s_(measured_s) {
@@ -32,7 +32,7 @@ class Costs {
   double later_s_ = 0;
 };
 
-/// Moves the clock by what was measured.
+/// Advances the clock by the measured times.
 class MeasuredProcess final : public study::Stimulus {
  public:
   MeasuredProcess(const StepTimes& times, std::int64_t start_frame, double least_s,
@@ -58,8 +58,8 @@ class MeasuredProcess final : public study::Stimulus {
   }
   void draw(const study::Canvas&) override {}
 
-  std::vector<double> frame_s;  ///< but of the first frame
-  std::size_t measured = 0;     ///< of these
+  std::vector<double> frame_s;  ///< of all frames but the first
+  std::size_t measured = 0;     ///< number of these that were measured
 
  private:
   Costs compute_, draw_;

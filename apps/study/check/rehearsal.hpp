@@ -1,5 +1,5 @@
 #pragma once
-/// A trial as this machine would show it, played on a virtual clock with frames that take what was measured.
+/// Simulates a trial on this machine: plays it on a virtual clock with the measured frame times.
 
 #include <cstdint>
 #include <vector>
@@ -8,33 +8,33 @@
 
 namespace apps {
 
-/// By content step after start_frame: seconds to compute it and to draw it with nothing to wait for. The
-/// first step is made before a trial begins.
+/// By content step after start_frame: seconds to compute and to draw it without waiting. The first step is
+/// made before a trial begins.
 struct StepTimes {
   std::vector<double> compute_s, draw_s;
 };
 
-/// One stimulus as this machine made it.
+/// Measured times of one stimulus on this machine.
 struct MeasuredStimulus {
-  std::vector<int> cells;  ///< that show it, indices into Design::cells, ascending
-  bool temporal = false;   ///< of a method with temporal acceleration
+  std::vector<int> cells;  ///< cells that show it, indices into Design::cells, ascending
+  bool temporal = false;   ///< its method has temporal acceleration
   StepTimes times;
 };
 
-/// Content steps that a showing goes through. refresh_hz: bounds it without a schedule; 0: 60.
+/// Number of content steps of a showing. refresh_hz: the bound without a schedule; 0: 60.
 std::int64_t content_steps(const study::Protocol& protocol, const study::FpsSetting& setting,
                            double refresh_hz);
 
 struct Rehearsal {
   study::PlayedTrial played;
-  std::vector<double> frame_s;  ///< that each frame took, but the first
-  std::size_t measured = 0;     ///< so many of them, from the first, were of measured steps alone
+  std::vector<double> frame_s;  ///< time of each frame but the first
+  std::size_t measured = 0;     ///< number of leading entries whose steps were all measured
   double showing_s = 0;         ///< from the first onset to the end
 };
 
-/// Plays a cell by study::play_trial(), or without a schedule by study::play_native(), where no frame is
-/// shorter than the refresh (0: none). intervals_ns: of the schedule; empty: all are equal. Steps that were
-/// not measured take what the last ones did.
+/// Plays a cell by study::play_trial(), or without a schedule by study::play_native() with no frame shorter
+/// than the refresh period (0: no bound). intervals_ns: of the schedule; empty: all equal. Steps that were
+/// not measured take the mean time of the last measured ones.
 Rehearsal rehearse(const study::Protocol& protocol, const study::FpsSetting& setting, const StepTimes& times,
                    const std::vector<std::int64_t>& intervals_ns, double refresh_hz);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a session of a protocol is made of and how long it takes, and how evenly people are dealt out.
+/// The parts and duration of a protocol's session, and the balance of its assignment.
 
 #include <string>
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace apps {
 
-/// What people need, from quick to slow; only the printed durations depend on it.
+/// The pace of a participant, quick or slow; it affects only the printed durations.
 struct Pace {
   double answer_s = 0;     ///< for each question
-  double words_per_s = 0;  ///< of texts; 0: no more than their least time
-  double break_s = 0;      ///< of a break beyond its least time
+  double words_per_s = 0;  ///< for reading texts; 0: only their least time
+  double break_s = 0;      ///< in a break beyond its least time
 };
 inline constexpr Pace quick_pace{2, 0, 0}, slow_pace{6, 2, 60};
 
@@ -24,7 +24,7 @@ struct Span {
 
 struct BlockOutline {
   const study::Block* block = nullptr;
-  int pages = 0, trials = 0;  ///< that a participant meets
+  int pages = 0, trials = 0;  ///< per participant
   Span seconds;
 };
 
@@ -32,28 +32,28 @@ struct SessionOutline {
   std::vector<BlockOutline> blocks;  ///< in the order of the protocol
   int units = 0, trials = 0;
   Span session_s;
-  double shown_s = 0;  ///< trials of the design without answers
+  double shown_s = 0;  ///< duration of the design's trials without answers
   Span trials_s;       ///< the same with answers
 };
 
-/// Of the plan for slot 0; other slots differ in which cells are shown, not in how many.
+/// The outline of slot 0; other slots show other cells, but equally many.
 SessionOutline outline_session(const study::Protocol& protocol);
 
 /// "10 trials: stimulus 30 s, ask 5, rest 30 s".
 std::string describe_block(const study::Protocol& protocol, const BlockOutline& outline);
 
-/// How evenly `planned` people are dealt to what the design balances.
+/// Balance of the assignment for `planned` people.
 struct Balance {
   int planned = 0;
-  int sequences = 1;                   ///< of groups; 1: nothing to deal out
-  int least = 0, most = 0;             ///< people that meet a sequence
-  int interval_difference = 0;         ///< largest, between the two orders of a pair in a sequence
-  int even = 1;                        ///< numbers of people that divide evenly are multiples of this
-  int even_below = 0, even_above = 0;  ///< the next such numbers; 0: there is none below
+  int sequences = 1;                   ///< of groups; 1: nothing to balance
+  int least = 0, most = 0;             ///< fewest and most people per sequence
+  int interval_difference = 0;         ///< largest difference between the two orders of a pair in a sequence
+  int even = 1;                        ///< a multiple of this many people is balanced
+  int even_below = 0, even_above = 0;  ///< the next such numbers; 0 if there is none below
 };
 Balance check_balance(const study::Protocol& protocol);
 
-/// One line for people.
+/// The balance as one line of text.
 std::string describe_balance(const study::Protocol& protocol, const Balance& balance);
 
 }  // namespace apps

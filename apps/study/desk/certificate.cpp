@@ -10,14 +10,14 @@ namespace apps {
 
 namespace {
 
-// ECMA-48.
+// ECMA-48 colour sequences.
 constexpr const char* red = "\033[31m";
 constexpr const char* yellow = "\033[33m";
 constexpr const char* plain = "\033[0m";
 
 using Rows = std::vector<study::CertificateRow>;
 
-/// The scene's file name without folder and ending, where no other scene of the rows shares it.
+/// The scene's file name without folder and extension, if unique among the rows, else its full path.
 std::string scene_of(const study::CertificateRow& row, const Rows& rows) {
   const auto stem = [](const std::string& scene) { return std::filesystem::path(scene).stem().string(); };
   const bool shared = std::any_of(rows.begin(), rows.end(), [&](const auto& other) {
@@ -26,10 +26,10 @@ std::string scene_of(const study::CertificateRow& row, const Rows& rows) {
   return shared ? row.what.scene : stem(row.what.scene);
 }
 
-/// Names of what was shown: those in which the rows differ as columns, those that all share as words.
+/// Names of the stimuli: differing names as columns, common ones as words.
 struct Shown {
   std::string head, shared;
-  std::vector<std::string> lines;  ///< of the columns, one for each row
+  std::vector<std::string> lines;  ///< the columns' text, one for each row
 };
 
 Shown shown_in(const Rows& rows) {
@@ -54,7 +54,7 @@ Shown shown_in(const Rows& rows) {
   return out;
 }
 
-/// A row without a schedule ran as fast as its method: it has no nominal moments, and nothing to be far from.
+/// A row without a schedule has no nominal moments and no deviations from them.
 std::string format_row(const study::CertificateRow& row) {
   const bool scheduled = row.nominal.mean > 0;
   const auto nominal = [&](double value, const char* form) {

@@ -19,7 +19,7 @@ constexpr std::size_t strip_length = 60;
 constexpr std::int64_t strip_ns = 500'000'000;
 constexpr std::size_t most_typed = 500;  // bytes
 
-/// Without the part of a letter that the limit left at the end.
+/// Removes a partial UTF-8 character that the limit left at the end.
 std::string whole_letters(std::string words) {
   for (int i = 0; i < 3 && words.size() + 3 > most_typed && !base::is_plain_line(words); ++i)
     words.pop_back();
@@ -118,7 +118,7 @@ void Console::done(const study::UnitDone& unit) {
     verdicts_ = unit.verdicts;
   }
   for (const study::TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
-  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // it came too late to cut the trial
+  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // too late to cut the trial
 }
 
 study::Wish Console::wish() {
@@ -146,7 +146,7 @@ void Console::key(char byte) {
   if (deed) carry_out(*deed);
 }
 
-/// Frames are shown meanwhile: they wait for mutex_, which is not held while the disk works.
+/// Does not hold mutex_ during the disk access, because frames wait for mutex_.
 void Console::carry_out(const Deed& deed) {
   try {
     deed.store();
@@ -168,7 +168,7 @@ void Console::read(char byte) {
     return say("(nothing was done)");
   }
   if (byte == 127 || byte == 8) {
-    // A letter of UTF-8 goes as a whole.
+    // Removes a UTF-8 character as a whole.
     while (!typed_.empty() && (static_cast<unsigned char>(typed_.back()) & 0xC0) == 0x80) typed_.pop_back();
     if (!typed_.empty()) typed_.pop_back();
     return;
@@ -238,7 +238,7 @@ void Console::note(const std::string& words) {
       [=, this] { say("noted: " + words); });
 }
 
-/// Set aside at once, so that it is shown again whatever happens to this program.
+/// Sets the trial aside at once, so that it is shown again even if this program ends.
 void Console::repeat(const std::string& reason) {
   const std::int64_t session = session_->id;
   const study::OpenUnit trial = unit_ && unit_->trial && !unit_done_ ? *unit_ : *last_trial_;

@@ -12,7 +12,7 @@ namespace {
 constexpr int bar_columns = 20;
 constexpr std::size_t most_alarms = 3, fixed_rows = 19;
 
-/// Of one character: two for those that terminals draw wide.
+/// Columns of one character: two for those that terminals draw wide.
 int columns_of(std::string_view character) {
   if (character.size() < 3) return 1;
   char32_t code = static_cast<unsigned char>(character[0]) & (character.size() == 3 ? 0x0Fu : 0x07u);
@@ -35,7 +35,7 @@ int width_of(std::string_view text) {
   return width;
 }
 
-/// As much of the beginning as fits, with "..." where something is cut.
+/// As much of the beginning as fits, with "..." if it is cut.
 std::string fitted(const std::string& text, int columns) {
   if (width_of(text) <= columns) return text;
   const int room = std::max(0, columns - 3);
@@ -51,7 +51,7 @@ std::string fitted(const std::string& text, int columns) {
   return (out + "...").substr(0, columns < 3 ? static_cast<std::size_t>(columns) : std::string::npos);
 }
 
-/// As much of the end as fits: one sees what one types.
+/// As much of the end as fits, so that the last typed characters are visible.
 std::string end_fitted(const std::string& text, int columns) {
   std::string_view rest = text;
   while (width_of(rest) > columns) rest.remove_prefix(std::max<std::size_t>(1, base::utf8_length(rest)));
@@ -115,7 +115,7 @@ std::vector<std::string> render_console(const ConsoleView& view, int columns, in
   lines.push_back("e end the session   m method and setting (logged)   ? what keys do");
   for (std::string& line : lines) line = fitted(line, columns);
   lines.push_back(end_fitted("> " + view.typed, columns));
-  // Too low a screen keeps its top and what is typed.
+  // If the screen is too low, shows its top and the typed line.
   if (lines.size() > height) lines.erase(lines.begin() + rows - 1, lines.end() - 1);
   return lines;
 }

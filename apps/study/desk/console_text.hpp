@@ -1,5 +1,5 @@
 #pragma once
-/// Small parts of the console's lines.
+/// Helpers for the console's lines.
 
 #include <chrono>
 #include <cstdint>
@@ -19,7 +19,7 @@ inline std::int64_t steady_ns() {
       .count();
 }
 
-/// Megabytes free beside a database; below 0: not known.
+/// Free disk space beside a database, MB; negative: not known.
 inline double free_mb(const std::filesystem::path& database) {
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::absolute(database).parent_path(), error);

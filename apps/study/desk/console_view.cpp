@@ -1,4 +1,4 @@
-/// What the console says and shows of a session.
+/// Console: texts and view of a session.
 #include <fmt/core.h>
 #include <algorithm>
 
@@ -17,7 +17,7 @@ constexpr std::int64_t looks_ns = 1'000'000'000;
 
 std::string short_time(double seconds) { return base::duration_words(std::max(0.0, seconds)); }
 
-/// What is to be done for a participant whose session ended before its last step.
+/// What to do for a participant whose session ended before its last step.
 std::string words_of(const study::Ending& ending) {
   if (ending.how == study::EarlyEnd::Stopped) return "STOPPED: rest until well; let nobody go before";
   if (ending.how == study::EarlyEnd::DroppedOut) return "LEFT: see to them; the answers given are kept";
@@ -25,7 +25,7 @@ std::string words_of(const study::Ending& ending) {
   return "INELIGIBLE: nothing more is asked; thank them";
 }
 
-/// What failed of a trial's timing; null: nothing.
+/// The failure of a trial's timing; null if none.
 const char* failure_of(const std::vector<study::TimingVerdict>& verdicts) {
   const char* failure = nullptr;
   for (const study::TimingVerdict& one : verdicts) {
@@ -66,7 +66,7 @@ std::string Console::describe_cells(const study::PlannedTrial& trial) const {
   return all;
 }
 
-/// Hidden, it says only how far the trial was from its schedule.
+/// While settings are hidden, shows only the relative deviation from the schedule.
 std::string Console::describe(const study::TimingVerdict& verdict) const {
   if (!(verdict.nominal.mean > 0))
     return verdict.cut ? "timing fail: " + verdict.reason : "timing: no schedule";
@@ -146,7 +146,7 @@ void Console::trouble(const study::Trouble& trouble) {
 }
 
 ConsoleView Console::view(std::int64_t now_ns) const {
-  const double disk_mb = free_mb(database_);  // a slow disk must not hold up frames, which wait for mutex_
+  const double disk_mb = free_mb(database_);  // before locking: a slow disk must not delay frames
   const std::lock_guard<std::mutex> guard(mutex_);
   ConsoleView view;
   view.clock = clock_time();

@@ -19,7 +19,7 @@ struct NetworkKind {
   std::uint32_t number;
   const char* name;
 };
-// linux/magic.h and the sources of the kernel's file systems.
+// Sources: linux/magic.h and the kernel's file systems.
 constexpr std::array network_kinds{NetworkKind{0x6969, "NFS"},
                                    NetworkKind{0x517B, "SMB"},
                                    NetworkKind{0xFF534D42, "SMB/CIFS"},
@@ -36,7 +36,7 @@ constexpr std::array network_kinds{NetworkKind{0x6969, "NFS"},
                                    NetworkKind{0xBACBACBC, "VMware shared folder"}};
 constexpr std::uint32_t fuse = 0x65735546;
 
-/// FUSE carries local disks as well: NTFS and exFAT as "fuseblk".
+/// Names single types, because FUSE also serves local disks: NTFS and exFAT as "fuseblk".
 constexpr std::array network_mounts{"fuse.sshfs",
                                     "fuse.rclone",
                                     "fuse.glusterfs",
@@ -54,7 +54,7 @@ constexpr std::array network_mounts{"fuse.sshfs",
                                     "fuse.dropbox"};
 
 struct SyncFolder {
-  const char* begins;  ///< a folder's name, which may go on after a space, " - " or "("
+  const char* begins;  ///< beginning of a folder's name; a space, " - " or "(" may follow
   const char* service;
 };
 constexpr std::array sync_folders{SyncFolder{"Dropbox", "Dropbox"},
@@ -73,7 +73,7 @@ constexpr std::array sync_folders{SyncFolder{"Dropbox", "Dropbox"},
                                   SyncFolder{"MEGAsync", "MEGA"},
                                   SyncFolder{"Seafile", "Seafile"}};
 
-/// A file or folder that a service puts into the folder that it copies.
+/// A file or folder that a service creates in the folder that it copies.
 struct SyncMark {
   const char *name, *service;
 };
@@ -93,7 +93,7 @@ bool is_named(const std::string& folder, std::string_view begins) {
   return rest.empty() || rest.starts_with(" ") || rest.starts_with("(") || rest.starts_with("-");
 }
 
-/// Empty: it is local, or not known.
+/// The network file system of a folder; empty: local or not known.
 std::string network_name(const fs::path& folder, const PlaceProbe& probe) {
   const auto kind = probe.file_system(folder);
   if (!kind) return {};
@@ -105,7 +105,7 @@ std::string network_name(const fs::path& folder, const PlaceProbe& probe) {
   return network ? mount : std::string();
 }
 
-/// The service that copies a folder or one above it, by name or mark; empty: none is known.
+/// The service that copies a folder or a parent, by name or mark; empty: none known.
 std::string sync_service(fs::path folder, const PlaceProbe& probe) {
   for (; folder.has_relative_path(); folder = folder.parent_path()) {
     const std::string name = folder.filename().string();
@@ -117,7 +117,7 @@ std::string sync_service(fs::path folder, const PlaceProbe& probe) {
   return {};
 }
 
-/// The folder of the database, or the first one above it that is there.
+/// The folder of the database, or its first existing parent.
 fs::path standing_folder(const fs::path& database, const PlaceProbe& probe) {
   std::error_code ignored;
   fs::path real = fs::weakly_canonical(fs::absolute(database, ignored), ignored);
@@ -127,7 +127,7 @@ fs::path standing_folder(const fs::path& database, const PlaceProbe& probe) {
   return folder;
 }
 
-/// "\040" of /proc/self/mountinfo is a space.
+/// Decodes escapes of /proc/self/mountinfo: "\040" is a space.
 std::string unescaped(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -141,7 +141,7 @@ std::string unescaped(const std::string& text) {
   return out;
 }
 
-/// Of the mount with the longest path that the folder lies below.
+/// Type of the mount with the longest path that contains the folder.
 std::string mount_kind_of(const fs::path& folder) {
   std::ifstream mounts("/proc/self/mountinfo");
   std::string found;

@@ -1,6 +1,6 @@
 #pragma once
-/// Whether a database lies where it can be kept: not on a network file system, and not in a folder that a
-/// service copies to other computers.
+/// Checks the location of a database: not on a network file system, and not in a folder that a service copies
+/// to other computers.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,18 +11,18 @@
 
 namespace apps {
 
-/// What is asked of the system.
+/// Queries to the system.
 struct PlaceProbe {
-  /// Number of the file system's kind (statfs, f_type) of a folder; none: not known.
+  /// File system type of a folder (statfs, f_type); none: not known.
   std::function<std::optional<std::uint32_t>(const std::filesystem::path&)> file_system;
-  /// Kind of the mount that a folder lies on, such as "fuse.sshfs"; empty: not known.
+  /// Mount type of a folder, such as "fuse.sshfs"; empty: not known.
   std::function<std::string(const std::filesystem::path&)> mount_kind;
   std::function<bool(const std::filesystem::path&)> exists;
 };
 PlaceProbe system_probe();
 
-/// What is wrong with the place of a database, each with its reason and what to do; empty: nothing is known
-/// against it. The folder may not be there yet. Links are followed.
+/// Problems of a database's location, each with reason and remedy; empty: none known. The folder need not
+/// exist. Follows links.
 std::vector<std::string> place_problems(const std::filesystem::path& database,
                                         const PlaceProbe& probe = system_probe());
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The mouse over the picture as a source of gaze, marked as what it is.
+/// The mouse over the picture as a gaze source, recorded as a mouse.
 
 #include <functional>
 
@@ -8,15 +8,15 @@
 
 namespace apps {
 
-/// A sample when a presentation starts, and one whenever the window takes in that the mouse moved: the mouse
-/// tells changes alone, and the window hears of them after each picture. The system gives no time stamp of
-/// its own that could be told on the session's clock.
+/// Gives a sample at the start of a presentation and one for each mouse movement that the window processes:
+/// the mouse reports only changes, and the window polls after each picture. The system has no time stamp that
+/// could be converted to the session's clock.
 class MouseGaze final : public study::GazeSource {
  public:
-  /// Where the mouse is; none: not over the picture.
+  /// Position of the mouse; none: not over the picture.
   using Place = std::optional<study::GazePoint>;
 
-  /// where_now: asked at each start.
+  /// where_now: called at each start.
   MouseGaze(std::function<Place()> where_now, const study::Clock& clock)
       : where_now_(std::move(where_now)), clock_(clock) {}
 
@@ -25,7 +25,7 @@ class MouseGaze final : public study::GazeSource {
   std::vector<study::GazeSample> take() override { return std::exchange(samples_, {}); }
   void stop() override;
 
-  /// It moved to a place, or away from the picture.
+  /// The mouse moved to `place` or left the picture.
   void moved(const Place& place);
 
  private:

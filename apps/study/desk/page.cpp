@@ -74,7 +74,7 @@ void PageState::move_cursor(int by) {
   PageItem& item = items_[focus_];
   const auto scores = scores_of(questions_[focus_]);
   if (!item.cursor) item.cursor = item.chosen;
-  if (!item.cursor) {  // from the end that the arrow comes from
+  if (!item.cursor) {  // start at the end from which the arrow comes
     item.cursor = by > 0 ? scores.front() : scores.back();
     return;
   }
@@ -135,7 +135,7 @@ void PageState::erase(std::int64_t now_ns) {
   if (item.typed.empty()) return;
   const auto follows = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; };
   while (item.typed.size() > 1 && follows(item.typed.back()))
-    item.typed.pop_back();  // of one letter in UTF-8
+    item.typed.pop_back();  // bytes of one UTF-8 character
   item.typed.pop_back();
   mark_changed(item, now_ns);
 }

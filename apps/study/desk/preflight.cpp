@@ -30,7 +30,7 @@ std::vector<std::string> read_governors() {
   return found;
 }
 
-/// None where there is no battery at all.
+/// True if the mains supply is offline; none if the system lists no mains supply.
 std::optional<bool> read_battery() {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator("/sys/class/power_supply", ignored)) {
@@ -85,7 +85,7 @@ PreflightLine judge_disk(const StationFacts& station, std::uint64_t needed_bytes
   if (!station.free_disk_bytes) return {Readiness::Unknown, "free disk", "cannot be told"};
   const double free_mb = 1e-6 * static_cast<double>(*station.free_disk_bytes);
   const double needed_mb = 1e-6 * static_cast<double>(needed_bytes);
-  // Ten times over: the log of a database can grow as large as what it holds.
+  // Requires ten times the bytes, because the log of a database can grow as large as its content.
   const bool enough = *station.free_disk_bytes / 10 >= needed_bytes;
   return {enough ? Readiness::Ok : Readiness::Warn, "free disk",
           fmt::format("{:.0f} MB, the session writes about {:.0f} MB", free_mb, needed_mb)};

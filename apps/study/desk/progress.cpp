@@ -86,7 +86,7 @@ std::uint64_t expected_bytes(const study::Protocol& protocol, std::span<const st
       if (step.kind != StepKind::Stimulus) continue;
       const study::FpsSetting& setting =
           protocol.design.cells.at(cell_of(*unit.trial, step.interval)).setting;
-      frames += setting.duration_s * (setting.mean > 0 ? setting.mean : 60);  // native: as a screen at most
+      frames += setting.duration_s * (setting.mean > 0 ? setting.mean : 60);  // native: assume 60 Hz
     }
   }
   return static_cast<std::uint64_t>(64 * frames + 4096 * static_cast<double>(units.size()));

@@ -14,9 +14,9 @@ namespace apps {
 
 namespace {
 constexpr int wait_ms = 100;
-constexpr int usual_columns = 80, usual_rows = 24;  // of a terminal that does not tell
+constexpr int usual_columns = 80, usual_rows = 24;  // if the terminal does not report its size
 constexpr std::int64_t whole_ns = 1'000'000'000;
-// The terminal's second screen (xterm, and all that follow it), and back to the first.
+// Sequences that open the alternate screen and return (xterm and compatible terminals).
 constexpr const char* open_screen = "\033[?1049h";
 constexpr const char* close_screen = "\033[?1049l";
 }  // namespace
@@ -61,7 +61,7 @@ void ConsoleTerminal::read_keys() {
   char bytes[64];
   const ssize_t count = read(STDIN_FILENO, bytes, sizeof bytes);
   if (count <= 0) input_ended_ = true;
-  // Arrows and the like come as Esc and more: no key of the console.
+  // Escape sequences, such as arrows, are not keys of the console.
   if (count > 1 && bytes[0] == 27) return;
   for (ssize_t i = 0; i < count; ++i) console_.key(bytes[i]);
 }
@@ -77,7 +77,7 @@ void ConsoleTerminal::write_lines() {
   if (!lines.empty()) std::fflush(stderr);
 }
 
-/// Writes the lines that changed; all of them each second, in case something else wrote to the terminal.
+/// Writes changed lines, and all lines once a second, in case another program wrote to the terminal.
 void ConsoleTerminal::draw() {
   winsize size{};
   if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
@@ -96,14 +96,14 @@ void ConsoleTerminal::draw() {
   ConsoleView view = console_.view(now_ns);
   view.said = said_;
   auto lines = render_console(view, columns_, rows_);
-  for (std::string& line : lines) line = for_terminal(line);  // words of people and protocols
+  for (std::string& line : lines) line = for_terminal(line);  // text from people and protocols
   drawn_.resize(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i] != drawn_[i]) out += "\033[" + std::to_string(i + 1) + ";1H" + lines[i] + "\033[K";
   }
   if (out.empty()) return;
   drawn_ = std::move(lines);
-  out += "\033[" + std::to_string(rows_) + ";1H" + drawn_.back();  // the cursor stands where one types
+  out += "\033[" + std::to_string(rows_) + ";1H" + drawn_.back();  // puts the cursor at the typed text
   std::fputs(out.c_str(), stderr);
   std::fflush(stderr);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// The console in the terminal that started the program: a screen of its own (console_screen.hpp), keys read
-/// as they are pressed. Runs on a thread of its own, so that a slow terminal delays no frame.
+/// Runs the console in the terminal that started the program: shows its screen (console_screen.hpp) and reads
+/// keys as they are pressed. Runs on its own thread, so that a slow terminal delays no frame.
 
 #include <termios.h>
 
@@ -14,9 +14,9 @@
 
 namespace apps {
 
-/// Reads standard input and writes to standard error. Where input is no terminal, bytes are keys all the
-/// same; where output is none, there is no screen but a line for what happens. What was said stands below
-/// what was there before once the screen is gone. Ctrl-C stays what it is.
+/// Reads standard input and writes to standard error. If input is not a terminal, its bytes still are keys;
+/// if output is not one, it writes lines instead of a screen. After the screen closes, all lines are printed
+/// below the terminal's former content. Ctrl-C works as usual.
 class ConsoleTerminal {
  public:
   explicit ConsoleTerminal(Console& console);
@@ -34,8 +34,8 @@ class ConsoleTerminal {
   bool terminal_in_ = false, terminal_out_ = false;
   termios before_{};
   bool input_ended_ = false;
-  std::vector<std::string> said_;   ///< all lines so far, where there is a screen
-  std::vector<std::string> drawn_;  ///< what stands on it
+  std::vector<std::string> said_;   ///< all lines so far, if there is a screen
+  std::vector<std::string> drawn_;  ///< current content of the screen
   int columns_ = 0, rows_ = 0;
   std::int64_t drawn_whole_ns_ = 0;
   std::atomic<bool> stopping_ = false;

@@ -1,5 +1,5 @@
 #pragma once
-/// What the window itself says to participants, in the protocol's language.
+/// The program's own texts for participants, in the protocol's language.
 
 #include <string>
 
@@ -12,21 +12,21 @@ struct DeskPage {
   std::string title, text, button;
 };
 
-/// One of two; the first is the one that does no harm by mistake.
+/// A choice of two; the first is the harmless one.
 struct DeskChoice {
   std::string title, text, question, first, second;
 };
 
 struct DeskWords {
   std::string go_on, confirm, finish, rest, pause, ready;
-  std::string first, second;                  ///< of two stimuli
-  std::string held_title, held;               ///< while the experimenter pauses
-  std::string trouble_title, trouble;         ///< when a trial cannot be shown
+  std::string first, second;                  ///< announce the stimuli of a pair
+  std::string held_title, held;               ///< during a pause by the experimenter
+  std::string trouble_title, trouble;         ///< if a trial cannot be shown
   std::string corner, begin;                  ///< how to stop: on every page, and as a sentence on the first
   std::string corner_by_hand, begin_by_hand;  ///< the same in a headset
-  std::string by_ray, by_stick, by_dwell;     ///< how to answer there, as sentences
-  std::string one_open, many_open;            ///< "{}" stands for how many
-  std::string wait;                           ///< "{}" stands for seconds
+  std::string by_ray, by_stick, by_dwell;     ///< how to answer in a headset, as sentences
+  std::string one_open, many_open;            ///< "{}" is the number
+  std::string wait;                           ///< "{}" is the seconds
   std::string range;                          ///< two "{}"
   std::string optional;
   std::string digits, arrows, tab;  ///< how to answer
@@ -38,7 +38,7 @@ struct DeskWords {
   const DeskChoice& choice(study::Offer offer) const;
 };
 
-/// English where the language ("en", "de", "de-AT", ...) is not known.
+/// English if the language ("en", "de", "de-AT", ...) is not known.
 const DeskWords& desk_words(const std::string& language);
 
 }  // namespace apps

@@ -7,7 +7,7 @@ namespace apps {
 
 namespace {
 
-/// The surface and its pages, which live as long as either is held.
+/// Owns the surface and its pages while either is referenced.
 struct HeadsetPages {
   HeadsetPages(HeadsetDisplay& display, const AnswerWays& ways, const study::Protocol& protocol,
                const study::Clock& clock)

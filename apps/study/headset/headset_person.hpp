@@ -1,5 +1,5 @@
 #pragma once
-/// A person in a headset: what a session needs of one.
+/// A person in a headset: the parts that a session needs.
 
 #include <functional>
 #include <memory>
@@ -19,12 +19,12 @@ struct HeadsetPerson {
   std::unique_ptr<study::Participant> participant;
   std::function<study::Wish(const std::function<study::Wish()>& others)> wish;  ///< see SessionHooks::wish
   std::function<std::optional<double>()> idle;  ///< seconds since a hand or a key was used
-  std::function<void()> listen;                 ///< from now on the terminal's keys answer
+  std::function<void()> listen;                 ///< makes the terminal's keys answer from now on
 };
 
-/// What a display must be made with for this person. base::Error where the program has no pages.
+/// The choice with which a display must be made for this person. base::Error if the program has no pages.
 HeadsetChoice choice_for_person(const AnswerWays& ways);
-/// display and clock, the session's, outlive the parts.
+/// display and clock are the session's and must outlive the parts.
 HeadsetPerson make_headset_person(HeadsetDisplay& display, const AnswerWays& ways,
                                   const study::Protocol& protocol, const study::Clock& clock);
 

@@ -15,8 +15,8 @@ namespace apps {
 namespace {
 
 constexpr double fade_s = 0.2;
-constexpr float picture_s = 1.0F / 60;  // any: nothing on a page goes by it
-// A stick puts the pointer away until the hand moves it so far again, px: some two degrees.
+constexpr float picture_s = 1.0F / 60;  // arbitrary: pages do not use it
+// The stick hides the pointer until the hand moves it this far, px: about two degrees.
 constexpr float moved_px = 60;
 
 float distance(const std::pair<float, float>& a, const std::pair<float, float>& b) {
@@ -60,7 +60,7 @@ std::string HeadsetSurface::beginning(const DeskWords& words) const {
   return all + words.begin_by_hand;
 }
 
-/// Less than wait_s when there is something new to draw.
+/// Returns before wait_s if there is something new to draw.
 void HeadsetSurface::poll(double wait_s) {
   std::int64_t until_ns = -1;
   for (;;) {
@@ -89,10 +89,10 @@ void HeadsetSurface::take_in(const HeadsetRecord& record) {
   if (ways_.dwell) take_look(record.input, now_ns);
 }
 
-/// Nothing counts then, and what is held down when it is over.
+/// True while the headset is not focused: input is ignored, and afterwards buttons still held down.
 bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   if (!focused && !away_since_ns_) {
-    away_since_ns_ = last_ns_.value_or(now_ns);  // no slots come while it is off or its session is lost
+    away_since_ns_ = last_ns_.value_or(now_ns);  // there are no slots while it is off or its session is lost
     pointer_.reset();
     pressed_ = false;
     dwell_.reset();
@@ -106,7 +106,7 @@ bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   return !focused;
 }
 
-/// Of the hand that pointed last, else of the other.
+/// Where the hand that pointed last meets the page, else the other hand.
 HeadsetSurface::Place HeadsetSurface::hand_place(const HeadsetHands& hands) {
   for (const std::size_t hand : {hand_, 1 - hand_}) {
     const auto& aim = hands.aim[hand];
@@ -134,12 +134,12 @@ void HeadsetSurface::take_hands(const HeadsetHands& hands, std::int64_t now_ns) 
   pressed_ = pointer_ && hands.select;
 }
 
-/// Along the eyes' ray or, without a tracker, the head's.
+/// Points along the eyes' ray or, without a tracker, the head's.
 void HeadsetSurface::take_look(const HeadsetInput& input, std::int64_t now_ns) {
   const bool eyes = display_.session().eye_gaze;
   const HeadsetPose ray = !eyes ? input.head : input.gaze ? input.gaze->ray : HeadsetPose();
   const bool seen = ray.valid();
-  if (clicks_ > 0) --clicks_;  // the eyes move on while the button goes down and up
+  if (clicks_ > 0) --clicks_;  // the pointer is fixed during the click, while the eyes move on
   const bool clicking = clicks_ > 0;
   if (!clicking && seen) pointer_ = page_ ? meet_page(*page_, ray) : Place();
   if (dwell_.look(pointer_ ? gui_.pointed_at() : 0, seen, now_ns)) clicks_ = 3;
@@ -200,7 +200,7 @@ void HeadsetSurface::end() {
 }
 
 void HeadsetSurface::show() {
-  if (!page_) display_.clear();  // what was shown before would stand still around the page
+  if (!page_) display_.clear();  // the former picture would stay frozen around the page
   if (!page_ || page_world_ != head_world_ || is_left_behind(*page_, head_)) {
     page_ = place_page(head_);
     page_world_ = head_world_;

@@ -1,5 +1,5 @@
 #pragma once
-/// A page in a headset: drawn on a quad that stands in the world, answered by hand, eyes or keyboard.
+/// A page in a headset: drawn on a quad fixed in the world, answered by hand, eyes or keyboard.
 
 #include <cstdint>
 #include <memory>
@@ -17,18 +17,18 @@
 
 namespace apps {
 
-/// The pages that the display must have been made for.
+/// The choice with which the display must be made.
 HeadsetChoice choice_for_pages(const AnswerWays& ways);
 
-/// A page comes where the head looks, upright, and stays there. It fades to black when it goes. While the
-/// headset is not focused nothing is answered. A long press of menu, or Stop on the page, asks whether to
-/// stop. Every slot of the display paces it by one picture.
+/// A page appears upright where the head looks, and stays there. It fades to black when it ends. Input is
+/// ignored while the headset is not focused. A long press of menu, or Stop on the page, opens the stop
+/// dialog. It draws one picture per slot of the display.
 class HeadsetSurface final : public PageSurface {
  public:
-  /// display: made with choice_for_pages(); it outlives this.
+  /// display: made with choice_for_pages(); it must outlive this.
   HeadsetSurface(HeadsetDisplay& display, const AnswerWays& ways, const PageCharacters& characters = {});
 
-  /// From now on the terminal's keys answer, where the ways have them.
+  /// Makes the terminal's keys answer from now on, if the ways include the keyboard.
   void listen();
   /// Seconds since a hand or a key was used.
   double idle_s() const;
@@ -70,16 +70,16 @@ class HeadsetSurface final : public PageSurface {
   std::vector<PageEvent> events_;
   std::optional<std::pair<std::int64_t, std::int64_t>> away_;
   std::optional<std::int64_t> away_since_ns_;
-  std::optional<std::int64_t> last_ns_;  ///< of the slot before
-  HeadsetPose head_;                     ///< the last one that was known
-  int head_world_ = 0, page_world_ = 0;  ///< in which it was, and the page is
-  std::optional<HeadsetPage> page_;      ///< where it stands; none: it is not shown
+  std::optional<std::int64_t> last_ns_;  ///< of the previous slot
+  HeadsetPose head_;                     ///< the last known pose
+  int head_world_ = 0, page_world_ = 0;  ///< worlds of head_ and of the page
+  std::optional<HeadsetPage> page_;      ///< the shown page; none: not shown
   Place pointer_;                        ///< px on the page
-  Place stick_from_;                     ///< where the pointer was when the stick was pushed: it is put away
-  bool pressed_ = false;                 ///< the pointer's button
-  int clicks_ = 0;                       ///< pictures until a click of the eyes is over
-  std::size_t hand_ = 1;                 ///< that pointed last
-  std::int64_t used_ns_;                 ///< steady clock
+  Place stick_from_;      ///< pointer position when the stick was pushed, which hides the pointer
+  bool pressed_ = false;  ///< the pointer's button
+  int clicks_ = 0;        ///< pictures until a click by dwell is over
+  std::size_t hand_ = 1;  ///< the hand that pointed last
+  std::int64_t used_ns_;  ///< steady clock
 };
 
 }  // namespace apps

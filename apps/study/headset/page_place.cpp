@@ -9,7 +9,7 @@ namespace apps {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-// Beyond these a page would have to be searched for.
+// Limits beyond which a page would be hard to find.
 constexpr double farthest_deg = 50, farthest_m = 0.8;
 
 const double width_m = 2 * page_distance_m * std::tan(0.5 * page_width_deg * degree);

@@ -1,5 +1,5 @@
 #pragma once
-/// Where a page stands in a headset's world, how large it is to the eye, and where a ray meets it.
+/// Position of a page in a headset's world, its visual size, and its intersection with a ray.
 
 #include <optional>
 #include <utility>
@@ -8,24 +8,24 @@
 
 namespace apps {
 
-/// Of the picture, px.
+/// Size of the picture, px.
 inline constexpr int page_width_px = 1280, page_height_px = 1120;
-/// From the eye when it comes, m; and how wide it is to the eye then, degrees.
+/// Distance from the eye when it appears, m, and its visual width then, degrees.
 inline constexpr double page_distance_m = 1.5, page_width_deg = 38;
-/// Height of the letter x of body text, wherever it stands on the page, degrees.
+/// Least visual height of the letter x of body text anywhere on the page, degrees.
 inline constexpr double least_x_height_deg = 0.5;
 
-/// Px that something upright must have to be so high to the eye even in a page's corner.
+/// Height in px that subtends at least this visual angle anywhere on the page, even in a corner.
 float px_of_height(double degrees);
 
-/// Upright and level with the head, in the direction in which it looks.
+/// Places a page upright, level with the head, in its direction.
 HeadsetPage place_page(const HeadsetPose& head);
 
-/// Whether the head has turned or gone away from a page so far that it should come after.
+/// True if the head turned or moved so far from a page that the page should follow.
 bool is_left_behind(const HeadsetPage& page, const HeadsetPose& head);
 
-/// Px from the upper left corner of the picture, where a ray along direction_of() meets the page's front.
-/// Empty: it does not.
+/// Point where a ray along direction_of() meets the page's front, px from the picture's upper left corner.
+/// Empty if it does not.
 std::optional<std::pair<float, float>> meet_page(const HeadsetPage& page, const HeadsetPose& ray);
 
 }  // namespace apps

@@ -10,7 +10,7 @@ namespace apps {
 
 namespace {
 
-/// Behind Esc.
+/// Sequences after Esc.
 const std::pair<const char*, PageEvent> sequences[] = {
     {"[A", {.key = PageKey::Up, .lines = -1, .text_only = true}},
     {"[B", {.key = PageKey::Down, .lines = 1, .text_only = true}},
@@ -21,7 +21,7 @@ const std::pair<const char*, PageEvent> sequences[] = {
     {"[6~", {.lines = 1}},
 };
 
-/// Of a sequence behind Esc; 0: none, Esc stands alone.
+/// Length of a sequence after Esc; 0 if Esc is alone.
 std::size_t length_of(const std::string& typed, std::size_t at) {
   if (at >= typed.size() || (typed[at] != '[' && typed[at] != 'O')) return 0;
   std::size_t end = at + 1;

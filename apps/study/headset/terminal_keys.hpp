@@ -1,5 +1,5 @@
 #pragma once
-/// The keyboard of the terminal that started the program, as keys of a page.
+/// Converts the keyboard of the terminal that started the program to keys of a page.
 
 #include <termios.h>
 
@@ -10,11 +10,10 @@
 
 namespace apps {
 
-/// What was typed, as a terminal writes it: arrows and the like come as Esc and more, Esc alone asks whether
-/// to stop.
+/// Parses a terminal's input: arrows and similar keys are escape sequences, Esc alone opens the stop dialog.
 std::vector<PageEvent> page_events(const std::string& typed);
 
-/// Reads standard input where it is a terminal, key by key; else nothing. Ctrl-C stays what it is.
+/// Reads standard input key by key if it is a terminal, else nothing. Ctrl-C works as usual.
 class TerminalKeys {
  public:
   TerminalKeys();
@@ -22,7 +21,7 @@ class TerminalKeys {
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
-  /// What was typed since the last call; waits for nothing.
+  /// The keys typed since the last call; does not wait.
   std::vector<PageEvent> take();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// Dear ImGui on any framebuffer: large type, dark grey, drawn by hand where the usual widgets are too small.
+/// Dear ImGui on any framebuffer: large type, dark grey, custom widgets where the usual ones are too small.
 
 #include <array>
 #include <functional>
@@ -23,23 +23,23 @@ extern const unsigned background, panel, button, hovered, chosen, text, dim, fai
 struct TypeSizes {
   float body = 0, title = 0, huge = 0;
 };
-/// For a screen at an arm's length, of which the type takes a fixed share.
+/// For a screen at arm's length: type sizes are a fixed fraction of its height.
 TypeSizes type_for_screen(int height_px);
-/// For a body whose letter x is at least so high.
+/// For body text whose letter x has at least this height.
 TypeSizes type_for_x_height(float x_height_px);
 
 class Gui {
  public:
-  /// Where pictures are drawn and who points at them.
+  /// Target of the pictures and source of the pointer.
   struct Host {
     /// Called before each picture: tells ImGui's IO the size, the pointer and what was typed.
     std::function<void()> look;
-    std::function<unsigned()> framebuffer;  ///< asked for each picture
-    /// There is nothing but the page to answer with: it shows its own keys, arrows and the way to stop.
+    std::function<unsigned()> framebuffer;  ///< called for each picture
+    /// Answers come only through the page, so it shows its own keys, arrows and stop button.
     bool by_hand = false;
   };
 
-  /// Needs a current OpenGL context, now and in each call. characters: those of the pages to come.
+  /// Needs a current OpenGL context, now and in each call. characters: all characters of later pages.
   Gui(const TypeSizes& type, Host host, const PageCharacters& characters = {});
   ~Gui();
   Gui(const Gui&) = delete;
@@ -48,7 +48,7 @@ class Gui {
   /// Clears the framebuffer to a colour and begins a picture; end() draws it.
   void begin(unsigned clear_colour);
   void end();
-  /// Draws the last picture again, its colours times a share of 1.
+  /// Redraws the last picture with colours multiplied by `share`, 0 to 1.
   void dim(float share);
 
   ImFont* body() const { return body_; }
@@ -58,10 +58,10 @@ class Gui {
   float x_height_px() const;                  ///< of the body
   bool by_hand() const { return host_.by_hand; }
 
-  /// Told while a picture is drawn: the pointer is on this target, or the one to stop was clicked.
+  /// Set while a picture is drawn: the target under the pointer; a click on Stop.
   void point_at(unsigned target) { pointed_at_ = target; }
   void wish_stop() { stop_ = true; }
-  /// What the pointer was on in the last picture; 0: on nothing that can be chosen.
+  /// The target under the pointer in the last picture; 0: none.
   unsigned pointed_at() const { return pointed_at_; }
   bool take_stop() { return std::exchange(stop_, false); }
 
@@ -77,26 +77,26 @@ class Gui {
   bool stop_ = false;
 };
 
-/// Words at ImGui's cursor, wrapped at its position for that.
+/// Draws words at ImGui's cursor, wrapped at its wrap position.
 void draw_wrapped(const std::string& words, unsigned colour);
 
-/// Words centred about x, wrapped to a width, from y down; returns the y below them.
+/// Draws words centred about x, wrapped to a width, from y down; returns the y below them.
 float draw_centred(const std::string& words, ImVec2 top_centre, float width, unsigned colour);
 
-/// What stands with a countdown: a line, and a text of paragraphs parted by empty lines. Either may be empty.
+/// Texts shown with a countdown: a line, and paragraphs separated by empty lines. Either may be empty.
 struct PauseWords {
   std::string title, text;
   bool none() const { return title.empty() && text.empty(); }
 };
 
-/// Small words in the lower left corner of the current ImGui window; how to stop. Where one answers by hand
-/// they are a button.
+/// Draws small words in the lower left corner of the current ImGui window: how to stop. With by_hand() they
+/// are a button.
 void draw_corner(Gui& gui, const std::string& words);
 
-/// The words and the minutes and seconds left, in the middle of the window; small digits make room for a long
-/// text.
+/// Draws the words and the time left (minutes, seconds) in the middle of the window, with small digits if the
+/// text is long.
 void draw_countdown(Gui& gui, const PauseWords& words, int left_s, const std::string& corner);
-/// The words alone.
+/// Draws only the words.
 void draw_words(Gui& gui, const PauseWords& words, const std::string& corner);
 
 }  // namespace apps

@@ -56,7 +56,7 @@ using CharSet = std::unique_ptr<FcCharSet, Destroy<FcCharSet, FcCharSetDestroy>>
 using Pattern = std::unique_ptr<FcPattern, Destroy<FcPattern, FcPatternDestroy>>;
 using FontSet = std::unique_ptr<FcFontSet, Destroy<FcFontSet, FcFontSetDestroy>>;
 
-/// Outlines that Dear ImGui reads, in one colour.
+/// True for single-colour outline fonts that Dear ImGui can read.
 bool is_readable(FcPattern* font) {
   FcChar8* format = nullptr;
   FcBool scalable = FcFalse, variable = FcFalse, colour = FcFalse;
@@ -68,7 +68,7 @@ bool is_readable(FcPattern* font) {
   return scalable && !variable && !colour && (name == "TrueType" || name == "CFF");
 }
 
-/// The fonts of the system in the order in which fontconfig prefers them for text in this language.
+/// System fonts in fontconfig's order of preference for this language.
 std::vector<FontFile> system_fonts(const std::u32string& characters, const std::string& language) {
   if (!FcInit()) return {};
   CharSet missing(FcCharSetCreate());
@@ -100,7 +100,7 @@ std::vector<FontFile> system_fonts(const std::u32string& characters, const std::
 
 #else
 
-/// Files of Debian's packages, whatever they hold.
+/// Font files of Debian packages, without checking their characters.
 std::vector<FontFile> system_fonts(const std::u32string&, const std::string&) {
   std::vector<FontFile> out;
   for (const char* name : {"truetype/dejavu/DejaVuSans.ttf", "opentype/noto/NotoSansCJK-Regular.ttc",

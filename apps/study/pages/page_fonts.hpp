@@ -1,5 +1,5 @@
 #pragma once
-/// The fonts that pages are drawn with: one of the system, and others for characters that it lacks.
+/// Fonts of the pages: a system font, and others for characters that it lacks.
 
 #include <string>
 #include <vector>
@@ -11,28 +11,28 @@ struct ImFontAtlas;
 
 namespace apps {
 
-/// Characters that pages need beside the usual ones, and the protocol's language ("zh", "ja", "en"): it
-/// decides between fonts that draw one character differently.
+/// Characters that pages need besides the usual ones, and the protocol's language ("zh", "ja", "en"), which
+/// selects between fonts that draw a character differently.
 struct PageCharacters {
   std::u32string characters;
   std::string language;
 };
 PageCharacters page_characters(const study::Protocol& protocol);
 
-/// A font of the system, or "" where none is found (Dear ImGui's own is then used). $VIP_FONT wins.
+/// A system font, or "" if none is found (Dear ImGui's own is then used). $VIP_FONT overrides it.
 std::string find_font();
 
-/// A font's file, and its number in a file that holds several.
+/// A font's file and its index in a file with several fonts.
 struct FontFile {
   std::string path;
   int number = 0;
 };
-/// find_font() first, then fonts of the system, by fontconfig where the program was built with it, until all
-/// characters are found or no font is left that has one.
+/// find_font() first, then system fonts (by fontconfig, if built with it) until all characters are found or
+/// no other font has one.
 std::vector<FontFile> find_fonts(const PageCharacters& needed);
 
 /// The usual characters (Latin, Greek, Cyrillic, punctuation, arrows) and those of `needed`, `size` px high
-/// from the highest ascent to the lowest descent. The atlas is to be built by the caller.
+/// from the highest ascent to the lowest descent. The caller builds the atlas.
 class PageType {
  public:
   explicit PageType(const PageCharacters& needed);
@@ -42,11 +42,11 @@ class PageType {
 
  private:
   std::vector<FontFile> files_;
-  std::vector<unsigned short> ranges_;  ///< as Dear ImGui takes them; they outlive the atlas's building
+  std::vector<unsigned short> ranges_;  ///< in Dear ImGui's format; must live until the atlas is built
 };
 
-/// base::Error where a page cannot be drawn as it is written: names the text, the character, and the package
-/// with a font or the limit. Nothing is refused by a program without Dear ImGui, which draws no pages.
+/// base::Error if a page's text cannot be drawn correctly: names the text, the character, and the package
+/// with a font or the limit. A program without Dear ImGui draws no pages and refuses nothing.
 void check_pages(const study::Protocol& protocol);
 
 }  // namespace apps

@@ -5,7 +5,7 @@
 namespace apps {
 
 namespace {
-// Longer than it takes to find the beat of a screen of 50 Hz.
+// Longer than measuring the beat of a 50 Hz screen.
 constexpr std::int64_t before_stimulus_ns = 250'000'000;
 }  // namespace
 
@@ -69,7 +69,7 @@ void PageParticipant::tell(study::Notice notice, double least_s, study::Clock&, 
   pages_->set_over(true);
   pages_->run_page({page.title, page.text, page.button}, {}, least_s, check);
   if (notice == study::Notice::Over) return;
-  // Another person's session may follow.
+  // A session of another person may follow.
   pages_->set_over(false);
   begun_ = false;
 }

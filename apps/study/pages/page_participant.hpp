@@ -1,5 +1,5 @@
 #pragma once
-/// A person in front of pages.
+/// A person who answers on pages.
 
 #include <memory>
 
@@ -10,8 +10,8 @@ namespace apps {
 
 class PageParticipant final : public study::Participant {
  public:
-  /// last_block: id of the protocol's. before_stimulus: called at the end of each black pause, when a
-  /// stimulus may follow.
+  /// last_block: id of the protocol's last block. before_stimulus: called shortly before the end of each
+  /// black pause, since a stimulus may follow.
   PageParticipant(std::shared_ptr<Pages> pages, std::string last_block, std::function<void()> before_stimulus)
       : pages_(std::move(pages)),
         last_block_(std::move(last_block)),
@@ -28,8 +28,7 @@ class PageParticipant final : public study::Participant {
   bool offer(study::Offer offer, study::Clock& clock, const study::Check& check) override;
 
  private:
-  /// What stands on a page of a block: the first page of a session says how to stop, the last one that it
-  /// ends.
+  /// The texts of a block's page: the first page of a session says how to stop, the last one that it ends.
   PageText page_of(const study::Block& block);
 
   std::shared_ptr<Pages> pages_;

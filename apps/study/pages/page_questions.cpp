@@ -1,4 +1,4 @@
-/// The questions of a page.
+/// PageView: draws the questions of a page.
 #include <fmt/core.h>
 #include <imgui.h>
 
@@ -82,7 +82,7 @@ void PageView::draw_scale(PageState& state, std::size_t i, std::int64_t now_ns) 
   draw_anchors(question, left, cell);
 }
 
-/// Words below (or above) the scores, each as wide as its neighbours allow.
+/// Draws the words below (or above) the scores, each as wide as its neighbours allow.
 void PageView::draw_anchors(const Question& question, float left, float cell) {
   const float y = ImGui::GetCursorScreenPos().y, x = ImGui::GetCursorScreenPos().x;
   float bottom = y;
@@ -142,7 +142,7 @@ void PageView::draw_number(PageState& state, std::size_t i, std::int64_t now_ns)
   if (focused) draw_pad(state, i, now_ns);
 }
 
-/// Keys below a field, where there is no keyboard.
+/// Draws keys below a field if there is no keyboard.
 void PageView::draw_pad(PageState& state, std::size_t i, std::int64_t now_ns) {
   const Pad* pad = pad_of(state);
   if (!pad) return;
@@ -163,12 +163,12 @@ void PageView::draw_pad(PageState& state, std::size_t i, std::int64_t now_ns) {
                           pad->marked(row, column)};
       if (!target(button, key)) continue;
       pad->type(key, state, now_ns);
-      return;  // the focus may be elsewhere now
+      return;  // the focus may have moved
     }
   }
 }
 
-/// A field while it has the focus and the keyboard, else its words in a box.
+/// Draws an edit field if it has focus and keyboard, else its words in a box.
 void PageView::draw_words(PageState& state, std::size_t i, std::int64_t now_ns) {
   const float size = gui_.size_px();
   const ImVec2 box{column_, 4.5F * size};
@@ -232,7 +232,7 @@ void PageView::draw_matrix(PageState& state, std::size_t first, std::size_t end,
   pinned_until_ = -1;
 }
 
-/// A table whose words have left the window at the top keeps them in sight.
+/// Draws a table's words again at the window's top after they scrolled out of it.
 void PageView::pin_anchors(const Question& question, float left, float cell) {
   const ImVec2 cursor = ImGui::GetCursorScreenPos(), edge = ImGui::GetWindowPos();
   ImGui::GetWindowDrawList()->AddRectFilled(edge, {edge.x + ImGui::GetWindowWidth(), pinned_until_},

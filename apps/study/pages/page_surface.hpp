@@ -1,5 +1,5 @@
 #pragma once
-/// Where pages are shown, and from where they are answered: a window, or a page in a headset.
+/// Interface for showing pages and reading input: a window, or a page in a headset.
 
 #include <cstdint>
 #include <optional>
@@ -14,51 +14,51 @@
 
 namespace apps {
 
-/// What came from a participant beside the pointer, of which Dear ImGui hears.
+/// Input of a participant except for the pointer, which Dear ImGui handles.
 struct PageEvent {
   std::optional<PageKey> key{};
   int digit = -1;
   bool minus = false;
-  bool stop = false;       ///< asks whether to stop
-  float lines = 0;         ///< scrolls down by so many
-  bool text_only = false;  ///< it scrolls a text without questions alone
-  /// Those of the keyboard go to the field that has it, unless they leave the field.
+  bool stop = false;       ///< opens the stop dialog
+  float lines = 0;         ///< number of lines to scroll down
+  bool text_only = false;  ///< scrolls only a text without questions
+  /// Keyboard events go to the field with the keyboard focus, unless they leave the field.
   study::AnswerInput input = study::AnswerInput::Keyboard;
-  std::string letters{};  ///< where the surface types into fields by itself
+  std::string letters{};  ///< if the surface itself types into fields
 };
 
-/// All calls on one thread, the session's.
+/// All calls come from the session's thread.
 class PageSurface {
  public:
   virtual ~PageSurface() = default;
   virtual Gui& gui() = 0;
-  /// What the first page of a session says on how to answer and to stop.
+  /// Text of a session's first page on how to answer and to stop.
   virtual std::string beginning(const DeskWords& words) const { return words.begin; }
 
-  /// What the pointer is moved by.
+  /// Input device that moves the pointer.
   virtual study::AnswerInput pointer() const { return study::AnswerInput::Mouse; }
 
-  /// Takes in what happened, waiting about wait_s for it. base::Error when the surface is gone.
+  /// Processes input, waiting about wait_s for it. base::Error if the surface is gone.
   virtual void poll(double wait_s) = 0;
-  /// What came since the last call.
+  /// Returns the events since the last call.
   virtual std::vector<PageEvent> take_events() = 0;
   virtual void forget_input() = 0;
-  /// From when to when nobody could answer, on the session's clock: over since the last call.
+  /// A period, ended since the last call, in which no answer was possible, on the session's clock.
   virtual std::optional<std::pair<std::int64_t, std::int64_t>> take_away() { return {}; }
 
   virtual void begin(unsigned clear_colour) { gui().begin(clear_colour); }
-  /// Draws what was begun; show() then hands it over.
+  /// Finishes the picture that was begun; show() then presents it.
   virtual void end() { gui().end(); }
   virtual void show() = 0;
-  /// Black, handed over now.
+  /// Presents black now.
   virtual void show_black() = 0;
   virtual void show_cursor(bool /*shown*/) {}
 
-  /// Why what was shown could not be seen at some time since the last call; none: it was seen.
+  /// Why the picture could not be seen at some time since the last call; none: it was seen.
   virtual std::optional<study::CutCause> take_unseen() = 0;
-  /// Whether it cannot be seen now.
+  /// True if it cannot be seen now.
   virtual bool unseen() const { return false; }
-  /// The session is over, or another one begins: over, who leaves just leaves.
+  /// The session is over (true) or another one begins (false). Once over, closing the surface is no error.
   virtual void set_over(bool /*over*/) {}
 };
 

@@ -17,7 +17,7 @@ using study::Question;
 constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
                                    ImGuiWindowFlags_NoNav;
-/// Questions in a row that look alike become a table from this many on.
+/// At least this many consecutive questions with equal layout become a table.
 constexpr std::size_t fewest_rows = 3;
 
 bool looks_like(const Question& a, const Question& b) {
@@ -25,7 +25,7 @@ bool looks_like(const Question& a, const Question& b) {
          a.scale_max == b.scale_max && a.anchors == b.anchors;
 }
 
-/// Where the questions that look like `first` end.
+/// End of the consecutive questions with the layout of `first`.
 std::size_t end_of_table(const PageState& state, std::size_t first) {
   std::size_t end = first + 1;
   while (end < state.size() && looks_like(state.question(first), state.question(end))) ++end;
@@ -79,7 +79,7 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   ImGui::PopStyleVar();
 }
 
-/// A mouse that happens to lie somewhere lights nothing, and its button counts once it was up.
+/// A mouse that has not moved highlights nothing, and its button is ignored until it was up once.
 void PageView::look_at_mouse(bool counts) {
   const ImVec2 at = ImGui::GetMousePos();
   if (!begun_) {
@@ -97,7 +97,7 @@ void PageView::draw_body(PageState& state, std::int64_t now_ns) {
   const float size = gui_.size_px(), room = ImGui::GetContentRegionAvail().y;
   const float left = (ImGui::GetWindowWidth() - column_) / 2;
   ImGui::SetCursorPos({left, std::max(0.0F, 0.42F * (room - height_))});
-  if (!begun_) ImGui::SetScrollY(0);  // where the page before was scrolled to
+  if (!begun_) ImGui::SetScrollY(0);  // resets the scroll position of the previous page
   begun_ = true;
   if (scroll_lines_ != 0) ImGui::SetScrollY(ImGui::GetScrollY() + scroll_lines_ * 3 * size);
   scroll_lines_ = 0;
@@ -140,7 +140,7 @@ void PageView::draw_questions(PageState& state, std::int64_t now_ns) {
   if (state.focus() == state.size()) seen_focus_ = state.focus();
 }
 
-/// Scrolls to a question when the focus comes to it, and marks it where there are several.
+/// Scrolls to a question when it gets the focus, and marks it if there are several.
 void PageView::follow_focus(const PageState& state, std::size_t i, float top) {
   if (state.focus() != i) return;
   const float size = gui_.size_px();
@@ -190,7 +190,7 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   draw_corner(gui_, text_.corner);
 }
 
-/// At the right of the button to go on: most of a page up or down.
+/// Draws buttons at the right of the button to go on that scroll most of a page up or down.
 void PageView::draw_scroll_buttons(float room) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float size = gui_.size_px(), side = 2 * size, gap = 0.4F * size;

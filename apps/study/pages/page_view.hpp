@@ -1,5 +1,5 @@
 #pragma once
-/// Draws a page: title, text, questions and the button to go on, and hands clicks to its state.
+/// Draws a page: title, text, questions and the button to go on; passes clicks to its state.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,28 +13,28 @@
 
 namespace apps {
 
-/// What stands on a page beside its questions.
+/// Texts of a page besides its questions.
 struct PageText {
   std::string title, text;
-  std::string button{};  ///< what the button to go on says; empty: as usual
+  std::string button{};  ///< label of the button to go on; empty: the default
   std::string corner{};  ///< small, in the lower left corner
 };
 
 class PageView {
  public:
-  /// layer: pages above one another have one each, so that the lower one stays scrolled as it is.
+  /// layer: unique for each of stacked pages, so that the lower one keeps its scroll position.
   PageView(Gui& gui, const DeskWords& words, PageText text, const char* layer = "body")
       : gui_(gui), words_(words), text_(std::move(text)), layer_(layer) {}
 
   /// Draws into the current frame of the Gui.
   void draw(PageState& state, std::int64_t now_ns);
-  /// A key of the page, or of the pad that it shows.
+  /// Handles a key for the page or the pad that it shows.
   void press(PageState& state, PageKey key, std::int64_t now_ns);
-  /// Moves a long text by lines; down is positive.
+  /// Scrolls a long text by lines; down is positive.
   void scroll(float lines) { scroll_lines_ += lines; }
-  /// Whether a field has the keyboard, so that letters and Enter are its own.
+  /// True if a field has the keyboard, so that letters and Enter go to it.
   bool typing(const PageState& state) const;
-  /// Whether letters go to the question that has the focus.
+  /// True if letters go to the focused question.
   static bool fills_words(const PageState& state);
 
  private:
@@ -53,40 +53,40 @@ class PageView {
   void draw_footer(PageState& state, std::int64_t now_ns);
   void draw_scroll_buttons(float room);
   void look_at_mouse(bool counts);
-  /// Whether the last widget lies under a real pointer.
+  /// True if the last widget is under a real pointer.
   bool hovered() const;
   Pad* pad_of(const PageState& state);
   void follow_focus(const PageState& state, std::size_t i, float top);
-  /// A button with a score on it; true when it was clicked.
+  /// Draws a button with a score; true if it was clicked.
   bool score_button(const PageState& state, std::size_t i, int score, const std::string& label, float width,
                     float height, bool left_aligned);
   struct Target {
-    const char* kind;  ///< with row and column its name
+    const char* kind;  ///< forms its name with row and column
     std::size_t row;
     int column;
     float width, height;
     bool chosen = false, marked = false, left_aligned = false;
   };
-  /// A button at ImGui's cursor; true when it was clicked.
+  /// Draws a button at ImGui's cursor; true if it was clicked.
   bool target(const Target& what, const std::string& label);
 
   Gui& gui_;
   const DeskWords& words_;
   PageText text_;
   const char* layer_;
-  bool begun_ = false;  ///< was drawn before
+  bool begun_ = false;  ///< it was drawn before
   float pinned_until_ =
-      -1;             ///< lower edge of the words pinned above a table, px; clicks above it are not its rows'
+      -1;             ///< lower edge of the words pinned above a table, px; rows ignore clicks above it
   float column_ = 0;  ///< width of the text, px
-  float height_ = 0;  ///< of the content as last drawn, px
+  float height_ = 0;  ///< of the last drawn content, px
   float scroll_lines_ = 0;
-  bool armed_ = false;                    ///< the mouse button was up since input counts
-  bool pointed_ = false;                  ///< the mouse was moved since the page is there
-  float mouse_x_ = -1, mouse_y_ = -1;     ///< where it lay by then
-  std::size_t seen_focus_ = 0;            ///< to which was scrolled
+  bool armed_ = false;                    ///< the mouse button was up since input is accepted
+  bool pointed_ = false;                  ///< the mouse moved since the page appeared
+  float mouse_x_ = -1, mouse_y_ = -1;     ///< its position when the page appeared
+  std::size_t seen_focus_ = 0;            ///< the focus to which the page has scrolled
   std::size_t editing_ = ~std::size_t{};  ///< Text whose field has the keyboard
   std::string edited_;                    ///< its content, with room to grow
-  std::optional<Pad> pad_;                ///< of the question that has the focus
+  std::optional<Pad> pad_;                ///< of the focused question
   std::size_t pad_question_ = 0;
 };
 

@@ -7,7 +7,7 @@ namespace apps {
 
 namespace {
 
-// The session's check is due every 50 ms.
+// Less than 50 ms, the interval in which the session's check must run.
 constexpr double poll_s = 0.03;
 
 /// Aborts the stop dialog when the session ends for another reason.
@@ -15,7 +15,7 @@ struct Overruled {
   study::Wish wish;
 };
 
-/// A flag that is true while it lives.
+/// Sets a flag during its lifetime.
 class While {
  public:
   explicit While(bool& flag) : flag_(flag), before_(flag) { flag_ = true; }
@@ -48,7 +48,7 @@ void Pages::draw(PageView& view, PageState& state) {
   surface_.end();
 }
 
-/// Returns whether a wish to stop was among them.
+/// Returns true if a request to stop was among them.
 bool Pages::handle_events(PageState& state, PageView& view) {
   const std::int64_t now_ns = this->now_ns();
   bool stop = false;
@@ -77,7 +77,7 @@ std::vector<study::TimedAnswer> Pages::run_page(PageText text, std::span<const s
   surface_.show_cursor(true);
   text.corner = corner();
   PageView view(surface_.gui(), words_, std::move(text));
-  // Drawn twice before it is shown: the first time measures.
+  // Draw twice before showing it: the first time measures sizes.
   PageState unseen(questions, least_s, now_ns());
   for (int i = 0; i < 2; ++i) draw(view, unseen);
   surface_.show();
@@ -99,7 +99,7 @@ std::vector<study::TimedAnswer> Pages::run_page(PageText text, std::span<const s
     surface_.show();
   }
   surface_.show_black();
-  surface_.take_unseen();  // that the page was away for a while does no harm
+  surface_.take_unseen();  // an unseen page does no harm
   return state.answers();
 }
 
@@ -190,7 +190,7 @@ void Pages::set_over(bool over) {
 }
 
 study::Wish Pages::wait_while_unseen(const std::function<study::Wish()>& others) {
-  do {  // what was not seen may be told before the reason
+  do {  // at least once: a frame may be reported unseen before its cause
     surface_.poll(poll_s);
     const study::Wish other = others ? others() : study::Wish::GoOn;
     if (other == study::Wish::Stop || other == study::Wish::EndSession) return other;
@@ -208,7 +208,7 @@ study::Wish Pages::wish(const std::function<study::Wish()>& others) {
   if (away_) return wait_while_unseen(others);
   const auto unseen = surface_.take_unseen();
   away_ = unseen.has_value();
-  if (unseen) return *unseen;  // the cut is kept first, then one waits for the surface
+  if (unseen) return *unseen;  // the cut is stored first, then this waits for the surface
   const auto events = surface_.take_events();
   if (std::none_of(events.begin(), events.end(), [](const PageEvent& event) { return event.stop; }))
     return wish;

@@ -1,5 +1,5 @@
 #pragma once
-/// What is newly pressed on any gamepad, as keys of a page.
+/// Converts newly pressed buttons of any gamepad to keys of a page.
 
 #include <array>
 #include <vector>
@@ -10,10 +10,10 @@ namespace apps {
 
 class Gamepad {
  public:
-  /// Pressed since the last call. The cross points, A is Enter, B goes back, the shoulders go from question
-  /// to question.
+  /// Keys pressed since the last call. The cross gives arrows, A Enter, B the previous question, the
+  /// shoulders move between questions.
   std::vector<PageKey> take();
-  /// Whatever is held down now counts for nothing.
+  /// Ignores all that is held down now.
   void forget() { take(); }
 
  private:

@@ -23,7 +23,7 @@ GlfwWindow::Size mirror_size(GlfwWindow::Size picture) {
   return {width, std::max(1, picture.height * width / picture.width)};
 }
 
-/// Another monitor than the participant's; the same where that one is not filled.
+/// Another monitor than the participant's, or the same if the participant's window does not fill it.
 GLFWmonitor* experimenters_monitor(GLFWwindow* participant) {
   GLFWmonitor* const filled = glfwGetWindowMonitor(participant);
   GLFWmonitor* const theirs = filled ? filled : glfwGetPrimaryMonitor();
@@ -38,7 +38,7 @@ GLFWmonitor* experimenters_monitor(GLFWwindow* participant) {
   return theirs;
 }
 
-/// In the lower right corner of its monitor, without the keyboard.
+/// Opens a window in the lower right corner of its monitor, without keyboard focus.
 GLFWwindow* open_window(GLFWwindow* participant, GlfwWindow::Size size, const char* title) {
   GLFWmonitor* const monitor = experimenters_monitor(participant);
   glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
@@ -97,7 +97,7 @@ void MirrorWindow::take(unsigned framebuffer) {
   {
     const std::lock_guard lock(mutex_);
     picture.copy = reading_ == 0 ? 1 : 0;
-    if (next_.copy == picture.copy) waiting_ = false;  // it is about to be drawn over
+    if (next_.copy == picture.copy) waiting_ = false;  // it is about to be overwritten
   }
   glDisable(GL_SCISSOR_TEST);
   glBlitNamedFramebuffer(framebuffer, copies_[static_cast<std::size_t>(picture.copy)].framebuffer(), 0, 0,
@@ -121,14 +121,14 @@ void MirrorWindow::leave(Picture picture) {
     std::swap(next_, picture);
     waiting_ = true;
   }
-  glDeleteSync(static_cast<GLsync>(picture.copied));  // of one that was never shown
+  glDeleteSync(static_cast<GLsync>(picture.copied));  // fence of a picture that was never shown
   changed_.notify_one();
 }
 
 void MirrorWindow::show_all() {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(0);
-  std::array<unsigned, 2> copies{};  // framebuffers are not shared, their textures are
+  std::array<unsigned, 2> copies{};  // contexts share textures, not framebuffers
   glCreateFramebuffers(2, copies.data());
   for (std::size_t i = 0; i < copies.size(); ++i)
     glNamedFramebufferTexture(copies[i], GL_COLOR_ATTACHMENT0, copies_[i].texture(), 0);
@@ -162,7 +162,7 @@ void MirrorWindow::show(const Picture& picture, const std::array<unsigned, 2>& c
                            0, 0, shown_.width, shown_.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
   }
   glfwSwapBuffers(window_);
-  glFinish();  // the copy may be drawn over from now on
+  glFinish();  // the copy may be overwritten from now on
 }
 
 }  // namespace apps

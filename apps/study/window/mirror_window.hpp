@@ -1,5 +1,5 @@
 #pragma once
-/// A second window that shows the experimenter what the participant sees.
+/// A second window that shows the participant's view to the experimenter.
 
 #include <array>
 #include <condition_variable>
@@ -11,27 +11,26 @@
 
 namespace apps {
 
-/// On another monitor than the participant's. The participant's thread only copies a picture, small, once it
-/// is finished; a thread of its own, in a context that shares the copies, shows the last one, some ten a
-/// second, and waits for no screen. What happens at the window counts for nothing.
+/// It is on another monitor than the participant's. The participant's thread only makes a small copy of each
+/// finished picture. The mirror's own thread, whose context shares the copies, shows the last one, about ten
+/// per second, without waiting for the screen. Input to the window is ignored.
 class MirrorWindow {
  public:
-  /// In the thread and with the current context of the participant's window, which outlives it. logged: its
-  /// title says so. base::Error
-  /// when that window fills the only monitor.
+  /// Call on the thread and with the current context of the participant's window, which must outlive it.
+  /// logged: the title says so. base::Error if that window fills the only monitor.
   MirrorWindow(const GlfwWindow& participant, bool logged);
   ~MirrorWindow();
   MirrorWindow(const MirrorWindow&) = delete;
   MirrorWindow& operator=(const MirrorWindow&) = delete;
 
-  /// Takes the picture in a framebuffer object (0: the back buffer, before it is swapped).
+  /// Copies the picture in a framebuffer object (0: the back buffer, before the swap).
   void take(unsigned framebuffer);
-  /// The same for one of many: not while an earlier one still waits to be shown.
+  /// The same for frequent pictures: skipped while an earlier one still waits to be shown.
   void take_some(unsigned framebuffer);
   void take_black();
 
  private:
-  /// What is to be shown: the copy of a picture, whole once `copied` is reached, or black.
+  /// A picture to show: a copy, complete once `copied` is signalled, or black.
   struct Picture {
     int copy = -1;           ///< -1: black
     void* copied = nullptr;  ///< a GLsync
@@ -42,17 +41,17 @@ class MirrorWindow {
   void show_all();
   void show(const Picture& picture, const std::array<unsigned, 2>& copies) const;
 
-  GlfwWindow::Size from_, size_;  ///< of the participant's picture and of its copies, px
+  GlfwWindow::Size from_, size_;  ///< of the participant's picture and of the copies, px
   GLFWwindow* window_;
   GlfwWindow::Size shown_;  ///< of the mirror's framebuffer, px
   std::array<sim::Offscreen, 2> copies_;
-  bool black_ = false;  ///< the last that was taken is
+  bool black_ = false;  ///< the last picture taken is black
 
   std::mutex mutex_;
   std::condition_variable changed_;
   bool waiting_ = false, over_ = false;
   Picture next_;      ///< while waiting_
-  int reading_ = -1;  ///< the copy that is being shown
+  int reading_ = -1;  ///< the copy being shown
   std::thread thread_;
 };
 

@@ -6,14 +6,14 @@ namespace apps {
 
 namespace {
 
-/// 0 to 9, of either block of digits; -1: another key.
+/// 0 to 9 on the main row or the keypad; -1: another key.
 int digit_of(int key) {
   if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return key - GLFW_KEY_0;
   if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return key - GLFW_KEY_KP_0;
   return -1;
 }
 
-/// None: a key without a meaning on a page.
+/// The page key; none if the key has no meaning on a page.
 std::optional<PageKey> page_key(int key, bool shift) {
   switch (key) {
     case GLFW_KEY_LEFT:
@@ -37,7 +37,7 @@ std::optional<PageKey> page_key(int key, bool shift) {
   }
 }
 
-/// Lines that a key scrolls down; 0: it scrolls nothing.
+/// Lines that a key scrolls down; 0 if none.
 float lines_of(int key) {
   if (key == GLFW_KEY_PAGE_DOWN || key == GLFW_KEY_DOWN) return 1;
   if (key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_UP) return -1;

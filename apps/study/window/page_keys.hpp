@@ -1,11 +1,11 @@
 #pragma once
-/// What keys mean on a participant's page; keys as GLFW numbers them.
+/// Meaning of keys on a participant's page, by GLFW key numbers.
 
 #include "apps/study/pages/page_surface.hpp"
 
 namespace apps {
 
-/// What a key that was pressed means.
+/// The event of a pressed key.
 PageEvent event_of(int key, bool shift);
 
 }  // namespace apps

@@ -1,5 +1,5 @@
 #pragma once
-/// The window in front of a participant, as a surface of pages. One a session.
+/// The participant's window as a surface of pages. One per session.
 
 #include <memory>
 #include <optional>
@@ -20,15 +20,15 @@ struct ParticipantWindowOptions {
   PageCharacters characters{};  ///< of its pages
 };
 
-/// All calls on the thread that made it. Esc asks whether to stop. It is not seen while it is minimised.
+/// All calls on the thread that made it. Esc opens the stop dialog. A minimised window counts as unseen.
 class ParticipantWindow final : public PageSurface {
  public:
-  /// base::Error when there is no display or no OpenGL 4.5 on it.
+  /// base::Error if there is no display or no OpenGL 4.5 on it.
   explicit ParticipantWindow(const ParticipantWindowOptions& options);
 
   Gui& gui() override { return gui_; }
-  /// base::Error when the window was closed or the display is gone; study::Stopped when it was closed once
-  /// the session is over.
+  /// base::Error if the window was closed or the display is gone; study::Stopped if it was closed after the
+  /// session was over.
   void poll(double wait_s) override;
   std::vector<PageEvent> take_events() override;
   void forget_input() override;
@@ -41,21 +41,20 @@ class ParticipantWindow final : public PageSurface {
   bool unseen() const override { return window_.minimised(); }
   void set_over(bool over) override { over_ = over; }
 
-  /// From now on the experimenter sees the participant's pages too and, with reveal, stimuli: black without.
+  /// Opens a mirror of the participant's pages for the experimenter; stimuli are black in it unless `reveal`.
   /// base::Error as MirrorWindow.
   void open_mirror(bool reveal);
-  /// For a mirror that reveals it: the picture of a stimulus in this framebuffer object, which was just
-  /// handed over.
+  /// Copies the picture of a stimulus, just presented from this framebuffer object, to a revealing mirror.
   void mirror(unsigned framebuffer);
 
   GlfwWindow& window() { return window_; }
-  /// Size at the start, px; it is not to change.
+  /// Size at the start, px; it must not change.
   GlfwWindow::Size size() const { return size_; }
-  /// Where the mouse is, px from the lower left corner; none outside.
+  /// Position of the mouse, px from the lower left corner; none if outside.
   std::optional<std::pair<double, double>> mouse() const;
 
  private:
-  /// Tells Dear ImGui of the window's mouse and keys; made after the Gui, gone before it.
+  /// Connects the window's mouse and keys to Dear ImGui; made after the Gui, destroyed before it.
   struct Backend {
     explicit Backend(GLFWwindow* window);
     ~Backend();

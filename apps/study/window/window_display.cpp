@@ -33,7 +33,7 @@ std::vector<std::int64_t> WindowDisplay::swap_black(int swaps) {
   std::vector<std::int64_t> returns;
   for (int i = 0; i < swaps; ++i) {
     window_->show_black();
-    glFinish();  // many drivers return from a swap before the screen has taken it
+    glFinish();  // many drivers return from a swap before the screen has taken the picture
     returns.push_back(clock_.now_ns());
     window_->poll(0);
   }
@@ -46,7 +46,7 @@ std::int64_t WindowDisplay::first_onset(std::int64_t earliest_ns) const {
   return between_beats(refresh_, earliest_ns);
 }
 
-/// The first swaps fill the queue of pictures and come back at once.
+/// Skips the first swaps, which fill the queue of pictures and return at once.
 void WindowDisplay::find_beat() {
   if (!refresh_.in_effect) return;
   const auto returns = swap_black(queued_swaps + beat_swaps);

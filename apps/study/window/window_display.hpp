@@ -1,5 +1,5 @@
 #pragma once
-/// The participant's window as a display of stimuli: drawn off-screen, shown by a swap that waits for the
+/// The participant's window as a display of stimuli: draws off-screen, shows by a swap that waits for the
 /// screen.
 
 #include <memory>
@@ -14,27 +14,27 @@
 
 namespace apps {
 
-/// Its evidence is when frames were handed over (grade D): the screen does not say when it showed them. The
-/// predicted time is the screen's next beat, as measured before the trial. Destroy stimuli that drew on it
-/// first.
+/// Its timing evidence is the submission (grade D): the screen does not report when it showed a frame. The
+/// predicted time is the screen's next beat (refresh.hpp), as measured before the trial. Destroy stimuli that
+/// drew on it first.
 class WindowDisplay final : public study::Display {
  public:
-  /// Measures the refresh for some two seconds on a black window. The session's clock must be real.
+  /// Measures the refresh for about two seconds on a black window. The session's clock must be real.
   explicit WindowDisplay(std::shared_ptr<ParticipantWindow> window);
 
   std::string description() const override;
   study::TimingGrade grade() const override { return study::TimingGrade::CpuSubmit; }
-  /// 0 where swaps do not wait for the screen.
+  /// 0 if swaps do not wait for the screen.
   double refresh_hz() const override { return refresh_.nominal_hz; }
   double measured_hz() const override;
   std::int64_t first_onset(std::int64_t earliest_ns) const override;
-  /// Takes the screen's beat anew, on a black window: some ten periods. Its drift since the start is then
-  /// nothing to a trial. At once where swaps do not wait.
+  /// Measures the screen's beat again on a black window for about ten periods, so that its drift since the
+  /// start does not matter to a trial. Returns at once if swaps do not wait.
   void find_beat();
-  /// Draws off-screen, copies to the window's back buffer and waits until the device has finished: present()
-  /// is then a swap alone, and a slow picture shows as a late one.
+  /// Draws off-screen, copies to the window's back buffer and waits until the device has finished, so that
+  /// present() is only a swap and a slow picture counts as late.
   void render(study::Stimulus& stimulus) override;
-  /// gpu_done is when the picture lay ready, which is before it was submitted.
+  /// gpu_done is the time when the picture was ready, before its submission.
   study::PresentTimes present(std::int64_t scheduled_ns, study::Clock& clock) override;
 
   ScreenFacts facts() const;

@@ -11,16 +11,16 @@ namespace apps {
 
 namespace {
 
-/// The window and its pages, which live as long as either is held.
+/// Owns the window and its pages while either is referenced.
 struct WindowPages {
   explicit WindowPages(const ParticipantWindowOptions& options, const std::string& language)
       : window(options), pages(window, language, clock) {}
-  study::RealClock clock;  // a window's session has no other
+  study::RealClock clock;  // sessions in a window always use the real clock
   ParticipantWindow window;
   Pages pages;
 };
 
-/// The window tells it of the mouse as long as both live.
+/// Receives mouse movements from the window during its lifetime.
 class WindowMouse final : public study::GazeSource {
  public:
   explicit WindowMouse(std::shared_ptr<ParticipantWindow> window)
