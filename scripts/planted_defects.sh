@@ -2,7 +2,7 @@
 # Plants known defects in a copy of the solver, one at a time, and expects tests to go red. Prints a table; fails where one survives.
 # usage: scripts/planted_defects.sh [NAME ...]   default: all
 #        scripts/planted_defects.sh --list       their names
-#        scripts/planted_defects.sh --check      that each is still where it can be planted, and in docs/stability.md; builds nothing
+#        scripts/planted_defects.sh --check      that each is still where it can be planted, and in docs/results.md; builds nothing
 # The copy and its build lie in build/planted and are used again. Logs go to out/planted_defects.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
@@ -81,7 +81,7 @@ check() {
   local bad=0
   for i in "${!names[@]}"; do
     planted "$i" >/dev/null || bad=1
-    grep -qF "| \`${names[$i]}\` |" docs/stability.md || { echo "planted_defects: docs/stability.md does not name ${names[$i]}" >&2; bad=1; }
+    grep -qF "| \`${names[$i]}\` |" docs/results.md || { echo "planted_defects: docs/results.md does not name ${names[$i]}" >&2; bad=1; }
   done
   return $bad
 }

@@ -3,7 +3,7 @@
     snakemake -s scripts/sweep.smk --cores 2 --config accuracy="--quick" out=sweep
     snakemake -s scripts/sweep.smk --cores 2 --config power="protocols/task2.toml --effect 0.7" out=sweep
 
-docs/accuracy.md and docs/statistics.md show both whole. --config takes:
+docs/results.md and docs/statistics.md show both whole. --config takes:
 
 accuracy  options of vip-bench accuracy; without the key none of its cells run
 power     protocol and options of vip-stats power; the same

@@ -236,7 +236,7 @@ void add_stability_command(CLI::App& app) {
   auto* command = app.add_subcommand("stability",
                                      "How far the hard cases are from failing: largest frame step, fewest "
                                      "iterations, highest speed or size");
-  command->add_option("--case", options->cases, "all, or ids with commas, such as S9 (docs/stability.md)")
+  command->add_option("--case", options->cases, "all, or ids with commas, such as S9 (docs/results.md)")
       ->capture_default_str();
   command->add_option("--method", options->methods, "all, or names with commas")->capture_default_str();
   command->add_option("--effects", options->effects, "Scene file whose effects the cases' water has");

@@ -125,7 +125,7 @@ void add_report_command(CLI::App& app) {
   add_database_argument(*sub, command->database);
   add_incomplete(*sub, command->incomplete);
   sub->add_option("--html", command->html, "File for the page")->check(output_file());
-  sub->add_option("--json", command->json, "File for every number of the page (docs/results.md)")
+  sub->add_option("--json", command->json, "File for every number of the page (docs/report.md)")
       ->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
   sub->add_option(

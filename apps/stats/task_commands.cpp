@@ -235,7 +235,7 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
   auto* sub = app.add_subcommand(task_name(task), what);
   add_database_argument(*sub, command->database);
   add_incomplete(*sub, command->incomplete);
-  sub->add_option("--json", command->json, "File for every number (docs/results.md)")->check(output_file());
+  sub->add_option("--json", command->json, "File for every number (docs/report.md)")->check(output_file());
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
   add_plan(*sub, command->plan);
   add_choice(*sub, command->choice);

@@ -1,6 +1,6 @@
 #pragma once
 /// Hard cases of the fluid, S1 to S24: one definition each, for tests and for the stability map.
-/// docs/stability.md describes each case and the measured results.
+/// docs/results.md describes each case and the measured results.
 
 #include <limits>
 #include <optional>
@@ -34,7 +34,7 @@ struct Finding {
   double value = 0;
   Gate gate = Gate::Reported;
   double limit = 0;
-  /// The limit from the catalogue of cases, if the gate is looser (docs/stability.md has the reason).
+  /// The limit from the catalogue of cases, if the gate is looser (docs/results.md has the reason).
   std::optional<double> asked;
   std::string unit;  ///< empty = a ratio or a count
 

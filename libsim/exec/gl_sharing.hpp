@@ -28,7 +28,7 @@ class GlSharing {
   bool accept(const std::vector<GlBufferRef>& buffers);
   /// The accepted buffers as memory, in the same order, until unmap(); mapping twice has no further effect.
   /// Earlier GL commands finish first, and GL waits for work launched meanwhile. Each switch between GL and
-  /// the back end takes time on the device (docs/performance.md): map once per frame, and unmap where GL
+  /// the back end takes time on the device (docs/decisions.md): map once per frame, and unmap where GL
   /// continues anyway.
   const std::vector<void*>& map();
   /// Returns the buffers to GL; does nothing if they are not mapped.

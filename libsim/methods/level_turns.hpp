@@ -6,7 +6,7 @@
 namespace sim {
 
 /// Splits and merges stir the water, visibly: a turn in each frame costs time and gives worse pictures than
-/// one in every fourth frame (docs/solver_notes.md).
+/// one in every fourth frame (docs/decisions.md).
 struct LevelTurns {
   bool due = true;       ///< the present frame is a turn; always true if a test gives targets
   int frames_since = 0;  ///< frames since the last turn; 0: there was none

@@ -1,6 +1,6 @@
 #pragma once
 /// Switches for ambiguities in the paper, and two presets. `paper` follows the paper's own equation wherever
-/// it is possible, with plain misprints corrected; `tuned` takes the recommended reading. docs/figures.md
+/// it is possible, with plain misprints corrected; `tuned` takes the recommended reading. docs/results.md
 /// compares their pictures.
 
 #include <string>

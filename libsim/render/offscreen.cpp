@@ -45,7 +45,7 @@ Image from_the_top(Image image) {
 }  // namespace
 
 /// Does not read through the framebuffer: for pixels stored by compute shaders one driver took sixty times as
-/// long that way (docs/performance.md).
+/// long that way (docs/decisions.md).
 Image Offscreen::read() const {
   Image image = black(width_, height_);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -47,7 +47,7 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
 
 /// Shear, 1/s, below which a pool of one level resists by more than a quarter beyond its viscosity: 0.1 g h /
 /// nu, at half of its depth h. The lattice of its particles carries a stress that increases with the pressure
-/// (docs/truth.md). 0 without the effect or gravity.
+/// (docs/results.md). 0 without the effect or gravity.
 double least_shear(const Scene& scene) {
   const auto nu = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
   const double height = scene.fill_max_m[1] - scene.fill_min_m[1];

@@ -1,6 +1,6 @@
 #pragma once
 /// Frame costs of live stimuli on a session's station, stored in its event log: measured before the session,
-/// at full speed, on the session's display (docs/records.md).
+/// at full speed, on the session's display (docs/data.md).
 
 #include <string>
 #include <vector>

@@ -56,7 +56,7 @@ TEST_P(ShippedProtocolsE2e, GoFromCheckToReport) {
     const Ended ended = run_shell(VIP_BIN_DIR "/" + line);
     EXPECT_EQ(ended.exit_code, 0) << ended.out;
   };
-  // The many schedules of a pilot take the check long; docs/pilot.md quotes it and is run.
+  // The many schedules of a pilot take the check long; docs/statistics.md quotes it and is run.
   if (!GetParam().protocol.starts_with("ptpe_pilot")) typed("vip-study check " + protocol);
   typed("vip-study run " + protocol + " --db " + database + " --observer " + GetParam().observer +
         " --seed 2 --participants " + std::to_string(people));

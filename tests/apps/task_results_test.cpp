@@ -71,7 +71,7 @@ TEST(TaskResults, TheExampleHasTheFieldsOfTodaysResults) {
 }
 
 TEST(TaskResults, NoNumberIsNaNInDisguise) {
-  // null stands where docs/results.md allows it, never for a number of a whole study.
+  // null stands where docs/report.md allows it, never for a number of a whole study.
   for (const auto& one : whole_study().at("task1").at("comparisons")) {
     for (const char* field : {"p", "p_holm", "p_bh", "difference", "d_z", "g"})
       EXPECT_TRUE(one.at(field).is_number()) << field;

@@ -255,7 +255,7 @@ TEST(Effects, AreEntriesOfTheAccountOfMomentum) {
 
 /// Each ```cpp block of a page stands in the file that the page names last before it.
 TEST(Effects, ThePageQuotesTheSources) {
-  std::istringstream page(base::read_file(base::resource("docs/adding_an_effect.md"), 1 << 20));
+  std::istringstream page(base::read_file(base::resource("docs/architecture.md"), 1 << 20));
   const std::string root = std::string(VIP_TEST_DIR) + "/../";
   std::string file, block;
   bool inside = false;

@@ -184,7 +184,7 @@ void column_presses_by_its_depth(Backend backend, bool ours, double bound) {
   for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
   const auto books = books_of(*fluid, column, 60);
   const auto truth = fluid_test::read_columns("data/truth/hydrostatic_column.csv");
-  // A settled pool stands a little lower than its volume over its floor (docs/stability.md); its weight
+  // A settled pool stands a little lower than its volume over its floor (docs/results.md); its weight
   // stays.
   double moment = 0;
   for (const auto& p : fluid->read_state()) moment += static_cast<double>(p.y_m) * (1 << p.level);

@@ -186,7 +186,7 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
     EXPECT_LT(median(kinetic), gate.kinetic_high);
   }
 }
-// S22: 10 s, or 2 s where a test must be short. It asks for 0.02 and 1.05 at each beta; docs/stability.md
+// S22: 10 s, or 2 s where a test must be short. It asks for 0.02 and 1.05 at each beta; docs/results.md
 // says why the lower ones have more.
 const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.025, 0.8, 1.05}, {0.3, 0.035, 0.8, 1.08}};
 TEST(S22Temporal, DamBreaksAsWithTheFullSolve) {

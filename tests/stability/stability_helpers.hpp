@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of hard cases share. Cases S1 to S24 stand in docs/stability.md.
+/// What the tests of hard cases share. Cases S1 to S24 stand in docs/results.md.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Files of data/truth, or of the folder that VIP_TRUTH_DIR names: an experiment or a closed form as columns
-/// of numbers under a header that says what they are. docs/truth.md has the format.
+/// of numbers under a header that says what they are. docs/results.md has the format.
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ struct TruthFile {
   bool has(const std::string& key) const { return keys.count(key) > 0; }
   const std::string& text(const std::string& key) const {
     if (!has(key))
-      fail(1, "the header lacks '" + key + "'", "add a line '# " + key + ": ...' (docs/truth.md)");
+      fail(1, "the header lacks '" + key + "'", "add a line '# " + key + ": ...' (docs/results.md)");
     return keys.at(key).first;
   }
   double number(const std::string& key) const {
@@ -141,7 +141,7 @@ inline TruthFile parse_truth(const std::filesystem::path& path, const std::strin
       const std::string key = found[1];
       if (std::find(known.begin(), known.end(), key) == known.end())
         out.fail(line, "'" + key + "' is no key of a header",
-                 "see docs/truth.md, or begin a remark with a capital");
+                 "see docs/results.md, or begin a remark with a capital");
       if (!out.keys.try_emplace(key, found[2], line).second)
         out.fail(line, "'" + key + "' comes twice", "keep one");
     }
@@ -170,7 +170,7 @@ inline TruthFile parse_truth(const std::filesystem::path& path, const std::strin
   out.quantity = out.text("quantity");
   if (std::find(quantities().begin(), quantities().end(), out.quantity) == quantities().end())
     out.fail(out.keys.at("quantity").second, "no test measures '" + out.quantity + "'",
-             "docs/truth.md lists the quantities");
+             "docs/results.md lists the quantities");
   out.gate();
   out.text("source");
   return out;

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers, intervals and refusals as JSON values of the results (docs/results.md).
+/// Numbers, intervals and refusals as JSON values of the results (docs/report.md).
 
 #include <array>
 #include <optional>

@@ -7,7 +7,7 @@
 
 namespace apps::report {
 
-/// Renders a document of schema vip-results/1 (docs/results.md), and only that, as a page: no script, no
+/// Renders a document of schema vip-results/1 (docs/report.md), and only that, as a page: no script, no
 /// outside resource, a style sheet for screen and print. base::Error for another schema.
 std::string results_page(const base::Json& results);
 

@@ -44,7 +44,7 @@ struct Bundle {
 /// base::Error if the folder is not a bundle.
 Bundle read_bundle(const std::filesystem::path& folder);
 
-/// "preregistration" of the results (docs/results.md): tells if each task's protocol and hypotheses are those
+/// "preregistration" of the results (docs/report.md): tells if each task's protocol and hypotheses are those
 /// of the bundle, and lists differences. `results`: from study_results() under the bundle's plan.
 base::Json compare_with_bundle(const Bundle& bundle, const std::vector<study::ProtocolRow>& protocols,
                                const base::Json& results);

@@ -1,5 +1,5 @@
 #pragma once
-/// The cost and error of each method's frames, and people's answers about them (docs/results.md: costs,
+/// The cost and error of each method's frames, and people's answers about them (docs/report.md: costs,
 /// sweep).
 
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-/// The data that were analysed and that were not (docs/results.md: study, flow, exclusions, timing).
+/// The data that were analysed and that were not (docs/report.md: study, flow, exclusions, timing).
 
 #include <map>
 #include <string>

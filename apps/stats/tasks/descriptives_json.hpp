@@ -1,5 +1,5 @@
 #pragma once
-/// Descriptive statistics of the answers, by question and cell, for any protocol (docs/results.md:
+/// Descriptive statistics of the answers, by question and cell, for any protocol (docs/report.md:
 /// descriptives).
 
 #include <string>

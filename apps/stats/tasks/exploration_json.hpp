@@ -1,5 +1,5 @@
 #pragma once
-/// Descriptive and exploratory results of a part (docs/results.md: distributions, response_times,
+/// Descriptive and exploratory results of a part (docs/report.md: distributions, response_times,
 /// reliability, by_n_star, detectable).
 
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-/// H1 to H6 in the results (docs/results.md).
+/// H1 to H6 in the results (docs/report.md).
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The parts of Task 1's results about missing answers (docs/results.md): the mixed model of all answers, the
+/// The parts of Task 1's results about missing answers (docs/report.md): the mixed model of all answers, the
 /// participants of pairs, tipping points.
 
 #include "apps/stats/data/json_parts.hpp"

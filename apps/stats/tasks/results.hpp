@@ -1,5 +1,5 @@
 #pragma once
-/// A study's results as one JSON document (docs/results.md).
+/// A study's results as one JSON document (docs/report.md).
 
 #include <filesystem>
 #include <memory>

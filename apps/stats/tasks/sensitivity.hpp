@@ -9,7 +9,7 @@
 
 namespace apps {
 
-/// "sensitivity" of one task (docs/results.md); `planned`: the verdicts of `data`.
+/// "sensitivity" of one task (docs/report.md); `planned`: the verdicts of `data`.
 Json sensitivity_json(const study::TaskStudy& study, const TaskSelection& selection, const TaskData& data,
                       const std::vector<stats::Hypothesis>& planned);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Task 1's part of the results (docs/results.md).
+/// Task 1's part of the results (docs/report.md).
 
 #include "apps/stats/data/json_parts.hpp"
 #include "apps/stats/tasks/task1_results.hpp"

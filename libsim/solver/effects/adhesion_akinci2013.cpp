@@ -9,7 +9,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Share of its nominal work that the pull yields: calibrated by the contact angles of drops of level 0
-/// (docs/solver_notes.md).
+/// (docs/decisions.md).
 constexpr float pull_share = 0.75f;
 /// Constant c of f below.
 constexpr float poly6_behind = 1.23046875f;

@@ -1,5 +1,5 @@
 /// Surface tension: an attraction between pairs, and a smoothing of the surface. As published, the attraction
-/// also acts inside the water, where the resulting pressure makes particles stick (docs/solver_notes.md).
+/// also acts inside the water, where the resulting pressure makes particles stick (docs/decisions.md).
 /// Here both terms come from energies that are constant inside.
 
 #include "libsim/solver/effects/loops/surface_normals.hpp"

@@ -5,7 +5,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Both in units of sigma: calibrated together by the period of one drop of level 0 (docs/solver_notes.md).
+/// Both in units of sigma: calibrated together by the period of one drop of level 0 (docs/decisions.md).
 /// Tests measure sigma from other cases.
 inline constexpr float pull_strength = 12;
 inline constexpr float smoothing_strength = 2.6f;

@@ -30,7 +30,7 @@ struct CentralPull {
   Vec3 axis{0, 0, 1};
 };
 
-/// Solver numbers. The defaults were measured, see docs/solver_notes.md.
+/// Solver numbers. The defaults were measured, see docs/decisions.md.
 struct SolverParameters {
   float rest_density = 1000;  ///< rho_0, kg/m3
   float gravity = 9.81f;      ///< along -y, m/s2
