@@ -30,7 +30,7 @@ std::vector<study::Question> asked_questions(const study::Protocol& protocol) {
 
 bool asks_scale(const std::vector<study::Question>& asked, const std::string& id) {
   return std::any_of(asked.begin(), asked.end(), [&](const study::Question& one) {
-    return one.id == id && one.kind == study::AnswerKind::Scale;
+    return one.id == id && study::traits_of(one.kind).rated();
   });
 }
 
@@ -48,7 +48,7 @@ std::string why_none(const study::Protocol& protocol) {
 bool asks_choice_of_pair(const study::Protocol& protocol) {
   const auto asked = asked_questions(protocol);
   return std::any_of(asked.begin(), asked.end(), [](const study::Question& one) {
-    return one.kind == study::AnswerKind::Choice && one.anchors.size() == 2;
+    return study::traits_of(one.kind).labelled && one.anchors.size() == 2;
   });
 }
 
@@ -122,7 +122,7 @@ std::vector<study::Question> curve_questions(const study::Protocol& protocol) {
   std::vector<study::Question> out;
   if (protocol.design.timing != study::TimingSource::Settings || protocol.design.pairs) return out;
   for (const auto& question : asked_questions(protocol))
-    if (question.kind == study::AnswerKind::Scale && !is_sickness(question)) out.push_back(question);
+    if (study::traits_of(question.kind).rated() && !is_sickness(question)) out.push_back(question);
   return out;
 }
 

@@ -67,8 +67,7 @@ int FramesObserver::symptom(const Question& question, const Occasion& occasion) 
 }
 
 int FramesObserver::score(const Question& question, const Occasion& occasion, bool judges) const {
-  const bool symptoms = question.kind == AnswerKind::Scale && question.scale_min == 0;
-  if (!occasion.shown.empty() && symptoms) return symptom(question, occasion);
+  if (!occasion.shown.empty() && asks_symptom(question)) return symptom(question, occasion);
   if (!judges) return bystander_score(question, occasion);
   const double noise = parameters_.noise * normal_of(question_key(occasion, question),
                                                      1 + static_cast<std::uint64_t>(occasion.position));

@@ -107,12 +107,11 @@ std::vector<std::string> scales_beyond(std::string_view specification, const Pro
   bool taken = false;
   int lowest = 0;
   for (const auto& [block, question] : all_questions(protocol)) {
-    if ((question->kind != AnswerKind::Scale && question->kind != AnswerKind::Choice) || question->accept)
-      continue;
+    if (!traits_of(question->kind).listed || question->accept) continue;
     const bool fits = takes(*question, *score);
     taken = taken || fits;
     const bool of_trials = protocol.blocks.at(static_cast<std::size_t>(block)).kind == BlockKind::Stimulus;
-    if (fits || !of_trials || question->kind != AnswerKind::Scale) continue;
+    if (fits || !of_trials || !traits_of(question->kind).rated()) continue;
     if (beyond.empty()) lowest = question->scale_min;
     beyond.push_back(scale_of(*question));
   }

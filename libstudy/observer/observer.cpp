@@ -12,12 +12,8 @@ namespace {
 
 constexpr std::int64_t look_ns = 50'000'000;
 
-bool is_judged(const Question& question) {
-  return question.kind == AnswerKind::Scale || question.kind == AnswerKind::Choice;
-}
-
 Answer answer_of(const Observer& observer, const Question& question, const Occasion& occasion, bool judges) {
-  if (question.kind == AnswerKind::Text) return {{}, question.required ? "simulated" : ""};
+  if (!traits_of(question.kind).scored) return {{}, question.required ? "simulated" : ""};
   if (question.accept) return {question.accept->first, ""};
   const int score = observer.score(question, occasion, judges);
   const bool feigned = question.stop_at && score >= *question.stop_at && !observer.feels();
@@ -32,7 +28,7 @@ std::vector<TimedAnswer> Observer::ask(const Block&, std::span<const Question> q
   std::vector<TimedAnswer> out;
   bool judged = occasion.shown.empty();
   for (const Question& question : questions) {
-    const bool judges = !judged && is_judged(question);
+    const bool judges = !judged && traits_of(question.kind).listed;
     judged = judged || judges;
     out.push_back({answer_of(*this, question, occasion, judges), 0, AnswerInput::Observer});
   }
@@ -66,14 +62,8 @@ std::uint64_t question_key(const Occasion& occasion, const Question& question) {
                     question.id);
 }
 
-std::vector<int> scores_of(const Question& question) {
-  std::vector<int> out;
-  if (question.kind == AnswerKind::Choice) {
-    for (const auto& [score, words] : question.anchors) out.push_back(score);
-    return out;
-  }
-  for (int score = question.scale_min; score <= question.scale_max; ++score) out.push_back(score);
-  return out;
+bool asks_symptom(const Question& question) {
+  return traits_of(question.kind).rated() && question.scale_min == 0;
 }
 
 int nearest_score(const Question& question, double x) {
@@ -92,8 +82,7 @@ int random_score(const Question& question, const Occasion& occasion) {
 
 int bystander_score(const Question& question, const Occasion& occasion) {
   if (question.expect) return *question.expect;
-  const bool symptom = question.kind == AnswerKind::Scale && question.scale_min == 0;
-  if (!symptom) return random_score(question, occasion);
+  if (!asks_symptom(question)) return random_score(question, occasion);
   const double u =
       uniform_of(question_key(occasion, question), static_cast<std::uint64_t>(occasion.position));
   return nearest_score(question, -0.08 * (question.scale_max - question.scale_min) * std::log(u));

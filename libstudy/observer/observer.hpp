@@ -36,8 +36,8 @@ double normal_of(std::uint64_t key, std::uint64_t counter);
 std::uint64_t person_key(const Occasion& occasion);
 std::uint64_t question_key(const Occasion& occasion, const Question& question);
 
-/// The scores that may be given, ascending: all of the scale, or those with words (Choice).
-std::vector<int> scores_of(const Question& question);
+/// True for a rating from 0 on, such as those of the SSQ and the FMS.
+bool asks_symptom(const Question& question);
 /// The score nearest to x: thresholds lie halfway between neighbouring scores.
 int nearest_score(const Question& question, double x);
 /// Every score equally likely.

@@ -1,6 +1,7 @@
 #pragma once
 /// The questions of a study, with their exact wording.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,7 +9,7 @@
 
 namespace study {
 
-/// How a question is answered. Every kind but Text has whole numbers as answers.
+/// How a question is answered. answer_kinds() says how answers of a kind are stored, asked and analysed.
 enum class AnswerKind {
   Scale,   ///< a row of scores, some with words below them (Likert)
   Choice,  ///< one of a list; every score has words
@@ -39,6 +40,29 @@ struct Question {
 
   bool operator==(const Question&) const = default;
 };
+
+/// Properties of a kind of answer. Code that depends on a kind asks these; only drawing a question and taking
+/// its keys differ by kind, in exhaustive switches (apps/study).
+struct AnswerKindTraits {
+  AnswerKind kind{};
+  const char* word = "";   ///< in protocols, databases and exports
+  bool scored = true;      ///< the answer is a whole number, stored as a score; otherwise words
+  bool listed = false;     ///< the participant chooses one of scores_of()
+  bool labelled = false;   ///< every score has words, which stand for it in exports; it has no mean
+  bool required = true;    ///< default of `required`
+  double answering_s = 5;  ///< expected time to answer
+
+  /// A rating: scores with equal distances, which have means.
+  bool rated() const { return listed && !labelled; }
+};
+/// A row for each AnswerKind, in its order.
+const std::array<AnswerKindTraits, 4>& answer_kinds();
+const AnswerKindTraits& traits_of(AnswerKind kind);
+
+/// All possible scores in ascending order; none for free text.
+std::vector<int> scores_of(const Question& question);
+/// True if the score is a possible answer.
+bool can_be_given(const Question& question, int score);
 
 /// Score of a scale at which a pilot's curve is fitted: its level, else its midpoint.
 double fitted_level(const Question& question);

@@ -36,10 +36,11 @@ std::vector<std::pair<int, std::string>> read_anchors(const base::TomlTable& que
 }
 
 AnswerKind read_answer_kind(const base::TomlTable& table) {
-  const std::string word = table.choice("kind", {"scale", "choice", "number", "text"});
-  if (word == "choice") return AnswerKind::Choice;
-  if (word == "number") return AnswerKind::Number;
-  return word == "text" ? AnswerKind::Text : AnswerKind::Scale;
+  std::vector<std::string> words;
+  for (const AnswerKindTraits& traits : answer_kinds()) words.emplace_back(traits.word);
+  const std::string word = table.choice("kind", words);
+  const auto found = std::find(words.begin(), words.end(), word);
+  return answer_kinds()[static_cast<std::size_t>(found - words.begin())].kind;
 }
 
 std::pair<int, int> read_span(const base::TomlTable& table, std::string_view key, base::Range range) {
@@ -79,20 +80,13 @@ void read_scores(const base::TomlTable& table, Question& question) {
   }
 }
 
-/// True if the score is a possible answer.
-bool can_be_given(const Question& question, int score) {
-  if (question.kind != AnswerKind::Choice) return score >= question.scale_min && score <= question.scale_max;
-  return std::any_of(question.anchors.begin(), question.anchors.end(),
-                     [&](const auto& anchor) { return anchor.first == score; });
-}
-
-base::Range scores_of(const Question& question) {
+base::Range range_of(const Question& question) {
   return {static_cast<double>(question.scale_min), static_cast<double>(question.scale_max)};
 }
 
 std::optional<int> read_score(const base::TomlTable& table, std::string_view key, const Question& question) {
   if (!table.has(key)) return {};
-  const auto score = static_cast<int>(table.integer(key, scores_of(question)));
+  const auto score = static_cast<int>(table.integer(key, range_of(question)));
   if (!can_be_given(question, score))
     table.fail(key, "= " + std::to_string(score) + " is no answer", "use a score that anchors lists");
   return score;
@@ -106,7 +100,7 @@ void read_accept(const base::TomlTable& table, BlockKind block, Question& questi
                "put the question into a block of kind screening, consent or demographics");
   }
   if (!question.required) table.fail("accept", "contradicts required = false", "remove one of them");
-  question.accept = read_span(table, "accept", scores_of(question));
+  question.accept = read_span(table, "accept", range_of(question));
   const auto [low, high] = *question.accept;
   if (low > high) table.fail("accept", "does not ascend", "write the accepted scores as [low, high]");
   int score = low;
@@ -146,8 +140,8 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
     table.fail("personal", "= true has no place in a block of kind " + block_kind_name(block),
                "ask it in a block of kind demographics");
   }
-  question.required = table.boolean_or("required", question.kind != AnswerKind::Text);
-  if (question.kind == AnswerKind::Text) {
+  question.required = table.boolean_or("required", traits_of(question.kind).required);
+  if (!traits_of(question.kind).scored) {
     if (block == BlockKind::Catch)
       table.fail("kind", "= \"text\" gives no score to expect", "use scale, choice or number");
     return question;
@@ -162,7 +156,7 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
 /// Why the program cannot obey the answers to a question; empty if it can.
 std::string why_not_obeyed(BlockKind block, const Question& question) {
   if (block != BlockKind::Consent) return "stands in a block of kind " + block_kind_name(block);
-  if (question.kind != AnswerKind::Choice) return "is not of kind choice";
+  if (!traits_of(question.kind).labelled) return "is not of kind choice";
   if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
     return "has other answers than 0 and 1";
   return question.personal ? "is personal" : "";
@@ -190,6 +184,35 @@ std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kin
   std::vector<Question> out;
   for (const auto& table : block.tables("question")) out.push_back(read_question(table, kind, language));
   return out;
+}
+
+const std::array<AnswerKindTraits, 4>& answer_kinds() {
+  using enum AnswerKind;
+  static constexpr std::array<AnswerKindTraits, 4> all{{
+      {.kind = Scale, .word = "scale", .listed = true},
+      {.kind = Choice, .word = "choice", .listed = true, .labelled = true},
+      {.kind = Number, .word = "number", .answering_s = 10},
+      {.kind = Text, .word = "text", .scored = false, .required = false, .answering_s = 30},
+  }};
+  return all;
+}
+
+const AnswerKindTraits& traits_of(AnswerKind kind) { return answer_kinds()[static_cast<std::size_t>(kind)]; }
+
+std::vector<int> scores_of(const Question& question) {
+  const AnswerKindTraits& traits = traits_of(question.kind);
+  std::vector<int> out;
+  if (traits.labelled) {
+    for (const auto& [score, words] : question.anchors) out.push_back(score);
+  } else if (traits.scored) {
+    for (int score = question.scale_min; score <= question.scale_max; ++score) out.push_back(score);
+  }
+  return out;
+}
+
+bool can_be_given(const Question& question, int score) {
+  const auto scores = scores_of(question);
+  return std::binary_search(scores.begin(), scores.end(), score);
 }
 
 double fitted_level(const Question& question) {

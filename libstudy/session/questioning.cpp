@@ -48,7 +48,7 @@ bool refused(const std::optional<Ending>& ends) { return ends && ends->how == Ea
 std::string in_words(const Question& question, const Answer& answer) {
   if (!answer.score) return answer.words;
   for (const auto& [score, words] : question.anchors) {
-    if (question.kind == AnswerKind::Choice && score == *answer.score) return words;
+    if (traits_of(question.kind).labelled && score == *answer.score) return words;
   }
   return std::to_string(*answer.score);
 }
@@ -56,14 +56,10 @@ std::string in_words(const Question& question, const Answer& answer) {
 }  // namespace
 
 bool is_valid(const Question& question, const Answer& answer) {
-  if (question.kind == AnswerKind::Text)
-    return !answer.score && (!question.required || !answer.words.empty());
+  if (!traits_of(question.kind).scored) return !answer.score && (!question.required || !answer.words.empty());
   if (!answer.words.empty()) return false;
   if (!answer.score) return !question.required;
-  if (!in_span(*answer.score, {question.scale_min, question.scale_max})) return false;
-  const auto offers = [&](const auto& anchor) { return anchor.first == *answer.score; };
-  return question.kind != AnswerKind::Choice ||
-         std::any_of(question.anchors.begin(), question.anchors.end(), offers);
+  return can_be_given(question, *answer.score);
 }
 
 std::vector<Question> Questioning::left(const OpenUnit& unit, const std::vector<Question>& questions) const {

@@ -210,8 +210,7 @@ std::vector<Question> trial_questions(const Protocol& protocol) {
     for (const TrialStep& step : block.steps) asked.insert(step.asks.begin(), step.asks.end());
   }
   for (const auto& [block, question] : all_questions(protocol)) {
-    if (question->kind != AnswerKind::Text && asked.contains(question->id) &&
-        known.insert(question->id).second)
+    if (traits_of(question->kind).scored && asked.contains(question->id) && known.insert(question->id).second)
       out.push_back(*question);
   }
   return out;
@@ -227,7 +226,7 @@ std::vector<Question> questions_about_people(const Protocol& protocol) {
     const BlockKind kind = protocol.blocks.at(static_cast<std::size_t>(block)).kind;
     const bool page =
         kind == BlockKind::Demographics || kind == BlockKind::Screening || kind == BlockKind::Question;
-    if (page && question->kind != AnswerKind::Text && !asked.contains(question->id)) out.push_back(*question);
+    if (page && traits_of(question->kind).scored && !asked.contains(question->id)) out.push_back(*question);
   }
   return out;
 }
@@ -246,7 +245,7 @@ void add_stored(Connection& database, const TaskProtocol& protocol, std::vector<
     for (row.bind_all(protocol.sha256, question.id); row.step();) {
       std::string answer = std::to_string(row.integer(1));
       for (const auto& [score, words] : question.anchors)
-        if (question.kind == AnswerKind::Choice && score == row.integer(1)) answer = words;
+        if (traits_of(question.kind).labelled && score == row.integer(1)) answer = words;
       out.push_back({row.text(0), question.id, question.text, answer});
     }
   }

@@ -26,20 +26,6 @@ std::string anchors_text(const Question& question) {
   return text;
 }
 
-const char* kind_name(AnswerKind kind) {
-  switch (kind) {
-    case AnswerKind::Scale:
-      return "scale";
-    case AnswerKind::Choice:
-      return "choice";
-    case AnswerKind::Number:
-      return "number";
-    case AnswerKind::Text:
-      break;
-  }
-  return "text";
-}
-
 void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const Protocol& protocol) {
   Statement insert(database,
                    "INSERT INTO question (protocol_id, code, wording, language, kind, scale_min, scale_max, "
@@ -48,9 +34,9 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   for (const auto& [block, question] : all_questions(protocol)) {
     if (!written.insert(question->id).second) continue;
     insert
-        .bind_all(protocol_id, question->id, question->text, question->language, kind_name(question->kind),
-                  question->scale_min, question->scale_max, anchors_text(*question),
-                  question->personal ? 1 : 0)
+        .bind_all(protocol_id, question->id, question->text, question->language,
+                  traits_of(question->kind).word, question->scale_min, question->scale_max,
+                  anchors_text(*question), question->personal ? 1 : 0)
         .run();
   }
 }

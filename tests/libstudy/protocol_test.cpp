@@ -216,6 +216,29 @@ TEST(Protocol, DemoHasEveryKindOfBlock) {
   EXPECT_EQ(kinds.size(), 15u);
 }
 
+TEST(Protocol, EveryKindOfAnswerHasItsRow) {
+  std::set<std::string> words;
+  for (std::size_t i = 0; i < study::answer_kinds().size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(study::answer_kinds()[i].kind), i);
+    EXPECT_TRUE(words.insert(study::answer_kinds()[i].word).second);
+  }
+  const auto scores = [](study::AnswerKind kind) {
+    study::Question question;
+    question.kind = kind;
+    question.scale_min = 1;
+    question.scale_max = 3;
+    question.anchors = {{1, "no"}, {3, "yes"}};
+    EXPECT_FALSE(study::can_be_given(question, 0));
+    EXPECT_EQ(study::can_be_given(question, 2),
+              kind == study::AnswerKind::Scale || kind == study::AnswerKind::Number);
+    return study::scores_of(question);
+  };
+  EXPECT_EQ(scores(study::AnswerKind::Scale), (std::vector{1, 2, 3}));
+  EXPECT_EQ(scores(study::AnswerKind::Choice), (std::vector{1, 3}));
+  EXPECT_EQ(scores(study::AnswerKind::Number), (std::vector{1, 2, 3}));
+  EXPECT_TRUE(scores(study::AnswerKind::Text).empty());
+}
+
 TEST(Protocol, SsqHasTheSixteenSymptoms) {
   const auto questions = study::ssq_questions("en");
   ASSERT_EQ(questions.size(), 16u);

@@ -24,12 +24,12 @@ const char* what_it_shows(TaskKind task) {
 }
 
 bool is_scale(const Question& question) {
-  return question.kind == study::AnswerKind::Scale && !is_sickness(question);
+  return study::traits_of(question.kind).rated() && !is_sickness(question);
 }
 
 /// True if the answer is one of two stimuli.
 bool is_choice_of_two(const Question& question) {
-  return question.kind == study::AnswerKind::Choice && question.anchors.size() == 2;
+  return study::traits_of(question.kind).labelled && question.anchors.size() == 2;
 }
 
 bool asks(const TaskProtocol& protocol, bool (*wanted)(const Question&)) {

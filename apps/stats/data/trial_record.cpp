@@ -37,7 +37,7 @@ void exclude_unrecorded(std::vector<stats::Exclusion>& list, const TaskSession& 
 double answer_to(const TaskTrial& trial, const study::Question& question) {
   for (const study::TaskAnswer& answer : trial.answers) {
     if (answer.question != question.id || !answer.score) continue;
-    if (question.kind != study::AnswerKind::Choice) return *answer.score;
+    if (!study::traits_of(question.kind).labelled) return *answer.score;
     return *answer.score == question.anchors.front().first ? 1 : 2;
   }
   return stats::TrialRecord::unanswered;

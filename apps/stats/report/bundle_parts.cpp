@@ -51,7 +51,7 @@ bool has_block(const study::Protocol& protocol, study::BlockKind kind) {
 int widest_scale(const study::Protocol& protocol) {
   int out = 0;
   for (const auto& [block, question] : study::all_questions(protocol))
-    if (question->kind == study::AnswerKind::Scale && !is_sickness(*question))
+    if (study::traits_of(question->kind).rated() && !is_sickness(*question))
       out = std::max(out, question->scale_max - question->scale_min);
   return out;
 }

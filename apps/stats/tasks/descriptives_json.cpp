@@ -105,8 +105,7 @@ class Describer {
 
   /// True if the question asks which of a pair is chosen.
   bool is_choice_of_pair(const study::Question& question, const Cell& cell) const {
-    return question.kind == study::AnswerKind::Choice && question.anchors.size() == 2 &&
-           cell.shown.size() == 2;
+    return study::traits_of(question.kind).labelled && question.anchors.size() == 2 && cell.shown.size() == 2;
   }
 
   Json distribution(const study::Question& question, const Cell& cell, const Given& given) const {
@@ -124,10 +123,10 @@ class Describer {
     }
     std::map<int, int> counts;
     const bool listed = question.scale_max - question.scale_min < most_listed_scores;
-    if (question.kind == study::AnswerKind::Scale && listed)
+    if (study::traits_of(question.kind).rated() && listed)
       for (int score = question.scale_min; score <= question.scale_max; ++score) counts[score] = 0;
     std::map<int, std::string> words;
-    if (question.kind == study::AnswerKind::Choice)
+    if (study::traits_of(question.kind).labelled)
       for (const auto& [score, text] : question.anchors) words[score] = text, counts[score] = 0;
     for (const double score : given.scores) ++counts[static_cast<int>(score)];
     for (const auto& [score, n] : counts)
@@ -143,7 +142,7 @@ class Describer {
               {"participants", given.participants.size()}};
     // A choice's answers are labels, so they have no mean.
     const auto described = stats::describe(given.scores);
-    const bool counted = question.kind != study::AnswerKind::Choice && described;
+    const bool counted = !study::traits_of(question.kind).labelled && described;
     json["mean"] = counted ? json_number(described->mean) : Json();
     json["sd"] = counted ? json_number(described->sd) : Json();
     json["median"] = counted ? json_number(described->median) : Json();

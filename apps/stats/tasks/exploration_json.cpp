@@ -122,7 +122,7 @@ Json distributions_json(const TaskData& data) {
   if (data.task == TaskKind::Pilot) return pilot_distributions(data);
   Json list = Json::array();
   for (const auto& question : data.protocol.questions) {
-    if (question.kind != study::AnswerKind::Scale) continue;
+    if (!study::traits_of(question.kind).rated()) continue;
     std::map<std::pair<int, int>, Scores> cells;  // n_*, method
     for (const Report& report : data.reports) {
       const auto answer = report.answers.find(question.id);

@@ -56,7 +56,7 @@ void add_numbers(Json& json, const study::Question& question, std::vector<std::s
   const auto all = stats::describe(values);
   json["mean"] = all->mean;
   json["sd"] = json_number(all->sd);
-  if (question.kind != study::AnswerKind::Number) return;
+  if (study::traits_of(question.kind).listed) return;
   json["range"] = {range_step * std::floor(all->min / range_step),
                    range_step * std::ceil(all->max / range_step)};
 }
@@ -77,15 +77,12 @@ void add_groups(Json& json, const study::Question& question, const std::vector<s
 Json question_json(const study::Question& question, const TaskData& data,
                    const std::vector<study::PersonalEntry>& entries) {
   const auto answers = answers_to(question, data, entries);
-  const bool choice = question.kind == study::AnswerKind::Choice;
   Json json{{"question", question.id},
             {"text", question.text},
-            {"kind", choice                                      ? "choice"
-                     : question.kind == study::AnswerKind::Scale ? "scale"
-                                                                 : "number"},
+            {"kind", study::traits_of(question.kind).word},
             {"n", answers.size()},
             {"missing", data.participants.size() - answers.size()}};
-  if (choice) {
+  if (study::traits_of(question.kind).labelled) {
     add_groups(json, question, answers);
   } else {
     add_numbers(json, question, answers);

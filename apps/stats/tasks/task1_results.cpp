@@ -24,7 +24,7 @@ std::vector<ScoreScale> score_scales(const stats::AnalysisPlan& plan) {
 
 const study::Question* find_question(const TaskData& data, const std::string& id) {
   for (const auto& question : data.protocol.questions) {
-    if (question.id == id && question.kind == study::AnswerKind::Scale) return &question;
+    if (question.id == id && study::traits_of(question.kind).rated()) return &question;
   }
   return nullptr;
 }

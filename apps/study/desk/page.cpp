@@ -11,27 +11,13 @@ namespace {
 
 using study::AnswerKind;
 
-bool is_listed(const study::Question& question) {
-  return question.kind == AnswerKind::Scale || question.kind == AnswerKind::Choice;
-}
-
 bool is_blank(const std::string& words) { return words.find_first_not_of(" \t\r\n") == std::string::npos; }
 
 }  // namespace
 
-std::vector<int> scores_of(const study::Question& question) {
-  std::vector<int> scores;
-  if (question.kind == AnswerKind::Choice) {
-    for (const auto& [score, words] : question.anchors) scores.push_back(score);
-  } else if (question.kind == AnswerKind::Scale) {
-    for (int score = question.scale_min; score <= question.scale_max; ++score) scores.push_back(score);
-  }
-  return scores;
-}
-
 bool one_digit_does(const study::Question& question) {
   const auto scores = scores_of(question);
-  return !scores.empty() && scores.front() >= 0 && scores.back() <= 9;
+  return study::traits_of(question.kind).listed && scores.front() >= 0 && scores.back() <= 9;
 }
 
 PageState::PageState(std::span<const study::Question> questions, double least_s, std::int64_t shown_ns)
@@ -70,7 +56,7 @@ void PageState::step_focus(int by) {
 }
 
 void PageState::move_cursor(int by) {
-  if (focus_ == size() || !is_listed(questions_[focus_])) return;
+  if (focus_ == size() || !study::traits_of(questions_[focus_].kind).listed) return;
   PageItem& item = items_[focus_];
   const auto scores = scores_of(questions_[focus_]);
   if (!item.cursor) item.cursor = item.chosen;
@@ -141,7 +127,7 @@ void PageState::erase(std::int64_t now_ns) {
 }
 
 void PageState::click(std::size_t question, int score, std::int64_t now_ns) {
-  if (guarded(now_ns) || question >= size()) return;
+  if (guarded(now_ns) || question >= size() || !study::traits_of(questions_[question].kind).listed) return;
   const auto scores = scores_of(questions_[question]);
   if (std::find(scores.begin(), scores.end(), score) == scores.end()) return;
   focus_ = question;
@@ -200,9 +186,11 @@ bool PageState::answered(std::size_t question) const {
       return number(question).has_value();
     case AnswerKind::Text:
       return !is_blank(items_[question].typed);
-    default:
-      return items_[question].chosen.has_value();
+    case AnswerKind::Scale:
+    case AnswerKind::Choice:
+      break;
   }
+  return items_[question].chosen.has_value();
 }
 
 bool PageState::out_of_range(std::size_t question) const {
@@ -233,8 +221,8 @@ std::vector<study::TimedAnswer> PageState::answers() const {
   for (std::size_t i = 0; i < size(); ++i) {
     study::TimedAnswer timed;
     const bool given = answered(i);
-    if (given && questions_[i].kind == AnswerKind::Text) timed.answer.words = items_[i].typed;
-    if (given && is_listed(questions_[i])) timed.answer.score = items_[i].chosen;
+    if (given && !study::traits_of(questions_[i].kind).scored) timed.answer.words = items_[i].typed;
+    if (given && study::traits_of(questions_[i].kind).listed) timed.answer.score = items_[i].chosen;
     if (given && questions_[i].kind == AnswerKind::Number) timed.answer.score = number(i);
     const std::int64_t end_ns = given ? items_[i].changed_ns : *confirmed_ns_;
     timed.response_time_s = 1e-9 * static_cast<double>(end_ns - shown_ns_);

@@ -98,9 +98,7 @@ class PageState {
   std::optional<study::AnswerInput> confirmed_by_;
 };
 
-/// All possible scores, ascending: all of a Scale, those with words of a Choice.
-std::vector<int> scores_of(const study::Question& question);
-/// True if each score is a single digit.
+/// True if the question lists scores and each is a single digit.
 bool one_digit_does(const study::Question& question);
 
 }  // namespace apps

@@ -19,11 +19,6 @@ double reading_s(const std::string& text) {
   return words / 3.5;
 }
 
-double answering_s(const study::Question& question) {
-  if (question.kind == study::AnswerKind::Number) return 10;
-  return question.kind == study::AnswerKind::Text ? 30 : 5;
-}
-
 const study::Block& block_of(const study::Protocol& protocol, const study::OpenUnit& unit) {
   return protocol.blocks.at(static_cast<std::size_t>(unit.plan.block));
 }
@@ -65,7 +60,7 @@ double expected_s(const study::Protocol& protocol, const study::OpenUnit& unit, 
       if (!person) return block.seconds;
       double total = std::max(block.seconds, reading_s(block.text));
       for (const study::Question& question : block.questions)
-        total += reading_s(question.text) + answering_s(question);
+        total += reading_s(question.text) + study::traits_of(question.kind).answering_s;
       return total;
     }
   }

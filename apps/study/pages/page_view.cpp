@@ -43,7 +43,7 @@ bool PageView::typing(const PageState& state) const { return !gui_.by_hand() && 
 Pad* PageView::pad_of(const PageState& state) {
   if (!gui_.by_hand() || state.focus() == state.size()) return nullptr;
   const Question& question = state.question(state.focus());
-  if (question.kind != AnswerKind::Number && question.kind != AnswerKind::Text) return nullptr;
+  if (study::traits_of(question.kind).listed) return nullptr;
   if (!pad_ || pad_question_ != state.focus()) pad_.emplace(question);
   pad_question_ = state.focus();
   return &*pad_;
@@ -182,7 +182,7 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   std::string how;
   if (state.focus() < state.size() && !gui_.by_hand()) {
     const Question& question = state.question(state.focus());
-    const bool listed = question.kind == AnswerKind::Scale || question.kind == AnswerKind::Choice;
+    const bool listed = study::traits_of(question.kind).listed;
     if (listed) how = one_digit_does(question) ? words_.digits : words_.arrows;
     if (question.kind == AnswerKind::Text) how = words_.tab;
   }
