@@ -52,7 +52,9 @@ double paper_tau(const std::string& scene, const std::string& n_star, sim::Metho
 
 void add_table_options(CLI::App& command, TableOptions& options) {
   command.add_option("--scene", options.scene, "all, SingleDam, JetImpact or Faucet")->capture_default_str();
-  command.add_option("--n-star", options.n_star, "Particles when all are coarsest; several with commas")
+  command
+      .add_option("--n-star", options.n_star,
+                  "Number of particles if all were at the coarsest level; several separated by commas")
       ->capture_default_str();
   command.add_option("--preset", options.preset, "tuned, paper or both")->capture_default_str();
   command.add_option("--tau", options.tau, "live, fixed:X (frames/s) or table2 (the paper's)")

@@ -159,7 +159,9 @@ void add_effects_command(CLI::App& app) {
   auto* command = app.add_subcommand("effects", "What each of a scene's effects adds to a frame");
   command->footer(columns_help);
   command->add_option("scene", options->scene, "Scene file that lists effects")->capture_default_str();
-  command->add_option("--n-star", options->n_star, "Particles when all are coarsest; k = 1,024")
+  command
+      ->add_option("--n-star", options->n_star,
+                   "Number of particles if all were at the coarsest level; k = 1,024")
       ->capture_default_str();
   add_method(*command, options->method);
   add_backend(*command, options->backend);

@@ -117,7 +117,8 @@ void add_growth_command(CLI::App& app) {
   command->add_option("scene", options->scene, "Scene file")->capture_default_str();
   command
       ->add_option("--n-star", options->n_star,
-                   "Particles when all are coarsest, two sizes or more with commas; k = 1,024")
+                   "Number of particles if all were at the coarsest level; two sizes or more, separated by "
+                   "commas; k = 1,024")
       ->capture_default_str();
   add_method(*command, options->method);
   add_backend(*command, options->backend);

@@ -57,7 +57,7 @@ class HeadsetBench {
     while (!session_.running()) {
       session_.poll();
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "the runtime lets no session begin", "put the headset on");
+        throw base::Error("headset", "the runtime does not begin a session", "put the headset on");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }

@@ -19,8 +19,8 @@ void check_finite(sim::Simulation& fluid, const std::string& place) {
   if (report.guards.not_finite == 0 && finite) return;
   throw base::Error(
       place,
-      "the water broke: " + std::to_string(report.guards.not_finite) +
-          " times a particle was not finite or far outside the tank, so that nothing of it can be used" +
+      "the simulation failed: " + std::to_string(report.guards.not_finite) +
+          " times a particle was not finite or far outside the tank, so its results cannot be used" +
           first_of(fluid),
       "use another time step, more substeps, or numbers of the solver nearer to the defaults");
 }

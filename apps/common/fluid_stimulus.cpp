@@ -104,7 +104,7 @@ study::FrameFacts BakedPictures::prepare(std::int64_t step) {
 
 void BakedPictures::draw(const study::Canvas& canvas) {
   if (!canvas.eyes.empty()) {
-    throw base::Error(description(), "is one picture, which two eyes would see flat",
+    throw base::Error(description(), "is one picture, which would look flat in a headset",
                       "show a bake of particles in a headset");
   }
   if (!picture_) throw std::logic_error("BakedPictures: draw before prepare");
@@ -135,7 +135,7 @@ BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing vi
       options_(options),
       painted_(painted(scene_, paint_temperature && bake_->header().reference_k)) {
   if (sim::any_free(scene_.obstacles))
-    throw base::Error(description(), "hold nothing of the free obstacles of their scene",
+    throw base::Error(description(), "do not store the free obstacles of their scene",
                       "show a bake of pictures, or the live fluid");
 }
 

@@ -38,7 +38,7 @@ std::string check_whole(std::string& text) {
 std::string check_finite(std::string& text) {
   double value = 0;
   const bool finite = reads_whole(text, value) && std::isfinite(value);
-  return finite ? "" : "\"" + base::shortened(text) + "\" is not a number that can be counted with";
+  return finite ? "" : "\"" + base::shortened(text) + "\" is not a finite number";
 }
 
 }  // namespace
@@ -48,10 +48,9 @@ CLI::Option* add_database(CLI::App& command, std::string& database) {
 }
 
 void add_incomplete(CLI::App& command, bool& incomplete) {
-  command.add_flag(
-      "--incomplete", incomplete,
-      "Go on where the journal of answers beside the database holds more than the database; what "
-      "is lacking is said");
+  command.add_flag("--incomplete", incomplete,
+                   "Continue even if the journal of answers beside the database holds more than the "
+                   "database; prints what is missing");
 }
 
 void add_database_argument(CLI::App& command, std::string& database) {
@@ -75,7 +74,8 @@ CLI::Option* add_method(CLI::App& command, std::string& method) {
 }
 
 CLI::Option* add_n_star(CLI::App& command, std::string& n_star) {
-  return command.add_option("--n-star", n_star, "Particles when all are coarsest; k = 1,024")
+  return command
+      .add_option("--n-star", n_star, "Number of particles if all were at the coarsest level; k = 1,024")
       ->capture_default_str();
 }
 
@@ -152,7 +152,7 @@ void check_apart(const std::filesystem::path& database, const std::map<std::stri
     if (path.empty()) continue;
     const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
     if (!added)
-      throw base::Error(option + " " + path, "is " + other->second, "give each output a place of its own");
+      throw base::Error(option + " " + path, "is " + other->second, "give each output its own path");
   }
 }
 

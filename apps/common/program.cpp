@@ -75,7 +75,9 @@ int run_commands(CLI::App& app, int argc, char** argv) {
 std::string error_text(const std::exception& error, const std::string& command) {
   if (dynamic_cast<const base::Error*>(&error)) return error.what();
   if (dynamic_cast<const std::bad_alloc*>(&error))
-    return base::Error(command, "out of memory", "use a smaller --n-star or free memory").what();
+    return base::Error(command, "out of memory",
+                       "free memory, or use a smaller n_* (--n-star, or n_star in a protocol)")
+        .what();
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
     const std::string place = file->path1().empty() ? command : file->path1().string();
     return base::Error(place, "unexpected: " + file->code().message(),

@@ -118,9 +118,9 @@ void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
   }
   std::string mend = "look at the ratings (--svg without --out draws them), collect more participants";
   if (wide) mend += ", set --max-width";
-  if (form) mend += ", or take an exponential as an approximation by --accept-form";
+  if (form) mend += ", or accept an exponential as an approximation with --accept-form";
   if (!command.force && (wide || command.doubted(fit)))
-    mend += form ? ", and overrule the rest by --force" : ", or --force";
+    mend += form ? ", and override the rest with --force" : ", or --force";
   throw base::Error(command.database, reasons, mend + "; no configuration and no figure were written");
 }
 
@@ -239,10 +239,9 @@ void add_fit_ptpe_command(CLI::App& app) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   fit->add_flag("--force", command->force,
-                "Write the solver's file although the curve is wider or the ratings do not bear it");
-  fit->add_flag(
-      "--accept-form", command->accept_form,
-      "Write the solver's file although the test of the form says that the curve is no exponential");
+                "Write the solver's file although the curve is wider or the ratings do not support it");
+  fit->add_flag("--accept-form", command->accept_form,
+                "Write the solver's file although the test of the form rejects an exponential curve");
   fit->add_option("--json", command->json,
                   "File for every number of the fit, written whenever the database can be read")
       ->check(output_file());

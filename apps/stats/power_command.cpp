@@ -43,7 +43,7 @@ void refuse(const std::string& option, const std::string& problem, const std::st
 void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& options) {
   const auto only = [&](const char* option, bool fits, const char* where) {
     if (options.count(option) > 0 && !fits)
-      refuse(option, "means nothing for protocol " + request.protocol.name,
+      refuse(option, "does not apply to protocol " + request.protocol.name,
              std::string("it is for ") + where);
   };
   const bool task1 = kind == PowerKind::Task1, task2 = kind == PowerKind::Task2,
@@ -61,8 +61,8 @@ void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& opt
     refuse(
         "protocol " + request.protocol.name,
         "shows each pair to a participant in " + std::to_string(design.groups) +
-            " scenes, and the plan refuses tests of a pair with several answers of one person: no test would "
-            "ever hold",
+            " scenes, and the plan refuses tests of a pair with several answers of one person: no test could "
+            "ever succeed",
         "write more_than_one_trial = \"share\" into a plan and give it with --plan, or groups = 1 into the "
         "protocol");
   if (task2 && request.effect && !(*request.effect > 0 && *request.effect < 1))
@@ -144,7 +144,7 @@ void check_outputs(const PowerCommand& command) {
     for (const auto& [option, path] : outputs) {
       if (!path.empty() && !input.empty() &&
           std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(input))
-        refuse(option + " " + path, problem, "give the output a place of its own");
+        refuse(option + " " + path, problem, "give the output its own path");
     }
   };
   for (const auto& shard : command.shards) check_input(shard, "is a shard that is to be joined");

@@ -49,8 +49,8 @@ void check_level(const ReportCommand& command, const study::TaskStudy& study,
                  const stats::AnalysisPlan& plan) {
   const auto pilots = choose_tasks(study, command.choice.selection(TaskKind::Pilot, plan));
   if (!pilots)
-    throw base::Error("--level", "means nothing here, for " + pilots.reason(),
-                      "leave it out: it is for the curve of a pilot");
+    throw base::Error("--level", "does not apply here: " + pilots.reason(),
+                      "leave it out: it applies to the curve of a pilot");
   for (const ChosenTask& one : *pilots) {
     if (within_scale(*command.choice.level, one.question)) continue;
     throw base::Error(command.database,
@@ -130,8 +130,7 @@ void add_report_command(CLI::App& app) {
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
   sub->add_option(
       "--sweep", command->sweep,
-      "Sweep file of vip-bench accuracy: cost and error of each method's setting stand beside what "
-      "people said");
+      "Sweep file of vip-bench accuracy: adds the cost and error of each method's setting to the answers");
   add_choice(*sub, command->choice);
   auto* plan = add_plan(*sub, command->plan);
   sub->add_option("--preregistered", command->bundle,

@@ -192,8 +192,8 @@ void run(const TaskCommand& command) {
       std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
     throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
   if (command.choice.level)
-    throw base::Error("--level", std::string("means nothing for ") + task_name(command.task),
-                      "leave it out: it is for the curve of a pilot");
+    throw base::Error("--level", std::string("does not apply to ") + task_name(command.task),
+                      "leave it out: it applies to the curve of a pilot");
   ResultsRequest request;
   request.database = command.database;
   request.tasks = {command.task};

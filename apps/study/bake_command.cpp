@@ -160,8 +160,9 @@ void add_scene_options(CLI::App& sub, BakeCommand& command) {
 void add_protocol_options(CLI::App& sub, BakeCommand& command) {
   auto* size = add_size(sub, command.size, "Pixels of the participant's picture, as in run");
   auto* keep =
-      sub.add_option("--keep", command.keep,
-                     "particles: the session draws them. pictures: both, and the session copies pictures")
+      sub.add_option(
+             "--keep", command.keep,
+             "particles: the session draws them. pictures: stores both, and the session shows the pictures")
           ->check(CLI::IsMember({"particles", "pictures"}))
           ->capture_default_str();
   const auto [width, distance] = add_viewing(sub, command.screen_width_mm, command.viewing_distance_mm,
@@ -179,13 +180,14 @@ void add_bake_command(CLI::App& app) {
   auto* out = sub.add_option("--out", command->out, "Bake file to write; with --protocol a folder");
   auto* protocol =
       sub.add_option("--protocol", command->protocol,
-                     "Bake all stimuli of this protocol (file or name) that can be, into the folder --out; "
-                     "given again, goes on and mends");
+                     "Bake every stimulus of this protocol (file or name) that can be baked, into the folder "
+                     "--out; run again, it continues and replaces unusable bakes");
   protocol->excludes(scene);
   add_scene_options(sub, *command);
   add_protocol_options(sub, *command);
   add_backend(sub, command->backend, "Computes the fluid");
-  sub.add_option("--ptpe", command->ptpe, "PTPE file that tau of Ours-TSp goes by; default: the paper's");
+  sub.add_option("--ptpe", command->ptpe,
+                 "PTPE file from which tau of Ours-TSp follows; default: the paper's model");
   auto* check = sub.add_option("--verify", command->verify, "Read this bake and check every frame");
   check->excludes(scene)->excludes(out);
   sub.callback([command] {

@@ -138,20 +138,19 @@ void check_protocol(const CheckOptions& options) {
 void add_check_command(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   auto* command =
-      app.add_subcommand("check", "Say what a protocol comes to: blocks, duration, balance, timing");
+      app.add_subcommand("check", "Check a protocol, and print its blocks, duration, balance and timing");
   command
       ->add_option("protocol", options->protocol,
                    "Protocol file, or the name of one that comes with the program, such as task1")
       ->required();
   command
       ->add_option("--refresh", options->refresh_hz,
-                   "The display's refresh in Hz: what it makes of each setting")
+                   "The display's refresh rate, Hz: prints how well it can show each setting")
       ->check(number_in(10, 1000));
-  command->add_flag("--compare", options->compare, "Look at all common refresh rates, however long it takes");
-  command->add_flag(
-      "--measure", options->measure,
-      "Run each live stimulus through a trial on this machine, at --size: what run does before a "
-      "session, which then need not");
+  command->add_flag("--compare", options->compare, "Check all common refresh rates, however long it takes");
+  command->add_flag("--measure", options->measure,
+                    "Measure each live stimulus in a trial on this machine, at --size, as run does before a "
+                    "session; run then need not repeat it");
   add_backend(*command, options->backend, "Computes the fluid");
   add_size(*command, options->size, "Pixels of the participant's picture");
   add_viewing(*command, options->screen_width_mm, options->viewing_distance_mm, "Its width on the screen");

@@ -152,8 +152,8 @@ void print_stimuli(const CheckReport& report) {
     if (!one.live.empty()) {
       std::printf("live: %s\n", one.live.c_str());
     } else {
-      std::printf("baked%s, %lld frames; or live where that is in time\n",
-                  has_free_obstacles(one) ? " by --keep pictures, for its obstacles are free" : "",
+      std::printf("baked%s, %lld frames; or live where the machine is fast enough\n",
+                  has_free_obstacles(one) ? " with --keep pictures, because its obstacles are free" : "",
                   static_cast<long long>(one.frames));
       bakes = true;
     }
@@ -169,7 +169,7 @@ void print_stimuli(const CheckReport& report) {
                                 : "not needed");
   if (!report.measured) {
     std::printf("live methods: not measured; --measure says whether this machine shows them in time%s\n",
-                native ? ", and native whether they differ at all" : "");
+                native ? ", and whether they differ at all under timing = \"native\"" : "");
   }
 }
 
@@ -180,7 +180,7 @@ void print_framing(const CheckReport& report) {
     for (const std::string& name : one.cut) std::printf("; %s leaves the picture", name.c_str());
     if (one.cut.empty())
       std::printf(one.scene.visible.empty() ? "; the scene declares nothing that must stay visible"
-                                            : "; what must stay visible does");
+                                            : "; all that must stay visible is in the picture");
     std::printf("\n");
   }
   for (const std::string& note : framing_notes(report.protocol, report.scenes))
@@ -226,7 +226,7 @@ void print_report(const CheckReport& report) {
   if (!report.common.empty())
     print_common(report.common);
   else if (!report.settings.empty())
-    std::printf("\nother refresh rates: --compare looks at them, which takes minutes with so many frames\n");
+    std::printf("\nother refresh rates: --compare checks them, which takes minutes with so many frames\n");
   print_speed(report);
   print_stimuli(report);
   print_framing(report);

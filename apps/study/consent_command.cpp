@@ -31,7 +31,7 @@ const char* word_of(const std::optional<bool>& granted) {
   return *granted ? "yes" : "no";
 }
 
-constexpr const char* backups_title = "Backups that hold gaze still; delete them:";
+constexpr const char* backups_title = "Backups that still hold gaze; delete them:";
 constexpr const char* exports_title =
     "Exports that may hold gaze; delete them and their copies, or make them again:";
 
@@ -47,8 +47,8 @@ void print_change(const ConsentCommand& command) {
   print_list("Could not be cleaned:", done.left);
   study::check_nothing_left(command.database, done.left);
   if (!done.backups.empty()) {
-    throw base::Error(command.database, "has backups that hold gaze of " + command.participant + " still",
-                      "delete the files listed and do this again");
+    throw base::Error(command.database, "has backups that still hold gaze of " + command.participant,
+                      "delete the files listed and run the command again");
   }
 }
 
@@ -79,16 +79,16 @@ void add_consent_command(CLI::App& app) {
   sub.add_option("participant", command->participant, "Code of the participant")->required();
   add_database(sub, command->database);
   sub.add_option("--gaze", command->gaze,
-                 "Whether where they look may be recorded; no deletes what was, also from the raw file")
+                 "Whether gaze may be recorded; no deletes the recorded gaze, also from the raw file")
       ->check(CLI::IsMember({"yes", "no"}));
   sub.add_option("--sharing", command->sharing,
-                 "Whether they may stand in public exports (BIDS, Psych-DS), with all their sessions")
+                 "Whether public exports (BIDS, Psych-DS) may include the participant, with all sessions")
       ->check(CLI::IsMember({"yes", "no"}));
   add_incomplete(sub, command->incomplete);
   sub.footer(
-      "Without --gaze and --sharing it changes nothing, and names what may hold gaze that was refused. "
-      "Changes hold for all sessions there are and are "
-      "logged; a consent page that is answered later counts again.");
+      "Without --gaze and --sharing it changes nothing, and lists files that may hold refused gaze. Changes "
+      "apply to all existing sessions and are logged; a consent page that is answered later replaces them "
+      "for its session.");
   sub.callback([command] { consent(*command); });
 }
 

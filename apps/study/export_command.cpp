@@ -66,22 +66,20 @@ void add_export_command(CLI::App& app) {
                "locale's decimal mark is a comma, semicolons and decimal commas")
       ->needs(csv);
   sub.add_flag("--gaze", options->gaze,
-               "CSV, BIDS: also where people looked, of those who allowed that; the mouse is marked as such");
+               "CSV, BIDS: also gaze, of those who allowed it; mouse positions are marked as such");
   add_incomplete(sub, options->incomplete);
   sub.footer(
       "BIDS and Psych-DS leave out whoever refused that data be shared; CSV is the lab's own copy and holds "
       "everybody. \n"
-      "A folder is made, or replaced when it is an earlier export as it was written. It is registered in the "
+      "The folder is created, or replaced when it is an unchanged earlier export. It is registered in the "
       "database,\n"
       "which must be writable for that, and in your own register (~/.local/state/vip-lab/exports.jsonl): "
       "when "
       "one of\n"
-      "the people in it withdraws, the folder is deleted, to be exported again. What the register lacks, or "
-      "what was\n"
-      "changed, is named and stays.\n"
-      "CSV is the owner's alone to read (folder 0700, files 0600), since it holds all that is known of "
-      "people;\n"
-      "BIDS and Psych-DS are for others, as the umask says.\n"
+      "the people in it withdraws, the folder is deleted, to be exported again. A folder that the register "
+      "lacks, or that was\nchanged, is listed and not deleted.\n"
+      "Only the owner can read CSV (folder 0700, files 0600), since it holds all that is known of people;\n"
+      "BIDS and Psych-DS can be read by others, as the umask allows.\n"
       "A text that a spreadsheet would take for a formula has an apostrophe before it (dictionary.csv says "
       "how\n"
       "to take it away).");
@@ -103,7 +101,8 @@ void add_export_command(CLI::App& app) {
       print_public(study::export_psych_ds(file, options->psych_ds), options->psych_ds);
     }
     if (const auto why = study::why_not_registered())
-      std::fprintf(stderr, "exports cannot be registered, so that a withdrawal names and keeps them: %s\n",
+      std::fprintf(stderr,
+                   "exports cannot be registered, so a withdrawal lists them and does not delete them: %s\n",
                    for_terminal(*why).c_str());
   });
 }

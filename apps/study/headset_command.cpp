@@ -40,7 +40,7 @@ std::string hertz(double rate) { return fmt::format("{:g}", rate); }
 std::string refresh_text(const HeadsetOffer& offer) {
   if (!offer.session) return "not known: " + offer.no_session;
   const HeadsetOffer::InSession& session = *offer.session;
-  if (session.refresh_hz.empty()) return "not told; it is measured when a session runs";
+  if (session.refresh_hz.empty()) return "not reported; it is measured when a session runs";
   std::string out = listed(session.refresh_hz, hertz) + " Hz";
   if (session.refresh_now) out += ", now " + hertz(*session.refresh_now) + " Hz";
   return out;
@@ -55,10 +55,10 @@ void print_offer(const HeadsetOffer& offer) {
       }));
   row("refresh", refresh_text(offer));
   row("blend", offer.opaque ? "opaque" : "the world shows through the picture");
-  row("head", offer.position ? "direction and place are followed" : "direction alone is followed");
+  row("head", offer.position ? "rotation and position are tracked" : "only rotation is tracked");
   row("gaze", offer.eye_gaze ? "eye tracker" : "none");
-  row("times", offer.time_converts ? "told on the system's clock: evidence grade C"
-                                   : "not told on the system's clock: evidence grade D");
+  row("times", offer.time_converts ? "on the system's clock: evidence grade C"
+                                   : "not on the system's clock: evidence grade D");
   if (offer.session) row("formats", listed(offer.session->formats, gl_format_name));
   row("extensions", listed(offer.extensions, [](const std::string& name) { return name; }));
 }
@@ -131,13 +131,14 @@ void add_headset_command(CLI::App& app) {
                       "Protocol file or name: which of its settings are exact on it");
   command->add_option("--json", options->json, "File for the same as JSON")->check(output_file());
   auto* show = command->add_option("--show", options->show.seconds,
-                                   "Show a test scene in it for so many seconds, and say what happened");
+                                   "Show a test scene for this many seconds, and report what happened");
   show->check(CLI::Range(0.1, 3600.0));
-  command->add_option("--refresh", options->show.refresh_hz, "Refresh rate to ask for meanwhile, Hz")
+  command->add_option("--refresh", options->show.refresh_hz, "Refresh rate to request with --show, Hz")
       ->check(CLI::Range(1.0, 1000.0))
       ->needs(show);
   command
-      ->add_option("--patience", options->show.patience_s, "Most seconds that the runtime may hold a frame")
+      ->add_option("--patience", options->show.patience_s,
+                   "Longest time that the runtime may hold a frame, s")
       ->check(CLI::Range(0.1, 600.0))
       ->needs(show);
   command->callback([options] {

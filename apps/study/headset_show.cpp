@@ -72,9 +72,9 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string rate_text(const HeadsetRate& rate) {
   std::string out = rate.measured_hz
-                        ? fmt::format("{:.2f} Hz by settled steps of predicted times", *rate.measured_hz)
+                        ? fmt::format("{:.2f} Hz measured from predicted times", *rate.measured_hz)
                         : "not known: too few steps between predicted times";
-  if (rate.told_hz) out += fmt::format("; {:g} Hz by the runtime's word", *rate.told_hz);
+  if (rate.told_hz) out += fmt::format("; {:g} Hz reported by the runtime", *rate.told_hz);
   return out;
 }
 
@@ -102,7 +102,7 @@ void print_report(const ShowReport& report) {
   row("rate", rate_text(report.rate));
   row("dropped", fmt::format("{} slots; {} predicted times repeated, {} off the grid", report.dropped,
                              report.repeated, report.off_grid));
-  row("times", report.times_convert ? "on the system's clock" : "not told on the system's clock");
+  row("times", report.times_convert ? "on the system's clock" : "not on the system's clock");
   row("gaze", gaze_text(report));
   row("hands", fmt::format("pressed {} times, stick pushed {} times", report.selected, report.pushed));
   for (const std::string& note : report.notes) row("note", note);
@@ -122,7 +122,7 @@ class Show {
     report.headset = session_->description();
     report.times_convert = session_->times_convert();
     report.has_gaze = session_->has_eye_gaze();
-    if (!session_->keeps_levels()) report.notes.emplace_back("the format of pictures loses dark levels");
+    if (!session_->keeps_levels()) report.notes.emplace_back("the picture format loses dark levels");
     if (choice.refresh_hz > 0) session_->request_rate(choice.refresh_hz);
   }
   ~Show() {
@@ -147,7 +147,7 @@ class Show {
         continue;
       }
       if (std::chrono::steady_clock::now() - idle_since > most_idle) {
-        throw base::Error("headset", "the runtime lets no session begin", "put the headset on");
+        throw base::Error("headset", "the runtime does not begin a session", "put the headset on");
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
@@ -156,7 +156,7 @@ class Show {
  private:
   void ask_to_exit() {
     asked_to_exit_ = true;
-    report_.ended = "after its time";
+    report_.ended = "after the time of --show";
     report_.rate = session_->rate();
     const double shown_hz = report_.rate.measured_hz.value_or(report_.rate.told_hz.value_or(0));
     if (asked_hz_ > 0 && std::abs(shown_hz - asked_hz_) > 0.02 * asked_hz_)
@@ -221,7 +221,7 @@ void show_sessions(const ShowChoice& choice, ShowReport& report) {
     } catch (const HeadsetLost&) {
     }
     session = sessions.make();
-    report.notes.emplace_back("a session was lost and made anew");
+    report.notes.emplace_back("a session was lost and started again");
   }
 }
 

@@ -87,20 +87,20 @@ void tell_length(const study::Protocol& protocol, const std::vector<const Measur
     const auto& drawn = place.scenes.front().view.viewport;
     where = "at " + std::to_string(drawn.width) + "x" + std::to_string(drawn.height);
   }
-  std::fprintf(
-      stderr,
-      "%s: measuring %zu live stimul%s %s, up to %s and their making, once for this station and build\n",
-      for_terminal(protocol.name).c_str(), open.size(), open.size() == 1 ? "us" : "i", where.c_str(),
-      base::duration_words(seconds).c_str());
+  std::fprintf(stderr,
+               "%s: measuring %zu live stimul%s %s, up to %s plus the time to prepare them, once for this "
+               "station and build\n",
+               for_terminal(protocol.name).c_str(), open.size(), open.size() == 1 ? "us" : "i", where.c_str(),
+               base::duration_words(seconds).c_str());
 }
 
-/// "3 of 30 live cells do not reach their setting, HiRes faucet 32k at (17, 4): ...".
+/// "3 of 30 live cells do not reach their setting, for example HiRes faucet 32k at (17, 4): ...".
 std::string refusal(const MeasuredReport& report) {
   const auto slow = [](const MeasuredCell& one) { return one.too_slow; };
   const auto count = std::count_if(report.cells.begin(), report.cells.end(), slow);
   const MeasuredCell& first = *std::find_if(report.cells.begin(), report.cells.end(), slow);
   return std::to_string(count) + " of " + std::to_string(report.cells.size()) +
-         " live cells do not reach their setting, " + stimulus_name(first.what) +
+         " live cells do not reach their setting, for example " + stimulus_name(first.what) +
          (first.setting.mean > 0 ? " at " + study::setting_name(first.setting) : "") + ": " + first.words;
 }
 
@@ -170,7 +170,7 @@ MeasuredReport check_live(const study::Protocol& protocol, SessionSetup& setup, 
   MeasuredReport report = judge_here(protocol, setup, live);
   const std::set<int> doubtful = slow_by_kept(report, live);
   if (!doubtful.empty() && !accept_slow) {
-    std::fprintf(stderr, "%s: too slow by the rates that were kept; they are measured again\n",
+    std::fprintf(stderr, "%s: too slow by the stored rates; they are measured again\n",
                  for_terminal(protocol.name).c_str());
     place.anew = [&doubtful](int cell) { return doubtful.count(cell) > 0; };
     report = judge_here(protocol, setup, measure_live(protocol, *setup.stimuli, place));
@@ -182,9 +182,10 @@ MeasuredReport check_live(const study::Protocol& protocol, SessionSetup& setup, 
     std::fprintf(stderr, "%s: timing = \"native\" compares equal stimuli here: %s\n",
                  for_terminal(protocol.name).c_str(), for_terminal(report.collapse).c_str());
   if (report.too_slow && !accept_slow)
-    throw base::Error(protocol.name + " on this station", refusal(report),
-                      "bake what may be baked, make the picture smaller, use a faster machine, or add "
-                      "--accept-slow");
+    throw base::Error(
+        protocol.name + " on this station", refusal(report),
+        "bake the stimuli that can be baked, make the picture smaller, use a faster machine, or add "
+        "--accept-slow");
   return report;
 }
 

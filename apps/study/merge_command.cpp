@@ -51,8 +51,8 @@ void merge(const MergeCommand& command) {
   std::printf("%s: %lld sessions, %lld of them test data; %lld copies recognised\n", command.into.c_str(),
               static_cast<long long>(done.sessions), static_cast<long long>(done.test_sessions),
               static_cast<long long>(done.recognised));
-  print_list("Codes that stood for several people:", done.renamed);
-  print_list("Withdrew, and is in no merge:", done.withdrawn);
+  print_list("Codes that were used for several people:", done.renamed);
+  print_list("Withdrew, and left out of the merge:", done.withdrawn);
   print_list("Protocols of one name and version with different texts, kept apart:", done.namesakes);
   print_balance(done, command.into);
   for (const auto& [code, gone] : done.buried)
@@ -67,7 +67,7 @@ void add_merge_command(CLI::App& app) {
   auto command = std::make_shared<MergeCommand>();
   CLI::App& sub = *app.add_subcommand("merge", "Join the databases of several stations");
   sub.add_option("databases", command->sources, "Databases to join; they stay as they are")->required();
-  sub.add_option("--into", command->into, "Database to make, or one that takes them in")
+  sub.add_option("--into", command->into, "Database to create, or an existing one to add them to")
       ->required()
       ->check(output_file());
   add_incomplete(sub, command->incomplete);

@@ -33,8 +33,8 @@ study::Protocol read_again(const study::OpenRun& run, const std::string& place) 
   } catch (const base::Error& error) {
     const std::string reason = error.what();
     throw base::Error(place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
-                      "finish it with the version of vip-study that wrote it, from the copy '.bak' beside it "
-                      "where this one has upgraded it; status, export and vip-stats read it");
+                      "finish it with the version of vip-study that wrote it; if this version upgraded it, "
+                      "use the copy '.bak' beside it; status, export and vip-stats can read it");
   }
 }
 
@@ -148,17 +148,15 @@ void resume(const ResumeOptions& options) {
 
 void add_resume_command(CLI::App& app) {
   auto options = std::make_shared<ResumeOptions>();
-  CLI::App& sub = *app.add_subcommand("resume", "Finish what was planned and not answered");
+  CLI::App& sub = *app.add_subcommand("resume", "Finish the sessions that were planned and not completed");
   add_play_options(sub, options->play);
-  sub.add_option(
-         "--setting", options->settings,
-         "Setting file that must be one which the sessions began with; without: the recorded ones hold "
-         "all the same")
+  sub.add_option("--setting", options->settings,
+                 "Setting file that must be one that the sessions began with; resume uses the recorded "
+                 "settings in any case")
       ->allow_extra_args(false);
-  sub.add_option(
-         "--stimulus", options->stimuli,
-         "Where the bake or the folder of bakes is now that the sessions began with, when it was moved; "
-         "it is known by its hash")
+  sub.add_option("--stimulus", options->stimuli,
+                 "New path of the bake or folder of bakes that the sessions began with, if it was moved; it "
+                 "is recognised by its hash")
       ->allow_extra_args(false);
   sub.footer(exit_status_help);
   sub.callback([options] { resume(*options); });

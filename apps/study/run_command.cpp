@@ -46,7 +46,7 @@ struct RunCommand {
 std::vector<std::string> participant_codes(const RunCommand& command, const study::Protocol& protocol) {
   if (!command.codes.empty()) return command.codes;
   if (command.run.observer.empty())
-    throw base::Error("--participant", "is missing: nobody is named",
+    throw base::Error("--participant", "is missing: no participant is named",
                       "write --participant P07, or name an --observer");
   const int count = command.participants > 0 ? command.participants : protocol.participants;
   std::vector<std::string> codes;
@@ -148,12 +148,13 @@ void check_station_number(study::Store& store, const study::Protocol& protocol,
                           study::station_text(*other) + ", and this run has no station number",
                       "add --station " + study::station_text(*other) + ", or use another database");
   if (!other && !unnumbered) return;
-  std::fprintf(stderr,
-               "%s: warning: sessions of protocol '%s' stand here %s; this run is station %s: see the "
-               "balance that vip-study merge prints\n",
-               database.c_str(), protocol.name.c_str(),
-               other ? ("as station " + study::station_text(*other)).c_str() : "without a station number",
-               study::station_text(*common.station_number).c_str());
+  std::fprintf(
+      stderr,
+      "%s: warning: sessions of protocol '%s' were recorded here %s; this run is station %s: see the "
+      "balance that vip-study merge prints\n",
+      database.c_str(), protocol.name.c_str(),
+      other ? ("as station " + study::station_text(*other)).c_str() : "without a station number",
+      study::station_text(*common.station_number).c_str());
 }
 
 Played play_planned(const RunCommand& command, const study::Protocol& protocol,
@@ -208,8 +209,8 @@ void run(RunCommand& command) {
   for (const std::string& note : framing_notes(protocol, setup.scenes))
     std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), for_terminal(note).c_str());
   if (setup.gaze && !asks_gaze(protocol))
-    std::fprintf(stderr, "%s: does not ask %s; where one looks will not be recorded\n",
-                 command.protocol.c_str(), study::gaze_question);
+    std::fprintf(stderr, "%s: does not ask %s; gaze will not be recorded\n", command.protocol.c_str(),
+                 study::gaze_question);
   const StopSignals signals;
   end_command(command.play.database, play_planned(command, protocol, common, codes, setup));
 }
@@ -223,13 +224,13 @@ void add_play_options(CLI::App& command, PlayOptions& options) {
   command.add_flag("--console", options.console,
                    "Experimenter's console in this terminal: plan, timing and keys to steer the session");
   command.add_flag("--accept-slow", options.accept_slow,
-                   "Also play live cells that this station does not show at their setting: they are measured "
-                   "before the session, once for a station and build");
+                   "Also play live cells for which this station is too slow; live cells are measured before "
+                   "the session, once for a station and build");
   command.add_flag("--events", options.events,
-                   "Print a line for each step of a session once it is safe, without answers");
+                   "Print a line for each step of a session once it is stored, without answers");
   auto* mirror = command.add_flag("--mirror", options.mirror,
-                                  "Show the experimenter the pages that the participant sees, in a second "
-                                  "window, in a headset's case its left eye's view; stimuli are black");
+                                  "Show the experimenter the participant's pages in a second window (of a "
+                                  "headset, the left eye's view); stimuli are black");
   command
       .add_flag("--mirror-reveal", options.mirror_reveal,
                 "With --mirror: show stimuli too; this unblinds and is logged")
@@ -253,20 +254,19 @@ void add_run_command(CLI::App& app) {
       "--observer", command->run.observer,
       "Simulated observer: ptpe:a=31,b=0.035, frames, random, constant:4 or dropout:0.2; without: a person");
   sub.add_option("--clock", command->run.clock,
-                 "Play in real time (a person's), or without waiting (an observer's)")
+                 "Play in real time (default of a person), or without waiting (default of an observer)")
       ->check(CLI::IsMember({"real", "virtual"}));
   sub.add_option("--display", command->run.display,
-                 "Where frames go: a window (a person's), drawn without a window, a headset by OpenXR, "
-                 "or nowhere (an observer's)")
+                 "Where frames go: a window (default of a person), drawn without a window, a headset by "
+                 "OpenXR, or nowhere (default of an observer)")
       ->check(CLI::IsMember({"window", "headless", "openxr", "none"}));
   sub.add_option("--answer", command->run.answer,
-                 "With what a person answers in a headset, commas between: ray (a hand points), stick, dwell "
-                 "(one looks at it for a second), keyboard (this terminal's); default: ray,stick,keyboard");
-  sub.add_option(
-         "--gaze", command->run.gaze,
-         "Where one is taken to look: the middle of the picture, the mouse, the head's direction, the "
-         "headset's eye tracker (recorded where gaze_kept is answered with yes), or not known; tracked "
-         "without a headset: an observer's, as if a tracker had told it")
+                 "How a person answers in a headset, separated by commas: ray (point with the hand), stick, "
+                 "dwell (look at it for a second), keyboard (of this terminal); default: ray,stick,keyboard");
+  sub.add_option("--gaze", command->run.gaze,
+                 "Where the participant is assumed to look: the middle of the picture, the mouse, the head's "
+                 "direction, the headset's eye tracker (recorded if gaze_kept is answered with yes), or not "
+                 "known; tracked without a headset: an observer's gaze, as if a tracker had measured it")
       ->check(CLI::IsMember({"fixed", "mouse", "head", "tracked", "none"}));
   sub.add_option("--station", command->run.station,
                  "Name of the station, kept with the sessions. A number at its end, 2/5 or \"lab2 2/5\" for "
@@ -283,11 +283,12 @@ void add_run_command(CLI::App& app) {
       ->capture_default_str();
   sub.add_option("--trial-seconds", command->trial_seconds,
                  "Length of every trial; changes the protocol's hash and marks the data as test");
-  sub.add_option("--stimulus", command->bake,
-                 "Bake to play (vip-study bake), or folder of bakes (vip-study bake --protocol), of which "
-                 "what is there is played and the rest runs live; without: live fluid, or nothing");
+  sub.add_option(
+      "--stimulus", command->bake,
+      "Bake to play (vip-study bake), or folder of bakes (vip-study bake --protocol), of which stimuli "
+      "without a bake run live; without this option: live fluid, or nothing with --display none");
   add_backend(sub, command->run.backend, "Computes live fluid");
-  sub.add_option("--ptpe", command->ptpe, "PTPE file in force; kept with the sessions");
+  sub.add_option("--ptpe", command->ptpe, "PTPE file to use; stored with the sessions");
   sub.add_option(
          "--setting", command->settings,
          "best.toml of vip-bench accuracy --budget: all numbers of the solver for the live cells of its "

@@ -22,11 +22,11 @@ void print_lost(const study::Salvage& done) {
     std::printf("lost: %lld answers of %s\n", number(answers), participant.c_str());
   if (done.frames_lost > 0) std::printf("lost: times of %lld frames\n", number(done.frames_lost));
   for (const auto& [table, rows] : done.rows_lost)
-    std::printf("lost: %lld rows of %s that belong to nothing that was found\n", number(rows), table.c_str());
+    std::printf("lost: %lld rows of %s that refer to rows not found\n", number(rows), table.c_str());
   if (done.unreadable > 0)
     std::printf("lost: %lld lines of the journal that cannot be read\n", number(done.unreadable));
   if (!done.sound && !done.journal)
-    std::printf("There is no journal of answers: what else stood on destroyed pages is not known.\n");
+    std::printf("There is no journal of answers: what else the destroyed pages held is not known.\n");
 }
 
 void salvage(const SalvageCommand& command) {
@@ -39,10 +39,10 @@ void salvage(const SalvageCommand& command) {
   std::printf("  %lld answers from the journal alone%s\n", number(done.answers_journal),
               done.journal ? "" : " (there is none)");
   if (done.answers_under_way > 0)
-    std::printf("  %lld of these were on their way into the database when the program ended\n",
+    std::printf("  %lld of these were being written to the database when the program ended\n",
                 number(done.answers_under_way));
   for (const std::string& line : done.different)
-    std::printf("told otherwise by the two, the database's was taken: %s\n", line.c_str());
+    std::printf("differs between database and journal, the database's was taken: %s\n", line.c_str());
   for (const std::string& part : done.left_out)
     std::printf("not of vip-study, and was left out: %s\n", part.c_str());
   for (const std::string& code : done.withdrawn)

@@ -108,10 +108,10 @@ std::string difference(const FramedScene& a, const FramedScene& b) {
 
 Viewing screen_viewing(std::optional<double> width_mm, std::optional<double> distance_mm, bool true_angle) {
   if (width_mm.has_value() != distance_mm.has_value())
-    throw base::Error("--screen-width-mm and --viewing-distance-mm", "make an angle only together",
-                      "give both, or neither");
+    throw base::Error("--screen-width-mm and --viewing-distance-mm",
+                      "are needed together for the visual angle", "give both, or neither");
   if (true_angle && !width_mm)
-    throw base::Error("camera_angle = \"true\"", "needs to know how large the picture is seen",
+    throw base::Error("camera_angle = \"true\"", "needs the visual angle of the picture",
                       "give --screen-width-mm and --viewing-distance-mm");
   Viewing viewing;
   viewing.true_angle = true_angle;
@@ -165,21 +165,20 @@ void check_one_picture(const study::Protocol& protocol, const std::vector<Framed
   const std::string mixed = mixed_pictures(scenes);
   if (mixed.empty() || protocol.accept_mixed_pictures) return;
   throw base::Error("--stimulus", "pictures that are compared differ: " + mixed,
-                    "bake on this station at the session's size and angle, or keep particles alone, which "
-                    "the session draws (vip-study bake --protocol); or write accept_mixed_pictures = true "
-                    "in the protocol, which the report then names");
+                    "bake on this station at the session's size and angle, or bake particles only, which the "
+                    "session draws (vip-study bake --protocol); or write accept_mixed_pictures = true in the "
+                    "protocol, and the report names the difference");
 }
 
 void check_visible(const std::vector<FramedScene>& scenes) {
   for (const FramedScene& one : scenes) {
     if (one.cut.empty()) continue;
     const auto& to = one.view.viewport;
-    throw base::Error(
-        one.file,
-        one.cut.front() + " leaves the picture of " + size_words({to.width, to.height}) +
-            " px at the camera's " + degrees(one.framing.camera_deg),
-        "sit nearer or make the picture larger under camera_angle = \"true\", else make it wider; "
-        "vip-study check --preview shows it");
+    throw base::Error(one.file,
+                      one.cut.front() + " leaves the picture of " + size_words({to.width, to.height}) +
+                          " px at the camera's " + degrees(one.framing.camera_deg),
+                      "with camera_angle = \"true\" sit nearer or make the picture larger, otherwise make it "
+                      "wider; vip-study check --preview shows it");
   }
 }
 
@@ -214,8 +213,8 @@ std::vector<std::string> framing_notes(const study::Protocol& protocol,
       cells.begin(), cells.end(), [](const study::Cell& cell) { return follows_gaze(cell.stimulus.method); });
   if (follows && !scenes.front().framing.visual_deg)
     out.emplace_back(
-        "eccentricity is taken in the camera's angle: how large the picture is seen is not known; "
-        "--screen-width-mm and --viewing-distance-mm tell");
+        "eccentricity is computed from the camera's angle, because the visual angle of the picture is not "
+        "known; give --screen-width-mm and --viewing-distance-mm");
   for (const FramedScene& one : scenes) {
     const auto& drawn = one.view.viewport;
     if (drawn.width == one.shown.width && drawn.height == one.shown.height) continue;

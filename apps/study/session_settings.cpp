@@ -44,7 +44,8 @@ void check_step(const SolverSetting& setting, const study::Protocol& protocol, c
       fmt::format("was chosen for frames of content {:.6g} s apart (frames_per_s = {:.6g}), and "
                   "the protocol's content step is {:.6g} s",
                   step_s, setting[SolverKnob::Rate], asked_s),
-      "choose one of that rate (vip-bench accuracy --budget … --of-rate), or change content_step_s there");
+      "choose one of that rate (vip-bench accuracy --budget … --of-rate), or change the protocol's "
+      "content_step_s");
 }
 
 }  // namespace
@@ -58,7 +59,7 @@ SessionSettings::SessionSettings(const std::vector<std::string>& texts, const st
     for (const Setting& other : settings_) {
       if (other.file.setting.method == one.file.setting.method &&
           other.file.setting[SolverKnob::Size] == one.file.setting[SolverKnob::Size])
-        throw base::Error(place, "holds a second setting for " + named(one.file.setting), "give one of them");
+        throw base::Error(place, "is a second setting for " + named(one.file.setting), "give one of them");
     }
     settings_.push_back(std::move(one));
   }
@@ -93,7 +94,7 @@ std::vector<std::string> SessionSettings::notes(const study::Protocol& protocol)
     const bool some_rest = turns(SolverKnob::Beta, setting.method) && setting[SolverKnob::Beta] < 1;
     if (some_rest || sim::traits_of(setting.method).temporal)
       out.push_back(name + "tau follows its beta, " +
-                    value_words(SolverKnob::Beta, setting[SolverKnob::Beta]) + ", and no frame rate");
+                    value_words(SolverKnob::Beta, setting[SolverKnob::Beta]) + ", and not the frame rate");
   }
   return out;
 }

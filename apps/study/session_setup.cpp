@@ -32,7 +32,7 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
     throw base::Error("--gaze head", "needs a headset", "use --gaze fixed, or --display openxr");
   if (options.gaze == "tracked" && options.display == "openxr" && !asks_gaze(protocol))
     throw base::Error(
-        "--gaze tracked", "is not read before somebody allows it, and the protocol does not ask",
+        "--gaze tracked", "is read only with consent, and the protocol does not ask for it",
         std::string("ask ") + study::gaze_question + " on its page of kind consent, or use --gaze head");
   const bool shows_pages = options.display == "window" || options.display == "openxr";
   if (options.observer.empty() && !shows_pages)
@@ -46,10 +46,9 @@ void check_together(const RunOptions& options, const study::Protocol& protocol) 
     throw base::Error("--gaze mouse", "needs a window", "use --gaze fixed, or --display window");
   if (options.gaze == "tracked" && options.display != "openxr" && options.observer.empty())
     throw base::Error("--gaze tracked", "needs an eye tracker, and only a headset's can be read",
-                      "use --gaze fixed or mouse; an --observer may be taken as tracked");
+                      "use --gaze fixed or mouse; with an --observer, tracked is allowed");
   if (protocol.fixation && options.display != "none" && options.gaze != "fixed")
-    throw base::Error("--gaze " + options.gaze,
-                      "is not where the protocol prescribes to look (gaze = \"fixation\")",
+    throw base::Error("--gaze " + options.gaze, "contradicts gaze = \"fixation\" of the protocol",
                       "use --gaze fixed, or gaze = \"free\" in the protocol");
   if (protocol.design.timing == study::TimingSource::Native && options.clock == "virtual")
     throw base::Error(protocol.name, "has timing = \"native\", and time stands still on the virtual clock",
@@ -68,8 +67,8 @@ void refuse_pictures(const SessionBakes& bakes, const study::Protocol& protocol)
   for (const study::Cell& cell : protocol.design.cells) {
     const FoundBake* bake = bakes.of(cell);
     if (bake && bake->header.has_pictures()) {
-      throw base::Error(bake->path.string(), "holds pictures, which two eyes would see flat",
-                        "bake particles for a headset: vip-study bake without --pictures");
+      throw base::Error(bake->path.string(), "holds pictures, which would look flat in a headset",
+                        "bake particles for a headset: vip-study bake without --pictures or --keep pictures");
     }
   }
 }
@@ -89,7 +88,7 @@ void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionS
                     Viewing& viewing) {
   const bool tracked = options.gaze == "tracked";
   if (tracked && !display.session().eye_gaze)
-    throw base::Error("--gaze tracked", "the headset has no eye tracker that its software offers",
+    throw base::Error("--gaze tracked", "the headset's software offers no eye tracker",
                       "switch eye tracking on in the headset's software, or use --gaze head");
   const auto recorder = std::make_shared<HeadsetRecorder>(
       display, tracked ? study::GazeOrigin::Tracker : study::GazeOrigin::Head);
@@ -156,7 +155,7 @@ stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::str
     throw base::Error(place,
                       "was fitted to another mean of the frame rate than protocol '" + protocol.name +
                           "' sets (pacing.mean)",
-                      "fit it again from a pilot of that mean, or change the protocol's");
+                      "fit it again from a pilot of that mean, or change pacing.mean of the protocol");
   }
   return model;
 }

@@ -52,11 +52,10 @@ void add_withdraw_command(CLI::App& app) {
   add_database(sub, command->database);
   sub.add_flag("--yes", command->yes, "Do not ask");
   sub.footer(
-      "Deletes from the database and its log, its backups, the file of personal data, and every export and "
-      "report\n"
-      "that was made from it and holds the participant, whole: make those again with one command. What "
-      "cannot be\n"
-      "deleted is named, and the exit status is then 1; repeat the command when it is mended.");
+      "Deletes the participant from the database and its log, its backups and the file of personal data. "
+      "Deletes\nwhole each export and report that was made from it and holds the participant: make those "
+      "again. What cannot\nbe deleted is listed, and the exit status is then 1; repeat the command when the "
+      "cause is fixed.");
   sub.callback([command] { withdraw(*command); });
 }
 

@@ -8,7 +8,7 @@
 #include "stats/base/text.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Any scene, any method, as pictures or live", "vip-view"};
+  CLI::App app{"Show a scene with any method, live or as pictures", "vip-view"};
   apps::ViewOptions options;
   app.add_option("scene", options.scene, "Scene file")->required();
   bool headless = false;
@@ -39,17 +39,17 @@ int main(int argc, char** argv) {
                            ->check(CLI::Range(1, sim::LiveNumbers::most_iterations)));
   app.add_option("--overlay", options.overlay,
                  "Painted over the water: " + base::joined(apps::overlay_names()) +
-                     "; headless, several with commas make a picture each")
+                     "; headless, several separated by commas make one picture each")
       ->capture_default_str();
   of_setting.push_back(
       app.add_option("--tau", options.tau, "tau of temporal acceleration, frames/s: live or fixed:X")
           ->capture_default_str());
   apps::add_backend(app, options.backend);
-  app.add_option("--frames", options.frames, "Frames to run (headless: 100 where left out; headset)")
+  app.add_option("--frames", options.frames, "Frames to run, headless (default: 100) or in a headset")
       ->check(CLI::Range(1, 10'000));
   app.add_option("--png", options.png_folder, "Folder for frame_0000.png ... (headless); made when missing")
       ->check(apps::output_folder());
-  apps::add_count(app, "--every", options.every, 1, 10'000, "A picture every so many frames");
+  apps::add_count(app, "--every", options.every, 1, 10'000, "Write a picture every this many frames");
   apps::add_size(app, options.size, "Picture or window, px");
   app.add_option("--camera", options.camera, "view or overview")
       ->check(CLI::IsMember({"view", "overview"}))
@@ -63,10 +63,11 @@ int main(int argc, char** argv) {
   for (CLI::Option* option : of_setting) setting->excludes(option);
   std::string sweep;
   app.add_option("--sweep", sweep,
-                 "Sweep file of vip-bench accuracy: says what the setting in force costs and errs by, beside "
-                 "HiRes");
-  app.add_option("--effects-off", options.effects_off,
-                 "Effects of the scene that do not run, and with them what needs them: kinds with commas");
+                 "Sweep file of vip-bench accuracy: prints the cost and error of the current setting, "
+                 "compared with HiRes");
+  app.add_option(
+      "--effects-off", options.effects_off,
+      "Effects of the scene to switch off, together with those that need them: kinds separated by commas");
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
     if (headless) options.display = "headless";

@@ -39,11 +39,12 @@ void check_error(const Box& box, const std::vector<float>& radii, const std::str
   for (const Axis& axis : box) {
     const double error = bake::error_of(axis);
     if (error < double(finest) / 20) continue;
-    throw base::Error(place,
-                      fmt::format("particles spread over {:.4g} m, which 16 bit resolve to {:.3g} m; radius "
-                                  "{:.3g} m needs a twentieth",
-                                  axis.max - axis.min, error, finest),
-                      "keep the fluid inside the tank, or use a smaller --n-star");
+    throw base::Error(
+        place,
+        fmt::format("particles spread over {:.4g} m, which 16 bit resolve to {:.3g} m; radius "
+                    "{:.3g} m needs a twentieth",
+                    axis.max - axis.min, error, finest),
+        "keep the fluid inside the tank, or use a smaller n_* (--n-star, or n_star in a protocol)");
   }
 }
 
@@ -97,7 +98,8 @@ void encode_particles(double time_s, const FrameAccount& account,
                       const std::vector<float>& radius_by_level_m, const std::vector<float>* temperature_k,
                       int zstd_level, const std::string& place, Bytes& out) {
   if (particles.size() > static_cast<std::size_t>(max_bake_particles)) {
-    throw base::Error(place, "holds more particles than a bake may", "use a smaller --n-star");
+    throw base::Error(place, "holds more particles than a bake may",
+                      "use a smaller n_* (--n-star, or n_star in a protocol)");
   }
   BakeFacts facts{time_s, account};
   const auto order = order_by_level(particles, radius_by_level_m, place, facts.account.particles_by_level);

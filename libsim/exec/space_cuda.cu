@@ -13,8 +13,9 @@ namespace sim::SIM_BACKEND {
 void check(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
   throw base::Error(std::string("CUDA, ") + what, cudaGetErrorString(status),
-                    status == cudaErrorMemoryAllocation ? "use a smaller --n-star or a GPU with more memory"
-                                                        : "check the driver, or use --backend cpu");
+                    status == cudaErrorMemoryAllocation
+                        ? "use a GPU with more memory, or a smaller n_* (--n-star, or n_star in a protocol)"
+                        : "check the driver, or use --backend cpu");
 }
 
 bool launches_overlap() {

@@ -58,7 +58,7 @@ bool stands(const std::vector<Effect>& effects, const Effect& effect) {
 }
 
 std::string needs_text(const Effect& effect) {
-  return std::string("needs ") + traits_of(traits_of(effect.kind).needs).word + ", of which there is none";
+  return std::string("needs ") + traits_of(traits_of(effect.kind).needs).word + ", which is missing";
 }
 std::string needs_mend(const Effect& effect) {
   return std::string("list ") + traits_of(traits_of(effect.kind).needs).word + " too, or leave it out";

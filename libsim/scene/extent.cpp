@@ -23,7 +23,7 @@ void check_water(const Scene& scene, const std::string& place, double spacing) {
     throw base::Error(
         place + "water.max_m",
         fmt::format("makes the water {:.3g} m thin, where particles are {:.3g} m apart", side, spacing),
-        "make the water thicker, or use a larger --n-star");
+        "make the water thicker, or use a larger n_* (--n-star, or n_star in a protocol)");
   }
 }
 
@@ -33,7 +33,7 @@ void check_substeps(const Scene& scene, const std::string& place, std::int64_t n
   throw base::Error(
       place + "time.v_ref_m_s",
       fmt::format("makes {} substeps a frame, at most {} are computed", substeps, most_substeps),
-      "lower it, raise frames_per_s, or use a smaller --n-star");
+      "lower it, raise frames_per_s, or use a smaller n_* (--n-star, or n_star in a protocol)");
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ void check_memory(MethodKind method, std::int64_t n_star, std::optional<double> 
   throw base::Error("n_* " + std::to_string(n_star),
                     fmt::format("takes about {:.3g} GB of memory, {:.3g} GB are free", 1e-9 * wished,
                                 1e-9 * *available_bytes),
-                    "use a smaller --n-star, or free memory");
+                    "use a smaller n_* (--n-star, or n_star in a protocol), or free memory");
 }
 
 }  // namespace sim

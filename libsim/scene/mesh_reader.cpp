@@ -21,7 +21,7 @@ Triangles read_file(const std::filesystem::path& path) {
 
 Triangles read_triangles(const base::TomlTable& table, const std::optional<std::filesystem::path>& beside) {
   if (table.has("file") && table.has("obj"))
-    table.fail("file", "stands beside obj", "give the mesh as one of the two");
+    table.fail("file", "is given together with obj", "give one of the two");
   if (!table.has("file")) {
     if (!table.has("obj"))
       table.fail("", "is a mesh without a file", "name an OBJ file: file = \"boat.obj\"");

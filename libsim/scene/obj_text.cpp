@@ -61,20 +61,20 @@ class Reader {
  private:
   void place(const std::vector<std::string_view>& words) {
     Vector at{};
-    if (words.size() < 4) fail_(line_, "has a place of fewer than three numbers", "write v x y z");
+    if (words.size() < 4) fail_(line_, "has a vertex with fewer than three coordinates", "write v x y z");
     for (std::size_t k = 0; k < 3; ++k) {
       if (!reads(words[k + 1], at[k]))
-        fail_(line_, "has '" + base::shortened(words[k + 1], 40) + "' where a number must stand",
+        fail_(line_, "has '" + base::shortened(words[k + 1], 40) + "' where a number is expected",
               "write v x y z");
       if (!(std::abs(at[k]) <= farthest))
-        fail_(line_, "has a place that is not within 1e6 of the origin", "move the mesh, or scale it");
+        fail_(line_, "has a vertex that is not within 1e6 of the origin", "move the mesh, or scale it");
     }
     mesh_.places.push_back(at);
   }
   void polygon(const std::vector<std::string_view>& words) {
     std::vector<int> corners;
     for (std::size_t k = 1; k < words.size(); ++k) corners.push_back(corner(words[k]));
-    if (corners.size() < 3) fail_(line_, "has a face of fewer than three corners", "write f a b c");
+    if (corners.size() < 3) fail_(line_, "has a face with fewer than three corners", "write f a b c");
     for (std::size_t k = 2; k < corners.size(); ++k) triangle({corners[0], corners[k - 1], corners[k]});
   }
   int corner(std::string_view word) {
@@ -82,12 +82,12 @@ class Reader {
     const auto count = static_cast<std::int64_t>(mesh_.places.size());
     std::int64_t index = 0;
     if (!reads(number, index))
-      fail_(line_, "has '" + base::shortened(word, 40) + "' where the number of a place must stand",
+      fail_(line_, "has '" + base::shortened(word, 40) + "' where the number of a vertex is expected",
             "write f a b c");
     const std::int64_t from_first = index < 0 ? count + index : index - 1;
     if (index == 0 || from_first < 0 || from_first >= count)
-      fail_(line_, "names place " + std::to_string(index) + " of " + std::to_string(count),
-            "places count from 1, and each stands before the faces that name it");
+      fail_(line_, "names vertex " + std::to_string(index) + " of " + std::to_string(count),
+            "vertices count from 1, and each must come before the faces that use it");
     return static_cast<int>(from_first);
   }
   void triangle(const std::array<int, 3>& face) {
@@ -96,7 +96,7 @@ class Reader {
     const double longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
     const Vector normal = cross(a, b);
     if (!(std::sqrt(dot(normal, normal)) / 2 > flattest * longest))
-      fail_(line_, "has a face, or a part of its fan, without area",
+      fail_(line_, "has a face, or a triangle of its fan, without area",
             "remove it, or cut the polygon into triangles of some area");
     if (mesh_.faces.size() == most_triangles)
       fail_(line_, "is one triangle too many", "use at most " + std::to_string(most_triangles));
@@ -110,14 +110,14 @@ class Reader {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::array<int, 2> edge{mesh_.faces[f][k], mesh_.faces[f][(k + 1) % 3]};
         if (!line_of.emplace(edge, lines_[f]).second)
-          fail_(lines_[f], edge_text(edge) + " is met twice in one direction",
-                "wind all faces alike, against the clock as seen from outside, two at each edge");
+          fail_(lines_[f], edge_text(edge) + " is used twice in the same direction",
+                "orient all faces counter-clockwise as seen from outside, with two faces at each edge");
       }
     }
     for (const auto& [edge, line] : line_of) {
       if (!line_of.contains({edge[1], edge[0]}))
         fail_(line, edge_text(edge) + " has a face on one side only",
-              "close the surface; corners that share a place must share its number (merge by distance)");
+              "close the surface; corners at the same point must use the same vertex (merge by distance)");
     }
   }
   /// Vertices that no face uses are dropped; the others keep their order.
@@ -138,7 +138,7 @@ class Reader {
     }
   }
   std::string edge_text(const std::array<int, 2>& edge) const {
-    return "has a hole or a seam: the edge from place " + std::to_string(edge[0] + 1) + " to " +
+    return "has a hole or a seam: the edge from vertex " + std::to_string(edge[0] + 1) + " to " +
            std::to_string(edge[1] + 1);
   }
 

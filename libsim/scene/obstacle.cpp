@@ -127,7 +127,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
   out.friction = table.number_or("friction", 0, {0, most_friction});
   if (!in_tank(out, out.start, tank_size_m))
     table.fail("centre_m", "puts a part of the obstacle outside the tank",
-               "keep all of it within tank.size_m from tank.origin_m; only above it may stand out");
+               "keep all of it within tank.size_m from tank.origin_m; it may extend beyond the top only");
   constexpr int looks = 256;
   const double whole = out.motion == ObstacleMotion::Swings
                            ? out.period_s
@@ -135,7 +135,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
   const bool goes_a_way = out.motion == ObstacleMotion::Turns || out.motion == ObstacleMotion::Swings;
   for (int k = 0; k < looks && goes_a_way; ++k) {
     if (!in_tank(out, pose_at(out, whole * k / looks), tank_size_m))
-      table.fail("motion", "takes a part of the obstacle out of the tank",
+      table.fail("motion", "moves a part of the obstacle out of the tank",
                  "move it less far, or put it farther from the walls");
   }
   return out;
@@ -152,7 +152,7 @@ void check_apart(const base::TomlTable& table, const std::vector<Obstacle>& obst
     table.fail("centre_m",
                "puts the obstacle " + base::shortest(std::round(deep * 1e5) / 1e5) +
                    " m deep into obstacle " + std::to_string(k + 1) + " of the file, and one of them is free",
-               "put them apart: what is free begins outside of others");
+               "move them apart: a free obstacle must start outside the others");
   }
 }
 

@@ -114,7 +114,8 @@ int substeps_needed(const Scene& scene, const SimulationOptions& options) {
     mend << "take " << steps << " or more, or let the run choose";
   } else {
     problem << "at most " << most_computed << " are computed";
-    mend << "lower " << traits_of(longest.of).key << ", raise frames_per_s, or use a smaller --n-star";
+    mend << "lower " << traits_of(longest.of).key
+         << ", raise frames_per_s, or use a smaller n_* (--n-star, or n_star in a protocol)";
   }
   throw base::Error(std::string("effect ") + traits_of(longest.of).word, problem.str(), mend.str());
 }

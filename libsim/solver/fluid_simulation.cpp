@@ -310,7 +310,7 @@ class FluidSimulation final : public Simulation {
   void open(const std::vector<ParticleState>& start) {
     // Particles and their cells are indexed with int.
     if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::most_per_particle) {
-      throw base::Error("particles", "are too many", "use a smaller --n-star");
+      throw base::Error("particles", "are too many", "use a smaller n_* (--n-star, or n_star in a protocol)");
     }
     const int capacity = capacity_for(start.size());
     check_start(start, capacity, adaptive());

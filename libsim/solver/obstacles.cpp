@@ -60,7 +60,8 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
     throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
                       "is " + base::shortest(thickness_m(obstacle)) +
                           " m thick: particles of this size could pass through it",
-                      "make it at least " + base::shortest(least) + " m thick, or use a larger --n-star");
+                      "make it at least " + base::shortest(least) +
+                          " m thick, or use a larger n_* (--n-star, or n_star in a protocol)");
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     if (obstacle.motion != ObstacleMotion::Free) continue;
@@ -70,7 +71,7 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
                         "give it " + base::shortest(lightest_free_kg_m3) + " kg/m3 or more");
     if (scene.central_force)
       throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
-                        "is free in a scene with a central force, which moves water alone",
+                        "is free in a scene with a central force, which moves water only",
                         "remove the force, or keep the obstacle fixed");
   }
   o.obstacles = scene.obstacles;
@@ -81,7 +82,8 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
   o.wet.zero();
   if (any_free(o.obstacles)) {
     if (time_s > 0)
-      throw base::Error("start", "lies in the middle of a run, and nobody knows where its free obstacles are",
+      throw base::Error("start",
+                        "is in the middle of a run, where the positions of its free obstacles are not known",
                         "start at frame 0, or resume from a saved state");
     std::vector<FreeBody> free;
     for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));

@@ -196,7 +196,8 @@ void check_foam(const FluidState& state, const EffectCoefficients& e, const Scen
   const double most = (1 + 2 * crest) * static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] *
                       tank[1] * tank[2] / (0.52 * diameter * diameter * diameter);
   if (most > std::numeric_limits<int>::max()) {
-    throw base::Error("effect foam", "its particles are too small: a frame may make more than can be counted",
+    throw base::Error("effect foam",
+                      "its particles are too small: a frame may create more than can be counted",
                       "raise diameter_m, or lower emission_per_s");
   }
 }

@@ -5,7 +5,7 @@ namespace study {
 CutWords words_of(CutCause cause) {
   switch (cause) {
     case CutCause::Experimenter:
-      return {"the experimenter had it shown again", "press r only where a trial must be shown again"};
+      return {"the experimenter asked for it again", "press r only where a trial must be shown again"};
     case CutCause::Participant:
       return {"the participant was asked whether to stop, and went on", "ask the participant what is wrong"};
     case CutCause::Minimised:
@@ -14,20 +14,22 @@ CutWords words_of(CutCause cause) {
       return {"another program had the headset's focus",
               "close menus, overlays and other programs of the headset"};
     case CutCause::TakenOff:
-      return {"the headset was taken off", "have it put on, and look at its sensor between the lenses"};
+      return {"the headset was taken off",
+              "ask the participant to put it on again, and check the sensor between its lenses"};
     case CutCause::NotDrawn:
       return {"the headset's software drew no pictures", "close overlays of the headset's software"};
     case CutCause::Pose:
-      return {"the headset did not know where the eyes are", "light the room, and uncover its cameras"};
+      return {"the headset lost track of the head",
+              "light the room, and check that nothing covers its cameras"};
     case CutCause::Recentred:
       return {"the headset's room was recentred", "switch recentring off in the headset's software"};
     case CutCause::Rate:
       return {"the headset's refresh rate changed", "fix the refresh rate in the headset's software"};
     case CutCause::SessionLost:
-      return {"the headset's software lost the session", "start the headset's software anew"};
+      return {"the headset's software lost the session", "restart the headset's software"};
     case CutCause::Gaze:
       return {"the eye tracker lost the eyes for over 100 ms",
-              "look at how the headset sits, and calibrate the eye tracker"};
+              "check how the headset sits, and calibrate the eye tracker"};
   }
   return {};
 }

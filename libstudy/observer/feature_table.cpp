@@ -42,7 +42,7 @@ PictureFeatures FeatureTable::of(const StimulusSpec& stimulus) {
     if (row.scene == scene && row.method == stimulus.method)
       return stimulus.n_star == "32k" ? row.at_32k : row.at_16k;
   }
-  throw base::Error(stimulus.scene + ", " + stimulus.method, "has no picture features beforehand",
+  throw base::Error(stimulus.scene + ", " + stimulus.method, "has no stored picture features",
                     "use --display headless, which measures them, or another observer");
 }
 

@@ -11,7 +11,7 @@ namespace study {
 namespace {
 
 constexpr std::string_view frames_kind = "frames";
-const std::string frames_mend = "write frames, or frames:grain=4,bias=0.3 and the like";
+const std::string frames_mend = "write frames, or frames with parameters such as frames:grain=4,bias=0.3";
 constexpr double neutral_granularity_px = 8.5, neutral_flicker = 0.02, tau_scale = 15;
 constexpr double symptom_level = 0.6, symptom_scale = 3;
 

@@ -72,7 +72,8 @@ std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSo
                                                   0, 1, "write dropout:0.2, a probability from 0 to 1");
   const std::string_view rest = specification.substr(std::min(end + 1, specification.size()));
   if (rest.starts_with(dropout))
-    fail_observer(specification, end + 1, "drops out a second time", "name dropout once, then who answers");
+    fail_observer(specification, end + 1, "names dropout twice",
+                  "name dropout once, then the observer that answers, as in dropout:0.2,constant:4");
   return std::make_unique<DropoutObserver>(probability,
                                            make_observer(rest.empty() ? "random" : rest, features));
 }

@@ -11,7 +11,8 @@ namespace study {
 namespace {
 
 constexpr std::string_view ptpe_kind = "ptpe:";
-const std::string ptpe_mend = "write ptpe:a=31,b=0.035 with slope, noise and participant_sd as you like";
+const std::string ptpe_mend =
+    "write ptpe:a=31,b=0.035; slope, noise, participant_sd and effects are optional";
 
 std::array<ObserverKey, 6> keys_of(PtpeObserverParameters& p) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -97,10 +97,12 @@ std::string what_bounds_sd(const HoldTarget& target) {
   if (bounds.low > bounds.high)
     return fmt::format("no holds of {} to {} periods have this mean", target.shortest, target.longest);
   if (bounds.low > target.sd + target.sd_tolerance)
-    return fmt::format("at exactly the wished mean the refresh forces an sd of {:.4g} or more", bounds.low);
+    return fmt::format("at exactly the requested mean the refresh forces an sd of {:.4g} or more",
+                       bounds.low);
   if (bounds.high < target.sd - target.sd_tolerance)
-    return fmt::format("at exactly the wished mean, intervals up to {:.1f} ms allow an sd of {:.4g} at most",
-                       1e3 * target.longest / target.refresh_hz, bounds.high);
+    return fmt::format(
+        "at exactly the requested mean, intervals up to {:.1f} ms allow an sd of {:.4g} at most",
+        1e3 * target.longest / target.refresh_hz, bounds.high);
   return {};
 }
 

@@ -73,10 +73,10 @@ void check_question_ids(const std::vector<base::TomlTable>& tables, const std::v
       if (among(known_question_ids(), id)) continue;
       const std::string meant = base::nearest_word(id, missing);
       if (meant.empty()) continue;
-      tables[i].fail_at(
-          "question", q,
-          "has the id \"" + id + "\", nearly \"" + meant + "\", which the programs and the analyses look for",
-          "write \"" + meant + "\" if it is meant, or an id that is less like it");
+      tables[i].fail_at("question", q,
+                        "has the id \"" + id + "\", close to \"" + meant +
+                            "\", an id that the programs and the analyses look for",
+                        "write \"" + meant + "\" if you mean it, or choose an id that is less similar");
     }
   }
 }

@@ -18,7 +18,7 @@ void check_ids(const Tables& tables, const std::vector<Block>& blocks) {
   std::set<std::string> block_ids, question_ids;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!block_ids.insert(blocks[i].id).second)
-      tables[i].fail("id", "= \"" + blocks[i].id + "\" is another block's", "use another one");
+      tables[i].fail("id", "= \"" + blocks[i].id + "\" is the id of another block", "use another id");
     if (is_scale_of_its_own(blocks[i].kind)) continue;
     for (std::size_t q = 0; q < blocks[i].questions.size(); ++q) {
       const std::string& id = blocks[i].questions[q].id;
@@ -48,7 +48,7 @@ void check_accepts(const Tables& tables, const std::vector<Block>& blocks) {
     shown = shown || has_trials(blocks[i].kind);
     for (std::size_t q = 0; shown && q < blocks[i].questions.size(); ++q) {
       if (!blocks[i].questions[q].accept) continue;
-      tables[i].fail_at("question", q, "has accept in a block after the first trials",
+      tables[i].fail_at("question", q, "has accept, but its block comes after the first trials",
                         "move the block before all trials, or remove accept");
     }
   }
@@ -75,8 +75,8 @@ void check_ask(const base::TomlTable& table, std::size_t step, const std::string
     std::vector<std::string> known;
     for (const auto& [one, asked] : questions) known.push_back(one);
     const std::string meant = base::nearest_word(id, known);
-    table.fail_at("steps", step, "asks \"" + id + "\", which is no question",
-                  (meant.empty() ? "" : "ask \"" + meant + "\" if it is meant, or ") +
+    table.fail_at("steps", step, "asks \"" + id + "\", which is not the id of any question",
+                  (meant.empty() ? "" : "ask \"" + meant + "\" if you mean it, or ") +
                       std::string("add [[block.question]] with this id, or a block of kind fms for \"fms\""));
   }
   const BlockKind kind = found->second.block->kind;
@@ -86,7 +86,7 @@ void check_ask(const base::TomlTable& table, std::size_t step, const std::string
   }
   if (found->second.question->personal) {
     table.fail_at("steps", step, "asks \"" + id + "\", which is personal",
-                  "ask it on a page alone, or remove personal");
+                  "ask it only on a page, or remove personal");
   }
 }
 
@@ -112,7 +112,7 @@ void check_asks(const base::TomlTable& table, const Block& block,
 void check_count(const base::TomlTable& table, const Block& block, const Design& design) {
   const int trials = design.groups * trials_of_group(design);
   if (block.kind == BlockKind::Practice || block.count <= trials) return;
-  table.fail("count", "= " + std::to_string(block.count) + " is more than there are trials",
+  table.fail("count", "= " + std::to_string(block.count) + " is more than the number of trials",
              "use at most " + std::to_string(trials));
 }
 

@@ -59,7 +59,7 @@ void read_page(const base::TomlTable& table, Block& block) {
 
 void read_block_questions(const base::TomlTable& table, Block& block, const std::string& language) {
   if (any_of(block.kind, {BlockKind::Ssq, BlockKind::Fms}) && !language.starts_with("en")) {
-    table.fail("kind", "has its words in English alone",
+    table.fail("kind", "is available in English only",
                "write the items in your language as [[block.question]] of a block of kind question");
   }
   if (block.kind == BlockKind::Ssq) block.questions = ssq_questions(language);
@@ -77,7 +77,7 @@ void read_block_questions(const base::TomlTable& table, Block& block, const std:
   const bool decides = std::any_of(block.questions.begin(), block.questions.end(),
                                    [](const Question& question) { return question.accept.has_value(); });
   if (block.kind == BlockKind::Consent && !decides) {
-    table.fail("question", "lets everybody go on: no answer is a refusal",
+    table.fail("question", "lets everybody continue: no answer counts as a refusal",
                "add accept = [1, 1] to the question that gives consent");
   }
 }

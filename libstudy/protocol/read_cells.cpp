@@ -33,7 +33,7 @@ std::vector<double> distinct_numbers(const base::TomlTable& table, std::string_v
 
 using Moments = std::pair<double, double>;  // mean, standard deviation, frames/s
 
-std::string too_small(double sd) { return "= " + shown(sd) + " is too small to be told from 0"; }
+std::string too_small(double sd) { return "= " + shown(sd) + " is too small to be distinguished from 0"; }
 std::string use_more() { return "use 0, or at least " + shown(least_sd_fps); }
 
 /// Every mean with every smaller standard deviation.
@@ -49,7 +49,8 @@ std::vector<Moments> read_moments(const base::TomlTable& table) {
     }
   }
   if (out.empty())
-    table.fail("sd_fps", "has no value below a mean", "name a standard deviation smaller than a mean");
+    table.fail("sd_fps", "has no value below any mean_fps",
+               "name at least one standard deviation below a mean");
   return out;
 }
 
@@ -142,7 +143,8 @@ std::vector<Cell> read_cells(const base::TomlTable& table, TimingSource timing,
   std::vector<Moments> moments{{0, 0}};
   if (timing == TimingSource::Settings || timing == TimingSource::Equal) moments = read_moments(table);
   if (timing == TimingSource::Equal && moments.size() != 1)
-    table.fail("mean_fps", "and sd_fps make more than one setting", "give one value of each with equal");
+    table.fail("mean_fps", "and sd_fps make more than one setting",
+               "give one value of each with timing = \"equal\"");
   std::vector<std::string> levels;
   for (const EffectSet& set : effects) levels.push_back(set.name);
   if (levels.empty()) levels.emplace_back();

@@ -100,8 +100,8 @@ void check_never_adjacent(const base::TomlTable& table, const Design& design) {
     for (const auto& [level, times] : count) {
       if (times > (group.size() + 1) / 2) {
         table.fail_at("never_adjacent", i,
-                      "cannot be kept: " + std::to_string(times) + " of " + std::to_string(group.size()) +
-                          " trials have " + level,
+                      "cannot be satisfied: " + std::to_string(times) + " of " +
+                          std::to_string(group.size()) + " trials have " + level,
                       "remove this factor");
       }
     }
@@ -117,7 +117,7 @@ void read_never_adjacent(const base::TomlTable& table, Design& design) {
     return;
   }
   if (design.pairs) {
-    table.fail("order", "= \"constrained\" cannot be kept by pairs",
+    table.fail("order", "= \"constrained\" is not supported for pairs",
                "use shuffle, latin or williams, or remove pairs");
   }
   static const std::vector<std::string> factors{"method", "effects", "mean_fps", "sd_fps"};
@@ -165,7 +165,7 @@ Design read_design(const base::TomlTable& table) {
   design.effects = read_effect_sets(table);
   if (!design.effects.empty() && design.timing == TimingSource::Settings) {
     table.fail("effects",
-               "cannot vary under timing = \"settings\": the pilot's curve is of frame rates alone",
+               "cannot vary under timing = \"settings\": the pilot fits a curve over frame rates only",
                "use timing = \"equal\", or remove effects");
   }
   design.paint_temperature = table.choice_or("overlay", "none", {"none", "temperature"}) == "temperature";

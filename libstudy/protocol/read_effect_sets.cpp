@@ -17,8 +17,8 @@ bool needs_no_table(const std::string& level) {
 std::vector<std::string> read_levels(const base::TomlTable& design) {
   const auto levels = distinct_words(design, "effects");
   if (levels.size() < 2) {
-    design.fail("effects", "holds one level, which is no factor",
-                "name two levels or more, or give the scene's file these effects and remove this key");
+    design.fail("effects", "holds one level, and a factor needs at least two",
+                "name two levels or more, or list these effects in the scene's file and remove this key");
   }
   if (levels.size() > most_levels) {
     design.fail("effects", "holds " + std::to_string(levels.size()) + " levels",
@@ -50,8 +50,8 @@ EffectSet read_set(const base::TomlTable& table, const std::string& name) {
   for (const auto& effect : table.tables("effect")) {
     const std::string kind = text_of(effect, "kind");
     if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
-      effect.fail("kind", "= " + base::toml_quoted(kind) + " stands in this set twice",
-                  "keep the scene's, or give its numbers here");
+      effect.fail("kind", "= " + base::toml_quoted(kind) + " is in this set twice",
+                  "name the kind once: in keep, or in one [[design.effect_set.effect]]");
     }
     kinds.push_back(kind);
     set.words += (set.words.empty() ? "" : "; ") + read_effect(effect, kind);
@@ -87,7 +87,8 @@ std::vector<EffectSet> read_tables(const base::TomlTable& design, const std::vec
 std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
   if (!design.has("effects")) {
     if (design.has("effect_set"))
-      design.fail("effect_set", "is a level of no factor", "write effects = [...] with its name");
+      design.fail("effect_set", "has no effect without the key effects",
+                  "write effects = [...] with its name");
     return {};
   }
   const auto levels = read_levels(design);

@@ -18,7 +18,7 @@ HeadsetRules read_headset(const base::TomlTable& table) {
       table.has("acknowledge") ? distinct_words(table, "acknowledge") : std::vector<std::string>();
   for (std::size_t i = 0; i < acknowledged.size(); ++i) {
     if (acknowledged[i] == "head_locked") continue;
-    table.fail_at("acknowledge", i, "= " + base::toml_quoted(acknowledged[i]) + " is nothing to acknowledge",
+    table.fail_at("acknowledge", i, "= " + base::toml_quoted(acknowledged[i]) + " cannot be acknowledged",
                   base::use_one_of(acknowledged[i], {"head_locked"}));
   }
   const bool knows = std::find(acknowledged.begin(), acknowledged.end(), "head_locked") != acknowledged.end();

@@ -88,7 +88,8 @@ std::optional<int> read_score(const base::TomlTable& table, std::string_view key
   if (!table.has(key)) return {};
   const auto score = static_cast<int>(table.integer(key, range_of(question)));
   if (!can_be_given(question, score))
-    table.fail(key, "= " + std::to_string(score) + " is no answer", "use a score that anchors lists");
+    table.fail(key, "= " + std::to_string(score) + " is not one of the answers",
+               "use a score that anchors lists");
   return score;
 }
 
@@ -96,7 +97,7 @@ std::optional<int> read_score(const base::TomlTable& table, std::string_view key
 void read_accept(const base::TomlTable& table, BlockKind block, Question& question) {
   if (!table.has("accept")) return;
   if (block != BlockKind::Screening && block != BlockKind::Consent && block != BlockKind::Demographics) {
-    table.fail("accept", "has no place in a block of kind " + block_kind_name(block),
+    table.fail("accept", "is not allowed in a block of kind " + block_kind_name(block),
                "put the question into a block of kind screening, consent or demographics");
   }
   if (!question.required) table.fail("accept", "contradicts required = false", "remove one of them");
@@ -105,26 +106,28 @@ void read_accept(const base::TomlTable& table, BlockKind block, Question& questi
   if (low > high) table.fail("accept", "does not ascend", "write the accepted scores as [low, high]");
   int score = low;
   while (score <= high && !can_be_given(question, score)) ++score;
-  if (score > high) table.fail("accept", "holds no answer", "use scores that anchors lists");
+  if (score > high) table.fail("accept", "includes none of the answers", "use scores that anchors lists");
 }
 
 /// Reads `expect` of catch pages: the answer of an attentive person.
 void read_expect(const base::TomlTable& table, BlockKind block, Question& question) {
   question.expect = read_score(table, "expect", question);
   if (block != BlockKind::Catch && question.expect) {
-    table.fail("expect", "has no place in a block of kind " + block_kind_name(block),
+    table.fail("expect", "is not allowed in a block of kind " + block_kind_name(block),
                "put the question into a block of kind catch");
   }
   if (block != BlockKind::Catch) return;
-  if (!question.expect) table.fail("expect", "is missing", "add expect = the answer that attention gives");
-  if (!question.required) table.fail("required", "= false lets a catch pass unanswered", "remove it");
+  if (!question.expect)
+    table.fail("expect", "is missing", "add expect = the answer of an attentive participant");
+  if (!question.required)
+    table.fail("required", "= false would let participants skip this catch question", "remove it");
 }
 
 std::string read_question_id(const base::TomlTable& table) {
   const std::string id = id_of(table, "id");
   if (id == "fms" || id.starts_with("ssq_")) {
-    table.fail("id", "= \"" + id + "\" is kept for the block of kind " + id.substr(0, 3),
-               "use another id, or that block");
+    table.fail("id", "= \"" + id + "\" is reserved for blocks of kind " + id.substr(0, 3),
+               "use another id, or a block of that kind");
   }
   return id;
 }
@@ -137,7 +140,7 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   question.kind = read_answer_kind(table);
   question.personal = table.boolean_or("personal", false);
   if (question.personal && (block == BlockKind::Stimulus || block == BlockKind::Catch)) {
-    table.fail("personal", "= true has no place in a block of kind " + block_kind_name(block),
+    table.fail("personal", "= true is not allowed in a block of kind " + block_kind_name(block),
                "ask it in a block of kind demographics");
   }
   question.required = table.boolean_or("required", traits_of(question.kind).required);
@@ -155,7 +158,7 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
 
 /// Why the program cannot obey the answers to a question; empty if it can.
 std::string why_not_obeyed(BlockKind block, const Question& question) {
-  if (block != BlockKind::Consent) return "stands in a block of kind " + block_kind_name(block);
+  if (block != BlockKind::Consent) return "is in a block of kind " + block_kind_name(block);
   if (!traits_of(question.kind).labelled) return "is not of kind choice";
   if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
     return "has other answers than 0 and 1";
@@ -172,7 +175,7 @@ void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const st
       const std::string why = why_not_obeyed(blocks[i].kind, question);
       if (why.empty()) continue;
       tables[i].fail_at(
-          "question", q, "\"" + question.id + "\" " + why + ", so that its answer cannot be obeyed",
+          "question", q, "\"" + question.id + "\" " + why + ", so the program cannot act on its answer",
           "ask it in a block of kind consent with kind = \"choice\" and anchors = {0 = \"no\", 1 = "
           "\"yes\"}, without personal; or use another id");
     }

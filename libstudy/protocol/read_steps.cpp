@@ -27,8 +27,7 @@ class StepReader {
     } else {
       fail("is no step", "write \"black SECONDS\", \"rest SECONDS\", \"stimulus\" or \"ask ID ID ...\"");
     }
-    if (words_ >> word)
-      fail("goes on with '" + word + "'", "remove what follows, or make it a step of its own");
+    if (words_ >> word) fail("has the extra word '" + word + "'", "remove it, or make it a step of its own");
     return out;
   }
 
@@ -78,9 +77,9 @@ void check_steps(const base::TomlTable& table, const std::vector<TrialStep>& ste
   for (std::size_t i = 0; i < steps.size(); ++i) {
     asked = asked || steps[i].kind == StepKind::Ask;
     if (steps[i].kind != StepKind::Stimulus) continue;
-    if (asked) table.fail_at("steps", i, "comes after a question", "ask when everything was shown");
+    if (asked) table.fail_at("steps", i, "comes after a question", "ask after all stimuli");
     if (seen == wanted || steps[i].interval != seen) {
-      table.fail_at("steps", i, "shows a stimulus out of turn",
+      table.fail_at("steps", i, "shows a stimulus out of order",
                     pairs ? "show first, then second, each once" : "show the stimulus once");
     }
     ++seen;

@@ -58,16 +58,16 @@ Else they stay at every level as the scene lists them, none included.)"},
 
 Exports and report hold the scores of the SSQ, and the mean and the peak of the FMS.)"},
       {"block.question", "[[block.question]]",
-       R"(What a block asks: on its page, or for a stimulus block in its steps. Stands after the keys of its
-block. Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one.
+       R"(The questions of a block: on its page, or for a stimulus block in its steps. They come after the keys
+of its block. Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one.
 
-Two ids are kept for questions whose answers the program obeys. They stand in a block of kind consent, with
-`kind = "choice"`, the answers 0 (no) and 1 (yes) and not personal:
+Two ids are reserved for questions whose answers the program acts on. They belong in a block of kind consent,
+with `kind = "choice"`, the answers 0 (no) and 1 (yes) and not personal:
 
-- `gaze_kept`: may be recorded where one looks and how the head moves. No row of gaze is written unless it
+- `gaze_kept`: may gaze and head movement be recorded. No row of gaze is written unless it
   was answered with 1; a protocol that does not ask records none.
 - `data_shared`: may the data be part of public exports (BIDS, Psych-DS). Whoever answered 0, or was asked
-  and has not answered, is left out of them whole. Those whom no protocol asked are in them.
+  and has not answered, is left out of them whole. People who were never asked are included.
 
 `vip-study consent` changes both later.
 
@@ -127,7 +127,8 @@ const std::vector<KeyReference>& protocol_reference() {
        "mean_fps and sd_fps for all. table2: each cell's own of `moments`"},
       {"design", "scene", "list of texts", "", "", "scene files"},
       {"design", "method", "list of texts", "", "", "LoRes, HiRes, FovFluid, Ours, Ours-TSp"},
-      {"design", "n_star", "list of texts", "", "", "particles when all are coarsest; \"32k\" = 32,768"},
+      {"design", "n_star", "list of texts", "", "",
+       "number of particles if all were at the coarsest level; \"32k\" = 32,768"},
       {"design", "effects", "list of texts", "", "not varied",
        "levels of the factor effects, 2 to 20; refused under settings. none: no effects. scene: those of the "
        "scene's file. Another level has a table `effect_set`. Without this key each scene has its own"},
@@ -210,12 +211,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "questions are asked, s"},
 
       {"headset", "hold", "text", "\"image\", \"state\", \"head_locked\"", "\"image\"",
-       "what a picture does that stays on while the head moves. image: it stays where it was drawn, as in "
-       "the "
-       "paper. state: the fluid stands still and is drawn anew in each period, which hides judder of the "
-       "head "
-       "and so changes what is rated. head_locked: it moves with the head. Data of different modes are not "
-       "pooled"},
+       "what happens to a picture that stays on while the head moves. image: it stays where it was drawn, "
+       "as in the paper. state: the fluid stands still and is drawn anew in each period, which hides judder "
+       "of the head and so changes what is rated. head_locked: it moves with the head. Data of different "
+       "modes are not pooled"},
       {"headset", "acknowledge", "list of texts", "\"head_locked\"", where_needed,
        "that head_locked makes people sick; needed for it"},
       {"headset", "hold_margin_deg", "number", "[0, 30]", "0",
@@ -224,7 +223,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "edge"},
       {"headset", "world_scale", "number", "[0.01, 100]", "1", "metres of the room for a metre of the scene"},
       {"headset", "refresh_hz", "number", "[10, 1000]", "as it is",
-       "asked of the headset, Hz; without it nothing begins"},
+       "requested from the headset, Hz; no session begins at another rate"},
 
       {"block", "kind", "text",
        "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "
@@ -243,7 +242,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"block", "count", "whole number", "[1, 1000]", where_needed,
        "needed by practice, repeat and catch: trials or pages; for repeat and catch at most the trials of "
        "the design"},
-      {"block", "tries", "whole number", "[1, 20]", "3", "gaze_validation: at most so many"},
+      {"block", "tries", "whole number", "[1, 20]", "3", "gaze_validation: at most this many tries"},
       {"block", "extent_deg", "number", "[1, 30]", "10",
        "gaze_validation: of the outer targets from the middle one, across and up, degrees"},
       {"block", "max_accuracy_deg", "number", "[0.1, 20]", "any",
@@ -291,7 +290,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"block.question", "stop_at", "whole number", "a score", "never",
        "this score or more ends the session: a rest, then the exit"},
       {"block.question", "expect", "whole number", "a score", where_needed,
-       "needed by catch, refused elsewhere: the answer that attention gives"},
+       "needed by catch, refused elsewhere: the answer of an attentive participant"},
 
       {"block.question.anchors", "SCORE", "text", "", where_needed, "the words of this score"},
   };
@@ -302,10 +301,10 @@ std::string protocol_reference_page() {
   std::string out = "# Protocol files, format " + std::to_string(Protocol::format_version) +
                     R"(
 
-Written by `vip-study reference`; `vip-study check FILE` says what a file comes to. Files are TOML. Units
-stand in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per second. An unknown key, a wrong type, a
-value out of range and keys that contradict each other are errors at line and column. Every byte of a file
-enters the SHA-256 that is stored with the data.
+Written by `vip-study reference`; `vip-study check FILE` checks a file and prints what it describes. Files are
+TOML. Units are in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per second. An unknown key, a
+wrong type, a value out of range and keys that contradict each other are errors at line and column. Every
+byte of a file enters the SHA-256 that is stored with the data.
 )";
   for (const auto& text : table_texts()) {
     out += std::string("\n## ") + text.heading + "\n\n" + text.text +

@@ -15,13 +15,13 @@ bool in_span(int score, const std::pair<int, int>& span) {
 void check_answers(std::span<const Question> questions, std::span<const TimedAnswer> answers) {
   if (answers.size() != questions.size()) {
     throw base::Error("a page of " + std::to_string(questions.size()) + " questions",
-                      "came back with " + std::to_string(answers.size()) + " answers",
-                      "mend the part that asks");
+                      "returned " + std::to_string(answers.size()) + " answers",
+                      "fix the code that asks the questions");
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (is_valid(questions[i], answers[i].answer)) continue;
-    throw base::Error("question '" + questions[i].id + "'", "was answered off its scale",
-                      "answer on the scale");
+    throw base::Error("question '" + questions[i].id + "'", "was answered outside its scale",
+                      "answer within the scale");
   }
 }
 

@@ -29,7 +29,7 @@ void Repeats::require_eyes() {
     eyes_seen_ = sees_eyes(run_, eyes_within_s, check);
     if (!eyes_seen_)
       pause({"the eye tracker does not see the eyes",
-             "look at how the headset sits, and calibrate the eye tracker"});
+             "check how the headset sits, and calibrate the eye tracker"});
   }
 }
 

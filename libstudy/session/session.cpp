@@ -104,7 +104,8 @@ void check_personal(const Running& run) {
   const bool asks =
       std::any_of(all.begin(), all.end(), [](const auto& entry) { return entry.second->personal; });
   if (asks && !run.parts.personal) {
-    throw base::Error("protocol " + run.protocol.name, "asks something personal, and there is no file for it",
+    throw base::Error("protocol " + run.protocol.name,
+                      "asks personal questions, and there is no file for the answers",
                       "give the session a file of personal data");
   }
 }

@@ -48,8 +48,8 @@ void AnswerJournal::look_after_file() {
   if (trouble.empty()) return;
   const fs::path aside = file_.set_aside();
   anew_ = true;
-  say(file_.path().string() + " " + trouble + " during the session; it is written anew from the database" +
-      (aside.empty() ? "" : ", and what stood there is now " + aside.string()));
+  say(file_.path().string() + " " + trouble + " during the session; it is rewritten from the database" +
+      (aside.empty() ? "" : ", and the file that was there is now " + aside.string()));
 }
 
 void AnswerJournal::write() {
@@ -99,13 +99,12 @@ bool AnswerJournal::try_mark() {
   try {
     write_mark();
     unmarked_ = false;
-    if (!trouble_.empty()) say(file_.path().string() + " is written again, and lacks nothing");
+    if (!trouble_.empty()) say(file_.path().string() + " is written again and is complete");
     trouble_.clear();
     return true;
   } catch (const base::Error& error) {
     const std::string why = error.what();
-    if (trouble_.empty())
-      say(why.substr(0, why.find('\n')) + "; the last answers stand in the database alone");
+    if (trouble_.empty()) say(why.substr(0, why.find('\n')) + "; the last answers are in the database only");
     trouble_ = why;
     return false;
   }
@@ -113,7 +112,7 @@ bool AnswerJournal::try_mark() {
 
 void AnswerJournal::require_written() {
   if (!unmarked_ || try_mark()) return;
-  throw base::Error(file_.path().string(), "lacks the last answers, which stand in the database alone",
+  throw base::Error(file_.path().string(), "lacks the last answers, which are in the database only",
                     "free space on the disk and see that the file can be written; vip-study resume then "
                     "writes it");
 }

@@ -80,7 +80,7 @@ Json columns(const std::string& what) {
                               "s")},
       {"x_coordinate", described(what + " from the left edge, as a share of the picture's width", as_share)},
       {"y_coordinate", described(what + " from the top edge, as a share of the picture's height", as_share)},
-      {"valid", described("1: the source knew where; 0: it did not, as in a blink or off the picture")}};
+      {"valid", described("1: the gaze point is known; 0: it is not, as in a blink or off the picture")}};
 }
 
 Json ray_columns_meaning() {

@@ -70,7 +70,7 @@ void recognise(const fs::path& path, const Identity& found, Open how, std::size_
   if (holds_nothing(path)) {
     throw base::Error(path.string(),
                       "holds nothing: it is empty, or the command that was making it was cut off",
-                      "give that command again, vip-study run or merge: it makes the file anew");
+                      "run that command (vip-study run or merge) again: it creates the file");
   }
   if (found.application != database_application_id) {
     throw base::Error(path.string(), "is not a database of vip-study",
@@ -141,9 +141,10 @@ void take_step(Connection& database, const SchemaSteps& steps, std::size_t versi
   sqlite::Transaction transaction(database);
   database.execute(steps.at(version - 1));
   if (sqlite::Statement lost(database, "PRAGMA foreign_key_check"); lost.step()) {
-    throw base::Error(database.path().string(),
-                      "cannot be upgraded: a row of " + lost.text(0) + " belongs to none of " + lost.text(2),
-                      "restore a backup of it; the file was left as it is");
+    throw base::Error(
+        database.path().string(),
+        "cannot be upgraded: a row of " + lost.text(0) + " refers to a missing row of " + lost.text(2),
+        "restore a backup of it; the file was left as it is");
   }
   database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
   database.execute("PRAGMA user_version = " + std::to_string(version));

@@ -65,7 +65,7 @@ std::string strange_file(const fs::path& folder, const ExportKind& kind) {
     else if (!listed.empty() && base::sha256_of_file(entry.path()) != listed.at(name))
       changed.insert(name);
   }
-  if (!added.empty()) return " alone: '" + base::shortened(*added.begin()) + "' was added";
+  if (!added.empty()) return ": '" + base::shortened(*added.begin()) + "' was added";
   if (!changed.empty())
     return " as it was written: '" + base::shortened(*changed.begin()) + "' was changed since";
   return listed.empty() && !kind.is_export(folder) ? ": it was not written by vip-study" : "";
@@ -74,12 +74,12 @@ std::string strange_file(const fs::path& folder, const ExportKind& kind) {
 void check_target(const fs::path& folder, const ExportKind& kind) {
   std::error_code ignored;
   if (!fs::exists(fs::symlink_status(folder, ignored))) return;
-  std::string strange = ": it is no folder";
+  std::string strange = ": it is not a folder";
   if (!fs::is_symlink(folder) && fs::is_directory(folder, ignored))
     strange = fs::is_empty(folder, ignored) ? "" : strange_file(folder, kind);
   if (strange.empty()) return;
   throw base::Error(folder.string(), "exists and is not an earlier export" + strange,
-                    "name another folder, or move what is there away");
+                    "name another folder, or move this one away");
 }
 
 }  // namespace

@@ -42,9 +42,10 @@ fs::path without_links(const fs::path& path) {
 void check_writable(const fs::path& file) {
   if (::access(file.c_str(), W_OK) == 0 && ::access(fs::absolute(file).parent_path().c_str(), W_OK) == 0)
     return;
-  throw base::Error(file.string(),
-                    "cannot be written by you: an export is registered in it, so that a withdrawal finds it",
-                    "let somebody export who may write the database and its folder");
+  throw base::Error(
+      file.string(),
+      "is not writable for you: each export is registered in it, so that a withdrawal finds the export",
+      "ask somebody to export who may write to the database and its folder");
 }
 
 /// Opens the database for a short write, even during a session; upgrades an older one first.

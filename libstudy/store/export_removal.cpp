@@ -119,8 +119,8 @@ std::string remove_standing(Connection& database, const Leftover& one, const std
     if (one.tackled || here->database == fs::weakly_canonical(database.path()) ||
         was_deleted_here(one.path, one.sha256))
       return "";
-    return "is no longer there: another export stands in its place\n  mend: where it was moved or copied to, "
-           "delete it";
+    return "is no longer there: another export stands in its place\n  mend: delete it where it was moved or "
+           "copied to";
   }
   mark_tackled(database, one);
   will_delete_own_export(*here);
@@ -147,7 +147,7 @@ std::string remove_leftover(Connection& database, const Leftover& one) {
   if (concerned) settle_gone(made);
   const bool was_there = one.host.empty() || !one.sha256.empty();
   if (one.tackled || !was_there || was_deleted_here(one.path, one.sha256)) return "";
-  return "is no longer there\n  mend: where it was moved or copied to, delete it";
+  return "is no longer there\n  mend: delete it where it was moved or copied to";
 }
 
 /// Removes only folders that this installation made.

@@ -144,7 +144,7 @@ void refuse_orphaned_log(const fs::path& database) {
   };
   // Checked again after the log, because another program may be making the database.
   if (!is_empty() || Log(log).is_empty() || !is_empty()) return;
-  throw base::Error(log.string(), "stands there without its database",
+  throw base::Error(log.string(), "is there without its database",
                     "put the database back beside it, or save what the log and the journal of answers hold: "
                     "vip-study salvage --db " +
                         database.string() + " --into NEW");

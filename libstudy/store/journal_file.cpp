@@ -35,7 +35,7 @@ namespace {
       reason == EACCES || reason == EPERM
           ? "ask its owner for the right to read it: it says who withdrew, and without it nothing "
             "of the database is shown"
-          : "the journal of answers must be a file on a sound disk, and no link");
+          : "the journal of answers must be a file on a sound disk, not a link");
 }
 
 class Descriptor {
@@ -69,7 +69,7 @@ std::uintmax_t size_of(int fd, const fs::path& path) {
   if (::fstat(fd, &status) != 0) fail_to_read(path, errno);
   if (!S_ISREG(status.st_mode))
     throw base::Error(path.string(), "is not a regular file",
-                      "move it away: the journal of answers stands there");
+                      "move it away: the journal of answers has this path");
   return static_cast<std::uintmax_t>(status.st_size);
 }
 

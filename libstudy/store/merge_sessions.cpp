@@ -52,7 +52,7 @@ void check_earlier(Content& content, const SessionCopy& earlier, const SessionCo
   if (before.size() <= after.size() && std::equal(before.begin(), before.end(), after.begin())) return;
   throw base::Error(content.sources[later.source]->path().string(),
                     "participant " + later.code + ", visit " + std::to_string(later.visit) +
-                        ", went on differently in a copy, " +
+                        ", continued differently in a copy, " +
                         content.sources[earlier.source]->path().string(),
                     "decide which of the two counts, and leave the other database out");
 }
@@ -88,7 +88,7 @@ void check_references(Connection& source) {
   const std::string table = lost.text(0), parent = lost.text(2);
   const std::string row = lost.is_null(1) ? dangling_row(source, table, parent, lost.integer(3))
                                           : "row " + lost.text(1) + " of " + table;
-  throw base::Error(source.path().string(), row + " belongs to no " + parent,
+  throw base::Error(source.path().string(), row + " refers to a missing row of " + parent,
                     "make a sound copy with vip-study salvage, or leave this database out");
 }
 

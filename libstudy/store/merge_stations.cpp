@@ -51,7 +51,7 @@ std::string trouble_of(const Content& content, const Dealt& a, const Dealt& b) {
     return files +
            (a.number ? " were both recorded as station " + station_text(*a.number)
                      : " have sessions without a station number") +
-           ": they dealt the same slots";
+           ": they used the same slots of the assignment";
   if (a.number && b.number && a.number->count != b.number->count)
     return files + ": sessions were recorded as stations " + station_text(*a.number) + " and " +
            station_text(*b.number) + ", whose shares overlap";

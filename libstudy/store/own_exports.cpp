@@ -72,8 +72,8 @@ void check_owner(const fs::path& file) {
   struct stat found {};
   if (::lstat(file.c_str(), &found) != 0) return;
   if (S_ISREG(found.st_mode) && found.st_uid == ::geteuid() && (found.st_mode & 022) == 0) return;
-  throw base::Error(file.string(), "is not a file that you alone may write",
-                    "look at it, then delete it or take the rights of others away (chmod 600)");
+  throw base::Error(file.string(), "is not a file that only you may write to",
+                    "check it, then delete it or make it private (chmod 600)");
 }
 
 std::vector<OwnExport> read_all(const fs::path& file) {
@@ -91,7 +91,7 @@ std::vector<OwnExport> read_all(const fs::path& file) {
 void change(const std::function<void(std::vector<OwnExport>&)>& how) {
   const fs::path file = own_exports_file();
   if (file.empty()) {
-    throw base::Error("the register of exports", "has no place",
+    throw base::Error("the register of exports", "has no folder",
                       "set XDG_STATE_HOME or HOME to a folder that you may write to");
   }
   base::make_folder_of(file.parent_path());

@@ -57,11 +57,11 @@ void check_new_code(sqlite::Connection& database, const std::string& code) {
   while (row.step()) {
     const std::string other = row.text(0);
     if (other == code || !are_alike(other, code)) continue;
-    throw base::Error(place,
-                      "participant " + code + " differs from " + other +
-                          " in case, punctuation or leading zeros alone, and people and other programs take "
-                          "them for one",
-                      "write " + other + " if that is who it is, or give another code");
+    throw base::Error(
+        place,
+        "participant " + code + " differs from " + other +
+            " only in case, punctuation or leading zeros, and people and other programs confuse them",
+        "write " + other + " if it is the same person, or give another code");
   }
 }
 

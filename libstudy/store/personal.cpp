@@ -36,14 +36,13 @@ void make_private(const fs::path& path) {
   if (fd >= 0) ::close(fd);
   if (!done) {
     throw base::Error(path.string(), std::string("cannot be kept private: ") + std::strerror(problem),
-                      "use a folder and a file that are yours");
+                      "use a folder and a file that you own");
   }
 }
 
 [[noreturn]] void refuse_personal(const sqlite::Connection& file, const std::string& problem) {
-  throw base::Error(
-      file.path().string(), problem,
-      "restore a backup of it, or keep it elsewhere: nothing but personal answers stands in it");
+  throw base::Error(file.path().string(), problem,
+                    "restore a backup of it, or move it elsewhere: it holds personal answers only");
 }
 
 /// A trigger or another table layout could leave data that is reported as deleted.

@@ -189,7 +189,7 @@ void check(Connection& made) {
   const std::string found = made.text("PRAGMA integrity_check(1)");
   Statement lost(made, "PRAGMA foreign_key_check");
   if (found == "ok" && !lost.step()) return;
-  throw base::Error(made.path().string(), "did not become sound: " + found,
+  throw base::Error(made.path().string(), "was rebuilt and is not sound: " + found,
                     "report this with the damaged file");
 }
 
@@ -198,7 +198,7 @@ void leave_no_log(Connection& made) {
   made.unwatch();
   if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
   throw base::Error(made.path().string(), "its log cannot be copied back into it",
-                    "free space, and do this again");
+                    "free space on the disk, and run the command again");
 }
 
 /// link() fails if the target exists.
@@ -231,8 +231,8 @@ Salvage salvage(const fs::path& database, const fs::path& into) {
                         "nothing of a study was found in it" +
                             std::string(journal.exists ? ", nor in its journal of answers"
                                                        : ", and there is no journal of answers beside it"),
-                        "restore a backup; " + journal_beside(database).string() +
-                            " is what a database can be made of when it is gone");
+                        "restore a backup of it or of " + journal_beside(database).string() +
+                            ", from which a lost database can be rebuilt");
     }
     check(*target);
     leave_no_log(*target);

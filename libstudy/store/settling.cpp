@@ -31,7 +31,7 @@ bool is_response(const Row& row) { return row.table->name == std::string("respon
   throw base::Error(
       database.string(),
       "is not the database that " + journal_beside(database).filename().string() +
-          " was written beside, or lost a part of it: " + words_of(found),
+          " belongs to, or lost a part of its data: " + words_of(found),
       "vip-study salvage --db " + database.string() +
           " --into NEW.db puts both together; if the journal is of another study, move it away");
 }
@@ -108,9 +108,9 @@ bool is_ahead(const Comparison& found, const JournalContent& content, Connection
 }
 
 std::string words_of(const Comparison& found) {
-  if (found.lost == 0) return std::to_string(found.different) + " answers stand otherwise in the journal";
+  if (found.lost == 0) return std::to_string(found.different) + " answers differ from the journal";
   return std::to_string(found.answers) + " answers and " + std::to_string(found.lost - found.answers) +
-         " other rows stand in the journal alone";
+         " other rows are in the journal only";
 }
 
 std::set<std::string> finish_what_was_begun(Connection& database, const JournalContent& content) {

@@ -60,7 +60,7 @@ void copy_parts(const fs::path& path, const fs::path& copy) {
     fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
     if (error)
       throw base::Error(from.string(), "cannot be read: " + error.message(),
-                        "copy the database and what stands beside it to a folder that is yours");
+                        "copy the database and the files beside it to a folder that you own");
     make_private(to);
   }
 }
@@ -80,7 +80,7 @@ std::unique_ptr<Connection> snapshot(const fs::path& path) {
     return held;
   }
   throw base::Error(path.string(), "is being written to by somebody else",
-                    "wait until that has ended, or copy it to a folder that is yours");
+                    "wait until that has ended, or copy it to a folder that you own");
 }
 
 }  // namespace study

@@ -164,8 +164,8 @@ void Connection::fail(int code, const std::string& message, int system_error) co
     case SQLITE_INTERRUPT:
     case SQLITE_AUTH:
     case SQLITE_TOOBIG:
-      throw error("holds what no database of vip-study does: " + message,
-                  "do not use it; whoever made it knows why");
+      throw error("holds something that vip-study never writes: " + message,
+                  "do not use it; ask whoever made it");
     case SQLITE_NOTADB:
       throw error("is not a database of vip-study", "name the file that vip-study run wrote");
     case SQLITE_CORRUPT:
@@ -257,12 +257,12 @@ void Connection::abandon(const std::string& trouble) {
   try {
     save_as(rescued + ".db");
     watch_->take_log_away({});
-    lost_->problem += "; all that was in it, up to now, stands in " + rescued + ".db";
-    lost_->mend = "keep elsewhere what stands at " + path_.string() + " now, give " + rescued +
-                  ".db that name, then " + go_on_;
+    lost_->problem += "; all of its data up to now are in " + rescued + ".db";
+    lost_->mend = "move away what is at " + path_.string() + " now, rename " + rescued +
+                  ".db to that name, then " + go_on_;
   } catch (const base::Error& error) {
     watch_->take_log_away(rescued + ".wal");
-    lost_->problem += "; it could not be saved beside it; its log is kept as " + rescued + ".wal";
+    lost_->problem += "; its data could not be saved beside it; its log is kept as " + rescued + ".wal";
     lost_->mend = salvage_mend(path_);
   }
   throw base::Error(path_.string(), lost_->problem, lost_->mend);

@@ -165,10 +165,10 @@ void Store::write_answers(std::int64_t session, const OpenUnit& unit, int attemp
     const bool taken = insert.step();
     insert.reset();
     if (!taken) {
-      throw base::Error(
-          path_.string(),
-          "takes no answer to question '" + kept.question + "' here: unknown, personal or answered before",
-          "run vip-study resume, which asks what is open");
+      throw base::Error(path_.string(),
+                        "takes no answer to question '" + kept.question +
+                            "' here: the question is unknown, personal or already answered",
+                        "run vip-study resume, which asks what is open");
     }
   }
   for (const KeptAnswer& kept : answers) answer_over_change(session, kept.question, now);

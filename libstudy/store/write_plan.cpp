@@ -168,7 +168,7 @@ std::int64_t Store::find_or_add_protocol(const RunPlan& run) {
   if (!protocol.test_data && changed.bind_all(protocol.name, protocol.version).step()) {
     throw base::Error(database_->path().string(),
                       "protocol '" + protocol.name + "' version " + protocol.version +
-                          " stands here with another text (" + changed.text(0).substr(0, 12) + ", now " +
+                          " is stored here with another text (" + changed.text(0).substr(0, 12) + ", now " +
                           protocol.sha256.substr(0, 12) + "); a changed protocol begins a new dataset",
                       "give the changed protocol a new version, or use another database");
   }
@@ -202,7 +202,7 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
   if (gone.bind_all(plan.participant).step()) {
     throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",
-                      "give another code: every merge deletes what stands under this one");
+                      "give another code: every merge deletes the data under this one");
   }
 }
 

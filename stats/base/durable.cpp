@@ -21,8 +21,8 @@ void sync(const fs::path& path, int flags) {
   const int reason = ::fsync(fd) == 0 ? 0 : errno;
   ::close(fd);
   if (reason == EIO || reason == ENOSPC || reason == EDQUOT)
-    throw Error(path.string(), std::string("cannot be brought to the disk: ") + std::strerror(reason),
-                "check the disk, and do this again");
+    throw Error(path.string(), std::string("cannot be written to the disk: ") + std::strerror(reason),
+                "check the disk, and run the command again");
 }
 
 void sync_folder(const fs::path& folder) { sync(folder, O_DIRECTORY); }
@@ -53,7 +53,7 @@ void remove_durably(const fs::path& path) {
   fs::remove_all(path, problem);
   if (problem)
     throw Error(path.string(), "cannot be deleted: " + problem.message(),
-                "check its permissions, and do this again");
+                "check its permissions, and run the command again");
   sync_folder_of(path);
 }
 

@@ -70,7 +70,7 @@ void check_writable(fs::path folder, const fs::path& output) {
 void check_output(const fs::path& path) {
   struct stat standing {};
   if (::stat(path.c_str(), &standing) == 0 && !S_ISREG(standing.st_mode))
-    throw Error(path.string(), "is a folder, a device or a pipe, which no file is written over",
+    throw Error(path.string(), "is a folder, a device or a pipe, and cannot be replaced by a file",
                 "name a file");
   check_writable(folder_of(path), path);
 }

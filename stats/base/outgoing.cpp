@@ -32,7 +32,7 @@ void check_file_name(const std::string& name, const std::string& place) {
   bool good = !name.empty() && name.back() != '/';
   for (std::string part; std::getline(parts, part, '/');) good = good && is_file_name(part);
   if (good) return;
-  throw Error(place, "would hold a file '" + shortened(name) + "', which is no name for a file of it",
+  throw Error(place, "would hold a file '" + shortened(name) + "', which is not an allowed file name",
               "the database or protocol that asks for that name is damaged or not to be trusted; nothing was "
               "written");
 }

@@ -37,7 +37,7 @@ std::string refusal_of(std::span<const double> y, std::span<const int> participa
   for (const int person : participant) ++answers[person];
   if (answers.size() < 2) return "fewer than two participants";
   if (std::all_of(answers.begin(), answers.end(), [](const auto& one) { return one.second < 2; }))
-    return "nobody gave two answers: the participants' spread cannot be told from the answers' own";
+    return "no participant gave two answers: their spread cannot be separated from that of the answers";
   return "";
 }
 

@@ -22,7 +22,7 @@ std::string too_few(const OrdinalRows& rows) {
   std::vector<int> ratings(static_cast<std::size_t>(rows.participants));
   for (const int p : rows.participant) ++ratings[static_cast<std::size_t>(p)];
   if (*std::max_element(ratings.begin(), ratings.end()) < 2)
-    return "one rating from each participant: their spread cannot be told from the ratings' own";
+    return "one rating from each participant: their spread cannot be separated from that of the ratings";
   return "";
 }
 

@@ -36,7 +36,7 @@ std::string standardise(OrdinalRows& rows, const Predictor& predictor, const std
   const auto [low, high] = std::minmax_element(column.begin(), column.end());
   if (!std::isfinite(*low) || !std::isfinite(*high)) return "predictor " + predictor.name + " is infinite";
   if (*low == *high) {
-    return "predictor " + predictor.name + " is constant: its effect cannot be told from the thresholds";
+    return "predictor " + predictor.name + " is constant: its effect cannot be separated from the thresholds";
   }
   const double n = static_cast<double>(column.size());
   double mean = 0, squares = 0;

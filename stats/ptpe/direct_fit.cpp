@@ -125,7 +125,7 @@ Result<DirectFit> DirectModel::described(const Sums& sums, const Place& at) cons
   fit.rss = std::max(0.0, sums.residuals(at.coefficients()));
   fit.n = sums.n;
   if (!std::isfinite(fit.curve.log_a) || !std::isfinite(fit.curve.b) || !std::isfinite(fit.rss))
-    return Refusal{"the fit left the numbers that a computer holds"};
+    return Refusal{"the fit left the range of double precision"};
   constexpr int steps = 20;
   bool rises = true, inside = false;
   for (int i = 0; i <= steps; ++i) {

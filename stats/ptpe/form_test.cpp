@@ -118,7 +118,7 @@ std::optional<Place> plane(const Sums& sums) {
 
 Result<Place> checked(const Place& at) {
   for (const double value : {at.alpha, at.beta, at.gamma, at.k, at.m, at.q})
-    if (!std::isfinite(value)) return Refusal{"the fit left the numbers that a computer holds"};
+    if (!std::isfinite(value)) return Refusal{"the fit left the range of double precision"};
   if (!at.rises()) return Refusal{"the scores do not rise with the frame rate all along the free curve"};
   return at;
 }

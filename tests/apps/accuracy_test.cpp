@@ -103,7 +103,7 @@ TEST(AccuracyPrices, ArePairsOfMillisecondsAndErrors) {
   const std::string text = to_markdown(list);
   EXPECT_THAT(text, HasSubstr("| HiRes | projections | 4 to 8 | +4.00 [+4.00, +4.00] | -1.4 [-2, -0.8] |"));
   EXPECT_THAT(text, HasSubstr("| HiRes | projections | 4 to 3 | free |"));
-  EXPECT_THAT(text, HasSubstr("was not held against finer ones"));
+  EXPECT_THAT(text, HasSubstr("was not compared with finer ones"));
   EXPECT_THAT(to_csv(price_table(list)), HasSubstr("iterations,4,8,4.000,4.000,4.000,no,-1.4000"));
 }
 
@@ -183,7 +183,7 @@ TEST(AccuracyPage, ShowsEachErrorTheFrontsAndThePrices) {
   for (const char* words :
        {"<h1>What accuracy costs in time: SingleDam</h1>", "Error of front", "Error of centre of mass",
         "Error of kinetic energy", "Error of density", "a machine", "0.1.0 abc", "The floor is 0.1 %",
-        "was not held against finer ones", "<td>+4.00 [+4.00, +4.00]</td>", "<td>free</td>",
+        "was not compared with finer ones", "<td>+4.00 [+4.00, +4.00]</td>", "<td>free</td>",
         "n_* = 512, 2 s of content; seeds a setting: 1 to 2", "the solver alone; nothing was drawn"}) {
     EXPECT_THAT(page, HasSubstr(words));
   }

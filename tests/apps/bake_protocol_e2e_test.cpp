@@ -61,7 +61,7 @@ TEST_F(BakeProtocolE2e, WhatFollowsAFreeGazeIsSaidToRunLive) {
   write_protocol(false, "\"LoRes\", \"FovFluid\", \"Ours-TSp\"");
   const Ended ended = bake();
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("3 stimuli run live: it follows what is looked at"),
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("3 stimuli run live: it follows the gaze"),
                                HasSubstr("1 bakes to make take up to"), HasSubstr("GB are free"),
                                HasSubstr("all 1 bakes of short are whole")));
   EXPECT_EQ(bakes().size(), 1u);
@@ -72,8 +72,8 @@ TEST_F(BakeProtocolE2e, WithNothingToBakeItSaysWhy) {
   write_protocol(false, "\"Ours\"");
   const Ended ended = bake();
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_THAT(ended.err, AllOf(HasSubstr("no stimulus that can be baked: it follows what is looked at"),
-                               HasSubstr("mend: ")));
+  EXPECT_THAT(ended.err,
+              AllOf(HasSubstr("no stimulus that can be baked: it follows the gaze"), HasSubstr("mend: ")));
   EXPECT_FALSE(fs::exists(out_));
 }
 

@@ -112,7 +112,7 @@ TEST_F(BudgetChoice, IsAmongTheSettingsThatAreWished) {
   EXPECT_EQ(choose_setting(cells(), origin, wish, run, said).setting, eight);
   wish.method = sim::MethodKind::Ours;
   EXPECT_THAT([&] { choose_setting(cells(), origin, wish, run, said); },
-              ThrowsMessage<base::Error>(HasSubstr("leave no setting of the sweep")));
+              ThrowsMessage<base::Error>(HasSubstr("match no setting of the sweep")));
   wish.method.reset();
   wish.frames_per_s = 90;
   EXPECT_THROW(choose_setting(cells(), origin, wish, run, said), base::Error);
@@ -127,10 +127,10 @@ TEST_F(BudgetChoice, WhatDoesNotKeepTheBudgetAgainIsLeft) {
 }
 
 TEST_F(BudgetChoice, WhereNothingKeepsItTheNearestIsNamed) {
-  EXPECT_THAT([&] { choose(4, 5, 9); }, ThrowsMessage<base::Error>(HasSubstr(
-                                            "--budget 4ms: is kept by no setting of the sweep. Nearest "
-                                            "is HiRes, n_* 512: 5.00 ms in 95 % of its frames, 1.00 "
-                                            "more\n  mend: allow 5.00ms")));
+  EXPECT_THAT([&] { choose(4, 5, 9); },
+              ThrowsMessage<base::Error>(HasSubstr("--budget 4ms: is met by no setting of the sweep. Nearest "
+                                                   "is HiRes, n_* 512: 5.00 ms in 95 % of its frames, 1.00 "
+                                                   "more\n  mend: allow 5.00ms")));
   EXPECT_TRUE(run_anew.empty());
   EXPECT_THAT(
       [&] { choose(10, 12, 14); },
@@ -147,7 +147,7 @@ TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
   const auto none = table(sweep + " --budget 0.0001ms --out " + path("none.toml"));
   EXPECT_EQ(none.exit_code, 1);
   // Which one is nearest depends on how busy the machine is.
-  EXPECT_THAT(none.out, HasSubstr("--budget 0.0001ms: is kept by no setting of the sweep. Nearest is "));
+  EXPECT_THAT(none.out, HasSubstr("--budget 0.0001ms: is met by no setting of the sweep. Nearest is "));
   EXPECT_FALSE(std::filesystem::exists(path("none.toml")));
   const auto chosen = table(sweep + " --budget 100000ms --error kinetic --out " + path("best.toml"));
   ASSERT_EQ(chosen.exit_code, 0) << chosen.out;

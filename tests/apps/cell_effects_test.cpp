@@ -192,9 +192,10 @@ TEST(CellEffects, ThatLeaveNoTemperatureToPaintAreRefused) {
                 AllOf(HasSubstr(place_in(protocol, "overlay = |\"temperature\"")), HasSubstr(problem)));
   };
   EXPECT_EQ(error_of(protocol_with(overlay, "", "hot_jet")), "");
-  expect(protocol_with(overlay, "", "sea_spray"), "finds no heat in scene SeaSpray\n");
+  expect(protocol_with(overlay, "", "sea_spray"),
+         "needs the effect heat, which is missing in scene SeaSpray\n");
   expect(protocol_with(overlay + scene_and + "\"none\"]", "", "hot_jet"),
-         "finds no heat in scene HotJet at level \"none\"");
+         "needs the effect heat, which is missing in scene HotJet at level \"none\"");
   const auto heat_with = [&](const std::string& keys) {
     return protocol_with(overlay + scene_and + "\"foam\"]",
                          set_of("effect = [{kind = \"heat\", diffusivity_m2_s = 0.01" + keys + "}]"),

@@ -232,7 +232,7 @@ TEST_F(FluidStimulusGl, ParticlesOfASceneWithFreeObstaclesAreNotShown) {
     apps::BakedParticles baked(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
     FAIL() << "accepted";
   } catch (const base::Error& error) {
-    EXPECT_NE(std::string(error.what()).find("nothing of the free obstacles"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("not store the free obstacles"), std::string::npos);
   }
 }
 

@@ -155,7 +155,7 @@ TEST_F(FoamStudyE2e, CheckSaysThatFreeObstaclesTakePictures) {
   text = replaced(replaced(text, "sea_spray", "float"), "keep = [\"foam\"]",
                   "effect = [{kind = \"air_drag\", rate_per_s = 1}]");
   base::write_file_atomically(folder_ / "float.toml", text);
-  const std::string free = "baked by --keep pictures, for its obstacles are free, 510 frames";
+  const std::string free = "baked with --keep pictures, because its obstacles are free, 510 frames";
   EXPECT_THAT(run_program({vip_study, "check", folder_ / "float.toml"}).out, HasSubstr(free));
   EXPECT_THAT(run_program({vip_study, "check", foam_protocol()}).out, HasSubstr("  baked, 510 frames"));
 }

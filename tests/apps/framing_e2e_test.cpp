@@ -87,7 +87,7 @@ TEST_F(FramingE2e, WithoutAScreenTheVisualAngleIsNotKnownAndMethodsThatFollowThe
   write_protocol("FovFluid");
   const Ended ended = run({"--size", "64x36"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("eccentricity is taken in the camera's angle"));
+  EXPECT_THAT(ended.err, HasSubstr("eccentricity is computed from the camera's angle"));
   EXPECT_EQ(stored("camera_angle_deg"), 75);
   EXPECT_EQ(stored("visual_angle_deg"), -1) << "NULL";
   EXPECT_EQ(stored("angle_ratio"), -1) << "NULL";
@@ -152,7 +152,7 @@ TEST_F(FramingE2e, CheckShowsBeforeTheFirstParticipantWhatWillBeSeen) {
   const Ended kept = run_shell(check);
   ASSERT_EQ(kept.exit_code, 0) << kept.out;
   EXPECT_THAT(kept.out, AllOf(HasSubstr("camera 75 deg"), HasSubstr("27.4"), HasSubstr("(ratio 0.3"),
-                              HasSubstr("what must stay visible does")));
+                              HasSubstr("all that must stay visible is in the picture")));
   const auto json = base::Json::parse(base::read_file(folder_ / "check.json", 1 << 20));
   EXPECT_EQ(json.at("framing").at(0).at("camera_angle_deg"), 75);
   EXPECT_TRUE(json.at("framing").at(0).at("cut").empty());
@@ -163,8 +163,8 @@ TEST_F(FramingE2e, CheckShowsBeforeTheFirstParticipantWhatWillBeSeen) {
   write_protocol("LoRes", "camera_angle = \"true\"\n");
   const Ended cut = run_shell(check);
   EXPECT_EQ(cut.exit_code, 1);
-  EXPECT_THAT(cut.out,
-              AllOf(HasSubstr("the falling jet leaves the picture"), Not(HasSubstr("visible does"))));
+  EXPECT_THAT(cut.out, AllOf(HasSubstr("the falling jet leaves the picture"),
+                             Not(HasSubstr("all that must stay visible"))));
   EXPECT_THAT(base::read_file(folder_ / "page/index.html", 1 << 20),
               HasSubstr("Leaves the picture: the falling jet"));
 }

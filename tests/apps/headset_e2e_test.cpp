@@ -19,9 +19,9 @@ TEST_F(HeadsetE2e, SaysWhatTheRuntimeOffers) {
   for (const char* line :
        {"runtime     Monado(XRT) 1.2.3\n", "headset     Simulated headset\n",
         "pictures    2064 x 2208 px, 2064 x 2208 px\n", "refresh     72, 80, 90, 120 Hz, now 90 Hz\n",
-        "blend       opaque\n", "head        direction and place are followed\n", "gaze        eye tracker\n",
-        "evidence grade C\n", "formats     GL_SRGB8_ALPHA8, GL_RGBA16F, GL_RGBA8, GL_DEPTH_COMPONENT32F\n",
-        "XR_EXTX_made_up"})
+        "blend       opaque\n", "head        rotation and position are tracked\n",
+        "gaze        eye tracker\n", "evidence grade C\n",
+        "formats     GL_SRGB8_ALPHA8, GL_RGBA16F, GL_RGBA8, GL_DEPTH_COMPONENT32F\n", "XR_EXTX_made_up"})
     EXPECT_THAT(ended.out, HasSubstr(line));
   EXPECT_THAT(calls(), HasSubstr("xrDestroySession"));
   EXPECT_THAT(calls(), HasSubstr("xrDestroyInstance"));
@@ -33,8 +33,8 @@ TEST_F(HeadsetE2e, SaysWhatIsMissing) {
          "XR_FB_display_refresh_rate");
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
   for (const char* line :
-       {"gaze        none\n", "head        direction alone is followed\n", "evidence grade D\n",
-        "blend       the world shows through the picture\n", "refresh     not told; it is measured",
+       {"gaze        none\n", "head        only rotation is tracked\n", "evidence grade D\n",
+        "blend       the world shows through the picture\n", "refresh     not reported; it is measured",
         "formats     GL_RGBA16F, GL_RGBA8, GL_SRGB8_ALPHA8\n"})
     EXPECT_THAT(ended.out, HasSubstr(line));
   const auto no_egl = on("without=XR_MNDX_egl_enable");

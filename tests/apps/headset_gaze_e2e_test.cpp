@@ -102,7 +102,7 @@ TEST_F(HeadsetGazeE2e, TheHeadStandsInAndTheTrackerIsNotAskedFor) {
 TEST_F(HeadsetGazeE2e, ATrackerThatIsNotThereOrMayNotBeReadIsRefusedBeforeAnythingIsWritten) {
   const auto none = session("gaze=0", "tracked");
   EXPECT_EQ(none.exit_code, 1);
-  EXPECT_THAT(none.err, HasSubstr("has no eye tracker"));
+  EXPECT_THAT(none.err, HasSubstr("offers no eye tracker"));
   EXPECT_FALSE(fs::exists(database_));
   const auto unasked = session("", "tracked", 1, protocol(false));
   EXPECT_EQ(unasked.exit_code, 1);

@@ -297,7 +297,7 @@ TEST_F(HeadsetPersonE2e, WhatAPersonCannotAnswerWithIsRefusedBeforeAnythingIsWri
     EXPECT_FALSE(fs::exists(database_));
   }
   const auto console = session(by_ray, pilot("[10]"), {"--answer", "keyboard", "--console"});
-  EXPECT_THAT(console.err, HasSubstr("the console has the terminal's keys"));
+  EXPECT_THAT(console.err, HasSubstr("the console uses the terminal's keys"));
   EXPECT_FALSE(fs::exists(database_));
   const auto observer = session(by_ray, pilot("[10]"), {"--answer", "ray", "--observer", "random"});
   EXPECT_THAT(observer.err, HasSubstr("is for a person in a headset"));

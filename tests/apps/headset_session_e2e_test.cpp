@@ -302,7 +302,7 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
       study("size=32x32", {"run", protocol, "--db", database_, "--observer", "random", "--display", "openxr",
                            "--clock", "virtual", "--stimulus", pictures});
   EXPECT_EQ(flat.exit_code, 1);
-  EXPECT_THAT(flat.err, HasSubstr("which two eyes would see flat"));
+  EXPECT_THAT(flat.err, HasSubstr("which would look flat in a headset"));
   EXPECT_FALSE(fs::exists(database_));
 }
 

@@ -29,18 +29,17 @@ class HeadsetShowE2e : public test::HeadsetRuns {
 
 TEST_F(HeadsetShowE2e, ASessionGoesThroughItsStates) {
   const std::string to_focused = "states      idle, ready, synchronized, visible, focused, ";
-  expect_says(
-      "",
-      {"shown in    Simulated headset, 64 x 64 px an eye, GL_SRGB8_ALPHA8\n",
-       to_focused + "visible, synchronized, stopping, idle, exiting\n", "frames      47, 46 with pictures\n",
-       "rate        90.00 Hz by settled steps of predicted times; 90 Hz by the runtime's word\n",
-       "dropped     0 slots; 0 predicted times repeated, 0 off the grid\n", "ended       after its time\n"});
+  expect_says("", {"shown in    Simulated headset, 64 x 64 px an eye, GL_SRGB8_ALPHA8\n",
+                   to_focused + "visible, synchronized, stopping, idle, exiting\n",
+                   "frames      47, 46 with pictures\n",
+                   "rate        90.00 Hz measured from predicted times; 90 Hz reported by the runtime\n",
+                   "dropped     0 slots; 0 predicted times repeated, 0 off the grid\n",
+                   "ended       after the time of --show\n"});
   EXPECT_THAT(calls(), Not(HasSubstr("\nnote")));
 }
 
 TEST_F(HeadsetShowE2e, TheRateIsMeasuredAndNeverTheFirstPeriod) {
-  expect_says("rates=90;rate=90;wrong_periods=5",
-              {"rate        90.00 Hz by settled steps of predicted times\n"});
+  expect_says("rates=90;rate=90;wrong_periods=5", {"rate        90.00 Hz measured from predicted times\n"});
   EXPECT_THAT(calls(), Not(HasSubstr("xrGetDisplayRefreshRateFB")));
   expect_says("without=XR_FB_display_refresh_rate;rate=20", {"not known: too few steps"});
   // Where a time is told twice, its own slot is left out.
@@ -55,8 +54,7 @@ TEST_F(HeadsetShowE2e, AChangeOfTheRateIsTold) {
 }
 
 TEST_F(HeadsetShowE2e, ARateIsAskedForAndConfirmed) {
-  const char* runs =
-      "rate        120.00 Hz by settled steps of predicted times; 120 Hz by the runtime's word\n";
+  const char* runs = "rate        120.00 Hz measured from predicted times; 120 Hz reported by the runtime\n";
   expect_says("", {runs}, {"--refresh", "120"});
   expect_says("ignores_rate=1", {"rate        90.00 Hz", "note        the display did not go to 120 Hz\n"},
               {"--refresh", "120"});
@@ -110,7 +108,8 @@ TEST_F(HeadsetShowE2e, TheHeadsetIsTakenOffAndPutOnAgain) {
 
 TEST_F(HeadsetShowE2e, ASessionThatIsLostIsMadeAnew) {
   for (const char* profile : {"at=20:lost/3", "at=20:lost_now", "at=20:instance_lost/5"}) {
-    expect_says(profile, {"note        a session was lost and made anew\n", "ended       after its time\n"});
+    expect_says(profile, {"note        a session was lost and started again\n",
+                          "ended       after the time of --show\n"});
   }
   const auto ended = show("at=5:lost_now,10:lost_now,15:lost_now");
   EXPECT_EQ(ended.exit_code, 1);

@@ -95,7 +95,8 @@ TEST_F(HeatStudyE2e, CheckTellsTheOverlayAndRefusesWaterWithoutHeat) {
                               replaced(base::read_file(protocol_, 1 << 20), "hot_jet", "single_dam"));
   const Ended cold = run_program({vip_study, "check", protocol_});
   EXPECT_EQ(cold.exit_code, 1);
-  EXPECT_THAT(cold.err, AllOf(HasSubstr("heat.toml:15:11: "), HasSubstr("finds no heat in scene SingleDam")));
+  EXPECT_THAT(cold.err, AllOf(HasSubstr("heat.toml:15:11: "),
+                              HasSubstr("needs the effect heat, which is missing in scene SingleDam")));
 }
 
 TEST_F(HeatStudyE2e, ABakeOfAScenePaintsItsPicturesAlone) {

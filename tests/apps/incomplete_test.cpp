@@ -48,7 +48,7 @@ TEST_F(IncompleteE2e, IsSaidByEveryReaderThatGoesOnOnlyWhenTold) {
     SCOPED_TRACE(command[1]);
     const Ended refused = Process(command).wait();
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_THAT(refused.err, AllOf(HasSubstr("stand in the journal alone"), HasSubstr("--incomplete"),
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("are in the journal only"), HasSubstr("--incomplete"),
                                    HasSubstr("vip-study salvage --db " + database_)));
     for (const std::string& made : {page_, json_, task_, csv_, all_}) EXPECT_FALSE(fs::exists(made)) << made;
   }
@@ -58,13 +58,13 @@ TEST_F(IncompleteE2e, IsSaidByEveryReaderThatGoesOnOnlyWhenTold) {
     const Ended done = Process(command).wait();
     EXPECT_EQ(done.exit_code, 0) << done.err;
     if (command[1] != "report") {
-      EXPECT_THAT(done.out, HasSubstr("stand in the journal alone"));
+      EXPECT_THAT(done.out, HasSubstr("are in the journal only"));
     }
   }
-  EXPECT_THAT(base::read_file(page_, 1u << 30), HasSubstr("stand in the journal alone"));
+  EXPECT_THAT(base::read_file(page_, 1u << 30), HasSubstr("are in the journal only"));
   for (const std::string& file : {json_, task_}) {
     const auto json = base::Json::parse(base::read_file(file, 1u << 30));
-    EXPECT_THAT(json["study"]["incomplete"].get<std::string>(), HasSubstr("stand in the journal alone"));
+    EXPECT_THAT(json["study"]["incomplete"].get<std::string>(), HasSubstr("are in the journal only"));
   }
   EXPECT_THAT(Process({stats, "task1", database_}).wait().err, HasSubstr("--incomplete"));
   // The fit of random answers fails, after it was read.

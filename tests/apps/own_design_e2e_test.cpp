@@ -98,7 +98,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
   }
   const auto level = typed("vip-stats task1 " + at("s.db") + " --level 3");
   EXPECT_EQ(level.exit_code, 1);
-  EXPECT_THAT(level.out, HasSubstr("--level: means nothing for task1"));
+  EXPECT_THAT(level.out, HasSubstr("--level: does not apply to task1"));
 }
 
 TEST(OwnDesignE2e, AMendedVersionStandsBesideTheFirst) {
@@ -141,7 +141,7 @@ TEST(OwnDesignE2e, AMendedVersionStandsBesideTheFirst) {
   // A level is for the curve of a pilot alone.
   const auto level = report(" --level 2");
   EXPECT_EQ(level.exit_code, 1);
-  EXPECT_THAT(level.out, HasSubstr("--level: means nothing here"));
+  EXPECT_THAT(level.out, HasSubstr("--level: does not apply here"));
 }
 
 // The shipped protocol asks for sickness in its trials too.

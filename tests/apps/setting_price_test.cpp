@@ -57,7 +57,7 @@ TEST(SettingPrice, IsTheRowOfExactlyThisSettingBesideHiRes) {
 TEST(SettingPrice, HiResItselfIsWhatOthersAreHeldAgainst) {
   const auto tables = sweep_tables(small_sweep());
   EXPECT_THAT(lines(prices_of(tables, hires_at(512), scene_sha256())),
-              AllOf(HasSubstr("which others are held against"), Not(HasSubstr("times the time"))));
+              AllOf(HasSubstr("which others are compared with"), Not(HasSubstr("times the time"))));
 }
 
 TEST(SettingPrice, SaysWhichKnobsDifferWhereNoRowIsTheSetting) {
@@ -210,7 +210,7 @@ TEST_F(SettingPriceE2e, VipViewSaysWhatTheSettingInForceCostsAndErrsBy) {
               AllOf(HasSubstr("sweep  "), HasSubstr(" ms a frame, 95 % within "), HasSubstr("centre_pct"),
                     HasSubstr("picture_pct"), HasSubstr("compared pictures of 64x36"),
                     HasSubstr("times the time of HiRes at n_* 64")));
-  EXPECT_THAT(view("--method HiRes").out, HasSubstr("which others are held against"));
+  EXPECT_THAT(view("--method HiRes").out, HasSubstr("which others are compared with"));
   EXPECT_THAT(
       view("--method HiRes --iterations 5").out,
       HasSubstr(

@@ -64,7 +64,7 @@ TEST_F(StimulusFolderE2e, MixesBakedAndLiveAndSaysWhatIsMissingAndHowToMakeIt) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.err,
               AllOf(HasSubstr("1 stimuli are baked: dam 64 HiRes"),
-                    HasSubstr("1 run live, it follows what is looked at: dam 64 FovFluid"),
+                    HasSubstr("1 run live, it follows the gaze: dam 64 FovFluid"),
                     HasSubstr("1 have no bake and run live: dam 64 LoRes; to make them: vip-study bake "
                               "--protocol " +
                               protocol_ + " --out " + bakes_ + " --size 64x36"),
@@ -194,7 +194,7 @@ TEST_F(StimulusFolderE2e, WhereFixationIsPrescribedNoOtherGazeIsTaken) {
   for (const std::string gaze : {"none", "tracked"}) {
     const Ended ended = run(database_, {"--gaze", gaze});
     EXPECT_EQ(ended.exit_code, 1);
-    EXPECT_THAT(ended.err, HasSubstr("is not where the protocol prescribes to look"));
+    EXPECT_THAT(ended.err, HasSubstr("contradicts gaze = \"fixation\" of the protocol"));
   }
 }
 

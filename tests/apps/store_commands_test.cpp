@@ -183,7 +183,7 @@ TEST(StoreCommandsE2e, WhoCannotWriteTheDatabaseCannotExport) {
   const Ended refused =
       Process({vip_study, "export", "--db", database, "--csv", folder / "theirs" / "csv"}, as_nobody).wait();
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("an export is registered in it"));
+  EXPECT_THAT(refused.err, HasSubstr("export is registered in it"));
   EXPECT_TRUE(fs::is_empty(folder / "theirs"));
 }
 

@@ -92,7 +92,7 @@ TEST_F(StudyCommandsE2e, CodesAndStationsAreWhatFilesAndPeopleCanTell) {
     expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant=" + code}),
                  "participant '" + code + "': is not a participant code");
   expect_error(run_arguments(folder_ / "short.toml", database_, {"--participant", "p01"}),
-               "differs from P01 in case, punctuation or leading zeros alone");
+               "differs from P01 only in case, punctuation or leading zeros");
   for (const std::string& station : {std::string(101, 'x'), std::string("lab\xFF"), std::string("lab\n1")}) {
     const Ended ended = run({"--participant", "P02", "--station", station});
     EXPECT_EQ(ended.exit_code, 2) << station;
@@ -135,7 +135,7 @@ TEST_F(StudyCommandsE2e, APersonNeedsANameAWindowAndRealTime) {
   expect_error(asks({"--participant", "P1", "--clock", "virtual"}), "does not wait for a person");
   expect_error(asks({"--observer", "random", "--gaze", "mouse"}), "needs a window");
   expect_error(asks({"--participant", "P1", "--gaze", "tracked"}), "needs an eye tracker");
-  expect_error(asks({"--observer", "random", "--screen-width-mm", "500"}), "only together");
+  expect_error(asks({"--observer", "random", "--screen-width-mm", "500"}), "are needed together");
   expect_error(asks({"--observer", "nobody"}), "is not a kind of observer");
 }
 

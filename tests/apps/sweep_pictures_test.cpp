@@ -186,7 +186,7 @@ TEST(SweepPictures, StandInTablesPageAndBudget) {
   const auto list = price_list(sweep(), plan, origin, 10);
   EXPECT_TRUE(list.pictures());
   EXPECT_THAT(to_markdown(list), HasSubstr("| FLIP % |"));
-  EXPECT_THAT(to_markdown(list), HasSubstr("pictures and its second seed's do not part"));
+  EXPECT_THAT(to_markdown(list), HasSubstr("pictures and its second seed's do not diverge"));
   EXPECT_THAT(to_csv(setting_table(list)), HasSubstr("picture_pct,picture_pct_low"));
   const auto page = accuracy_page(list, plan);
   for (const char* words : {"Error of flicker", "Error of what is seen (FLIP)", "Compared pictures: 32x32 px",
@@ -228,10 +228,10 @@ TEST(SweepPictures, AnErrorThatNoRowHasIsSaidToBeUntold) {
   const auto list = price_list(cells, plan, origin, 10);
   EXPECT_THAT(to_markdown(list), HasSubstr("salient_pct: the reference has no large enough part"));
   EXPECT_THAT(to_markdown(list), Not(HasSubstr("nan")));
-  EXPECT_THAT(accuracy_page(list, plan), HasSubstr("Not told: the reference has no large enough part"));
+  EXPECT_THAT(accuracy_page(list, plan), HasSubstr("Not known: the reference has no large enough part"));
   const BudgetWish wish{plan, 30, SweepError::Salient, 10};
   EXPECT_THAT([&] { choose_setting(cells, origin, wish, {}, {}); },
-              ThrowsMessage<base::Error>(HasSubstr("--error salient: is told of no setting")));
+              ThrowsMessage<base::Error>(HasSubstr("--error salient: is not known for any setting")));
 }
 
 TEST(SweepPictures, WhoAsksForOtherCellsHearsWhichThereAre) {

@@ -258,7 +258,7 @@ TEST(FreeObstacles, BeginWithTheRun) {
     sim::make_simulation(scene, options);
     FAIL();
   } catch (const base::Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("nobody knows where its free obstacles are"));
+    EXPECT_THAT(error.what(), HasSubstr("the positions of its free obstacles are not known"));
   }
 }
 

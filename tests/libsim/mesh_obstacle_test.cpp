@@ -61,8 +61,8 @@ TEST(MeshObstacles, ErrorsNameThePlaceAndTheMend) {
   EXPECT_THAT(error(""), AllOf(HasSubstr("scene.toml:"), HasSubstr("is a mesh without a file")));
   EXPECT_THAT(error("file = \"none.obj\"\n"), AllOf(HasSubstr("scene.toml:"), HasSubstr("does not exist")));
   EXPECT_THAT(error("file = \"\"\n"), HasSubstr("is not the name of a file"));
-  EXPECT_THAT(error("file = \"open.obj\"\n" + inline_brick()), HasSubstr("stands beside obj"));
-  EXPECT_THAT(error("file = \"open.obj\"\n"), AllOf(HasSubstr("open.obj:"), HasSubstr("the edge from place"),
+  EXPECT_THAT(error("file = \"open.obj\"\n" + inline_brick()), HasSubstr("is given together with obj"));
+  EXPECT_THAT(error("file = \"open.obj\"\n"), AllOf(HasSubstr("open.obj:"), HasSubstr("the edge from vertex"),
                                                     HasSubstr("close the surface")));
   EXPECT_THAT(error("obj = '''\nv 0 0\n'''\n"), AllOf(HasSubstr("scene.toml:"), HasSubstr("in its line 1 ")));
   EXPECT_THAT(error(inline_brick() + "scale = 0.0\n"), HasSubstr("scale"));

@@ -45,8 +45,9 @@ TEST(ObstacleContact, WhoBeginsInsideAnotherIsRefused) {
   const auto error = [](const std::string& text) { return fluid_test::scene_error(dam_with(text)); };
   EXPECT_EQ(error(sphere_table + free_cube), "no error");
   const auto text = sphere_table + changed(free_cube, "2.0, 2.0, 2.0", "2.0, 1.7, 2.0");
-  EXPECT_THAT(error(text), AllOf(HasSubstr("scene.toml:"), HasSubstr("centre_m"), HasSubstr("0.2 m deep"),
-                                 HasSubstr("obstacle 1 of the file"), HasSubstr("begins outside of others")));
+  EXPECT_THAT(error(text),
+              AllOf(HasSubstr("scene.toml:"), HasSubstr("centre_m"), HasSubstr("0.2 m deep"),
+                    HasSubstr("obstacle 1 of the file"), HasSubstr("must start outside the others")));
   EXPECT_EQ(error(sphere_table + changed(free_cube, "2.0, 2.0, 2.0", "2.0, 1.9, 2.0")), "no error")
       << "who touches is not inside";
   EXPECT_EQ(error(changed(changed(text, "motion = \"free\"\n", ""), "density_kg_m3 = 500.0\n", "")),

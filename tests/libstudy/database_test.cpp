@@ -190,7 +190,7 @@ TEST(Database, AStepThatLosesRowsChangesNothing) {
   const std::string before = test::bytes_of(path);
   steps.push_back("DELETE FROM protocol;");
   EXPECT_THAT([&] { open_database(path, Open::Write, steps); },
-              ThrowsMessage<base::Error>(HasSubstr("belongs to none of protocol")));
+              ThrowsMessage<base::Error>(HasSubstr("refers to a missing row of protocol")));
   EXPECT_TRUE(test::bytes_of(path) == before);
 }
 

@@ -204,7 +204,7 @@ TEST(ExportCsv, LeavesWhatIsNotOursAlone) {
                 ThrowsMessage<base::Error>(HasSubstr("is not an earlier export")));
   }
   EXPECT_THAT([&] { export_csv(database, folder / "mixed"); },
-              ThrowsMessage<base::Error>(HasSubstr("alone: 'notes.txt' was added")));
+              ThrowsMessage<base::Error>(HasSubstr(": 'notes.txt' was added")));
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder.path()), {}), files);
   EXPECT_EQ(test::bytes_of(folder / "namesake" / "dictionary.csv"), "other words");
   fs::create_directory(folder / "empty");

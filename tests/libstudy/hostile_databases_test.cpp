@@ -186,7 +186,7 @@ TEST_F(HostileDatabases, ALogWithoutItsDatabaseIsKept) {
   for (const bool empty : {false, true}) {
     if (empty) base::write_file_atomically(box("gone.db"), "");
     EXPECT_THAT([&] { Store(box("gone.db"), Open::Create); },
-                ThrowsMessage<base::Error>(HasSubstr("stands there without its database")));
+                ThrowsMessage<base::Error>(HasSubstr("is there without its database")));
     EXPECT_TRUE(test::bytes_of(box("gone.db-wal")) == before);
   }
 }

@@ -81,7 +81,7 @@ struct Journalled {
 TEST(JournalTrouble, WhatCouldNotBeMarkedAsKeptIsSaidAndMarkedWithTheNextCommit) {
   Journalled one;
   one.note("first", true);
-  EXPECT_THAT(one.told, ElementsAre(HasSubstr("stand in the database alone")));
+  EXPECT_THAT(one.told, ElementsAre(HasSubstr("are in the database only")));
   one.note("second");
   EXPECT_EQ(one.notes_kept(), 2) << "the first stands in the database alone";
   one.journal->require_written();
@@ -95,7 +95,7 @@ TEST(JournalTrouble, ACommandEndsWithAnErrorWhileTheJournalLacksAnswers) {
     EXPECT_THROW(one.journal->require_written(), base::Error);
   }
   one.journal->require_written();
-  EXPECT_THAT(one.told, ElementsAre(HasSubstr("stand in the database alone"), HasSubstr("lacks nothing")));
+  EXPECT_THAT(one.told, ElementsAre(HasSubstr("are in the database only"), HasSubstr("is complete")));
   EXPECT_EQ(one.notes_kept(), 1);
 }
 

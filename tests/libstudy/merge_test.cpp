@@ -243,7 +243,7 @@ TEST_F(Stations, CopiesThatWentOnDifferentlyAreRefused) {
   for (const auto& sources :
        {std::vector{path("north"), path("fork")}, std::vector{path("fork"), path("north")}}) {
     EXPECT_THAT([&] { merge(sources, path("all")); },
-                ThrowsMessage<base::Error>(HasSubstr("went on differently")));
+                ThrowsMessage<base::Error>(HasSubstr("continued differently")));
     EXPECT_THROW(merge(sources, path("new")), base::Error);
   }
   EXPECT_EQ(everything(path("all")), before);
@@ -368,12 +368,12 @@ TEST_F(Stations, RowsThatBelongToNothingAreNamed) {
                     ::testing::AllOf(HasSubstr("broken.db"), HasSubstr(words), HasSubstr("salvage"))))
         << harm;
   };
-  refused("DELETE FROM session WHERE session_id = 2", "belongs to no session");
+  refused("DELETE FROM session WHERE session_id = 2", "refers to a missing row of session");
   refused("UPDATE frame SET presentation_id = 99 WHERE presentation_id = 3 AND frame_index = 0",
-          "presentation_id 99 belongs to no presentation");
+          "presentation_id 99 refers to a missing row of presentation");
   refused("UPDATE response SET question_id = 99 WHERE response_id = 2",
-          "row 2 of response belongs to no question");
-  refused("UPDATE session SET run_id = 99", "belongs to no run");
+          "row 2 of response refers to a missing row of question");
+  refused("UPDATE session SET run_id = 99", "refers to a missing row of run");
   refused(
       "UPDATE unit SET trial_id = (SELECT min(trial_id) FROM trial WHERE session_id = 2) WHERE unit_id = "
       "(SELECT min(unit_id) FROM unit WHERE session_id = 1 AND trial_id IS NOT NULL)",

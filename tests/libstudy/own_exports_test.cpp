@@ -135,8 +135,9 @@ TEST_F(OwnExports, StayWhenTheDatabaseIsNotTheOneThatWasWritten) {
   for (const char* log : {"-wal", "-shm"}) fs::remove(path.string() + log);
   fs::copy_file(folder / "before.db", path, fs::copy_options::overwrite_existing);
   EXPECT_THAT([&] { Store(path, Open::Write); },
-              ThrowsMessage<base::Error>(HasSubstr("stand in the journal")));
-  EXPECT_THAT([&] { withdraw(path, "X99"); }, ThrowsMessage<base::Error>(HasSubstr("stand in the journal")));
+              ThrowsMessage<base::Error>(HasSubstr("are in the journal only")));
+  EXPECT_THAT([&] { withdraw(path, "X99"); },
+              ThrowsMessage<base::Error>(HasSubstr("are in the journal only")));
   EXPECT_TRUE(fs::exists(csv / "sessions.csv"));
 }
 
@@ -216,7 +217,7 @@ TEST_F(OwnExports, OfARegisterThatOthersMayWriteAreOnlyNamed) {
   EXPECT_EQ(fs::status(own_exports_file()).permissions(), fs::perms(0600));
   EXPECT_EQ(fs::status(folder / "state").permissions(), fs::perms(0700));
   fs::permissions(own_exports_file(), fs::perms(0622));
-  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("that you alone may write")));
+  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("that only you may write to")));
   EXPECT_TRUE(fs::exists(csv / "sessions.csv"));
   fs::permissions(own_exports_file(), fs::perms(0600));
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty()) << "the mend that it names";

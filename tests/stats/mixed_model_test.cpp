@@ -118,7 +118,7 @@ TEST(MixedModel, RefusesWhatHasNoAnswer) {
   };
   EXPECT_THAT(reason({}, 0), HasSubstr("fewer than two participants"));
   EXPECT_THAT(reason({{0, 0, 0, 0, 3}, {0, 0, 0, 1, 4}}, 1), HasSubstr("fewer than two participants"));
-  EXPECT_THAT(reason({{0, 0, 0, 0, 3}, {1, 0, 0, 1, 4}}, 2), HasSubstr("nobody gave two answers"));
+  EXPECT_THAT(reason({{0, 0, 0, 0, 3}, {1, 0, 0, 1, 4}}, 2), HasSubstr("no participant gave two answers"));
   EXPECT_THAT(reason({{0, 0, 0, 0, 3}, {1, 0, 0, 1, 4}, {1, 0, 0, 3, 4}, {0, 0, 0, 2, 1}}, 2),
               HasSubstr("no more answers"));
   std::vector<MethodScore> equal;

@@ -65,7 +65,7 @@ SweepPlan plan_of(const AccuracyOptions& options) {
   if (out.quick) out.n_star = std::min<std::int64_t>(out.n_star, 256);
   if (out.quick) out.seconds = std::min(out.seconds, 0.5);
   if (!out.quick && out.n_star < 256) {
-    throw base::Error("--n-star " + options.n_star, "leaves nothing for a quarter of it to run with",
+    throw base::Error("--n-star " + options.n_star, "is too small: the sweep also runs a quarter of it",
                       "use 256 or more");
   }
   return out;
@@ -224,10 +224,10 @@ void add_accuracy_command(CLI::App& app) {
       ->add_option("--seconds", options->seconds, "Of content, from the opening of the gate, in whole 1/30 s")
       ->check(number_in(0.1, 60))
       ->capture_default_str();
-  add_count(*command, "--seeds", options->seeds, 1, 100, "Starts of a setting, an ulp apart");
+  add_count(*command, "--seeds", options->seeds, 1, 100, "Runs of each setting, from starts an ulp apart");
   add_count(*command, "--front-seeds", options->front_seeds, 0, 100,
             "Then so many starts of the settings that none beats in some error; 0 = no more than the others");
-  add_size(*command, options->size, "Also draw each frame so large, px; saliency then sees the picture");
+  add_size(*command, options->size, "Also draw each frame at this size, px; saliency then sees the picture");
   command
       ->add_option("--pictures", options->kept,
                    "Size, px, of pictures that are kept and compared, drawn apart from what is timed; none = "
@@ -239,30 +239,31 @@ void add_accuracy_command(CLI::App& app) {
   auto* out = command->add_option("--out", options->out, "Sweep file of --cell, or setting file of --budget")
                   ->check(output_file());
   cell->needs(out)->excludes(list)->excludes(database);
-  auto* table = command->add_flag("--table", options->table_only, "Only make the tables, of what --db holds")
-                    ->excludes(list)
-                    ->excludes(cell);
+  auto* table =
+      command->add_flag("--table", options->table_only, "Only make the tables, from what --db holds")
+          ->excludes(list)
+          ->excludes(cell);
   auto* budget = command
                      ->add_option("--budget", options->budget,
-                                  "Only choose: of what --db holds, the setting of least error that keeps "
-                                  "95 % of its frames within this time, such as 11.1ms; into --out")
+                                  "Only choose a setting from what --db holds, into --out: the one of least "
+                                  "error with 95 % of its frames within this time, such as 11.1ms")
                      ->needs(out)
                      ->needs(database)
                      ->excludes(list)
                      ->excludes(cell)
                      ->excludes(table);
   command
-      ->add_option(
-          "--error", options->error,
-          "That is to be least: front, centre, kinetic, density; picture, fovea, salient, ssim, flip, "
-          "film or flicker")
+      ->add_option("--error", options->error,
+                   "Error to minimise: front, centre, kinetic, density; picture, fovea, salient, ssim, flip, "
+                   "film or flicker")
       ->check(CLI::IsMember(sweep_error_names()))
       ->capture_default_str()
       ->needs(budget);
   command->add_option("--of-method", options->of_method, "Choose among settings of this method")
       ->needs(budget);
   command->add_option("--of-n-star", options->of_n_star, "Choose among settings of this size")->needs(budget);
-  command->add_option("--of-rate", options->of_rate, "Choose among settings of so many frames/s, such as 60")
+  command
+      ->add_option("--of-rate", options->of_rate, "Choose among settings of this many frames/s, such as 60")
       ->check(number_in(1, 1000))
       ->needs(budget);
   const auto add_output = [&](const char* name, std::string& path, const char* words) {
@@ -273,7 +274,7 @@ void add_accuracy_command(CLI::App& app) {
         ->excludes(budget);
   };
   add_output("--csv", options->csv, "File for a row for each setting");
-  add_output("--prices-csv", options->prices_csv, "File for a row for each turn of a knob");
+  add_output("--prices-csv", options->prices_csv, "File for a row for each change of one parameter");
   add_output("--markdown", options->markdown, "File for what is printed");
   add_output("--html", options->html, "File for a page with diagrams, fronts and prices");
   auto* merge = command->add_subcommand("merge", "Put the cells of several sweep files into one");

@@ -49,7 +49,7 @@ std::string floor_of(const PriceList& prices, SweepError error) {
   const double floor = prices.floor[static_cast<std::size_t>(error)];
   if (error == SweepError::Density) return "It needs no reference.";
   return fmt::format(
-      "The floor is {:.3g} %: as much does the reference differ from itself when its start moves by an ulp. "
+      "The floor is {:.3g} %: by so much the reference differs from itself when its start moves by an ulp. "
       "The reference {}.",
       floor, convergence(prices, error));
 }
@@ -67,10 +67,9 @@ std::string parting(const PriceList& prices) {
   const bool part = std::isfinite(prices.parting_s);
   return paragraph(
       parting_in_words(prices) + " Errors of pictures are taken ten times a second" +
-      (part
-           ? ", until then, and averaged. After it only the film's structure and flicker are told, which are "
-             "of the whole run, beside the errors of the water."
-           : " and averaged; the film's structure and flicker are of the whole run in any case."));
+      (part ? ", until then, and averaged. After it only the errors of the water are given, and the film's "
+              "structure and flicker, which are of the whole run."
+            : " and averaged; the film's structure and flicker are of the whole run in any case."));
 }
 
 std::string orders(const PriceList& prices) {
@@ -96,7 +95,7 @@ std::string diagrams(const PriceList& prices) {
     out += subsection(std::string("Error of ") + sweep_error_words[static_cast<std::size_t>(error)],
                       picture ? figure(*picture, floor_of(prices, error))
                       : std::isnan(prices.floor[static_cast<std::size_t>(error)])
-                          ? paragraph("Not told: " + why_untold(prices) + ".")
+                          ? paragraph("Not known: " + why_untold(prices) + ".")
                           : paragraph("No setting has an error above 0."));
   }
   return out + subsection("Pictures", parting(prices)) + subsection("Orders", orders(prices));

@@ -74,7 +74,7 @@ SettingFile file_of(const SettingResult& all, const std::vector<StoredCell>& fre
 [[noreturn]] void refuse(const BudgetWish& wish, const std::string& who, double ms, const char* when) {
   throw base::Error(
       fmt::format("--budget {:.4g}ms", wish.budget_ms),
-      fmt::format("is kept by no setting of the sweep{}. Nearest is {}: {:.2f} ms in 95 % of its frames, "
+      fmt::format("is met by no setting of the sweep{}. Nearest is {}: {:.2f} ms in 95 % of its frames, "
                   "{:.2f} more",
                   when, who, ms, ms - wish.budget_ms),
       fmt::format("allow {:.2f}ms, or sweep smaller sizes (--n-star)", std::ceil(ms * 100) / 100));
@@ -93,12 +93,13 @@ std::vector<SettingResult> candidates(const PriceList& list, const BudgetWish& w
   for (const auto& one : list.settings)
     if (wished(one.setting, wish)) out.push_back(one);
   if (out.empty()) {
-    throw base::Error("--of-method, --of-n-star, --of-rate", "leave no setting of the sweep",
-                      "give what --csv lists, or sweep it (--n-star)");
+    throw base::Error("--of-method, --of-n-star, --of-rate", "match no setting of the sweep",
+                      "give values that --csv lists, or sweep them (--n-star)");
   }
   std::erase_if(out, [&](const auto& one) { return std::isnan(one.errors[e].mean); });
   if (out.empty()) {
-    throw base::Error("--error " + sweep_error_names()[e], "is told of no setting: " + why_untold(list),
+    throw base::Error("--error " + sweep_error_names()[e],
+                      "is not known for any setting: " + why_untold(list),
                       "ask for another error, or sweep with --pictures 240x135");
   }
   return out;
@@ -111,7 +112,7 @@ double parse_budget(const std::string& words) {
   const char* const end = words.data() + words.size();
   const auto [rest, problem] = std::from_chars(words.data(), end, out);
   if (problem != std::errc{} || std::string_view(rest, end) != "ms" || !(out > 0) || !(out < 1e6))
-    throw base::Error("--budget " + words, "is no time of a frame", "write it as 11.1ms");
+    throw base::Error("--budget " + words, "is not a frame time", "write it as 11.1ms");
   return out;
 }
 

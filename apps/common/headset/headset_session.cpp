@@ -101,7 +101,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
     throw base::Error("headset",
                       fmt::format("the runtime has held a frame for {:g} s",
                                   std::chrono::duration<double>(patience).count()),
-                      "start the headset's software anew; vip-study resume continues a session");
+                      "restart the headset's software; vip-study resume continues a session");
   }
   check_xr(answer->result, "xrWaitFrame");
   return answer->frame;

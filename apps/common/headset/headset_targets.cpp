@@ -71,8 +71,8 @@ void HeadsetTargets::begin() {
       return;
     }
   }
-  throw base::Error("headset", "it does not tell where the head is",
-                    "see its tracking, and continue with vip-study resume");
+  throw base::Error("headset", "it does not report where the head is",
+                    "check its tracking, and continue with vip-study resume");
 }
 
 /// White, with a black dot in the middle.

@@ -55,7 +55,7 @@ bool lists_word(const std::vector<std::string>& list, const std::string& word) {
 void check_xr(XrResult result, const std::string& call, const std::string& mend) {
   if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) {
     throw HeadsetLost("OpenXR, " + call, name_of(result),
-                      "see that the headset and its software run; vip-study resume continues a session",
+                      "check that the headset and its software run; vip-study resume continues a session",
                       result == XR_ERROR_INSTANCE_LOST);
   }
   if (XR_FAILED(result)) throw base::Error("OpenXR, " + call, name_of(result), mend);

@@ -16,7 +16,7 @@ void require_alike(const SessionFacts& before, const SessionFacts& after) {
   throw base::Error("headset",
                     std::string("its session was lost, and the next one has ") +
                         (same_size ? "no eye tracker" : "pictures of another size"),
-                    "see the headset's software and continue with vip-study resume");
+                    "check the headset's software, and continue with vip-study resume");
 }
 
 }  // namespace apps

@@ -70,7 +70,7 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
       return index;
   } while (std::chrono::steady_clock::now() < deadline);
   throw base::Error("headset", "the runtime does not give a picture's image back",
-                    "start the headset's software anew; vip-study resume continues a session");
+                    "restart the headset's software; vip-study resume continues a session");
 }
 
 void Swapchain::write(const sim::Offscreen& picture, const PicturePart& part,

@@ -39,7 +39,7 @@ std::string in_words(const SolverSetting& setting) {
 
 std::string convergence(const PriceList& list, SweepError error) {
   if (std::isnan(list.floor[static_cast<std::size_t>(error)])) return "was not measured in it";
-  return list.finer.empty()                                ? "was not held against finer ones"
+  return list.finer.empty()                                ? "was not compared with finer ones"
          : list.converged[static_cast<std::size_t>(error)] ? "counts as converged"
                                                            : "does not count as converged";
 }
@@ -144,14 +144,14 @@ std::string in_words(const ObservedOrder& order) {
 
 std::string parting_in_words(const PriceList& list) {
   if (std::isinf(list.parting_s))
-    return "The reference's pictures and its second seed's do not part within the run.";
-  return fmt::format("The reference's pictures and its second seed's part {:.2f} s after the gate opened.",
+    return "The reference's pictures and its second seed's do not diverge within the run.";
+  return fmt::format("The reference's pictures and its second seed's diverge {:.2f} s after the gate opened.",
                      list.parting_s);
 }
 
 std::string why_untold(const PriceList& list) {
   if (!list.pictures()) return "the sweep kept no pictures";
-  return "the reference has no large enough part of its kind before the pictures part";
+  return "the reference has no large enough part of its kind before the pictures diverge";
 }
 
 std::string to_markdown(const PriceList& list) {

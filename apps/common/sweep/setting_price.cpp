@@ -175,9 +175,9 @@ std::vector<std::string> in_words(const SettingPrice& price) {
       errors_in_words(row.errors)};
   const std::string n_star = value_words(SolverKnob::Size, row.setting[SolverKnob::Size]);
   if (!price.hires) {
-    out.push_back("the sweep has no usual HiRes at n_* " + n_star + " to hold it against");
+    out.push_back("the sweep has no usual HiRes at n_* " + n_star + " to compare it with");
   } else if (price.hires == price.row) {
-    out.push_back("it is HiRes at n_* " + n_star + ", which others are held against");
+    out.push_back("it is HiRes at n_* " + n_star + ", which others are compared with");
   } else {
     out.push_back(fmt::format("{:.2f} times the time of HiRes at n_* {} ({:.2f} ms); {}",
                               row.ms_mean / price.hires->ms_mean, n_star, price.hires->ms_mean,

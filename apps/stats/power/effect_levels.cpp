@@ -76,10 +76,10 @@ World effect_world(const PowerRequest& request, const ShownFactors& factors, con
                       "varies effects without level none, over which a level could be preferred",
                       "simulate it: vip-study run with --observer, then vip-stats report");
   }
-  if (id == "null") return world("every preference is .5: what effects do is not seen", 0.5);
+  if (id == "null") return world("every preference is .5: participants do not see what effects do", 0.5);
   if (id != "effect") {
     throw base::Error("--world " + id,
-                      "knows no effects, which protocol " + request.protocol.name + " varies",
+                      "cannot simulate effects, which protocol " + request.protocol.name + " varies",
                       "choose --world effect or null");
   }
   if (!request.effect) {

@@ -171,7 +171,7 @@ std::string power_svg(const Json& json) {
   if (pilot) {
     panels = {coefficient_panel(json, "a", "half width of a, frames/s", 2),
               coefficient_panel(json, "b", "half width of b, s/frame", 4)};
-    names = {"interval, median", "interval, quantile at the power wished", "true standard error"};
+    names = {"interval, median", "interval, quantile at the requested power", "true standard error"};
   } else {
     panels = hypothesis_panels(json);
     for (const auto& world : json.at("worlds")) names.push_back(world.at("id").get<std::string>());

@@ -125,7 +125,7 @@ void print_precision(const Json& json) {
   const Json &precision = json.at("precision"), &settings = json.at("settings");
   const bool a = settings.at("precision_a").is_number(), b = settings.at("precision_b").is_number();
   if (a || b)
-    std::printf("precision wished, reached in a share of %g of pilots:\n",
+    std::printf("requested precision, reached in a share of %g of pilots:\n",
                 settings.at("power").get<double>());
   if (a) print_n("a", precision.at("n_for_a"));
   if (b) print_n("b", precision.at("n_for_b"));

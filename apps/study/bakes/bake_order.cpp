@@ -98,7 +98,7 @@ sim::BakeHeader header_of(const BakeOrder& order) {
     header.picture_effects = sim::format_picture_effects(*order.fluid.picture_effects);
   if (sim::any_free(scene.obstacles) && !order.pictures)
     throw base::Error(order.fluid.scene.string(),
-                      "has free obstacles, of which a bake of particles holds nothing",
+                      "has free obstacles, which a bake of particles does not store",
                       "bake pictures too, or keep the obstacles fixed");
   const sim::MethodTraits& traits = sim::traits_of(sim::parse_method(order.fluid.method));
   header.scene_name = scene.name;
@@ -126,8 +126,9 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   }
   if (traits.temporal) {
     if (!order.fluid.fixed_rate)
-      throw base::Error(header.method, "leaves particles out by tau, which follows from a frame rate",
-                        "name it: --rate MEAN,SD in frames/s");
+      throw base::Error(header.method,
+                        "solves only some particles, by tau, which follows from the frame rate",
+                        "give the frame rate: --rate MEAN,SD in frames/s");
     header.tolerance = {*order.fluid.fixed_rate, order.fluid.model, sim::TemporalOptions{}.seed};
   }
   return header;

@@ -24,7 +24,7 @@ std::int64_t frames_of(const study::Protocol& protocol, const study::Cell& cell)
 
 std::string why_live(const study::Protocol& protocol, const PlannedStimulus& one) {
   if (protocol.design.timing == study::TimingSource::Native) return "as fast as it runs";
-  if (one.adaptive && !protocol.fixation) return "it follows what is looked at";
+  if (one.adaptive && !protocol.fixation) return "it follows the gaze";
   if (one.frames > sim::bake::max_frames)
     return "a bake holds " + std::to_string(sim::bake::max_frames) + " frames at most";
   return "";

@@ -110,7 +110,7 @@ void check_needs(const base::TomlTable& set, const std::vector<Effect>& kept,
     const EffectKind needs = sim::traits_of(kept[i].kind).needs;
     if (needs == sim::no_effect || lists(all, needs)) continue;
     const std::string other = sim::traits_of(needs).word;
-    set.fail_at("keep", i, "needs " + other + ", of which there is none",
+    set.fail_at("keep", i, "needs " + other + ", which is missing",
                 "keep " + other + " too, or leave it out");
   }
 }
@@ -192,7 +192,8 @@ void check_temperatures(const study::Protocol& protocol, const sim::Scene& scene
     const std::string where =
         "scene " + scene.name + (levels.empty() ? "" : " at level \"" + levels[i].name + "\"");
     if (!scale.heat()) {
-      design_of(protocol).fail("overlay", "= \"temperature\" finds no heat in " + where,
+      design_of(protocol).fail("overlay",
+                               "= \"temperature\" needs the effect heat, which is missing in " + where,
                                "give it the effect heat, or remove the overlay");
     }
     if (scales.front().same_colours(scale)) continue;

@@ -86,7 +86,7 @@ void SessionBakes::use_file(const study::Protocol& protocol, const SessionLook& 
     }
   }
   if (sim::traits_of(sim::parse_method(bake->header.method)).adaptive() && !protocol.fixation)
-    departures.emplace_back("a gaze that was known beforehand instead of the participant's");
+    departures.emplace_back("a gaze fixed before the session instead of the participant's");
   departure_ = base::joined(departures);
 }
 

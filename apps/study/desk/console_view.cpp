@@ -29,7 +29,7 @@ std::string words_of(const study::Ending& ending) {
 const char* failure_of(const std::vector<study::TimingVerdict>& verdicts) {
   const char* failure = nullptr;
   for (const study::TimingVerdict& one : verdicts) {
-    if (one.cut) return "CUT, for it went on for too long: the machine is too slow for it";
+    if (one.cut) return "CUT because it took too long: the machine is too slow for it";
     if (one.verdict == study::Verdict::Fail) failure = "timing FAILED";
   }
   return failure;
@@ -126,7 +126,7 @@ std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) co
     all.push_back(fmt::format("disk: only {:.0f} MB are free; free space before the next trial", disk_mb));
   if (const char* failure = failure_of(verdicts_))
     all.push_back(fmt::format("trial {}: ", last_trial_->trial->position + 1) + failure +
-                  "; r shows it again, else it is left out by the timing rule");
+                  "; r shows it again, else the timing rule excludes it");
   if (!unit_done_ && course_.late > 0)
     all.push_back(fmt::format("{} late frame{} in this showing; close other programs", course_.late,
                               course_.late == 1 ? "" : "s"));

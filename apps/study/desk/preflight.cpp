@@ -59,15 +59,15 @@ PreflightLine judge_refresh(const std::optional<ScreenFacts>& screen) {
             "swaps do not wait for the screen: switch on vertical synchronisation in the driver"};
   if (screen->told_hz == 0)
     return {Readiness::Unknown, what,
-            fmt::format("measured {:.3f} Hz, the system tells none", screen->measured_hz)};
+            fmt::format("measured {:.3f} Hz, the system reports none", screen->measured_hz)};
   const bool same = std::abs(screen->measured_hz / screen->told_hz - 1) < 0.005;
   return {same ? Readiness::Ok : Readiness::Warn, what,
-          fmt::format("{}{:.4g} Hz, {}measured {:.3f} Hz", same ? "" : "told ", screen->told_hz,
+          fmt::format("{}{:.4g} Hz, {}measured {:.3f} Hz", same ? "" : "reported ", screen->told_hz,
                       same ? "" : "but ", screen->measured_hz)};
 }
 
 PreflightLine judge_compositor(const std::optional<ScreenFacts>& screen) {
-  if (!screen || !screen->compositor) return {Readiness::Unknown, "compositor", "cannot be told here"};
+  if (!screen || !screen->compositor) return {Readiness::Unknown, "compositor", "cannot be detected here"};
   if (*screen->compositor)
     return {Readiness::Warn, "compositor",
             "runs: it may add a frame of delay; switch it off for full-screen windows"};
@@ -75,14 +75,14 @@ PreflightLine judge_compositor(const std::optional<ScreenFacts>& screen) {
 }
 
 PreflightLine judge_governor(const StationFacts& station) {
-  if (station.governors.empty()) return {Readiness::Unknown, "power governor", "not told by the system"};
+  if (station.governors.empty()) return {Readiness::Unknown, "power governor", "not reported by the system"};
   const std::string all = base::joined(station.governors);
   if (all == "performance") return {Readiness::Ok, "power governor", all};
   return {Readiness::Warn, "power governor", all + ": set it to performance for steady frame times"};
 }
 
 PreflightLine judge_disk(const StationFacts& station, std::uint64_t needed_bytes) {
-  if (!station.free_disk_bytes) return {Readiness::Unknown, "free disk", "cannot be told"};
+  if (!station.free_disk_bytes) return {Readiness::Unknown, "free disk", "not known"};
   const double free_mb = 1e-6 * static_cast<double>(*station.free_disk_bytes);
   const double needed_mb = 1e-6 * static_cast<double>(needed_bytes);
   // Requires ten times the bytes, because the log of a database can grow as large as its content.
@@ -115,11 +115,11 @@ StationFacts read_station(const fs::path& database) {
 std::vector<PreflightLine> judge_preflight(const std::optional<ScreenFacts>& screen,
                                            const StationFacts& station, std::uint64_t needed_bytes) {
   std::vector<PreflightLine> lines{judge_refresh(screen)};
-  lines.push_back(
-      {Readiness::Unknown, "variable refresh (VRR)", "see that the display and the driver have it off"});
+  lines.push_back({Readiness::Unknown, "variable refresh (VRR)",
+                   "make sure that it is off in the display and the driver"});
   lines.push_back(judge_compositor(screen));
   if (screen && screen->software_gl)
-    lines.push_back({Readiness::Warn, "graphics", "drawn by the processor: frames will be late"});
+    lines.push_back({Readiness::Warn, "graphics", "drawn by the CPU: frames will be late"});
   lines.push_back(judge_governor(station));
   if (station.on_battery)
     lines.push_back({*station.on_battery ? Readiness::Warn : Readiness::Ok, "power",

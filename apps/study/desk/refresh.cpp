@@ -39,8 +39,9 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   std::sort(sorted.begin(), sorted.end());
   const double median = sorted[sorted.size() / 2];
   if (median < shortest_ns || median > longest_ns || share_in_time(steps, median) < 0.9) {
-    out.finding = fmt::format("swaps do not wait for the screen (median {:.3g} ms); told {:.4g} Hz",
-                              1e-6 * median, told_hz);
+    out.finding =
+        fmt::format("swaps do not wait for the screen (median {:.3g} ms); the system reports {:.4g} Hz",
+                    1e-6 * median, told_hz);
     return out;
   }
   double periods = 0, total = 0;
@@ -53,8 +54,8 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   const double measured_hz = 1e9 / out.period_ns;
   out.nominal_hz = study::nominal_refresh(measured_hz, told_hz);
   out.beat_ns = beat_of(returns_ns.last(10), out.period_ns);
-  out.finding =
-      fmt::format("swaps wait for the screen: measured {:.4f} Hz, told {:.4g} Hz", measured_hz, told_hz);
+  out.finding = fmt::format("swaps wait for the screen: measured {:.4f} Hz, the system reports {:.4g} Hz",
+                            measured_hz, told_hz);
   return out;
 }
 

@@ -13,7 +13,7 @@ namespace {
 void check_length(const std::string& what, double mm, double low_mm, double high_mm) {
   if (mm >= low_mm && mm <= high_mm) return;  // false for NaN
   throw base::Error(
-      what, std::to_string(mm) + " mm is not a length to be met on a desktop",
+      what, std::to_string(mm) + " mm is not a plausible length",
       "measure it in mm, from " + std::to_string(int(low_mm)) + " to " + std::to_string(int(high_mm)));
 }
 

@@ -32,8 +32,8 @@ void check_keys_are_free(const std::string& words, bool console) {
   if (!console) return;
   const AnswerWays ways = parse_answer_ways(words.empty() ? usual_answer_ways : words);
   if (!ways.ray && !ways.stick && !ways.dwell)
-    throw base::Error("--answer keyboard", "the console has the terminal's keys",
-                      "name another way too, or leave --console out");
+    throw base::Error("--answer keyboard", "the console uses the terminal's keys",
+                      "add another way to answer, or leave --console out");
 }
 
 }  // namespace apps
