@@ -44,8 +44,8 @@ struct Table2Options : TableOptions {
 struct CellRun {
   std::vector<double> particles, step_ms, render_ms, frame_ms;
   std::vector<double> saliency_ms, levels_ms, activation_ms, solve_ms;
-  double seen_ms = 0;           ///< mean time to pass the picture to saliency: in step_ms, not in frame_ms
-  std::vector<double> told_ms;  ///< frame times that tau followed, including warm-up
+  double seen_ms = 0;  ///< mean time to pass the picture to saliency: in step_ms, not in frame_ms
+  std::vector<double> followed_ms;  ///< frame times that tau followed, including warm-up
   sim::PictureWay seen_way = sim::PictureWay::None;
 };
 
@@ -97,8 +97,8 @@ CellRun time_frames(const CellScene& scene, const sim::SimulationOptions& choice
     stage.draw();
     glFinish();
     const double drawn = milliseconds_now();
-    run.told_ms.push_back(drawn - looked);
-    fluid.frame_time(run.told_ms.back());
+    run.followed_ms.push_back(drawn - looked);
+    fluid.frame_time(run.followed_ms.back());
     if (frame <= options.warm_up) continue;
     run.particles.push_back(static_cast<double>(fluid.particle_count()));
     run.step_ms.push_back(stepped - start);
@@ -124,7 +124,7 @@ void time_parts(const CellScene& scene, sim::SimulationOptions choice, const Tab
     // Otherwise GL's pending drawing would count as saliency of the next frame.
     if (fluid.follows_picture()) stage.draw();
     glFinish();
-    fluid.frame_time(run.told_ms[static_cast<std::size_t>(frame - 1)]);
+    fluid.frame_time(run.followed_ms[static_cast<std::size_t>(frame - 1)]);
     if (frame <= options.warm_up) continue;
     const sim::PartTimes parts = fluid.part_times();
     run.saliency_ms.push_back(parts.saliency_ms);

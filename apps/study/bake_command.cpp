@@ -82,7 +82,7 @@ void bake(const BakeCommand& command) {
   std::optional<Progress> settling, frames;
   BakeHooks hooks;
   hooks.stop = [&] {
-    if (StopSignals::stop_wished())
+    if (StopSignals::stop_requested())
       throw base::Error(command.out, "stopped on request; no file was written", "run the same command again");
   };
   hooks.settling = [&](int done, int total) {
@@ -100,15 +100,15 @@ void bake_all(const BakeCommand& command) {
   const StopSignals signals;
   const std::string file = study::find_protocol(command.protocol).string();
   const study::Protocol protocol = study::read_protocol(file);
-  ProtocolBakes wish{file, command.out, {}, command.keep == "pictures"};
-  wish.look.size = *command.size;
-  wish.look.common.viewing =
+  ProtocolBakes request{file, command.out, {}, command.keep == "pictures"};
+  request.look.size = *command.size;
+  request.look.common.viewing =
       screen_viewing(command.screen_width_mm, command.viewing_distance_mm, protocol.true_angle);
-  wish.look.common.backend = command.backend;
-  wish.look.common.model = ptpe_model(command);
-  check_visible(frame_scenes(protocol, wish.look.common.viewing, wish.look.size));
-  bake_protocol(protocol, wish, [&] {
-    if (StopSignals::stop_wished())
+  request.look.common.backend = command.backend;
+  request.look.common.model = ptpe_model(command);
+  check_visible(frame_scenes(protocol, request.look.common.viewing, request.look.size));
+  bake_protocol(protocol, request, [&] {
+    if (StopSignals::stop_requested())
       throw base::Error(command.out, "stopped on request; bakes that are complete stay, no other was written",
                         "run the same command again: it goes on from there");
   });

@@ -21,7 +21,7 @@ struct ConsentCommand {
   bool incomplete = false;
 };
 
-std::optional<bool> wish_of(const std::string& word) {
+std::optional<bool> permission_of(const std::string& word) {
   if (word.empty()) return {};
   return word == "yes";
 }
@@ -37,7 +37,7 @@ constexpr const char* exports_title =
 
 void print_change(const ConsentCommand& command) {
   const study::PermissionChange done = study::change_permissions(
-      command.database, command.participant, {wish_of(command.gaze), wish_of(command.sharing)});
+      command.database, command.participant, {permission_of(command.gaze), permission_of(command.sharing)});
   if (command.gaze == "no")
     std::printf("%lld samples of gaze deleted\n", static_cast<long long>(done.gaze_deleted));
   print_list(backups_title, done.backups);

@@ -74,7 +74,7 @@ std::string rate_text(const HeadsetRate& rate) {
   std::string out = rate.measured_hz
                         ? fmt::format("{:.2f} Hz measured from predicted times", *rate.measured_hz)
                         : "not known: too few steps between predicted times";
-  if (rate.told_hz) out += fmt::format("; {:g} Hz reported by the runtime", *rate.told_hz);
+  if (rate.reported_hz) out += fmt::format("; {:g} Hz reported by the runtime", *rate.reported_hz);
   return out;
 }
 
@@ -158,7 +158,7 @@ class Show {
     asked_to_exit_ = true;
     report_.ended = "after the time of --show";
     report_.rate = session_->rate();
-    const double shown_hz = report_.rate.measured_hz.value_or(report_.rate.told_hz.value_or(0));
+    const double shown_hz = report_.rate.measured_hz.value_or(report_.rate.reported_hz.value_or(0));
     if (asked_hz_ > 0 && std::abs(shown_hz - asked_hz_) > 0.02 * asked_hz_)
       report_.notes.push_back(fmt::format("the display did not go to {:g} Hz", asked_hz_));
     session_->request_exit();

@@ -107,7 +107,7 @@ std::string refusal(const MeasuredReport& report) {
 std::function<void()> stoppable(const study::Protocol& protocol, const SessionSetup& setup) {
   return [&setup, &protocol] {
     if (setup.poll) setup.poll();
-    if (StopSignals::stop_wished())
+    if (StopSignals::stop_requested())
       throw base::Error(protocol.name, "stopped while live cells were measured; nothing was shown",
                         "start it again");
   };

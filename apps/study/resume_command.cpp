@@ -133,7 +133,7 @@ Played play_rest(const ResumeOptions& resume) {
     played.end = std::max(played.end, play_run(store, run, protocol, setup, options));
     print_certificate(options.database, run, protocol);
   }
-  played.withdraw = store.wished_withdrawals();
+  played.withdraw = store.requested_withdrawals();
   store.require_journal();
   study::check_nothing_left(options.database, store.left_to_clean());
   return played;

@@ -173,7 +173,7 @@ Played play_planned(const RunCommand& command, const study::Protocol& protocol,
     played.end = play_run(store, open, protocol, setup, command.play);
     print_certificate(command.play.database, open, protocol);
   }
-  played.withdraw = store.wished_withdrawals();
+  played.withdraw = store.requested_withdrawals();
   store.require_journal();
   study::check_nothing_left(command.play.database, store.left_to_clean());
   return played;

@@ -65,7 +65,7 @@ StopSignals::~StopSignals() {
   for (const auto& [signal, before] : before_) ::sigaction(signal, &before, nullptr);
 }
 
-bool StopSignals::stop_wished() { return stop_flag; }
+bool StopSignals::stop_requested() { return stop_flag; }
 
 study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database) {
   return [database, calls = 0](const std::string& holder) mutable {
@@ -74,7 +74,7 @@ study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database) {
                    ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", for_terminal(database.string()).c_str(),
                    for_terminal(holder).c_str());
     }
-    return !StopSignals::stop_wished();
+    return !StopSignals::stop_requested();
   };
 }
 
@@ -110,7 +110,7 @@ class Steering {
            const SessionSetup& setup, const PlayOptions& options, std::vector<std::string> warnings)
       : store_(store),
         protocol_(protocol),
-        window_(setup.wish),
+        window_(setup.request),
         events_(options.events),
         warnings_(std::move(warnings)) {
     if (options.console) {
@@ -153,7 +153,7 @@ class Steering {
       }
       return console_.has_value();
     };
-    hooks.wish = [this] { return window_ ? window_([this] { return others(); }) : others(); };
+    hooks.request = [this] { return window_ ? window_([this] { return others(); }) : others(); };
     return hooks;
   }
 
@@ -161,14 +161,14 @@ class Steering {
   bool take_reopened() { return console_ && console_->take_reopened(); }
 
  private:
-  study::Wish others() {
-    if (StopSignals::stop_wished()) return study::Wish::Stop;
-    return console_ ? console_->wish() : study::Wish::GoOn;
+  study::Request others() {
+    if (StopSignals::stop_requested()) return study::Request::Stop;
+    return console_ ? console_->request() : study::Request::GoOn;
   }
 
   study::Store& store_;
   const study::Protocol& protocol_;
-  const WindowWish& window_;
+  const WindowRequest& window_;
   bool events_;
   std::vector<std::string> warnings_;  ///< of the station, for the console
   std::size_t done_ = 0;

@@ -20,7 +20,7 @@ class StopSignals {
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
-  static bool stop_wished();
+  static bool stop_requested();
 
  private:
   std::vector<std::pair<int, struct sigaction>> before_;

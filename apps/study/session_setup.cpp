@@ -109,12 +109,12 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
   auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
   record_headset(options, *headset, setup, viewing);
   setup.clock = std::make_unique<HeadsetClock>(*headset);
-  setup.wish = [display = headset.get()](const std::function<study::Wish()>& others) -> study::Wish {
+  setup.request = [display = headset.get()](const std::function<study::Request()>& others) -> study::Request {
     auto spoilt = display->take_spoilt();
     if (!spoilt) return others();
     display->clear();
     do {
-      if (others() == study::Wish::Stop) return study::Wish::Stop;
+      if (others() == study::Request::Stop) return study::Request::Stop;
       display->turn();  // at least once: a frame may be reported unseen before its cause
     } while (!display->focused());
     if (const auto more = display->take_spoilt()) study::note_cut(spoilt, *more);  // with nothing shown
@@ -123,7 +123,7 @@ void take_headset(const RunOptions& options, const study::Protocol& protocol, Se
   if (person) {
     HeadsetPerson parts = make_headset_person(*headset, ways, protocol, *setup.clock);
     setup.participant = std::move(parts.participant);
-    setup.wish = std::move(parts.wish);
+    setup.request = std::move(parts.request);
     setup.idle = std::move(parts.idle);
     setup.listen = std::move(parts.listen);
   }
@@ -196,7 +196,7 @@ SessionSetup make_session_setup(const RunOptions& options, const study::Protocol
       viewing.gaze = window.gaze;
       setup.gaze = std::move(window.mouse);
     }
-    setup.wish = std::move(window.wish);
+    setup.request = std::move(window.request);
     setup.idle = std::move(window.idle);
     setup.open_mirror = std::move(window.open_mirror);
     setup.poll = std::move(window.poll);

@@ -26,7 +26,7 @@ struct SessionSetup {
   std::shared_ptr<study::GazeSource> gaze;      ///< the recorded gaze source; null: no gaze is recorded
   std::shared_ptr<study::SlotSource> slots;     ///< of a headset, or null
   std::unique_ptr<study::GazeTargets> targets;  ///< of an eye tracker, or null
-  WindowWish wish;                              ///< of the window or the headset, or empty
+  WindowRequest request;                        ///< of the window or the headset, or empty
   std::function<std::optional<double>()> idle;  ///< of the window or the headset, or empty
   std::function<void()> listen;  ///< makes the terminal's keys answer a headset's pages, or empty
   std::function<void(bool reveal)> open_mirror;  ///< of the window or the headset, or empty

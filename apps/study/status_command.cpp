@@ -54,7 +54,7 @@ void status(const std::string& database, bool incomplete) {
     }
   }
   for (const std::string& code : found.withdrawn) std::printf("%s withdrew\n", code.c_str());
-  for (const std::string& code : study::wished_withdrawals({database, incomplete}))
+  for (const std::string& code : study::requested_withdrawals({database, incomplete}))
     std::printf("%s asked that all data be deleted: vip-study withdraw %s --db %s\n", code.c_str(),
                 code.c_str(), database.c_str());
   std::printf("%lld frames recorded, %lld samples of gaze\n", static_cast<long long>(found.frames),

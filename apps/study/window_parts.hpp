@@ -18,8 +18,8 @@ namespace apps {
 
 class HeadsetDisplay;
 
-/// The wish at the window, given the wishes of others; see SessionHooks::wish.
-using WindowWish = std::function<study::Wish(const std::function<study::Wish()>& others)>;
+/// The request at the window, given those of others; see SessionHooks::request.
+using WindowRequest = std::function<study::Request(const std::function<study::Request()>& others)>;
 
 /// Each part keeps the window alive.
 struct WindowParts {
@@ -28,7 +28,7 @@ struct WindowParts {
   /// Viewing::gaze for --gaze mouse.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
   std::unique_ptr<study::GazeSource> mouse;  ///< the same, for the record
-  WindowWish wish;
+  WindowRequest request;
   std::function<void(bool reveal)> open_mirror;  ///< for the experimenter; base::Error if there is no room
   /// Seconds since the last key, button or movement of the mouse at the window.
   std::function<std::optional<double>()> idle;

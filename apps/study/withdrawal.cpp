@@ -20,7 +20,7 @@ void withdraw_and_tell(const std::filesystem::path& database, const std::string&
 }
 
 void check_no_withdrawal_is_due(const study::StudyFile& study) {
-  for (const std::string& participant : study::wished_withdrawals(study)) {
+  for (const std::string& participant : study::requested_withdrawals(study)) {
     throw base::Error(study.path.string(), "participant " + participant + " asked that all data be deleted",
                       "run vip-study withdraw " + participant + " --db " + study.path.string());
   }

@@ -145,7 +145,7 @@ void CellMomentum::measure(MovingView particles, const std::uint8_t* active, con
                   .n = particles.size()};
   const auto size_of = [&](int k) {
     const auto cells = static_cast<std::size_t>(sums[k].grid.cells());
-    return sums[k].whose == Whose::Nobody ? 0 : grid_levels * cells;
+    return sums[k].whose == Whose::Unused ? 0 : grid_levels * cells;
   };
   for (auto& sum : of_) sum = nullptr;
   std::size_t size = 0;
@@ -155,7 +155,7 @@ void CellMomentum::measure(MovingView particles, const std::uint8_t* active, con
   int wanted = 0;
   MomentumSum* next = sums_.data();
   for (int k = 0; k < n; ++k) {
-    if (sums[k].whose == Whose::Nobody) continue;
+    if (sums[k].whose == Whose::Unused) continue;
     of_[k] = next;
     add.to[wanted++] = {sums[k], next};
     next += size_of(k);
@@ -165,10 +165,10 @@ void CellMomentum::measure(MovingView particles, const std::uint8_t* active, con
 
 void VelocityGrid::fit(const Domain& domain, float edge) {
   const Vec3 size = domain.high - domain.low;
-  const double wish = static_cast<double>(size.x) * static_cast<double>(size.y) *
-                      static_cast<double>(size.z) / std::pow(static_cast<double>(edge), 3.0);
+  const double wanted = static_cast<double>(size.x) * static_cast<double>(size.y) *
+                        static_cast<double>(size.z) / std::pow(static_cast<double>(edge), 3.0);
   constexpr double most = 1 << 22;
-  if (wish > most) edge *= static_cast<float>(std::cbrt(wish / most));
+  if (wanted > most) edge *= static_cast<float>(std::cbrt(wanted / most));
   // A tank of ten edges gets ten cells, despite rounding errors of its size.
   const auto count = [&](float length) {
     return std::max(1, static_cast<int>(std::ceil(length / edge - 1e-4f)));

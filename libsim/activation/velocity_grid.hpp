@@ -94,11 +94,11 @@ SIM_FN Vec4 sample(const Vec4* values, int offset, const CellCorners& corners) {
 using MovingView = Reads<Column::Position, Column::Velocity, Column::Level>;
 
 /// The particles in a sum. Resting and Solved are values of Active; All does not read Active.
-enum class Whose : std::uint8_t { Resting = 0, Solved = 1, All = 254, Nobody = 255 };
+enum class Whose : std::uint8_t { Resting = 0, Solved = 1, All = 254, Unused = 255 };
 
 /// One sum: which particles, over which cells.
 struct MomentumOf {
-  Whose whose = Whose::Nobody;
+  Whose whose = Whose::Unused;
   GridFrame grid{};
   const int* cell_of = nullptr;  ///< cell of each particle; nullptr: from its position
 };

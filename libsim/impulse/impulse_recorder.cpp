@@ -79,7 +79,7 @@ void ImpulseRecorder::begin(const std::vector<Gauge>& gauges, const Vec3d& tank_
   sums_.zero();
 }
 
-WallListener ImpulseRecorder::listener(float times) {
+WallRecord ImpulseRecorder::record_to(float times) {
   return {walls_.data(), gauges_.data(), static_cast<int>(gauges_.size()), finest_support_, times};
 }
 

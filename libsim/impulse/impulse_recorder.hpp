@@ -34,7 +34,7 @@ struct WallSum {
 };
 
 /// Output of kernels: the walls' sums, then the gauges'.
-struct WallListener {
+struct WallRecord {
   WallSum* sums;
   const GaugeBox* gauges;
   int gauge_count;
@@ -65,8 +65,8 @@ struct WallListener {
 
 /// Records a particle that a wall holds back or moves back, as reported by Walls::hold_back and
 /// Walls::project.
-struct HeardClamp {
-  WallListener to;
+struct RecordClamp {
+  WallRecord to;
   Vec4 particle;
   SIM_FN void body(int, Vec3, Vec3) const {}
   SIM_FN void operator()(int wall, float way) const {
@@ -89,10 +89,10 @@ class ImpulseRecorder {
   bool on() const { return on_; }
   /// True if position changes by walls count as impulses now. False during position corrections that do not
   /// change velocity.
-  bool listens() const { return on_ && !deaf_; }
-  void listen(bool yes) { deaf_ = !yes; }
-  bool deaf() const { return deaf_; }
-  WallListener listener(float times = 1);
+  bool recording() const { return on_ && !paused_; }
+  void pause(bool yes) { paused_ = yes; }
+  bool paused() const { return paused_; }
+  WallRecord record_to(float times = 1);
 
   void begin_frame(const Particles& particles, const Guards* guards);
   /// Books the change since the last mark; does nothing for Change::None or while off.
@@ -104,7 +104,7 @@ class ImpulseRecorder {
   void sum_up(const Particles& particles);
 
   bool on_ = false;
-  bool deaf_ = false;
+  bool paused_ = false;
   float finest_support_ = 0;
   Array<GaugeBox> gauges_;
   Array<WallSum> walls_;

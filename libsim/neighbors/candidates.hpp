@@ -63,8 +63,8 @@ class Candidates {
   }
 
   /// Calls hear(j) for all particles closer than sqrt(square) to `at`; square in m2.
-  template <class Hear>
-  void each_near(Vec4 at, float square, Hear hear) const {
+  template <class Visit>
+  void each_near(Vec4 at, float square, Visit visit) const {
     for (int first = 0; first < rows_; first += at_once) {
       const float* const x = x_.data() + first;
       const float* const y = y_.data() + first;
@@ -78,7 +78,7 @@ class Candidates {
         near_ones |= dx * dx + dy * dy + dz * dz < square ? bit_row.of[k] : 0;
       }
       for (; near_ones != 0; near_ones &= near_ones - 1) {
-        hear(who_[static_cast<std::size_t>(first + std::countr_zero(near_ones))]);
+        visit(who_[static_cast<std::size_t>(first + std::countr_zero(near_ones))]);
       }
     }
   }

@@ -19,7 +19,7 @@ struct BodyListener {
   BodySum* sums;
   const Body* bodies;
   float finest_support;
-  float times;  ///< as in WallListener
+  float times;  ///< as in WallRecord
 
   /// Adds `push`, in m_* m, at a position.
   SIM_FN void add(int body, Vec3 at, Vec3 push) const {
@@ -119,8 +119,8 @@ struct Solids {
   /// Like Walls::hold_back. A body measures the distance at the start as if the particle had moved with it.
   /// If a body touches a wall, the way out of the body may lead into the wall: a particle without another way
   /// out stays where it was.
-  template <class Heard = NobodyHears>
-  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
+  template <class Record = NoRecord>
+  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Record record = {}) const {
     const Vec3 from = x;
     bool held = false;
     for (int b = 0; b < count; ++b) {
@@ -129,38 +129,38 @@ struct Solids {
       const float before = distance(b, fused(x, dt, body.velocity_at(x))) - gap;
       const float beyond = Walls::kept_distance * at_least(before, 0.0f) - (after.distance - gap);
       if (beyond <= 0) continue;
-      heard.body(b, to, beyond * after.normal);
+      record.body(b, to, beyond * after.normal);
       to += beyond * after.normal;
       held = true;
     }
-    if (!walls.hold_back(x, to, gap, heard)) return held;
-    if (held) stay_out(x, from, heard);
+    if (!walls.hold_back(x, to, gap, record)) return held;
+    if (held) stay_out(x, from, record);
     return true;
   }
 
   /// Like Walls::project; walls are applied last, unless that would push a particle from outside into a body.
-  template <class Heard = NobodyHears>
-  SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
+  template <class Record = NoRecord>
+  SIM_FN bool project(Vec3& x, Vec3 from, float gap, Record record = {}) const {
     bool moved = false;
     for (int b = 0; b < count; ++b) {
       const Body::Near at = near(b, x);
       const float depth = gap - at.distance;
       if (depth <= 0) continue;
-      heard.body(b, x, depth * at.normal);
+      record.body(b, x, depth * at.normal);
       x += depth * at.normal;
       moved = true;
     }
-    if (!walls.project(x, from, gap, heard)) return moved;
-    if (moved) stay_out(x, from, heard);
+    if (!walls.project(x, from, gap, record)) return moved;
+    if (moved) stay_out(x, from, record);
     return true;
   }
 
  private:
-  template <class Heard>
-  SIM_FN void stay_out(Vec3& x, Vec3 from, Heard heard) const {
+  template <class Record>
+  SIM_FN void stay_out(Vec3& x, Vec3 from, Record record) const {
     int body;
     if (nearest_body(x, body) >= 0 || !holds(from)) return;
-    heard.body(body, x, from - x);
+    record.body(body, x, from - x);
     x = from;
   }
 };

@@ -22,7 +22,7 @@ struct Opening {
 };
 
 /// Listener that ignores corrections by walls and bodies.
-struct NobodyHears {
+struct NoRecord {
   SIM_FN void operator()(int, float) const {}
   SIM_FN void body(int, Vec3, Vec3) const {}
 };
@@ -136,8 +136,8 @@ struct Walls {
   /// Moves x, which is inside the walls, towards `to`, but at most a share of its distance to each wall
   /// (minus `gap`): particles of equal speed keep their order, whereas a clamp would put layers on one plane.
   /// True if a wall held x back; calls heard(wall, distance in m) for each such wall.
-  template <class Heard = NobodyHears>
-  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Heard heard = {}) const {
+  template <class Record = NoRecord>
+  SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Record record = {}) const {
     bool held = false;
     for (int k = 0; k < count; ++k) {
       const float border = planes[k].offset + gap;
@@ -145,7 +145,7 @@ struct Walls {
       const float beyond = least - (dot(planes[k].normal, to) - border);
       if (beyond <= 0 || lets(k, x, to)) continue;
       to += beyond * planes[k].normal;
-      heard(k, beyond);
+      record(k, beyond);
       held = true;
     }
     x = to;
@@ -155,14 +155,14 @@ struct Walls {
 
   /// Moves x, which came from `from`, to at least `gap` inside every wall; true if it was moved. heard: as
   /// above.
-  template <class Heard = NobodyHears>
-  SIM_FN bool project(Vec3& x, Vec3 from, float gap, Heard heard = {}) const {
+  template <class Record = NoRecord>
+  SIM_FN bool project(Vec3& x, Vec3 from, float gap, Record record = {}) const {
     bool moved = false;
     for (int k = 0; k < count; ++k) {
       const float depth = planes[k].offset + gap - dot(planes[k].normal, x);
       if (depth <= 0 || lets(k, from, x)) continue;
       x += depth * planes[k].normal;
-      heard(k, depth);
+      record(k, depth);
       moved = true;
     }
     return moved;

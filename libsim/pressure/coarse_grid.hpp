@@ -58,9 +58,9 @@ SIM_FN bool body_has(const Solids& solids, const PressureFrame& frame, const Gri
 
 /// Calls hear(wall, inward normal, area in m2) with the closed area of each face of a cell that lies on a
 /// wall, in the order of Walls.
-template <class Boundary, class Hear>
+template <class Boundary, class Visit>
 SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, const Boundary& boundary,
-                           int cell, Hear hear) {
+                           int cell, Visit visit) {
   const CellBlock& block = grid.block;
   const int x = cell % block.nx;
   const int y = cell / block.nx % block.ny;
@@ -70,7 +70,7 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, con
   const auto face = [&](int wall, int nx, int ny, int nz, Vec3 normal, float area) {
     if (grid.kind_at(nx, ny, nz) != CellKind::Solid || body_has(boundary, frame, grid, nx, ny, nz)) return;
     const float shut = grid.open_count > 0 ? 1 - grid.openness(nx, ny, nz) : 1.0f;
-    hear(wall, normal, shut * area);
+    visit(wall, normal, shut * area);
   };
   face(0, x - 1, y, z, {1, 0, 0}, across_x);
   face(1, x + 1, y, z, {-1, 0, 0}, across_x);

@@ -51,7 +51,7 @@ Walls walls_of(const Scene& scene, bool settling);
 
 /// Places the scene's obstacles, at rest, at this time; `told`: record what they give the water. base::Error
 /// if one is thinner than the coarsest particles' spacing: water would pass through it.
-void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool told);
+void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool recorded);
 /// Adds what the obstacles gave the water in the frame.
 void count_obstacles(const FluidState& state, MomentumAccount& account);
 /// The scene's obstacles at this time.

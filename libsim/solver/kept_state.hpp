@@ -37,7 +37,7 @@ void keep_fluid(Archive& archive, FluidState& state) {
   keep_activation(archive, state.activation);
   if (state.foam.capacity() > 0) archive(state.foam);
   // Positions at the end of the last substep: a frame begins there.
-  if (state.obstacles.there()) archive(state.obstacles.bodies);
+  if (state.obstacles.exists()) archive(state.obstacles.bodies);
   if (state.obstacles.free.size() > 0) archive(state.obstacles.free);
   if (state.obstacles.meet()) archive(state.obstacles.by_others);
   // Only methods with levels use neighbours before particles move.

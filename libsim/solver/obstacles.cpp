@@ -51,7 +51,7 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
 
 }  // namespace
 
-void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool told) {
+void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool recorded) {
   auto& o = state.obstacles;
   // A substep moves a particle at most by the finest spacing.
   const auto least = static_cast<double>(state.finest_support);
@@ -89,15 +89,15 @@ void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool 
     for (const Obstacle& obstacle : o.obstacles) free.push_back(free_of(obstacle, state));
     o.free.from_host(free);
     if (any_meet(o.obstacles)) begin_meeting(o);
-    told = true;
+    recorded = true;
   }
-  if (!told) return;
+  if (!recorded) return;
   o.sums.resize(2 * o.bodies.size());
   o.sums.zero();
 }
 
 void count_obstacles(const FluidState& state, MomentumAccount& account) {
-  if (!state.impulse.on() || !state.obstacles.told()) return;
+  if (!state.impulse.on() || !state.obstacles.recorded()) return;
   const double unit =
       mass_unit(state) * static_cast<double>(MassWay::unit) / static_cast<double>(state.parameters.dt);
   const auto vector = [&](const MassWay& sum) {

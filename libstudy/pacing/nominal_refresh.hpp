@@ -13,9 +13,9 @@ inline constexpr std::array usual_refreshes{50.0,  60.0,  72.0,  75.0,  80.0,  8
 inline constexpr double same_refresh = 0.005;
 
 /// The nominal rate of a display of `hz`, the same for vip-study check, run and headset: the nearest usual
-/// rate within 0.5 %. If there is none, the rate that the system reports (told_hz; 0: none) if within 0.5 %,
-/// else hz itself. Holds are counted in periods of this rate but last periods of the true rate. A trial's
+/// rate within 0.5 %. If there is none, the rate that the system reports (reported_hz; 0: none) if within 0.5
+/// %, else hz itself. Holds are counted in periods of this rate but last periods of the true rate. A trial's
 /// rates so differ from its setting by the same ratio, which the timing verdict detects.
-double nominal_refresh(double hz, double told_hz = 0);
+double nominal_refresh(double hz, double reported_hz = 0);
 
 }  // namespace study

@@ -40,7 +40,7 @@ HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, doubl
   return target;
 }
 
-double wished_periods(const HoldTarget& target) {
+double requested_periods(const HoldTarget& target) {
   return target.refresh_hz * static_cast<double>(target.rates.size()) / target.mean;
 }
 
@@ -49,7 +49,7 @@ bool is_whole(double periods) { return std::abs(periods - std::round(periods)) <
 /// A list that meets the mean and the standard deviation; excess > 0 if none was found.
 HoldList exact_list(const HoldTarget& target) {
   if (target.mean_kind == FpsMean::Arithmetic) return search_holds(target, 0);
-  const double periods = wished_periods(target);
+  const double periods = requested_periods(target);
   if (is_whole(periods)) return search_holds(target, std::llround(periods));
   HoldList none;
   none.excess = HUGE_VAL;
@@ -71,7 +71,7 @@ HoldList approximate_list(HoldTarget target) {
     target.mean_tolerance = bound;
     found.push_back(search_holds(target, 0));
   } else {
-    const double periods = wished_periods(target);
+    const double periods = requested_periods(target);
     const auto first = static_cast<std::int64_t>(std::ceil(periods / (1 + approximate_mean)));
     const auto last = static_cast<std::int64_t>(std::floor(periods / (1 - approximate_mean)));
     target.mean_tolerance = bound;
@@ -138,12 +138,12 @@ void fill(RefreshVerdict& verdict, const HoldList& list, const PacingRules& rule
 
 }  // namespace
 
-RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& wished_rules, double refresh_hz,
+RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& requested_rules, double refresh_hz,
                         std::uint64_t seed) {
   if (!(refresh_hz > 0 && std::isfinite(refresh_hz)))
     throw base::Error(fmt::format("refresh {:g} Hz", refresh_hz), "is not a refresh rate",
                       "give the display's refresh in hertz");
-  const auto rules = for_display(wished_rules, refresh_hz);
+  const auto rules = for_display(requested_rules, refresh_hz);
   RefreshVerdict verdict;
   verdict.frames = frame_count(setting);
   HoldTarget target;

@@ -26,7 +26,7 @@ class Farewell {
     if (shown) ask_how_they_feel(left);
     if (!store.has_answers(run_.session.id)) return tell(Notice::Goodbye);
     const bool keep = offer(Offer::Keep);
-    if (!keep) store.log(run_.session.id, withdrawal_wish, "of the participant", run_.now_ns());
+    if (!keep) store.log(run_.session.id, withdrawal_request, "of the participant", run_.now_ns());
     tell(keep ? Notice::Kept : Notice::Deleted);
   }
 
@@ -47,7 +47,7 @@ class Farewell {
   const Running& run_;
   Questioning& questioning_;
   Check check_ = [this] {
-    if (run_.wish() == Wish::Stop) throw Stopped();
+    if (run_.request() == Request::Stop) throw Stopped();
   };
 };
 

@@ -19,12 +19,12 @@ void Repeats::after_cut(CutCause cause) {
     cuts_ = 0;
   }
   require_eyes();
-  const Check check = [this] { heed(run_, false); };
+  const Check check = [this] { poll_requests(run_, false); };
   run_.parts.participant.pause({PauseKind::Black, black_after_cut_s}, run_.parts.clock, check);
 }
 
 void Repeats::require_eyes() {
-  const Check check = [this] { heed(run_, false); };
+  const Check check = [this] { poll_requests(run_, false); };
   while (!eyes_seen_) {
     eyes_seen_ = sees_eyes(run_, eyes_within_s, check);
     if (!eyes_seen_)
@@ -42,8 +42,8 @@ void Repeats::pause(const Trouble& trouble) {
                       trouble.mend + "; vip-study resume continues the session");
   const bool held = run_.hooks.trouble && run_.hooks.trouble(trouble);
   Pause pause{PauseKind::Trouble, 0, {}, {}, {}};
-  if (held) pause.over = [this] { return run_.wish().kind == Wish::GoOn; };
-  parts.participant.pause(pause, parts.clock, [this] { heed(run_, false); });
+  if (held) pause.over = [this] { return run_.request().kind == Request::GoOn; };
+  parts.participant.pause(pause, parts.clock, [this] { poll_requests(run_, false); });
   parts.store.log(run_.session.id, "goes on after a pause", "", run_.now_ns());
 }
 

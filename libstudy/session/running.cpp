@@ -4,19 +4,19 @@
 
 namespace study {
 
-void heed(const Running& run, bool in_trial) {
-  const Wish wish = run.wish();
+void poll_requests(const Running& run, bool in_trial) {
+  const Request request = run.request();
   const std::string news = log_news(run);
-  switch (wish.kind) {
-    case Wish::Stop:
+  switch (request.kind) {
+    case Request::Stop:
       throw Stopped();
-    case Wish::EndSession:
+    case Request::EndSession:
       throw Ending{EarlyEnd::Stopped, "ended by the experimenter"};
-    case Wish::Cut:
-      if (in_trial) throw TrialAgain{wish.cause, news};
+    case Request::Cut:
+      if (in_trial) throw TrialAgain{request.cause, news};
       break;
-    case Wish::Pause:
-    case Wish::GoOn:
+    case Request::Pause:
+    case Request::GoOn:
       break;
   }
 }

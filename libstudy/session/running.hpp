@@ -14,7 +14,7 @@ struct Running {
   const SessionParts& parts;
   const SessionHooks& hooks;
 
-  Wish wish() const { return hooks.wish ? hooks.wish() : Wish::GoOn; }
+  Request request() const { return hooks.request ? hooks.request() : Request::GoOn; }
   std::int64_t now_ns() const { return parts.clock.now_ns(); }
   const Block& block(const OpenUnit& unit) const {
     return protocol.blocks.at(static_cast<std::size_t>(unit.plan.block));
@@ -38,6 +38,6 @@ struct TrialAgain {
 
 /// Acts on the current wish: throws Stopped or Ending, and TrialAgain if `in_trial`. Logs headset events
 /// first.
-void heed(const Running& run, bool in_trial);
+void poll_requests(const Running& run, bool in_trial);
 
 }  // namespace study

@@ -49,15 +49,15 @@ class SessionRun {
   }
 
   void wait_while_paused() {
-    const auto check = [this] { heed(run_, false); };
+    const auto check = [this] { poll_requests(run_, false); };
     check();
-    const auto over = [this] { return run_.wish() != Wish::Pause; };
+    const auto over = [this] { return run_.request() != Request::Pause; };
     if (!over()) pause({PauseKind::Held, 0, {}, {}, over}, check);
   }
 
   std::optional<Ending> page(const OpenUnit& unit) {
     const Block& block = run_.block(unit);
-    const Check check = [this] { heed(run_, false); };
+    const Check check = [this] { poll_requests(run_, false); };
     switch (block.kind) {
       case BlockKind::Instructions:
       case BlockKind::Debrief:

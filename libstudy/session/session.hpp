@@ -52,7 +52,7 @@ struct UnitDone {
 };
 
 /// Request of the experimenter or the display, polled after every frame and often in every pause.
-struct Wish {
+struct Request {
   enum Kind {
     GoOn,
     Stop,        ///< end the program; the session can be resumed
@@ -60,9 +60,9 @@ struct Wish {
     Cut,         ///< cut this trial, for this cause, and show it again
     Pause        ///< wait before the next unit until the wish changes
   };
-  Wish(Kind what) : kind(what) {}
-  Wish(CutCause why) : kind(Cut), cause(why) {}
-  bool operator==(const Wish&) const = default;
+  Request(Kind what) : kind(what) {}
+  Request(CutCause why) : kind(Cut), cause(why) {}
+  bool operator==(const Request&) const = default;
 
   Kind kind;
   CutCause cause{};  ///< of Cut
@@ -78,8 +78,8 @@ struct SessionHooks {
   std::function<void(const FrameRecord&)> shown;
   std::function<void(const UnitDone&)> done;
   std::function<void(const Ending&)> ends;  ///< an early end is committed; say_farewell() comes next
-  std::function<Wish()> wish;
-  /// Tells the experimenter why the session pauses. True: the experimenter ends the pause, and wish() is
+  std::function<Request()> request;
+  /// Tells the experimenter why the session pauses. True: the experimenter ends the pause, and request() is
   /// Pause until then. False, or no hook: the participant's page has a button to go on.
   std::function<bool(const Trouble&)> trouble;
 };

@@ -109,7 +109,7 @@ void TrialPlayer::again(Showing& showing, const std::string& reason) {
 std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
   run_.parts.participant.before_trial(showing.occasion);
   const Block& block = run_.block(showing.unit);
-  const Check check = [this] { heed(run_, true); };
+  const Check check = [this] { poll_requests(run_, true); };
   const auto shows = [](const TrialStep& step) { return step.kind == StepKind::Stimulus; };
   for (std::size_t i = 0; i < block.steps.size(); ++i) {
     const TrialStep& step = block.steps[i];
@@ -137,7 +137,7 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
 
 /// Prepares a slow stimulus while the screen is black.
 void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows) {
-  const Check check = [this] { heed(run_, true); };
+  const Check check = [this] { poll_requests(run_, true); };
   const std::int64_t begun_ns = run_.now_ns();
   if (stimulus_follows && !showing.ready) {
     run_.parts.participant.pause({PauseKind::Black, 0}, run_.parts.clock, check);
@@ -150,7 +150,7 @@ void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows)
 /// Announces which stimulus of a pair follows, outside the picture.
 void TrialPlayer::announce(int interval) {
   const PauseKind word = interval == 0 ? PauseKind::First : PauseKind::Second;
-  run_.parts.participant.pause({word, word_s}, run_.parts.clock, [this] { heed(run_, true); });
+  run_.parts.participant.pause({word, word_s}, run_.parts.clock, [this] { poll_requests(run_, true); });
 }
 
 void TrialPlayer::make_ready(Showing& showing) {
@@ -195,7 +195,7 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
   const auto each = [&](const FrameRecord& frame) {
     journal.add(frame, recording.take());
     if (run_.hooks.shown) run_.hooks.shown(frame);
-    heed(run_, true);
+    poll_requests(run_, true);
     recording.require_gaze();
   };
   try {
@@ -234,7 +234,7 @@ std::optional<Ending> TrialPlayer::ask(Showing& showing, std::size_t step) {
                    [](const TrialStep& later) { return later.kind == StepKind::Ask; });
   auto ends =
       questioning_.ask(showing.unit, showing.attempt, questions_of(run_.protocol, block.steps[step].asks),
-                       showing.occasion, last, [this] { heed(run_, true); });
+                       showing.occasion, last, [this] { poll_requests(run_, true); });
   if (last) run_.tell(showing.unit, showing.attempt, showing.verdicts);
   return ends;
 }

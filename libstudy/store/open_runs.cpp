@@ -129,7 +129,7 @@ void Store::mark_cut_presentations() {
   commit(transaction);
 }
 
-std::vector<std::string> Store::wished_withdrawals() { return study::wished_withdrawals(*database_); }
+std::vector<std::string> Store::requested_withdrawals() { return study::requested_withdrawals(*database_); }
 
 bool Store::has_shown(std::int64_t session) {
   Statement row(*database_, "SELECT 1 FROM presentation JOIN trial USING (trial_id) WHERE session_id = ?");

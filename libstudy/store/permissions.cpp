@@ -48,11 +48,11 @@ void write_change(Connection& database, const std::string& person, const char* w
       .run();
 }
 
-void write_changes(Connection& database, const std::string& person, const PermissionWish& wish) {
+void write_changes(Connection& database, const std::string& person, const PermissionRequest& request) {
   AnswerJournal journal(database);
   Transaction transaction(database);
-  if (wish.gaze) write_change(database, person, "gaze", *wish.gaze);
-  if (wish.sharing) write_change(database, person, "sharing", *wish.sharing);
+  if (request.gaze) write_change(database, person, "gaze", *request.gaze);
+  if (request.sharing) write_change(database, person, "sharing", *request.sharing);
   delete_refused_gaze(database);
   journal.write();
   transaction.commit();
@@ -94,7 +94,7 @@ GazeElsewhere find_gaze_elsewhere(const StudyFile& study, const std::string& par
 }
 
 PermissionChange change_permissions(const fs::path& path, const std::string& participant,
-                                    const PermissionWish& wish) {
+                                    const PermissionRequest& request) {
   const WriterLock lock(path);
   const auto database = open_database(path, Open::Write, read_schema_steps());
   database->execute("PRAGMA temp_store = MEMORY; PRAGMA secure_delete = ON");
@@ -105,16 +105,16 @@ PermissionChange change_permissions(const fs::path& path, const std::string& par
   std::set<std::string> others = settle(*database, journal).gaze_deleted;
   others.erase(person);
   done.left = name_gaze_elsewhere(*database, others);
-  write_changes(*database, person, wish);
+  write_changes(*database, person, request);
   done.gaze_deleted = before - count_gaze(*database, person);
   const auto left = clean_up(*database).left;
   done.left.insert(done.left.end(), left.begin(), left.end());
-  if (wish.gaze && !*wish.gaze) {
+  if (request.gaze && !*request.gaze) {
     GazeElsewhere elsewhere = find_gaze_elsewhere(*database, person);
     done.backups = std::move(elsewhere.backups);
     done.gaze_exports = std::move(elsewhere.exports);
   }
-  if (wish.sharing && !*wish.sharing) done.exports = public_exports_of(*database, person);
+  if (request.sharing && !*request.sharing) done.exports = public_exports_of(*database, person);
   return done;
 }
 

@@ -32,7 +32,7 @@ std::vector<SessionPermission> read_permissions(const StudyFile& study, const st
 GazeElsewhere find_gaze_elsewhere(const StudyFile& study, const std::string& participant);
 
 /// The change that the experimenter requests; none: unchanged.
-struct PermissionWish {
+struct PermissionRequest {
   std::optional<bool> gaze, sharing;
 };
 
@@ -50,7 +50,7 @@ struct PermissionChange {
 /// interrupts this, the next opening for writing finishes it. base::Error as read_permissions(), or the
 /// database is in use.
 PermissionChange change_permissions(const std::filesystem::path& database, const std::string& participant,
-                                    const PermissionWish& wish);
+                                    const PermissionRequest& request);
 
 /// Records a permission of a session within the caller's transaction. It supersedes all that the database
 /// holds about `what` ("gaze" or "sharing"): the order of rows decides, not a clock. Call

@@ -46,7 +46,7 @@ Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, con
   left_ = settle_before_writing(*database_);
   const auto cleaned = clean_up(*database_).left;
   left_.insert(left_.end(), cleaned.begin(), cleaned.end());
-  for (const std::string& participant : study::wished_withdrawals(*database_)) {
+  for (const std::string& participant : study::requested_withdrawals(*database_)) {
     const auto left = withdraw(*database_, participant).beside.left;
     left_.insert(left_.end(), left.begin(), left.end());
   }

@@ -189,7 +189,7 @@ class Store {
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
   /// Participants who asked at a session's end to delete all their data: do it once this Store is closed.
-  std::vector<std::string> wished_withdrawals();
+  std::vector<std::string> requested_withdrawals();
   /// True if this session has any presentation, or any answer.
   bool has_shown(std::int64_t session);
   bool has_answers(std::int64_t session);

@@ -54,18 +54,18 @@ Stock take_stock(Connection& database, const std::string& person) {
   return stock;
 }
 
-std::vector<std::string> wished_withdrawals(Connection& database) {
+std::vector<std::string> requested_withdrawals(Connection& database) {
   Statement row(
       database,
       "SELECT DISTINCT s.participant FROM session s JOIN event e USING (session_id) WHERE e.kind = ? "
       "ORDER BY 1");
   std::vector<std::string> participants;
-  for (row.bind_all(std::string(withdrawal_wish)); row.step();) participants.push_back(row.text(0));
+  for (row.bind_all(std::string(withdrawal_request)); row.step();) participants.push_back(row.text(0));
   return participants;
 }
 
-std::vector<std::string> wished_withdrawals(const StudyFile& study) {
-  return wished_withdrawals(*open_study(study).database);
+std::vector<std::string> requested_withdrawals(const StudyFile& study) {
+  return requested_withdrawals(*open_study(study).database);
 }
 
 Withdrawal withdraw(Connection& database, const std::string& participant) {

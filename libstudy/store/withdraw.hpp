@@ -27,11 +27,11 @@ struct Withdrawal {
 /// Kind of the event of a session whose participant asked at its end to delete all data. The withdrawal
 /// deletes the event too: if it exists, the withdrawal is still to be done. A Store does it when it is
 /// opened.
-inline constexpr const char* withdrawal_wish = "withdrawal wished";
+inline constexpr const char* withdrawal_request = "withdrawal wished";
 
 /// Participants with such an event. base::Error as read_tasks().
-std::vector<std::string> wished_withdrawals(const StudyFile& study);
-std::vector<std::string> wished_withdrawals(sqlite::Connection& database);
+std::vector<std::string> requested_withdrawals(const StudyFile& study);
+std::vector<std::string> requested_withdrawals(sqlite::Connection& database);
 
 /// Deletes all rows of a participant but a tombstone from `database`, its log, its backups, the personal file
 /// beside it and every registered export, and overwrites their bytes; their slot in the assignment is free

@@ -20,7 +20,7 @@ bool is_file_name(const std::string& name) {
 }
 
 /// Length in bytes of a character that begins with `first`.
-std::size_t wished_length(unsigned char first) {
+std::size_t expected_length(unsigned char first) {
   if (first < 0xC2 || first > 0xF4) return 1;
   return first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
 }
@@ -43,7 +43,7 @@ std::string TerminalText::next(std::string_view part) {
   std::string_view text = waiting_;
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
-    const bool cut = length == 0 && text.size() < wished_length(static_cast<unsigned char>(text[0])) &&
+    const bool cut = length == 0 && text.size() < expected_length(static_cast<unsigned char>(text[0])) &&
                      std::all_of(text.begin() + 1, text.end(),
                                  [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; });
     if (cut) break;

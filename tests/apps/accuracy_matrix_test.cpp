@@ -1,4 +1,4 @@
-/// vip-bench accuracy: which cells a sweep holds, and what they run with.
+/// vip-bench accuracy: the cells of a sweep and their settings.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -40,7 +40,7 @@ TEST(AccuracyMatrix, TheQuarterOfTheFactorialIsBalanced) {
           s[SolverKnob::Levels]);
   }
   EXPECT_EQ(levels.size(), 36u) << "4 sizes, 3 numbers of projections, 3 of substeps";
-  // The turns of one knob at the usual size and projections stand there beside the quarter.
+  // Settings that change one knob at the usual size and projections come in addition to the quarter.
   for (const auto& [combination, found] : levels) {
     const bool turned_alone = combination[0] == 4096 && combination[1] == 4;
     EXPECT_LE(found.size(), turned_alone ? 2u : 1u);

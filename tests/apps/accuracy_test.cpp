@@ -1,4 +1,4 @@
-/// vip-bench accuracy: its file, and what it makes of the cells.
+/// vip-bench accuracy: its file, and its results from the cells.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,7 +65,8 @@ StoredCell stored(const SolverSetting& setting, int seed, const CellRun& run) {
   return {cell, origin, run};
 }
 
-/// A reference with a floor of 0.1 of 10 m, HiRes as it is usually and with two more numbers of projections.
+/// A reference with a floor of 0.1 of 10 m, HiRes with usual settings and with two other numbers of
+/// projections.
 std::vector<StoredCell> small_sweep() {
   const auto reference = reference_setting("SingleDam", 512);
   const auto usual = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
@@ -291,7 +292,7 @@ TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
 class AccuracyE2e : public test::TableTest {
  protected:
   const std::string sweep = "accuracy --quick --n-star 64 --seconds 0.1 --seeds 1";
-  /// What the clock gave for each cell of a sweep file, by key; nothing while another program writes to it.
+  /// Times of each cell of a sweep file, by key; empty while another program writes to the file.
   std::map<std::string, std::vector<double>> times_of(const std::string& name) const {
     std::map<std::string, std::vector<double>> out;
     try {

@@ -1,4 +1,4 @@
-/// What error texts and notes of the programs advise: every command and option that they name is there.
+/// Advice in error texts and notes of the programs: every command and option that they name exists.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,10 +24,10 @@ using Words = std::set<std::string>;
 const fs::path root = fs::path(VIP_TEST_DIR).parent_path();
 const std::vector<std::string> programs{"vip-study", "vip-stats", "vip-bench", "vip-view"};
 
-/// What the source prints: its literals, of which those side by side are one.
+/// The string literals of a source; adjacent ones are joined.
 std::vector<std::string> literals_of(const std::string& source) {
   std::vector<std::string> out;
-  bool joins = false;  // nothing but white space since the last literal
+  bool joins = false;  // only white space since the last literal
   for (std::size_t at = 0; at < source.size(); ++at) {
     if (source.compare(at, 2, "//") == 0) {
       at = std::min(source.find('\n', at), source.size());
@@ -55,7 +55,7 @@ std::vector<std::string> literals_of(const std::string& source) {
   return out;
 }
 
-/// "bench --help" and so on: options by "vip-bench table1", and "vip-view" itself.
+/// The options of each command, from --help: by "vip-bench table1", and for "vip-view" itself.
 class Programs {
  public:
   Programs() {
@@ -104,10 +104,10 @@ class Programs {
   std::map<std::string, Words> options_;
 };
 
-/// Commands that print what stands in a source. Advice that several commands print must hold for each of
-/// them; of other sources it must hold for one of the program's.
+/// Commands that print texts of a source. Advice that several commands print must be right for each of them;
+/// in other sources it must be right for one of the program's commands.
 struct Place {
-  std::string path;  ///< beginning, from the project's root
+  std::string path;  ///< start of the path, from the project's root
   std::vector<std::string> commands;
 };
 const std::vector<Place> shared_places{
@@ -124,10 +124,10 @@ const std::vector<Place> shared_places{
     {"apps/study/export_command", {"vip-study export"}},
     {"apps/study/consent_command", {"vip-study consent"}}};
 
-/// Of a program that is none of ours: nvidia-smi.
+/// Options of a foreign program: nvidia-smi.
 const Words of_others{"--query-gpu", "--format"};
 
-/// Words behind a program's name that go on with the sentence.
+/// Words after a program's name that continue the sentence.
 const Words words_of_sentences{"did", "does", "is", "made", "protocol", "read", "that"};
 
 std::vector<std::string> own_programs(const std::string& path) {
@@ -136,13 +136,13 @@ std::vector<std::string> own_programs(const std::string& path) {
   return programs;
 }
 
-/// What is wrong with the advice of one text; empty: nothing.
+/// Errors in the advice of one text; empty: none.
 std::vector<std::string> wrong_advice(const Programs& known, const std::string& path,
                                       const std::string& text) {
   static const std::regex named(
       R"((vip-(?:study|stats|bench|view))((?: [a-z][a-z0-9-]*)?)|(--[a-z][a-z0-9-]*[a-z0-9]))");
   std::vector<std::string> wrong;
-  std::string command;  // named last in this sentence
+  std::string command;  // last one named in this sentence
   std::size_t end = 0;
   for (std::sregex_iterator at(text.begin(), text.end(), named), none; at != none; ++at) {
     const auto& match = *at;
@@ -221,7 +221,7 @@ TEST(AdviceE2e, AnOptionThatIsNotThereWouldBeSeen) {
             (std::vector<std::string>{"use --no-such", "b"}));
 }
 
-/// A pilot of six settings with a second question; the version is part of the text.
+/// A pilot of six settings with a second question and this version.
 std::string two_questions(const std::string& version) {
   std::string text = short_protocol("1");
   text = replaced(text, "version = \"2.0\"", "version = \"" + version + "\"");
@@ -233,7 +233,7 @@ std::string two_questions(const std::string& version) {
                       first);
 }
 
-/// Words of the list behind `advice`, to the end of its line or sentence.
+/// Items of the list after `advice`, up to the end of the line.
 std::vector<std::string> listed(const std::string& out, const std::string& advice) {
   const auto at = out.find(advice);
   if (at == std::string::npos) return {};
@@ -245,7 +245,7 @@ std::vector<std::string> listed(const std::string& out, const std::string& advic
 
 std::string last_word(const std::string& text) { return text.substr(text.find_last_of(' ') + 1); }
 
-// The advice to choose is followed, each choice in turn.
+// Follows the advice with each of the listed choices.
 TEST(AdviceE2e, ChoosingAsAdvisedIsTaken) {
   const TemporaryFolder folder;
   const auto at = [&](const std::string& name) { return (folder / name).string(); };
@@ -285,11 +285,11 @@ TEST(AdviceE2e, ChoosingAsAdvisedIsTaken) {
       EXPECT_NE(page.out.find("choose a --level above "), std::string::npos) << page.out;
     }
   }
-  // Power takes one of the questions, and names the other.
+  // vip-stats power uses one of the questions, and names the other.
   const auto power = run_shell(VIP_BIN_DIR "/vip-stats power " + at("p.toml") + " --n 6 --studies 2");
   EXPECT_EQ(power.exit_code, 0) << power.out;
   EXPECT_NE(power.out.find("choose it with --question "), std::string::npos) << power.out;
-  // Without files of one fit each protocol and question is fitted by itself.
+  // Without output files each protocol and question is fitted separately.
   const auto all = run_shell(VIP_BIN_DIR "/vip-stats fit-ptpe " + at("s.db"));
   for (const char* words : {"3.0, question \"satisfaction\":", "3.1, question \"smoothness\":"})
     EXPECT_NE(all.out.find(words), std::string::npos) << all.out;

@@ -1,4 +1,4 @@
-/// The arrows between the libraries and between the rooms inside them, as the includes draw them.
+/// Dependencies between the libraries and between their folders ("rooms"), from the includes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ bool begins(const std::string& text, const std::vector<std::string>& starts) {
   return false;
 }
 
-/// Who may include what begins like this.
+/// Includes that start with `what` are allowed only in files that start with `allowed_from`.
 struct Rule {
   std::vector<std::string> what;
   std::vector<std::string> allowed_from;
@@ -90,16 +90,18 @@ const std::vector<Rule> rules{
     {{"cuda", "cub/", "thrust/"}, {"libsim/exec/"}},
 };
 
-/// A folder of a library. Its files include their own room and rooms of the same library on lower floors.
+/// A folder of a library. Its files may include their own folder and folders of the same library on lower
+/// floors.
 struct Room {
   std::string folder;
   int floor;
-  /// Rooms of the same floor that it includes too; each stands above it in the table, so that none go round.
+  /// Folders of the same floor that it may include too; they must come before it in the table, so that there
+  /// are no cycles.
   std::vector<std::string> beside = {};
 };
 using Rooms = std::vector<Room>;
 
-/// Each folder with sources in one of these has a row in `rooms`.
+/// Each folder with sources in one of these needs a row in `rooms`.
 const std::vector<std::string> libraries{"apps", "libsim", "libstudy", "stats"};
 
 const Rooms rooms{
@@ -170,7 +172,8 @@ const Rooms rooms{
 std::string folder_of(const std::string& path) { return fs::path(path).parent_path(); }
 std::string library_of(const std::string& path) { return *fs::path(path).begin(); }
 
-/// Empty, or why no file of the room `from` may include the room `what`; both are rows of one table.
+/// Reason why files of the folder `from` may not include the folder `what`; empty if they may. Both are rows
+/// of the table.
 std::string forbidden(const Room& from, const Room& what) {
   if (what.folder == from.folder || what.floor < from.floor) return "";
   if (what.floor > from.floor) return "goes up";
@@ -178,7 +181,7 @@ std::string forbidden(const Room& from, const Room& what) {
   return named ? "" : "goes to another room of its floor";
 }
 
-/// Arrows inside the libraries that the table does not allow, and folders that it lacks.
+/// Includes inside the libraries that the table does not allow, and folders that are missing in it.
 std::vector<std::string> arrows_against(const Rooms& table, const std::vector<Include>& includes) {
   std::set<std::string> missing;
   const auto find = [&](const std::string& folder) {
@@ -249,7 +252,7 @@ TEST(Architecture, RoomsIncludeLowerFloorsOnly) {
 }
 
 TEST(Architecture, RoomsHaveOneRowEachAndNoneGoRound) {
-  std::map<std::string, int> floors;  // of the rows above
+  std::map<std::string, int> floors;  // of the rows before
   for (const Room& room : rooms) {
     for (const std::string& other : room.beside) {
       ASSERT_TRUE(floors.contains(other)) << room.folder << " goes to " << other << ", which stands below";

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 const std::vector<std::string> sixteen{"P01", "P02", "P03", "P04", "P05", "P06", "P07", "P08",
                                        "P09", "P10", "P11", "P12", "P13", "P14", "P15", "P16"};
 
-/// What people see of a setting; their own noise and taste come on top.
+/// The expected score of a setting, before noise.
 using Surface = double (*)(double mu, double delta);
 
 testing_pilot::Score scored(Surface surface, double noise) {
@@ -32,7 +32,7 @@ testing_pilot::Score scored(Surface surface, double noise) {
   };
 }
 
-/// Scores that rise by the paper's curve.
+/// Scores that follow the paper's curve.
 double good(double mu, double delta) { return 4 + 0.14 * (mu - 23.68 * std::exp(0.02 * delta)); }
 
 struct Bad {
@@ -40,7 +40,7 @@ struct Bad {
   testing_pilot::Score score;
   std::vector<std::string> participants;
   const char* reason;
-  bool forced;  ///< whether there is a curve that --force --accept-form may hand over
+  bool forced;  ///< true if --force --accept-form writes a curve
 };
 
 std::vector<Bad> bad_pilots() {
@@ -77,7 +77,7 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
     EXPECT_EQ(refused.out.find("not for a solver  ") != std::string::npos, bad.forced);
     for (const char* name : {"ptpe.toml", "ptpe.toml.history.jsonl", "heat.svg"})
       EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
-    // The numbers may be looked at, with the reason in them.
+    // --json still has the numbers, together with the reason.
     const auto json = base::Json::parse(base::read_file(folder / "fit.json", 1 << 24));
     if (bad.forced) {
       EXPECT_FALSE(json.at("solver_file").at("refused").empty());
@@ -90,7 +90,7 @@ TEST(BadPilotE2e, EachOfNineKindsIsRefusedWithItsReasonAndNothingIsWritten) {
     const std::string report = base::read_file(page, 1 << 24);
     EXPECT_THAT(report, testing::Not(HasSubstr("For the solver, at level")));
     EXPECT_EQ(report.find("Not for a solver, at level") != std::string::npos, bad.forced);
-    // Scores that are even in mu, not in log mu, may speak against the exponential as well.
+    // Scores that rise evenly in mu, not in log mu, may contradict the exponential as well.
     EXPECT_EQ(apps::test::run_shell(fit + " --force --accept-form").exit_code, bad.forced ? 0 : 1);
     EXPECT_EQ(std::filesystem::exists(folder / "ptpe.toml"), bad.forced);
   }
@@ -125,7 +125,7 @@ TEST(BadPilotE2e, APilotThatRisesIsNotRefused) {
   EXPECT_EQ(fitted.out.find("not for a solver"), std::string::npos) << fitted.out;
 }
 
-/// Scores that rise by a threshold that levels off.
+/// Scores with a threshold that levels off.
 double levelling(double mu, double delta) { return 4 + 0.14 * (mu - 24 - 14 * (1 - std::exp(-delta / 5))); }
 
 TEST(BadPilotE2e, ACurveOfAnotherFormReachesNoSolverUnlessItIsAccepted) {

@@ -44,7 +44,7 @@ class BakeE2e : public ::testing::Test {
   std::ptrdiff_t files() const {
     return std::distance(std::filesystem::directory_iterator(folder_.path()), {});
   }
-  /// The scene file is the only one in the folder.
+  /// True if the scene file is the only one in the folder.
   bool left_nothing() const { return files() == 1; }
 
   bake_test::Folder folder_;
@@ -157,7 +157,7 @@ TEST_F(BakeE2e, FolderThatMayNotBeWrittenToIsNamedBeforeAnyWork) {
 
 TEST_F(BakeE2e, InterruptLeavesNothing) {
   Process process(command({"--frames", "100000"}));
-  // The temporary file shows that frames are being written.
+  // Once the temporary file exists, frames are being written.
   while (left_nothing()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   process.send(SIGINT);
   const Ended ended = process.wait();
@@ -166,7 +166,7 @@ TEST_F(BakeE2e, InterruptLeavesNothing) {
   EXPECT_TRUE(left_nothing());
 }
 
-/// Else the progress bar would be written into it.
+/// Otherwise the progress bar would be written into the bake.
 TEST_F(BakeE2e, ClosedStandardStreamsAreNotTheBakes) {
   Process process(command({"--frames", "100000"}), [] {
     for (const int fd : {STDIN_FILENO, STDERR_FILENO}) ::close(fd);

@@ -1,4 +1,4 @@
-/// Which stimuli of a protocol are baked, and in what a bake differs from what is wanted.
+/// The stimuli of a protocol that are baked, and differences between a bake and the order.
 #include "apps/study/bakes/session_bakes.hpp"
 
 #include <gmock/gmock.h>
@@ -99,7 +99,7 @@ TEST(BakeOrder, WhatIsWantedDepartsInNothing) {
   EXPECT_THAT(view_departures(header_of(order()), header_of(order())), IsEmpty());
 }
 
-/// What a bake of an order that `change` changed departs in, from one that it did not.
+/// Differences of a bake whose order was changed by `change` from the unchanged order.
 template <typename Change>
 std::string departures_after(const Change& change, bool view = false) {
   BakeOrder other = order();
@@ -158,7 +158,7 @@ TEST(BakeOrder, ParticlesAloneOfAFreeObstacleAreRefused) {
   EXPECT_EQ(header_of(other).scene_name, "Float");
 }
 
-/// What a bake holds of its scene needs no file beside it.
+/// A bake holds its scene's meshes, so it needs no file beside it.
 TEST(BakeOrder, HoldsTheTrianglesOfMeshes) {
   BakeOrder other = order();
   other.fluid.scene = base::resource("data/scenes/boat.toml");

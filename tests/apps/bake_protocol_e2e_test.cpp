@@ -39,7 +39,7 @@ class BakeProtocolE2e : public ::testing::Test {
     return out;
   }
   Ended bake(const std::vector<std::string>& more = {}) const { return run_program(command(more)); }
-  /// Name of a file -> its inode, which a bake that was made again does not keep.
+  /// File name -> inode, which changes if a bake is made again.
   std::map<std::string, ino_t> bakes() const {
     std::map<std::string, ino_t> out;
     for (const auto& entry : fs::directory_iterator(out_)) {
@@ -152,7 +152,7 @@ TEST_F(BakeProtocolE2e, AnotherPictureIsAnotherBakeOfWhatFollowsIt) {
 TEST_F(BakeProtocolE2e, AKilledOneLeavesWholeBakesAndTheNextGoesOn) {
   write_protocol(false, "\"LoRes\", \"HiRes\"", "2k");
   Process process(command());
-  // The second one is under way.
+  // Waits until the second bake is being made.
   while (const auto line = process.read_line()) {
     if (line->find("1 of 2 made") != std::string::npos) break;
   }
@@ -200,7 +200,7 @@ TEST_F(BakeProtocolE2e, WhatItIsSaidToTakeIsEnough) {
     const sim::BakeReader bake(fs::path(out_) / name);
     const auto& h = bake.header();
     const auto particles = sim::particle_count(sim::parse_method(h.method), h.n_star);
-    // Head and index of so short a file weigh as much as its frames.
+    // In such a short file the header and index are as large as the frames.
     EXPECT_LT(bake.file_bytes(),
               static_cast<std::uint64_t>(h.frame_count * (6 * particles + 64 * 36)) + 10'000)
         << name;

@@ -47,7 +47,7 @@ TEST_F(BenchFrameE2e, TimesSolverAndPicturesApart) {
     EXPECT_GE(at("p95"), at("median")) << part;
   }
   EXPECT_NE(text.find(" p99"), std::string::npos) << text;
-  // A frame is its three parts: never shorter than the shortest of each.
+  // A frame consists of its three parts, so it is never shorter than the shortest of each.
   EXPECT_GT(result["frame_ms_median"].get<double>(), result["render_ms_median"].get<double>());
   EXPECT_EQ(result["transfer"], "uploaded");
   EXPECT_EQ(result["render_views"], 2);
@@ -102,7 +102,7 @@ TEST_F(BenchFrameE2e, StatesThatAreMeasuredAreNoLaunches) {
   EXPECT_EQ(every, launches("2"));
 }
 
-// Ten states of a hundred frames, each tenth one, would lie two frames apart in turns of four.
+// With levels every fourth frame, measuring each tenth of a hundred frames would meet only two of the four.
 TEST(TimedRun, MeasuredStatesMeetEachFrameBetweenTurnsAsOften) {
   sim::Readings readings = sim::readings_of(sim::Preset::Tuned);
   for (const int turn : {1, 2, 4, 6}) {
@@ -121,7 +121,7 @@ TEST_F(BenchFrameE2e, NamesTheFirstTrouble) {
   ASSERT_EQ(bench("--no-render"), 0) << text;
   EXPECT_TRUE(figures()["divergence"].is_null());
   EXPECT_EQ(text.find("divergence"), std::string::npos) << text;
-  // One projection in a frame of a fifth of a second leaves the water crushed.
+  // One projection in a frame of a fifth of a second leaves the water compressed.
   ASSERT_EQ(bench("--no-render --substeps 1 --iterations 1 --coarse-cycles 0 --dt 0.2"), 0) << text;
   const auto found = figures()["divergence"];
   EXPECT_GE(found["frame"].get<int>(), 1);

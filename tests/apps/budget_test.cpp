@@ -1,4 +1,4 @@
-/// vip-bench accuracy --budget: the setting of least error that keeps a budget.
+/// vip-bench accuracy --budget: the setting with the least error within a budget.
 #include "apps/bench/accuracy/budget.hpp"
 
 #include <gmock/gmock.h>
@@ -32,12 +32,11 @@ SettingResult result(double p95, double low, double error, double high) {
 }
 
 TEST(Budget, TheLeastErrorComesFirstAndTiesGoToTheCheaper) {
-  const std::vector<SettingResult> settings{
-      result(12, 0.1, 0.1, 0.1),  // over the budget
-      result(11, 1.0, 1.2, 1.4),  // least error within it
-      result(8, 1.3, 1.5, 1.7),   // no worse than the ranges tell, and cheaper
-      result(5, 1.5, 1.6, 1.8),   // worse
-      result(0, 0, 0, 0)};        // too short to be timed
+  const std::vector<SettingResult> settings{result(12, 0.1, 0.1, 0.1),  // over the budget
+                                            result(11, 1.0, 1.2, 1.4),  // least error within the budget
+                                            result(8, 1.3, 1.5, 1.7),  // not significantly worse, and cheaper
+                                            result(5, 1.5, 1.6, 1.8),  // worse
+                                            result(0, 0, 0, 0)};       // too short to be timed
   EXPECT_THAT(within_budget(settings, 11, SweepError::Centre), ElementsAre(2, 1, 3));
   EXPECT_THAT(within_budget(settings, 7, SweepError::Centre), ElementsAre(3));
   EXPECT_THAT(within_budget(settings, 4, SweepError::Centre), IsEmpty());
@@ -75,7 +74,7 @@ class BudgetChoice : public ::testing::Test {
     return {stored(reference, 1, 1, 100), stored(reference, 2, 1.001, 100), stored(usual, 1, 1.2, 5),
             stored(usual, 2, 1.21, 5),    stored(eight, 1, 1.1, 9),         stored(eight, 2, 1.11, 9)};
   }
-  /// What runs anew takes so long.
+  /// Chooses a setting; cells that run again take these times.
   SettingFile choose(double budget_ms, double usual_ms, double eight_ms) {
     return choose_setting(
         cells(), origin, {plan, budget_ms, SweepError::Centre, 10},
@@ -105,17 +104,17 @@ TEST_F(BudgetChoice, IsMeasuredAnewFromStartsThatTheSweepHasNotSeen) {
 TEST_F(BudgetChoice, IsAmongTheSettingsThatAreWished) {
   const auto run = [&](const SweepCell& cell) { return stored(cell.setting, cell.seed, 1.2, 5); };
   const auto said = [](const std::string&) {};
-  BudgetWish wish{plan, 10, SweepError::Centre, 10};
-  wish.n_star = 512;
-  wish.frames_per_s = 60;
-  wish.method = sim::MethodKind::HiRes;
-  EXPECT_EQ(choose_setting(cells(), origin, wish, run, said).setting, eight);
-  wish.method = sim::MethodKind::Ours;
-  EXPECT_THAT([&] { choose_setting(cells(), origin, wish, run, said); },
+  BudgetRequest request{plan, 10, SweepError::Centre, 10};
+  request.n_star = 512;
+  request.frames_per_s = 60;
+  request.method = sim::MethodKind::HiRes;
+  EXPECT_EQ(choose_setting(cells(), origin, request, run, said).setting, eight);
+  request.method = sim::MethodKind::Ours;
+  EXPECT_THAT([&] { choose_setting(cells(), origin, request, run, said); },
               ThrowsMessage<base::Error>(HasSubstr("match no setting of the sweep")));
-  wish.method.reset();
-  wish.frames_per_s = 90;
-  EXPECT_THROW(choose_setting(cells(), origin, wish, run, said), base::Error);
+  request.method.reset();
+  request.frames_per_s = 90;
+  EXPECT_THROW(choose_setting(cells(), origin, request, run, said), base::Error);
 }
 
 TEST_F(BudgetChoice, WhatDoesNotKeepTheBudgetAgainIsLeft) {
@@ -146,7 +145,7 @@ TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
   ASSERT_EQ(table(sweep).exit_code, 0);
   const auto none = table(sweep + " --budget 0.0001ms --out " + path("none.toml"));
   EXPECT_EQ(none.exit_code, 1);
-  // Which one is nearest depends on how busy the machine is.
+  // The nearest setting depends on how busy the machine is.
   EXPECT_THAT(none.out, HasSubstr("--budget 0.0001ms: is met by no setting of the sweep. Nearest is "));
   EXPECT_FALSE(std::filesystem::exists(path("none.toml")));
   const auto chosen = table(sweep + " --budget 100000ms --error kinetic --out " + path("best.toml"));

@@ -41,7 +41,7 @@ std::string error_of(const study::Protocol& protocol) {
   return "";
 }
 
-/// "p.toml:LINE:COLUMN" of `marked` without its '|', where that stands.
+/// "p.toml:LINE:COLUMN:" of the '|' in `marked`, which without the '|' is a part of the text.
 std::string place_in(const study::Protocol& protocol, std::string marked) {
   const auto mark = marked.find('|');
   const auto found = protocol.text.find(marked.erase(mark, 1));

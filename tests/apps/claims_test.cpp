@@ -1,5 +1,5 @@
-/// Which of H1 to H6 a protocol tests, and why not the others: before the study, in the bundle and on the
-/// page.
+/// Which of H1 to H6 a protocol tests, and the reasons for the others: before the study, in the bundle and on
+/// the page.
 
 #include "apps/common/claims.hpp"
 
@@ -30,7 +30,7 @@ std::string own_design() {
   return base::read_file(std::string(VIP_TEST_DIR) + "/apps/own_design.toml", 1 << 20);
 }
 
-/// Rates realism and strain on 1 to 4.
+/// A design that rates realism and strain on 1 to 4.
 std::string own_realism() {
   return replaced(replaced(own_design(), "ask comfort strain", "ask realism strain"), "id = \"comfort\"",
                   "id = \"realism\"");

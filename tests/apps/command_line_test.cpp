@@ -1,4 +1,4 @@
-/// What every program does alike: help, version, wrong command lines, the choice of a back end.
+/// Common behaviour of all programs: help, version, wrong command lines, the choice of a back end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -73,7 +73,7 @@ TEST(ProgramsE2e, OutputThatDoesNotArriveIsAnError) {
       EXPECT_THAT(ended.err, AllOf(HasSubstr("standard output: cannot be written"), HasSubstr("mend: ")));
     }
   }
-  // More than a buffer: the write fails long before the end.
+  // More than one buffer: the write fails long before the end.
   EXPECT_EQ(to_full("vip-study reference").exit_code, 1);
 }
 
@@ -125,7 +125,7 @@ TEST(ProgramsE2e, ZerosBeforeANumberAreNoOctal) {
   EXPECT_EQ(count_in(folder / "s.db", "SELECT seed FROM session"), 10);
 }
 
-/// Every program and kind of input. A pipe that nobody writes to would be waited for for ever.
+/// Every program and kind of input. Opening a pipe without a writer would wait forever.
 TEST(ProgramsE2e, InputsThatAreNoFilesAreRefusedAtOnce) {
   const TemporaryFolder folder;
   const std::string pipe = folder / "pipe", out = folder / "out";
@@ -177,7 +177,7 @@ TEST(ProgramsE2e, ArgumentsAreUtf8OnOneLineAndEchoedShortly) {
   }
 }
 
-/// No driver is needed, or no device is to be seen: the same to a program.
+/// For a program the same as a missing driver.
 void hide_devices() { ::setenv("CUDA_VISIBLE_DEVICES", "", 1); }
 
 class BackendE2e : public ::testing::Test {

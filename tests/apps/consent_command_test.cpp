@@ -1,4 +1,4 @@
-/// vip-study consent and export, from their command lines.
+/// vip-study consent and export, run from their command lines.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

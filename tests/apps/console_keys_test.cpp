@@ -1,4 +1,4 @@
-/// The console: what its keys do, and what its view tells.
+/// The console: its keys, and the text of its view.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// A pilot session under way, with the store that keeps it.
+/// A running pilot session with its store.
 class ConsoleTest : public ::testing::Test {
  protected:
   ConsoleTest() : store_(folder_.path() / "s.db", study::sqlite::Open::Create) {
@@ -70,25 +70,25 @@ TEST_F(ConsoleTest, HidesTheSettingUntilItIsRevealedAndLogsThat) {
     EXPECT_THAT(hidden, Not(HasSubstr(secret)));
   EXPECT_EQ(count("event WHERE kind = 'setting revealed'"), 0);
   type("m");
-  console_.wish();
+  console_.request();
   EXPECT_EQ(count("event WHERE kind = 'setting revealed'"), 1);
   console_.begins(first_trial());
   EXPECT_THAT(lines(), HasSubstr("HiRes"));
 }
 
 TEST_F(ConsoleTest, PauseHoldsUntilItIsLifted) {
-  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_EQ(console_.request(), study::Request::GoOn);
   type("p");
-  EXPECT_EQ(console_.wish(), study::Wish::Pause);
-  EXPECT_EQ(console_.wish(), study::Wish::Pause);
+  EXPECT_EQ(console_.request(), study::Request::Pause);
+  EXPECT_EQ(console_.request(), study::Request::Pause);
   type("p");
-  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_EQ(console_.request(), study::Request::GoOn);
 }
 
 TEST_F(ConsoleTest, TroubleIsAnAlarmAndPausesUntilTheExperimenterGoesOn) {
   console_.begins(first_trial());
   console_.trouble({"the eye tracker does not see the eyes", "calibrate it"});
-  EXPECT_EQ(console_.wish(), study::Wish::Pause);
+  EXPECT_EQ(console_.request(), study::Request::Pause);
   EXPECT_THAT(lines(),
               HasSubstr("PAUSED: the eye tracker does not see the eyes; calibrate it; then p goes on"));
   const auto alarms = console_.view(0).alarms;
@@ -96,24 +96,24 @@ TEST_F(ConsoleTest, TroubleIsAnAlarmAndPausesUntilTheExperimenterGoesOn) {
   EXPECT_EQ(alarms.front(), "the eye tracker does not see the eyes; calibrate it; then p goes on");
   EXPECT_THAT(console_.view(0).person, HasSubstr("pictures cannot be shown"));
   type("p");
-  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_EQ(console_.request(), study::Request::GoOn);
   EXPECT_THAT(console_.view(0).alarms, Not(::testing::Contains(HasSubstr("eye tracker"))));
 }
 
 TEST_F(ConsoleTest, TheSessionEndsOnlyOnAWholeYes) {
   for (const char* half : {"e\n", "ey\n", "eno\n", "eye\x1b", "q", "E"}) type(half);
-  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_EQ(console_.request(), study::Request::GoOn);
   type("eyes\n");
-  EXPECT_EQ(console_.wish(), study::Wish::EndSession);
+  EXPECT_EQ(console_.request(), study::Request::EndSession);
 }
 
 TEST_F(ConsoleTest, ARunningTrialIsRepeatedOnce) {
   console_.begins(first_trial());
   type("r\n");
-  EXPECT_EQ(console_.wish(), study::Wish::GoOn) << "without a reason";
+  EXPECT_EQ(console_.request(), study::Request::GoOn) << "without a reason";
   type("rdoor slammed\n");
-  EXPECT_EQ(console_.wish(), study::CutCause::Experimenter);
-  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_EQ(console_.request(), study::CutCause::Experimenter);
+  EXPECT_EQ(console_.request(), study::Request::GoOn);
 }
 
 TEST_F(ConsoleTest, WhatIsSaidToBeDoneIsOnTheDiskAlsoWhileATrialRuns) {
@@ -136,7 +136,7 @@ TEST_F(ConsoleTest, WhatIsSaidToBeDoneIsOnTheDiskAlsoWhileATrialRuns) {
 TEST_F(ConsoleTest, WhatCannotBeKeptIsSaidNotToBe) {
   const auto path = folder_.path() / "full.db";
   study::Store(path, study::sqlite::Open::Create).add_run(study::test::run_plan(protocol_, {"P01"}));
-  study::Store full(path, study::sqlite::Open::Write, 1);  // no page more than it has
+  study::Store full(path, study::sqlite::Open::Write, 1);  // the database cannot grow by a page
   const auto runs = full.open_runs();
   Console console(protocol_, full, path);
   console.begin(runs.at(0).sessions.at(0));
@@ -163,7 +163,7 @@ TEST_F(ConsoleTest, ARepeatThatComesTooLateIsShownAtTheEnd) {
   store_.answer(session().id, first_trial(), attempt, {&kept, 1}, true, 900);
   EXPECT_EQ(count("unit WHERE trial_id = 1 AND state = 'done'"), 0) << "that showing was set aside";
   console_.done({"P01", first_trial().plan, 1, {}});
-  EXPECT_EQ(console_.wish(), study::Wish::GoOn);
+  EXPECT_EQ(console_.request(), study::Request::GoOn);
   EXPECT_THAT(lines(), HasSubstr("trial 1 is shown again at the end of the session"));
   EXPECT_TRUE(console_.take_reopened());
 }

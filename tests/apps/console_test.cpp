@@ -1,4 +1,4 @@
-/// The experimenter's console in a terminal, and sessions whose terminal or reader goes away.
+/// The experimenter's console in a terminal, and sessions whose terminal or reader disappears.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@ namespace {
 class ConsoleE2e : public ::testing::Test {
  protected:
   ConsoleE2e() { base::write_file_atomically(protocol_, short_protocol("30")); }
-  /// A session in real time whose first trial takes half a minute.
+  /// Arguments of a session in real time whose first trial takes half a minute.
   std::vector<std::string> arguments() const {
     return run_arguments(protocol_, database_, {"--participants", "1", "--clock", "real", "--console"});
   }
   std::int64_t count(const std::string& sql) { return count_in(database_, "SELECT count(*) FROM " + sql); }
-  /// Stopped on request: a cut trial is marked, and the log was copied back.
+  /// After a stop on request: the cut trial is marked, and the log is copied back.
   void expect_in_order() {
     EXPECT_FALSE(fs::exists(database_ + "-wal"));
     EXPECT_EQ(count("presentation WHERE state = 'running'"), 0);

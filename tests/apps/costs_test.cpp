@@ -1,4 +1,4 @@
-/// What the report says that frames cost and err by, beside what people said.
+/// Cost and error of frames in the report, next to the answers.
 #include "apps/stats/tasks/costs_json.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ constexpr std::int64_t n_star = 16 * 1024;
 
 std::string sha256_of_dam() { return scenes_of("SingleDam").front().scene.sha256; }
 
-/// Sessions that say that they showed all scene files live.
+/// Sessions whose record says that they showed all scene files live.
 study::TaskProtocol shown_live() {
   auto out = made_study::task1(6);
   std::string stimulus = "live on cpu";
@@ -74,7 +74,7 @@ TEST(Costs, WithoutASourceTheTableSaysSo) {
 TEST(Costs, TimesAreMeansOverTheSessionsThatHoldThem) {
   auto protocol = shown_live();
   const study::StimulusSpec what{made_study::scenes[0], "HiRes", "16k"};
-  // P01 and P04 are the ones who saw the dam at 16k; P02 did not.
+  // P01 and P04 saw the dam at 16k; P02 did not.
   protocol.sessions[0].frame_costs = {{what, 4, 6}, {what, 6, 8}, {{what.scene, "Ours", "16k"}, 90, 90}};
   protocol.sessions[3].frame_costs = {{what, 11, 13}};
   protocol.sessions[1].frame_costs = {{what, 1000, 1000}};
@@ -160,7 +160,7 @@ TEST(Costs, WhatPeopleSaidStandsBesideIt) {
   const Json row = row_of(results_of(protocol), "Ours");
   EXPECT_EQ(row.at("answers"), n);
   EXPECT_DOUBLE_EQ(row.at("said"), sum / n);
-  // Each pair has one that was chosen: over all methods half of the showings were.
+  // One of each pair was chosen, so over all methods half of the showings were.
   const Json pairs = results_of(made_study::task2(6));
   double chosen = 0, showings = 0;
   for (const auto& one : pairs.at("costs")) {

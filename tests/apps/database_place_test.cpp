@@ -1,4 +1,4 @@
-/// Databases on network file systems and in folders that a service copies are named with the reason.
+/// Warnings, with the reason, about databases on network file systems and in folders that a service copies.
 #include "apps/study/desk/database_place.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// A system on which all lies on one kind of file system, with some paths beside "/" and "/data".
+/// A probe on which everything has one kind of file system; these paths exist besides "/" and "/data".
 PlaceProbe made_probe(std::uint32_t kind, const std::string& mount = "", std::set<std::string> paths = {}) {
   paths.insert({"/", "/data"});
   return {[kind](const fs::path&) { return kind; }, [mount](const fs::path&) { return mount; },
@@ -57,7 +57,7 @@ TEST(DatabasePlace, FoldersThatAServiceCopiesAreKnownByNameOrMark) {
               ElementsAre(HasSubstr("Syncthing")));
 }
 
-// The words come once on the console, and nothing is refused.
+// The warning appears once on the console, and nothing is refused.
 TEST(DatabasePlaceE2e, RunMergeAndWithdrawWarn) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "Nextcloud");

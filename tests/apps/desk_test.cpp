@@ -1,4 +1,4 @@
-/// The experimenter's desk: measured refresh, certificate, pre-flight list, words.
+/// The experimenter's desk: measured refresh, certificate, pre-flight list, texts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Returns of swaps on a screen of this period, in the order of `skips` (periods to the next return).
+/// Return times of swaps on a screen of this period; the beat after swap `missed` is missed.
 std::vector<std::int64_t> swaps(double period_ns, int count, double jitter_ns = 0, int missed = -1) {
   std::vector<std::int64_t> out;
   double at = 1e9;
@@ -38,7 +38,7 @@ TEST(Refresh, IsMeasuredWithJitterAndMissedBeats) {
   EXPECT_EQ(found.nominal_hz, 60) << "59.95 is what the system calls 60";
 }
 
-/// A cell of four trials of which so many were degraded and failed.
+/// A cell of four trials with these numbers of degraded and failed ones.
 study::CertificateRow cell_with(std::int64_t degraded, std::int64_t fail) {
   study::CertificateRow row;
   row.nominal = {50, 5, 10};
@@ -118,14 +118,14 @@ TEST(Refresh, ScreensOfTelevisionRatesCountAsWholeOnes) {
 }
 
 TEST(Refresh, SwapsThatDoNotWaitAreSeen) {
-  EXPECT_FALSE(judge_swaps(swaps(3e5, 120), 60).in_effect);       // 0.3 ms: at once
+  EXPECT_FALSE(judge_swaps(swaps(3e5, 120), 60).in_effect);       // 0.3 ms: the swap does not wait
   EXPECT_FALSE(judge_swaps(swaps(8e6, 120, 3e6), 60).in_effect);  // as long as drawing takes
   EXPECT_FALSE(judge_swaps(swaps(1e9 / 60, 5), 60).in_effect);    // too few
   EXPECT_EQ(judge_swaps(swaps(3e5, 120), 60).nominal_hz, 0);
 }
 
 TEST(Refresh, ABeatIsWhereTheEarliestSwapsCameBack) {
-  // Beats at 20, 36, 52, 68, 100 ms; one came back on time, one beat was missed.
+  // Beats at 20, 36, 52, 68, 100 ms; one swap returned on time, one beat was missed.
   const std::vector<std::int64_t> late{20'300'000, 36'000'000, 52'900'000, 68'200'000, 100'500'000};
   EXPECT_EQ(beat_of(late, 16e6), 100'000'000);
 }

@@ -76,7 +76,7 @@ TEST(PassMeans, AreOfTheLastSecond) {
   EXPECT_EQ(means.total_ms(), 0);
   means.push(frame_of(100, 100), 0.3);
   means.push(frame_of(1, 2), 0.4);
-  means.push(frame_of(3, 6), 0.4);  // 1.1 s: the first has left
+  means.push(frame_of(3, 6), 0.4);  // 1.1 s: the first frame has left the window
   const auto rows = means.rows();
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].name, "saliency");

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// scripts/validate_bids.sh: 0 sound, 1 an error, 77 there is no validator here.
+/// scripts/validate_bids.sh: 0 valid, 1 an error, 77 no validator is installed.
 apps::test::Ended validate(const std::vector<fs::path>& folders) {
   std::string line = VIP_TEST_DIR "/../scripts/validate_bids.sh";
   for (const fs::path& folder : folders) line += " " + folder.string();

@@ -1,6 +1,6 @@
-/// Code of strings and JSON, compiled at -O2. Each file that uses a template holds a copy of its code, and
-/// the linker keeps the first copy for the whole program. This file is linked first: otherwise the libraries
-/// would run the copies of the tests, which are compiled at -O0.
+/// Code of strings and JSON, compiled at -O2. Each file that uses a template has a copy of its code, and the
+/// linker uses the first copy for the whole program. This file is linked first: otherwise the libraries would
+/// run the tests' copies, which are compiled at -O0.
 
 #include <string>
 #include <vector>

@@ -33,12 +33,12 @@ TEST(FluidPictureGl, SaliencySeesTheLastFrameAndTheRecordSaysHow) {
       picture.draw(*fluid, view, target.framebuffer());
     }
     const std::string seen = apps::in_words(fluid->report().seen);
-    // The third step looked at the picture of the second.
+    // The third step used the picture of the second.
     EXPECT_EQ(seen, method == sim::MethodKind::Ours ? "picture of frame 2 by way of host" : "no picture");
   }
 }
 
-/// The middle row of the obstacle's colour: red over blue, as neither water nor room is.
+/// Mean row of pixels with the obstacle's colour: more red than blue, unlike water and room.
 double middle_row(const sim::Image& image) {
   double sum = 0, count = 0;
   for (int y = 0; y < image.height; ++y) {
@@ -81,7 +81,7 @@ TEST(FluidPictureGl, ShowsAFreeObstacleWhereItIs) {
   const double fallen = middle_row(target.read()) - before;
   const double way = 2 - fluid->read_obstacles().at(0).pose.centre_m[1];
   EXPECT_GT(way, 0.5);
-  // Rows go downwards, 96 of them over the field of view at 5 m.
+  // Rows go downwards; 96 of them cover the field of view at 5 m.
   const double tall = 2 * 5 * std::tan(0.5 * scene.view.vertical_fov_deg * 3.14159265 / 180);
   EXPECT_NEAR(fallen / 96 * tall, way, 0.1 * way);
 }
@@ -99,7 +99,7 @@ TEST(Gaze, ThroughAPixelIsTheRayThatTheCameraDraws) {
     EXPECT_NEAR(middle.direction[k], at_target.direction[k] / length, 1e-5)
         << "the middle looks at the target";
   }
-  // The upper edge lies half the field of view above the middle.
+  // The upper edge is half the field of view above the middle.
   const auto top = apps::gaze_through(view, 160, 200);
   double dot = 0, norm = 0;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -19,10 +19,10 @@ using ::testing::HasSubstr;
 std::string scene_text() { return base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20); }
 sim::Scene scene() { return sim::parse_scene(scene_text(), "single_dam.toml"); }
 
-/// A block of the test bake's particles, one frame further with each step.
+/// A block of the test bake's particles, which advances one frame with each step.
 class FakeSimulation final : public sim::Simulation {
  public:
-  /// `looks` gets what it is told, if any.
+  /// `looks` receives all looks, if not null.
   explicit FakeSimulation(std::vector<sim::Looks>* looks = nullptr) : looks_(looks) {}
   bool look(const sim::Looks& looks) override {
     if (looks_) looks_->push_back(looks);
@@ -63,7 +63,7 @@ class FakeSimulation final : public sim::Simulation {
   sim::FrameAccount account_{{768, 192}, {}, {}};
 };
 
-/// What the frame's record is to hold of bake_test::account(frame).
+/// Compares a frame's facts with bake_test::account(frame).
 void expect_facts(const study::FrameFacts& facts, std::int64_t frame) {
   SCOPED_TRACE(frame);
   const sim::FrameAccount account = bake_test::account(frame);
@@ -105,7 +105,7 @@ TEST(FluidStimulus, LiveFluidThatStandsAtItsStartIsNotComputedAgain) {
     return std::make_unique<FakeSimulation>();
   });
   fluid.start(3);  // while the screen is black
-  fluid.start(3);  // as the trial begins
+  fluid.start(3);  // at the start of the trial
   EXPECT_EQ(made, 1);
   EXPECT_DOUBLE_EQ(fluid.prepare(3).simulation_time_s, 0.06);
   fluid.start(3);  // the next trial
@@ -140,7 +140,7 @@ TEST(FluidStimulus, BakeWithAnotherContentStepIsRefused) {
   bake_test::write(folder / "a.bake", 2, 32, 18);
   apps::StimulusChoice choice;
   choice.bake = folder / "a.bake";
-  choice.content_step_s = 0.01667;  // 1/60 as a protocol may round it
+  choice.content_step_s = 0.01667;  // 1/60 as rounded in a protocol
   EXPECT_EQ(apps::make_stimulus(choice)->length(), 2);
   EXPECT_TRUE(apps::shows_pictures(choice));
   choice.content_step_s = 0.02;
@@ -154,7 +154,7 @@ TEST(FluidStimulus, BakeWithAnotherContentStepIsRefused) {
 
 class FluidStimulusGl : public ::testing::Test {
  protected:
-  /// The picture that the display shows, bottom row first.
+  /// The picture on the display, bottom row first.
   static sim::Bytes shown(const apps::HeadlessDisplay& display) {
     const sim::Image image = display.read();
     const std::size_t row = 4 * static_cast<std::size_t>(image.width);
@@ -255,7 +255,7 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
   };
   live.start(0);
   const sim::Bytes first = picture(live, 0), want = picture(live, 2), got = picture(baked, 2);
-  // Positions differ by 0.15 mm at most, so few bytes differ by more than a little.
+  // Positions differ by at most 0.15 mm, so few bytes differ by more than a little.
   std::size_t far = 0, moved = 0;
   for (std::size_t i = 0; i < want.size(); ++i) {
     far += std::abs(int(want[i]) - int(got[i])) > 8;
@@ -275,13 +275,13 @@ TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAP
       scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
   live.start(0);
   live.prepare(1);
-  EXPECT_TRUE(looks.empty());  // nothing was seen yet
+  EXPECT_TRUE(looks.empty());  // nothing was shown yet
   display.render(live);
   live.prepare(3);
   ASSERT_EQ(looks.size(), 2u);
   const sim::EyeLook& eye = looks[0].eyes.at(0);
   EXPECT_TRUE(eye.gaze.valid);
-  // The camera keeps the scene's angle, and the gaze goes through a quarter of its width.
+  // The camera has the scene's angle, and the gaze goes through a quarter of its width.
   const sim::View view = sim::make_view(scene().view, 64, 36);
   EXPECT_EQ(eye.view.projection, view.projection);
   const sim::Gaze expected = apps::gaze_through(view, 16, 18);

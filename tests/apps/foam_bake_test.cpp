@@ -1,4 +1,4 @@
-/// A bake of particles holds the scene's foam, and playing it shows it.
+/// A bake of particles holds the scene's foam, and the player shows it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using ::testing::IsEmpty;
 constexpr std::int64_t frames = 61;
 constexpr int width = 160, height = 90;
 
-/// The bore of SeaSpray, coarse; it has hit nothing yet, but overturns.
+/// The bore of SeaSpray at a coarse size; it has not hit anything yet, but overturns.
 BakeOrder order_with(std::vector<sim::Effect> effects) {
   BakeOrder order;
   order.fluid.scene = base::find_input("data/scenes/sea_spray.toml");
@@ -72,7 +72,7 @@ TEST(FoamBakeGl, IsPlayedAsItWasLive) {
   without.read_frame(frames - 1, bare);
   ASSERT_GT(foamy.foam.size(), 100u);
   EXPECT_THAT(bare.foam, IsEmpty());
-  // Foam rides on the water one way.
+  // Foam does not influence the water.
   ASSERT_EQ(foamy.particles.size(), bare.particles.size());
   EXPECT_EQ(foamy.particles[7].x_m, bare.particles[7].x_m);
 
@@ -113,7 +113,8 @@ TEST(FoamBake, OfOtherEffectsIsADeparture) {
   EXPECT_THAT(fluid_departures(wanted, none), Contains(HasSubstr("instead of no effects")));
 }
 
-/// Formats before 4 kept no foam: particles without it are another stimulus, pictures show it all the same.
+/// Formats before 4 stored no foam: particles without it are a different stimulus, but pictures still show
+/// it.
 TEST(FoamBake, OfAnEarlierFormatLacksTheScenesFoam) {
   if (!sim::has_effects()) GTEST_SKIP() << "built without effects";
   const sim::BakeReader old(base::resource("tests/libsim/bake/fixtures/format_3.bake"));
@@ -122,7 +123,7 @@ TEST(FoamBake, OfAnEarlierFormatLacksTheScenesFoam) {
   order.fluid.n_star = "64";
   order.frames = 3;
   auto found = old.header(), wanted = header_of(order);
-  wanted.scene_sha256 = found.scene_sha256;  // the scene's file may have moved on since
+  wanted.scene_sha256 = found.scene_sha256;  // the scene's file may have changed since
   wanted.scene_text = found.scene_text;
   EXPECT_THAT(fluid_departures(found, wanted),
               Contains(HasSubstr("no particles of foam instead of foam (bakes before format 4 kept none)")));

@@ -1,5 +1,5 @@
 /// A session of live fluid with foam as a factor is killed in the middle of a showing and resumed: nothing is
-/// lost, and what is shown afterwards is what an undisturbed session shows.
+/// lost, and the later showings equal those of an undisturbed session.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// protocols/foam.toml, coarse and short. Foam alone leaves the water as it is, so a level brings drag too:
-/// then the frames' records tell the levels apart.
+/// protocols/foam.toml, coarse and short. Foam alone does not change the water, so one level adds drag too:
+/// then the frame records differ between the levels.
 std::string short_foam() {
   std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
   text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");
@@ -43,7 +43,7 @@ const char* const plan =
     "SELECT u.position || ' ' || u.kind || ' ' || coalesce(t.first_cell || ' ' || t.second_cell || ' ' || "
     "t.schedule_seed, '') FROM unit u LEFT JOIN trial t USING (trial_id) ORDER BY u.position";
 
-/// What was shown of each trial at last, frame by frame, with what walls did to the water.
+/// The last showing of each trial, frame by frame, with the number of particles projected at walls.
 const char* const shown =
     "SELECT t.position || ' ' || p.interval || ' ' || c.effects || ' ' || f.frame_index || ' ' || "
     "f.content_step || ' ' || f.simulation_time_s || ' ' || f.particles || ' ' || "
@@ -60,7 +60,7 @@ class FoamKillE2e : public ::testing::Test {
             "--clock", "virtual",   "--observer", "random",        "--seed", "5",       "--backend",
             "cpu",     "--display", "headless",   "--participant", "P01",    "--events"};
   }
-  /// Kills the run when the second stimulus of the `trial`-th trial is on.
+  /// Kills the run while the second stimulus of the `trial`-th trial is shown.
   std::string run_and_kill(const std::string& database, int trial) const {
     Process program(arguments(database));
     program.read_line();  // the plan is written
@@ -102,7 +102,7 @@ TEST_F(FoamKillE2e, LiveWaterAndItsPlanGoOnAsIfNothingHadBeen) {
   EXPECT_EQ(done_in(killed_), done_in(whole_));
   EXPECT_EQ(answers_in(killed_).size(), answers_in(whole_).size());
 
-  // Every frame is of the water of its level, from the step that the protocol begins at.
+  // Every frame shows the water of its level, from the step at which the protocol starts.
   const Rows frames = rows_of(whole_, shown);
   EXPECT_EQ(frames.size(), 8u * 15);
   EXPECT_EQ(rows_of(killed_, shown), frames);
@@ -118,7 +118,7 @@ TEST_F(FoamKillE2e, LiveWaterAndItsPlanGoOnAsIfNothingHadBeen) {
   EXPECT_EQ(rows_of(killed_, "SELECT stimulus FROM session"), Rows{stimulus});
   EXPECT_THAT(stimulus, HasSubstr("; foam emission_per_s = 3 "));
 
-  // The cut showing is told, and its trial was shown again as a whole.
+  // The interrupted showing is recorded, and its whole trial was shown again.
   EXPECT_THAT(rows_of(killed_,
                       "SELECT t.position || ' ' || p.attempt || ' ' || p.interval || ' ' || p.state "
                       "FROM presentation p JOIN trial t USING (trial_id) WHERE t.position = 2 ORDER "

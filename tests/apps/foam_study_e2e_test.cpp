@@ -25,7 +25,7 @@ const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
 std::string foam_protocol() { return base::resource("protocols/foam.toml").string(); }
 
-/// The list's entry with these words.
+/// The list's entry with these values.
 json entry(const json& list, const std::map<std::string, std::string>& words) {
   for (const auto& one : list) {
     bool same = true;
@@ -38,7 +38,7 @@ json entry(const json& list, const std::map<std::string, std::string>& words) {
 class FoamStudyE2e : public ::testing::Test {
  protected:
   void SetUp() override { NEEDS_EFFECTS; }
-  /// The report's numbers about `participants` of an observer to whom foam is worth so many scores.
+  /// The report's numbers for `participants` of an observer who prefers foam by `effects` points of score.
   json report_of(const std::string& effects, const std::string& participants) {
     const std::string database = folder_ / ("study_" + effects + ".db"),
                       results = folder_ / ("results_" + effects + ".json");
@@ -68,7 +68,7 @@ TEST_F(FoamStudyE2e, TheColumnsOfTask2StandUnderTheirHeads) {
   EXPECT_GT(pairs, 3);
 }
 
-// P(foam chosen) = Phi(1 / sqrt 2) = .76 for noise of 1 on each of the two.
+// P(foam chosen) = Phi(1 / sqrt 2) = .76 with noise of 1 on each of the two.
 TEST_F(FoamStudyE2e, TheReportFindsWhatFoamIsWorth) {
   const json results = report_of("1", "40");
   const json& task2 = results.at("task2");
@@ -168,7 +168,7 @@ TEST_F(FoamStudyE2e, CheckRefusesALevelThatTheSceneCannotHaveAtItsPlace) {
   EXPECT_THAT(ended.err, AllOf(HasSubstr("wrong.toml:25:9: "), HasSubstr("is no effect of scene SeaSpray")));
 }
 
-/// Of the study's scene, coarse and short: 0.5 s about the first foam.
+/// The study's scene, coarse and short: 0.5 s around the first foam.
 class FoamShownE2e : public ShownStudy {
  protected:
   void SetUp() override { NEEDS_EFFECTS; }
@@ -202,7 +202,7 @@ TEST_F(FoamShownE2e, BakesHoldTheFoamOfTheirLevelAndArePlayed) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("sea_spray 256 LoRes none bake"),
                                 HasSubstr("sea_spray 256 LoRes foam bake"), Not(HasSubstr("live"))));
-  // Numbers changed since: the bakes are of other water.
+  // A changed number makes the bakes those of other water.
   base::write_file_atomically(
       protocol_, replaced(base::read_file(protocol_, 1 << 20), "emission_per_s = 3", "emission_per_s = 4"));
   fs::remove(database_);

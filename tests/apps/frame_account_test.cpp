@@ -1,4 +1,5 @@
-/// What stands in a study's database of each frame is what the solver did: as a user runs the programs.
+/// The facts of each frame in a study's database equal those of the solver: with the programs as a user runs
+/// them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -95,7 +96,7 @@ class FrameAccountE2e : public ::testing::Test {
     const Ended ended = run_program(arguments);
     ASSERT_EQ(ended.exit_code, 0) << ended.err;
   }
-  /// What vip-bench frame reports of the same 29 frames.
+  /// The accounts of the same 29 frames from vip-bench frame.
   base::Json bench_accounts() {
     const std::string json = folder_ / "frame.json";
     const Ended ended = apps::test::run_shell(
@@ -132,7 +133,7 @@ void expect_account(const Statement& row, std::map<std::string, int>& column, co
   EXPECT_EQ(row.text(column["particles"]), particles);
 }
 
-/// Whichever way the protocol sets a cell's frame rate, tau follows from it.
+/// Whichever way the protocol sets a cell's frame rate, it determines tau.
 TEST_F(FrameAccountE2e, ALiveSessionAtNegativeTauHoldsWhatTheSolverDidAsTheBenchReportsIt) {
   const double tau = stats::ptpe_tolerance({}, 12, 3);
   ASSERT_LT(tau, -5);

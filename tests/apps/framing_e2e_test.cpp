@@ -1,4 +1,4 @@
-/// The camera's angle and the eye's, from the command line to the database.
+/// The camera's angle and the visual angle, from the command line to the database.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ class FramingE2e : public ::testing::Test {
     const std::string scene = base::read_file(base::resource("data/scenes/faucet.toml"), 1 << 20);
     base::write_file_atomically(scene_, replaced(scene, "settle_frames = 120", "settle_frames = 1"));
   }
-  /// A protocol of short trials with this method; `more` stands at its top.
+  /// A protocol of short trials with this method; `more` comes first in the file.
   void write_protocol(const std::string& method, const std::string& more = "") {
     std::string text = replaced(short_protocol("0.2"), "data/scenes/single_dam.toml", scene_);
     text = replaced(text, "method = [\"HiRes\"]", "method = [\"" + method + "\"]");

@@ -1,4 +1,4 @@
-/// What a picture shows of a scene, and how large the eye sees it.
+/// The part of a scene that a picture shows, and its visual angle.
 #include "apps/common/framing.hpp"
 
 #include <gmock/gmock.h>
@@ -94,9 +94,9 @@ std::vector<sim::RenderParticle> particles_on(const sim::VisibleBox& box) {
 class FramingGl : public ::testing::Test {
  protected:
   struct Seen {
-    bool any = false, edge = false;  ///< of the picture's pixels that show fluid
+    bool any = false, edge = false;  ///< among the picture's pixels that show fluid
   };
-  /// What is declared visible, drawn as balls.
+  /// Draws the boxes that must be visible as balls.
   Seen draw(const sim::Scene& scene, const sim::View& view) {
     sim::RenderOptions options;
     options.clip_to_tank = false;
@@ -142,7 +142,7 @@ TEST_F(FramingGl, WhatMustStayVisibleIsDrawnWholeAtEveryShapeOfScreen) {
   }
 }
 
-/// 520 mm seen from 600 mm, 16:9: what docs/session.md's flags once made of the camera.
+/// 520 mm seen from 600 mm, 16:9: the camera's angle by the flags of docs/session.md in earlier versions.
 TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
   for (const char* name : {"faucet", "jet_impact", "single_dam"}) {
     const sim::Scene scene = shipped(name);
@@ -153,7 +153,7 @@ TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
   }
 }
 
-/// A camera 2 m up that looks down along -x, as a scene's does.
+/// A camera 2 m up that looks down along -x, like that of a scene.
 sim::Camera tilted() {
   sim::Camera camera;
   camera.eye_m = {3, 2, 1};
@@ -173,7 +173,7 @@ study::EyeView eye_at(double right_m) {
 
 TEST(EyeView, StandsAtTheScenesCameraWithItsHeadingAndALevelHorizon) {
   const sim::View view = eye_view(tilted(), eye_at(0));
-  // Slope s to the right lies at (s + 1.2) / 2 of the width, slope t up at (t + 0.6) / 1 of the height.
+  // Slope s to the right is at (s + 1.2) / 2 of the width, slope t up at (t + 0.6) / 1 of the height.
   const auto ahead = place_in(view, {-7, 2, 1});
   ASSERT_TRUE(ahead);
   EXPECT_NEAR(ahead->first, 120, 1e-3);

@@ -1,5 +1,4 @@
-/// Nothing flashes in a headset, whatever goes wrong there again and again: read from the simulated headset's
-/// own log.
+/// Nothing flashes in a headset, whatever trouble repeats: checked in the simulated headset's own log.
 #include <sstream>
 
 #include "libstudy/session/repeats.hpp"
@@ -21,7 +20,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
  protected:
   void SetUp() override { bake_dam(dam_, 60); }
 
-  /// Two showings of half a second without any black of their own, after a page of consent.
+  /// Two showings of half a second without black of their own, after a consent page.
   test::Ended session(const std::string& profile, const std::string& gaze,
                       const std::string& clock = "virtual") {
     std::string text = study::test::asking_protocol().text;
@@ -45,7 +44,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
   std::vector<std::string> causes() const {
     return study::test::column(database_, "SELECT detail FROM event WHERE kind = 'trial interrupted'");
   }
-  /// When the stimulus comes and goes, on the session's clock, ns, as the record has it.
+  /// Times at which the stimulus appears and disappears, on the session's clock, ns, from the record.
   std::vector<std::int64_t> changes() const {
     std::vector<std::int64_t> all;
     study::sqlite::Connection database(database_, study::sqlite::Open::Read);
@@ -60,7 +59,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
   const std::string dam_ = folder_ / "dam.bake", database_ = folder_ / "study.db";
 };
 
-/// The script from slot 60 on: `bad`, and 20 slots later `good`, again and again.
+/// A script that from slot 60 on repeats `bad`, and 20 slots later `good`.
 std::string again_and_again(const std::string& bad, const std::string& good) {
   std::string script = "at=";
   for (int slot = 60; slot < 1200; slot += 40) {
@@ -77,7 +76,7 @@ TEST_F(HeadsetFlashE2e, WhatGoesWrongAgainAndAgainIsShownFourTimesAtMostAndFlash
   };
   for (const auto& [bad, good, cause] :
        std::vector<Trouble>{{"focus/0", "focus/1", CutCause::Focus},
-                            // Its pictures stop before its state tells that it was taken off.
+                            // Its pictures stop before its state changes.
                             {"shown/0", "shown/1", CutCause::NotDrawn},
                             {"render/0", "render/1", CutCause::NotDrawn},
                             {"orientation/0", "orientation/1", CutCause::Pose},
@@ -109,7 +108,7 @@ TEST_F(HeadsetFlashE2e, WithoutTheEyesNothingIsShown) {
   EXPECT_EQ(real.exit_code, 1);
   EXPECT_THAT(real.err, HasSubstr("the eye tracker does not see the eyes"));
   EXPECT_EQ(count("presentation"), 0);
-  // Lost for good while it is shown.
+  // The gaze is lost for good during the showing.
   const auto lost = session("at=45:gaze_valid/0", "tracked");
   EXPECT_EQ(lost.exit_code, 1);
   EXPECT_THAT(lost.err, HasSubstr("the eye tracker does not see the eyes"));

@@ -1,4 +1,4 @@
-/// Where a simulated headset's wearer looks: recorded with consent alone, and followed by the fluid.
+/// Gaze of a simulated headset's wearer: recorded only with consent, and followed by the fluid.
 #include <cmath>
 #include <numbers>
 
@@ -21,7 +21,7 @@ class HeadsetGazeE2e : public test::HeadsetRuns {
  protected:
   void SetUp() override { bake_dam(dam_, 60); }
 
-  /// Two showings of half a second after a page of consent that asks for gaze, or does not.
+  /// Two showings of half a second after a consent page that asks for gaze, or does not.
   std::string protocol(bool asks_gaze = true) {
     std::string text = study::test::asking_protocol(asks_gaze).text;
     const auto set = [&](const std::string& from, const std::string& to) {
@@ -34,7 +34,7 @@ class HeadsetGazeE2e : public test::HeadsetRuns {
     return folder_ / "asking.toml";
   }
 
-  /// consent: what is answered to all questions, 0 or 1.
+  /// consent: the answer to all questions, 0 or 1.
   test::Ended session(const std::string& profile, const std::string& gaze, int consent = 1,
                       const std::string& protocol_file = "") {
     fs::remove(database_);
@@ -63,7 +63,7 @@ TEST_F(HeadsetGazeE2e, TheTrackersSamplesAreKeptAtTheirOwnRate) {
   EXPECT_EQ(count("gaze a JOIN gaze b USING (presentation_id) WHERE b.sample_index = a.sample_index + 1 AND "
                   "abs(b.sampled_ns - a.sampled_ns - 25000000) > 1000"),
             0);
-  // 10 degrees to the left of a head that is turned itself.
+  // 10 degrees to the left of the turned head.
   EXPECT_EQ(count("gaze WHERE abs(direction_x + " + std::to_string(std::sin(10 * degree)) +
                   ") > 1e-3 OR abs(direction_z + " + std::to_string(std::cos(10 * degree)) + ") > 1e-3"),
             0);
@@ -126,7 +126,7 @@ TEST_F(HeadsetGazeE2e, EyesLostCutATrialAndAGuessIsOnlyRecorded) {
 }
 
 TEST_F(HeadsetGazeE2e, SamplesStandInOrderAlsoWhereTheEyesWereLost) {
-  // Samples come late, then at once, are lost for three slots, and come late again.
+  // Samples are late, then immediate, lost for three slots, and late again.
   const auto ended = session(
       "gaze_rate=200;gaze_age=40;at=48:gaze_age/0,52:gaze_valid/0,55:gaze_valid/1,55:gaze_age/40", "tracked");
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
@@ -151,7 +151,8 @@ TEST_F(HeadsetGazeE2e, ThePointOfGazeIsOnThePictureAsItWasDrawn) {
   EXPECT_EQ(count("gaze WHERE abs(x - " + std::to_string(x) + ") > 1e-3 OR abs(y - " + std::to_string(y) +
                   ") > 1e-3"),
             0);
-  // The head turns and the picture stays: eyes that look ahead wander over it. In black there is none.
+  // The head turns and the picture stays: eyes that look straight ahead move over it. During black there is
+  // no point of gaze.
   const auto turns = session("head=turn", "tracked", 1, file);
   ASSERT_EQ(turns.exit_code, 0) << turns.err;
   EXPECT_GT(count("(SELECT DISTINCT round(x, 4) FROM gaze WHERE x IS NOT NULL)"), 30);
@@ -171,7 +172,7 @@ TEST_F(HeadsetGazeE2e, ATrackerIsValidatedAtNineTargets) {
   ASSERT_EQ(good.exit_code, 0) << good.err;
   EXPECT_EQ(count("gaze_validation WHERE passed AND accuracy_deg < 0.5 AND valid > 60"), 9);
   EXPECT_EQ(count("presentation WHERE state = 'played'"), 2);
-  // Targets stand ahead of the head also in a world that has moved, or in that of another session.
+  // Targets are ahead of the head even after a recentring, or in a new session.
   const auto moved = session("look=page;targets=0.5:0.5;at=200:recentre/40,500:lost_now", "tracked", 1, file);
   ASSERT_EQ(moved.exit_code, 0) << moved.err;
   EXPECT_EQ(count("gaze_validation WHERE passed AND accuracy_deg < 0.5 AND valid > 60"), 9);
@@ -180,14 +181,14 @@ TEST_F(HeadsetGazeE2e, ATrackerIsValidatedAtNineTargets) {
   EXPECT_EQ(poor.exit_code, 1);
   EXPECT_THAT(poor.err, HasSubstr("the eye tracker is off by"));
   EXPECT_EQ(count("gaze_validation WHERE NOT passed"), 27);
-  // The outer targets lie 10 degrees off, four of them on both axes.
+  // The outer targets are 10 degrees off, four of them on both axes.
   EXPECT_EQ(
       count("gaze_validation WHERE accuracy_deg BETWEEN 9 AND 11 OR accuracy_deg BETWEEN 13.5 AND 14.5"), 24);
   EXPECT_EQ(count("presentation"), 0);
 }
 
-/// Mean place along x of the particles of the finest level there is, in a live fluid that was shown to eyes
-/// which look this far to the left, degrees.
+/// Mean x of the particles of the finest level in a live fluid, shown to eyes that look this many degrees to
+/// the left.
 double fine_x(double look_yaw) {
   HeadsetChoice choice;
   choice.eye_gaze = true;
@@ -223,7 +224,7 @@ double fine_x(double look_yaw) {
 }
 
 TEST_F(HeadsetGazeE2e, LevelsFollowTheScriptedGaze) {
-  // The water stands left of the camera, whose eye is at x = 12.8 m and 9 m away.
+  // The water is left of the camera, which is at x = 12.8 m and 9 m away.
   double places[2] = {};
   for (const int far : {0, 1}) {
     const int yaw = far ? 45 : 20;

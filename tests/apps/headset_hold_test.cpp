@@ -1,4 +1,4 @@
-/// What a picture that stays on does while the head moves, and in which world it is drawn.
+/// A held picture during movements of the head, and the space in which it is drawn.
 #include <epoxy/gl.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Keeps the eyes that it was drawn for.
+/// Records the eye views that it was drawn for.
 class SeenStimulus final : public study::Stimulus {
  public:
   std::string description() const override { return "seen"; }
@@ -45,7 +45,7 @@ class HeadsetHoldGl : public test::HeadsetRuns {
  protected:
   ~HeadsetHoldGl() override { EXPECT_THAT(calls(), Not(HasSubstr("BREACH"))); }
 
-  /// Two pictures for nine slots each, with a head that walks and turns or does what `head` says.
+  /// Plays two pictures for nine slots each, with a head that moves as `head` says.
   void play(const study::HeadsetRules& rules, const std::string& head = "head=walk") {
     use_here("size=32x32;" + head);
     HeadsetDisplay display(SlotDrive::Caller, {}, rules);
@@ -55,7 +55,7 @@ class HeadsetHoldGl : public test::HeadsetRuns {
     for (const auto& frame : played.frames) EXPECT_FALSE(frame.late);
     display.clear();
   }
-  /// What the left eye's layer says behind a pattern, slot by slot.
+  /// Text in the left eye's layer that matches `what`, slot by slot.
   std::vector<std::string> logged(const std::string& what) const {
     std::vector<std::string> found;
     std::istringstream lines(calls());
@@ -89,7 +89,7 @@ TEST_F(HeadsetHoldGl, EachEyeIsDrawnFromItsOwnPlaceIntoItsOwnHalf) {
   EXPECT_NEAR(right.position_m[0], 0.0315, 1e-6);
   EXPECT_EQ(left.x_px, 0);
   EXPECT_EQ(right.x_px, 32);
-  // The headset's eyes see further outwards.
+  // The headset's eyes have a wider view outwards.
   EXPECT_NEAR(left.left_rad, -52 * M_PI / 180, 1e-6);
   EXPECT_NEAR(right.right_rad, 52 * M_PI / 180, 1e-6);
 }
@@ -109,13 +109,13 @@ TEST_F(HeadsetHoldGl, AHeadLockedPictureMovesWithTheHead) {
   const std::size_t drawn = stimulus_.drawn.size(), slots = logged(pose).size();
   play({.hold = study::Hold::HeadLocked, .refresh_hz = {}});
   EXPECT_EQ(stimulus_.drawn.size(), 2 * drawn);
-  // Beside the head itself, half the distance between the eyes to the left, whatever the head does.
+  // Relative to the head, half the distance between the eyes to the left, however the head moves.
   const auto all = logged(pose);
   const std::vector<std::string> locked(all.begin() + static_cast<std::ptrdiff_t>(slots), all.end());
   ASSERT_EQ(locked.size(), slots);
   EXPECT_EQ(different(locked), 1u);
   EXPECT_THAT(locked.front(), HasSubstr("at -0.031500 0.000000 0.000000 turned 0.000000"));
-  // And it is drawn from where the head was in the world.
+  // It is drawn from the head's place in the world.
   EXPECT_NE(stimulus_.drawn.back().left.position_m, stimulus_.drawn[drawn].left.position_m);
 }
 
@@ -129,7 +129,7 @@ TEST_F(HeadsetHoldGl, AMarginSurroundsWhatTheEyesSee) {
   EXPECT_NEAR(after.right_rad, before.right_rad + margin, 1e-6);
   EXPECT_NEAR(after.up_rad, before.up_rad + margin, 1e-6);
   EXPECT_NEAR(after.down_rad, before.down_rad - margin, 1e-6);
-  // The layer says so too: what the eyes see stays where it is.
+  // The layer has the margin too, so that the visible part stays in place.
   EXPECT_THAT(logged("fov [-.0-9]+").back(), HasSubstr("fov -1.08210"));
 }
 
@@ -146,7 +146,7 @@ TEST_F(HeadsetHoldGl, TheProtocolsRefreshRateIsAskedForAndMet) {
   const HeadsetDisplay display(SlotDrive::Caller, {}, {.refresh_hz = 120});
   EXPECT_EQ(display.refresh_hz(), 120);
   EXPECT_NEAR(display.measured_hz(), 120, 1e-3);
-  // The change itself leaves no mark on what follows.
+  // The change of the rate does not affect the grade.
   EXPECT_EQ(display.grade(), study::TimingGrade::Compositor);
 }
 

@@ -1,4 +1,4 @@
-/// What stands behind a page in a headset: how large it is, and what hands, eyes and keys mean on it.
+/// Logic of a page in a headset: its size, and the effect of hands, eyes and keys.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ HeadsetPose head(double yaw_deg, double pitch_deg) {
   const double yaw = 0.5 * yaw_deg * degree, pitch = 0.5 * pitch_deg * degree;
   HeadsetPose pose;
   pose.place_m = {0.3F, 1.6F, -0.2F};
-  // First about the upright axis, then about the head's own.
+  // First about the vertical axis, then about the head's own.
   pose.turn = {static_cast<float>(std::cos(yaw) * std::sin(pitch)),
                static_cast<float>(std::sin(yaw) * std::cos(pitch)),
                static_cast<float>(-std::sin(yaw) * std::sin(pitch)),
@@ -37,7 +37,7 @@ HeadsetPose head(double yaw_deg, double pitch_deg) {
   return pose;
 }
 
-/// Degrees between two places on a page, in metres from its middle, to an eye ahead of it.
+/// Degrees between two places on a page, in metres from its middle, for an eye in front of it.
 double degrees_between(double x1, double y1, double x2, double y2, double distance) {
   const double dot = x1 * x2 + y1 * y2 + distance * distance;
   const double one = std::sqrt(x1 * x1 + y1 * y1 + distance * distance);
@@ -97,7 +97,7 @@ TEST(HeadsetPages, APageComesAfterAHeadThatTurnedOrWentAway) {
   EXPECT_TRUE(is_left_behind(page, far));
 }
 
-/// Looks from one instant to another in slots of 10 ms; how often something was chosen.
+/// Looks at a target from one time to another in slots of 10 ms. Returns the number of choices.
 int look(Dwell& dwell, unsigned target, bool seen, int from_ms, int to_ms) {
   int chosen = 0;
   for (int at = from_ms; at < to_ms; at += 10) chosen += dwell.look(target, seen, at * ms) ? 1 : 0;

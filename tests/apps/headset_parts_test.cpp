@@ -15,7 +15,7 @@ namespace {
 
 constexpr double degree = 3.14159265358979 / 180;
 
-/// Adds `count` slots `step_ns` apart; the changes that were told.
+/// Adds `count` slots `step_ns` apart. Returns the changes that were reported.
 std::vector<RateChange> add_slots(RateMeter& meter, std::int64_t& now_ns, int count, std::int64_t step_ns,
                                   std::int64_t jitter_ns = 0) {
   std::vector<RateChange> changes;
@@ -45,7 +45,7 @@ TEST(HeadsetRate, JitterMovesItLittleAndIsOffTheGrid) {
   std::int64_t now_ns = 0;
   EXPECT_TRUE(add_slots(meter, now_ns, 500, at_90_hz, 2'000'000).empty());
   EXPECT_NEAR(*meter.hz(), 90, 0.1);  // 2 ms of jitter at both ends of some 490 periods
-  EXPECT_GT(meter.off_grid(), 90);    // each fifth step: 4 ms too short
+  EXPECT_GT(meter.off_grid(), 90);    // each fifth step is 4 ms too short
   EXPECT_EQ(meter.dropped(), 0);
 }
 
@@ -104,13 +104,13 @@ TEST(HeadsetViews, LookAlongTheirPose) {
   HeadsetPose pose;
   EXPECT_EQ(direction_of(pose), (std::array<float, 3>{0, 0, -1}));
   const auto half = static_cast<float>(std::sqrt(0.5));
-  pose.turn = {0, half, 0, half};  // a quarter to the left
+  pose.turn = {0, half, 0, half};  // a quarter turn to the left
   const auto left = direction_of(pose);
   EXPECT_NEAR(left[0], -1, 1e-6);
   EXPECT_NEAR(left[2], 0, 1e-6);
 }
 
-/// By the renderers, in a scene whose camera stands at the room's origin and looks along it.
+/// The renderers' view, in a scene whose camera is at the room's origin and looks along it.
 sim::View seen_by(const EyeView& eye) {
   sim::Camera camera;
   camera.eye_m = {0, 0, 0};
@@ -135,7 +135,7 @@ TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
   EyeView eye;
   eye.pose.place_m = {0.5f, 1, 2};
   const auto half = static_cast<float>(std::sin(15 * degree));
-  eye.pose.turn = {0, 0, half, static_cast<float>(std::cos(15 * degree))};  // leans to the left by 30 degrees
+  eye.pose.turn = {0, 0, half, static_cast<float>(std::cos(15 * degree))};  // leans 30 degrees to the left
   eye.fov = {-0.8f, 0.8f, 0.8f, -0.8f};
   eye.width_px = eye.height_px = 100;
   const sim::Mat4 view = seen_by(eye).view;
@@ -176,7 +176,7 @@ TEST(HeadsetWatch, ACallThatComesBackIsDone) {
 TEST(HeadsetWatch, ACallThatHangsIsLeftToItself) {
   std::promise<void> freed;
   const auto wait = freed.get_future().share();
-  // Told when the thread lets go of the call, whether or not it had begun it by then.
+  // Completes when the thread releases the call, whether or not it had started it.
   auto held = std::make_shared<std::promise<void>>();
   const auto let_go = held->get_future();
   {

@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Parts of a page of the pilot from its left and its top: "yes" to consent, also "No, go on" and a score of
-/// 4 on a session's first page; a score of 4; the button to go on.
+/// Fractions of a page of the pilot from its left and its top: "yes" to consent, also "No, go on" and a score
+/// of 4 on a session's first page; a score of 4; the button to go on.
 const std::string pilot_targets = "targets=0.5:0.503,0.5:0.39,0.5:0.9";
 const std::string by_ray = "point=page;hold=0.4;" + pilot_targets + ";";
 const std::string by_dwell = "look=page;hold=1.2;blink_every=0.8;blink_length=0.1;" + pilot_targets + ";";
 
-/// Where nothing goes on any more the headset's software ends.
+/// A session that does not progress ends after this many frames.
 constexpr int most_frames = 4000;
 std::string script_of(const std::string& events) {
   return "at=" + events + std::to_string(most_frames) + ":exit";
@@ -31,7 +31,7 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
  protected:
   void SetUp() override { bake_dam(dam_, 30); }
 
-  /// The pilot with these means, played although some are approximate; five seconds on the first page are
+  /// The pilot with these means, played although some are approximate; the first page's five seconds become
   /// one.
   std::string pilot(const std::string& means, const std::string& seconds = "0.5") {
     trial_seconds_ = seconds;
@@ -69,7 +69,7 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
     return study("size=32x32;" + profile, arguments(protocol, more));
   }
 
-  /// One value of each row, in order.
+  /// The first value of each row, in order.
   std::vector<std::string> column(const std::string& sql) const {
     study::sqlite::Connection database(database_, study::sqlite::Open::Read);
     study::sqlite::Statement row(database, sql);
@@ -83,7 +83,7 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
   std::string database_ = folder_ / "study.db";
 };
 
-/// Degrees from edge to edge of each quad of the log, to an eye 1.5 m ahead of its middle.
+/// Widths of each quad of the log in degrees, for an eye 1.5 m in front of its middle.
 std::set<int> page_widths(const std::string& log) {
   std::set<int> widths;
   const std::regex size(R"(\| quad .* size ([0-9.]+) )");
@@ -117,7 +117,7 @@ TEST_F(HeadsetPersonE2e, ThePilotIsAnsweredByTheEyesAlone) {
 }
 
 TEST_F(HeadsetPersonE2e, AStickChoosesAndSelectIsEnter) {
-  // Left goes to the last choice, select takes it, and select goes on.
+  // Left moves to the last choice, select takes it, and select goes on.
   std::string script;
   for (int frame = 0; frame < most_frames; frame += 60) {
     for (const auto& [later, what] : std::vector<std::pair<int, std::string>>{{5, "thumb_x/-0.9"},
@@ -163,7 +163,7 @@ TEST_F(HeadsetPersonE2e, TimeAwayFromAPageIsNoResponseTime) {
   }
 }
 
-/// A line of the log for each frame.
+/// A frame's line of the log.
 struct LoggedFrame {
   int number = 0;
   bool page = false, picture = false;
@@ -187,7 +187,7 @@ std::vector<LoggedFrame> frames_of(const std::string& log) {
   return frames;
 }
 
-/// Of all pixels, [0, 255].
+/// Mean of all pixels, [0, 255].
 double brightness(const sim::Image& image) {
   double sum = 0;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) sum += image.rgba[i];
@@ -206,7 +206,7 @@ TEST_F(HeadsetPersonE2e, APageFadesAndNeverStandsBesideAStimulus) {
   }
   EXPECT_GT(pages, 100);
   EXPECT_EQ(pictures, 45);
-  // The same again, looked at while the page before the stimulus goes: 18 frames of .2 s.
+  // The same again, with images of the page that fades before the stimulus: 18 frames of .2 s.
   std::string dump = "dump=" + std::to_string(last_page - 24);
   for (int frame = last_page - 23; frame <= last_page; ++frame) dump += "," + std::to_string(frame);
   database_ = folder_ / "fading.db";
@@ -226,7 +226,7 @@ TEST_F(HeadsetPersonE2e, APageFadesAndNeverStandsBesideAStimulus) {
 }
 
 TEST_F(HeadsetPersonE2e, APageStandsAheadAlsoAfterARecentring) {
-  // The origin turns to the left: the head looks 30 degrees to the right of it then, and the page with it.
+  // The origin turns to the left, so the head then looks 30 degrees to its right, and the page is there too.
   const auto ended = session(by_ray + script_of("200:recentre/30,"), pilot("[10]"));
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   bool before = false, after = false;
@@ -263,7 +263,7 @@ TEST_F(HeadsetPersonE2e, AKilledSessionIsResumedAndNothingIsAskedTwice) {
     all.insert(all.begin(), bin + "/vip-study");
     test::Process killed(all, [&] { prepare(environment); });
     while (const auto line = killed.read_line()) {
-      if (line->starts_with("done P01 2 ")) break;  // the first trial; the second is under way
+      if (line->starts_with("done P01 2 ")) break;  // the first trial is done; the second is running
     }
     killed.send(SIGKILL);
     EXPECT_EQ(killed.wait().signal, SIGKILL);

@@ -1,4 +1,4 @@
-/// What vip-study headset --show shows to each eye, in the simulated runtime's images.
+/// Pictures of vip-study headset --show for each eye, in the simulated runtime's images.
 #include <cmath>
 #include <set>
 
@@ -22,7 +22,7 @@ struct Eye {
 const Eye left_eye{"left", std::tan(-52 * degree), std::tan(42 * degree), -half_ipd_m};
 const Eye right_eye{"right", std::tan(-42 * degree), std::tan(52 * degree), half_ipd_m};
 
-/// Pixels by the slopes of their rays: right and up of the eye's own axis.
+/// Slopes of the rays through pixels: right and up from the eye's own axis.
 struct Slopes {
   const Eye& eye;
   const sim::Image& image;
@@ -37,7 +37,7 @@ Colour colour_at(const sim::Image& image, int x, int y) {
   return {at[0], at[1], at[2]};
 }
 
-/// The middle of all pixels of a colour, as slopes; NaN where there is none.
+/// Mean position of all pixels of a colour, as slopes; NaN if there are none.
 std::array<double, 2> middle_of(const sim::Image& image, const Eye& eye, const Colour& colour) {
   const Slopes slopes{eye, image};
   double right = 0, up = 0, count = 0;
@@ -72,13 +72,13 @@ Horizon horizon_of(const sim::Image& image, const Eye& eye) {
 
 class HeadsetPicturesE2e : public test::HeadsetRuns {
  protected:
-  /// The pictures of frame 5, when the head has come to where the profile has it.
+  /// The picture of frame 5, when the head is where the profile puts it.
   sim::Image show(const std::string& profile, const Eye& eye) {
     const auto ended = on(profile + ";dump=5", {"--show", "0.2"});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
     return picture(5, eye.name);
   }
-  /// Each pixel of the ramp's middle row against the level that stands there.
+  /// Compares each pixel of the ramp's middle row with its level.
   void expect_ramp(const std::string& profile) {
     const sim::Image image = show("size=800x400;" + profile, left_eye);
     const Slopes slopes{left_eye, image};
@@ -110,7 +110,7 @@ TEST_F(HeadsetPicturesE2e, EachTargetStandsWhereGeometryHasIt) {
   const double step_m = 0.05;
   for (std::size_t e = 0; e < 2; ++e) {
     const Eye& eye = *eyes[e];
-    // The head stands still, then a step to the right of where the world began.
+    // The head is at the world's origin, then a step to its right.
     for (const double moved_m : {0.0, step_m}) {
       const sim::Image image = show("size=600x600;at=2:x/" + std::to_string(moved_m), eye);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -128,7 +128,7 @@ TEST_F(HeadsetPicturesE2e, EachTargetStandsWhereGeometryHasIt) {
       }
     }
   }
-  // What is nearer lies further apart in the two eyes, and on the right side of it.
+  // Nearer discs have a larger parallax between the eyes, with the right sign.
   const double parallax[] = {right[0][0] - right[1][0], right[0][1] - right[1][1], right[0][2] - right[1][2]};
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(parallax[i], 2 * half_ipd_m / -static_cast<double>(test_discs()[i].middle_m[2]), 0.0014);
@@ -139,7 +139,7 @@ TEST_F(HeadsetPicturesE2e, TheHorizonIsLevelAndTiltsAgainstTheHead) {
     const Horizon level = horizon_of(show("size=600x600", eye), eye);
     EXPECT_NEAR(level.left_up, 0, 0.003);
     EXPECT_NEAR(level.right_up, 0, 0.003);
-    // The head leans 10 degrees to the left: its picture of the line falls to the right... of its own axis.
+    // If the head leans 10 degrees to the left, the line falls by 10 degrees to the right in its picture.
     const Horizon tilted = horizon_of(show("size=600x600;at=2:roll/10", eye), eye);
     const double slope = (tilted.right_up - tilted.left_up) / (tilted.right_right - tilted.left_right);
     EXPECT_NEAR(slope, -std::tan(10 * degree), 0.004);
@@ -151,7 +151,7 @@ TEST_F(HeadsetPicturesE2e, EveryGreyArrivesInSrgbAndInLinearImages) {
   expect_ramp("formats=linear_first");
   expect_ramp("formats=rgba16f,rgba8");
   expect_ramp("formats=linear_first;broken=srgb8_alpha8");
-  // The caller's GL may be any after a call into the runtime.
+  // A call into the runtime may leave any GL state.
   expect_ramp("leave_context=other;leave_error=1");
   expect_ramp("leave_context=none");
 }

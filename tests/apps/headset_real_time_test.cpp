@@ -1,4 +1,4 @@
-/// The frame thread behind HeadsetDisplay, on the system's clock: slots come whatever the program does.
+/// The frame thread behind HeadsetDisplay, on the system's clock: slots continue whatever the program does.
 #include <epoxy/gl.h>
 
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Each step has a colour of its own.
+/// Each step has its own colour.
 class SlowStimulus final : public study::Stimulus {
  public:
   SlowStimulus(std::chrono::milliseconds start, std::chrono::milliseconds step)
@@ -44,7 +44,7 @@ class HeadsetRealTimeGl : public test::HeadsetRuns {
  protected:
   ~HeadsetRealTimeGl() override { EXPECT_THAT(calls(), Not(HasSubstr("BREACH"))); }
 
-  /// 20 Hz leave room for a machine that is busy otherwise.
+  /// 20 Hz, so that a busy machine does not disturb the test.
   HeadsetDisplay& start(const std::string& profile) {
     use_here("size=32x32;clock=real;rates=20;rate=20;" + profile);
     display_.emplace(SlotDrive::Thread);
@@ -67,10 +67,10 @@ TEST_F(HeadsetRealTimeGl, NoSlotIsMissedWhileAStimulusStartsAndComputes) {
   const auto played = study::play_trial(std::vector<std::int64_t>(8, 200'000'000), {}, stimulus, display,
                                         clock, {.late_after_ns = 500'000, .overrun_ns = 5'000'000'000}, {});
   display.clear();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // an answer is written
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // as while an answer is written
   display_.reset();
 
-  // Two starts and eight steps on the slots' own thread would leave out 40 and more.
+  // Two starts and eight steps on the slots' thread would miss 40 slots or more.
   EXPECT_GT(count("frame "), 60);
   EXPECT_LE(count("starved"), 1);
   int late = 0;
@@ -118,10 +118,10 @@ TEST_F(HeadsetRealTimeGl, AHeadsetThatIsTakenOffHoldsNobodyUp) {
     spoilt = display.take_spoilt().has_value();
   }
   EXPECT_TRUE(spoilt);
-  display.turn();  // a slot that is not seen comes before the reason
+  display.turn();  // an invisible slot comes before the reason
   EXPECT_FALSE(display.focused());
   const std::int64_t off_ns = clock.now_ns();
-  clock.wait_until(off_ns + 500'000'000);  // time goes on without slots
+  clock.wait_until(off_ns + 500'000'000);  // time continues without slots
   EXPECT_GE(clock.now_ns(), off_ns + 500'000'000);
   for (int i = 0; i < 200 && !display.focused(); ++i) display.turn();
   EXPECT_TRUE(display.focused());

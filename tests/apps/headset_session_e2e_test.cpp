@@ -1,4 +1,4 @@
-/// vip-study run --display openxr: whole sessions of observers in the simulated headset, read from its own
+/// vip-study run --display openxr: whole sessions of observers in the simulated headset, checked in its own
 /// log.
 #include <map>
 #include <sstream>
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// In how many slots each image was on, in order; black between two is left out.
+/// Number of slots of each image, in order; black between two is left out.
 std::vector<int> holds_of(const std::string& log) {
   std::vector<int> holds;
   std::string last;
@@ -30,7 +30,7 @@ std::vector<int> holds_of(const std::string& log) {
   return holds;
 }
 
-/// Frames without a layer that follow a line of the log which begins so.
+/// Number of frames without a layer that follow the last log line starting with `line`.
 int black_frames_after(const std::string& log, const std::string& line) {
   int black = 0;
   std::istringstream rest(log.substr(log.rfind("\n" + line) + 1));
@@ -94,7 +94,7 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
     row.step();
     return row.text(0);
   }
-  /// Ten frames a second for 3 s, in the frames 90 to 150 or so.
+  /// Ten frames a second for 3 s, in about the frames 90 to 150.
   test::Ended real_session(const std::string& profile) {
     return study(
         real_profile + ";" + profile,
@@ -170,14 +170,14 @@ TEST_F(HeadsetSessionE2e, WhatCouldNotBeSeenIsShownAgain) {
   }
 }
 
-/// 72 Hz shows 10 frames/s approximately alone: intervals of 90 Hz would lie beside its slots, and be late.
+/// 72 Hz shows 10 frames/s only approximately: intervals for 90 Hz would not fit its slots, and be late.
 TEST_F(HeadsetSessionE2e, AfterAChangeOfTheRateATrialsIntervalsAreComputedAnew) {
   const auto ended = session("at=400:rate/72", pilot("[10]", "[0]"), "2");
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("1 cut short; timing: 0 pass, 1 degraded"));
   const std::string in_time = "    10      0       1   10.000   0.000    0.514   0.514       0    0.000";
   EXPECT_THAT(ended.out, HasSubstr(in_time));
-  // In the black before the stimulus, too.
+  // The same for a change in the black before the stimulus.
   database_ = folder_ / "black.db";
   const auto black = session("at=150:rate/72", pilot("[10]", "[0]"), "2");
   EXPECT_THAT(black.out, HasSubstr(in_time));
@@ -196,7 +196,7 @@ TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewAndItsTrialShownAgain) {
         << trouble << ": " << notes();
     EXPECT_EQ(count("event WHERE kind = 'headset'"), 2) << trouble;
     EXPECT_EQ(count("frame JOIN presentation USING (presentation_id) WHERE state = 'interrupted'"), 13);
-    // Nothing of the old world is seen in the new one: the black of three seconds before the repeat.
+    // Nothing of the old world shows in the new one: three seconds of black before the repeat.
     EXPECT_GT(black_frames_after(calls(), "xrBeginSession"), 260) << trouble;
   }
 }
@@ -206,7 +206,7 @@ TEST_F(HeadsetSessionE2e, ASessionThatIsLostInTheBlackCutsNothingThatCanBeSeen) 
   ASSERT_EQ(early.exit_code, 0) << early.err;
   EXPECT_THAT(early.out, HasSubstr("showings: 1, 1 of them count, 0 cut short; timing: 1 pass"));
   EXPECT_EQ(count("event WHERE kind = 'headset'"), 2);
-  // Where another rate came with it, or the stimulus is due before it is there, the trial begins anew.
+  // If the rate changes too, or the session is back only after the stimulus is due, the trial starts again.
   for (const char* trouble : {"at=150:lost_now,151:rate/72", "at=300:lost_now"}) {
     next_database();
     const auto late = session(trouble, pilot("[10]", "[0]"), "2");
@@ -216,7 +216,7 @@ TEST_F(HeadsetSessionE2e, ASessionThatIsLostInTheBlackCutsNothingThatCanBeSeen) 
   }
 }
 
-/// That the runtime says so beforehand is slow, as it takes as long again.
+/// Tests in which the runtime announces the loss beforehand: they take as long again.
 class HeadsetSessionSlow : public HeadsetSessionE2e {};
 
 TEST_F(HeadsetSessionE2e, ALostSessionIsMadeAnewInRealTime) { lose_session_in_real_time("lost_now"); }
@@ -243,10 +243,10 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeMadeAnewIsToldAndContinued) {
 }
 
 TEST_F(HeadsetSessionE2e, AWaitThatHangsEndsTheProgramAndNothingIsLost) { hang(false); }
-/// In real time the waits of the session come on top.
+/// In real time the session's own waits are added.
 TEST_F(HeadsetSessionSlow, AWaitThatHangsInRealTimeEndsTheProgramAndNothingIsLost) { hang(true); }
 
-/// The stimulus is on from frame 283 to frame 463; the event comes with frame 350 or 150.
+/// The stimulus is on from frame 283 to frame 463; the event is scheduled at frame 350 or 150.
 TEST_F(HeadsetSessionE2e, ARecentringCutsTheTrialInWhichItComesIntoForce) {
   const std::string protocol = pilot("[10]", "[0]");
   const std::string cut = "presentation JOIN frame USING (presentation_id) WHERE state = 'interrupted'";

@@ -1,4 +1,5 @@
-/// HeadsetSession as a display uses it, in this process: held pictures, pages, a frame thread, GL left alone.
+/// HeadsetSession used like by a display, in this process: held pictures, pages, a frame thread, unchanged GL
+/// state.
 #include "apps/common/headset/headset_session.hpp"
 
 #include <epoxy/egl.h>
@@ -29,12 +30,12 @@ class HeadsetSessionGl : public test::HeadsetRuns {
       page_ = std::make_unique<sim::Offscreen>(choice.page_width_px, choice.page_height_px);
     return *session_;
   }
-  /// Polls until frames must come.
+  /// Polls until the session runs.
   void begin_running() {
     for (int i = 0; i < 100 && !session_->running(); ++i) session_->poll();
     ASSERT_TRUE(session_->running());
   }
-  /// Frames whose content `draw` makes.
+  /// Returns the content of a frame.
   using Draw = std::function<HeadsetLayers(const HeadsetSlot&)>;
   void run_frames(int count, const Draw& draw) {
     for (int i = 0; i < count; ++i) {
@@ -49,7 +50,7 @@ class HeadsetSessionGl : public test::HeadsetRuns {
     glClearNamedFramebufferfv(picture.framebuffer(), GL_COLOR, 0, colour.data());
   }
   HeadsetLayers seen_from(const EyeViews& views) const { return {.picture = picture_.get(), .views = views}; }
-  /// What the log says of one frame behind a word.
+  /// Text in the log's line of one frame that matches `what`.
   std::string logged(long frame, const std::string& what) const {
     const std::string all = calls();
     std::smatch found;
@@ -96,7 +97,7 @@ TEST_F(HeadsetSessionGl, APageStandsBeforeThePictures) {
   run_frames(8, [&](const HeadsetSlot& slot) -> HeadsetLayers {
     paint(*picture_, 0);
     paint(*page_, 1);
-    // The last ones have the page alone.
+    // The last frame has only the page.
     return {.picture = slot.index < 7 ? picture_.get() : nullptr,
             .views = session_->views(slot),
             .page = page_.get(),

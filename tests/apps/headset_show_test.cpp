@@ -1,4 +1,4 @@
-/// vip-study headset --show: what it says of a session that goes well, and of one that does not.
+/// vip-study headset --show: its output for sessions that go well, and for those that do not.
 #include "tests/apps/headset_runs.hpp"
 
 namespace apps {
@@ -9,13 +9,13 @@ using ::testing::Not;
 
 class HeadsetShowE2e : public test::HeadsetRuns {
  protected:
-  /// On small pictures.
+  /// Uses small pictures.
   test::Ended show(const std::string& profile, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{"--show", seconds_};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return on("size=64x64;" + profile, arguments);
   }
-  /// One that ends well and says these.
+  /// Expects a session that ends well and prints these lines.
   void expect_says(const std::string& profile, const std::vector<std::string>& lines,
                    const std::vector<std::string>& more = {}) {
     const auto ended = show(profile, more);
@@ -42,7 +42,7 @@ TEST_F(HeadsetShowE2e, TheRateIsMeasuredAndNeverTheFirstPeriod) {
   expect_says("rates=90;rate=90;wrong_periods=5", {"rate        90.00 Hz measured from predicted times\n"});
   EXPECT_THAT(calls(), Not(HasSubstr("xrGetDisplayRefreshRateFB")));
   expect_says("without=XR_FB_display_refresh_rate;rate=20", {"not known: too few steps"});
-  // Where a time is told twice, its own slot is left out.
+  // A repeated time's own slot is left out.
   expect_says("at=30:drop/3,35:repeat",
               {"rate        90.00 Hz", "dropped     4 slots; 1 predicted times repeated"});
 }

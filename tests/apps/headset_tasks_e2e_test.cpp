@@ -11,7 +11,7 @@ using ::testing::Not;
 
 class HeadsetTasksE2e : public test::HeadsetRuns {
  protected:
-  /// A shipped protocol with few particles, short pauses and, where named, only these methods.
+  /// A shipped protocol with few particles, short pauses and, if given, only these methods.
   std::string shortened(const std::string& name, const std::vector<std::string>& methods = {}) {
     std::istringstream lines(base::read_file(base::find_input("protocols/" + name + ".toml"), 1 << 20));
     std::string text;
@@ -69,7 +69,7 @@ TEST_F(HeadsetTasksE2e, Task2RunsFromConsentToThanks) {
   EXPECT_THAT(ended.out, HasSubstr("10 of 10 trials answered"));
 }
 
-/// The hand presses everything from the top of a page to its button: of two choices the lower one stays.
+/// The hand presses everything from the top of a page to its button, so the lower of two choices remains.
 TEST_F(HeadsetTasksE2e, APairIsAnsweredByARay) {
   std::string targets = "targets=0.5:0.26";
   for (int y = 30; y < 92; y += 4) targets += ",0.5:0." + std::to_string(y);

@@ -15,7 +15,7 @@ using ::testing::Not;
 
 class HeadsetViewE2e : public test::HeadsetRuns {
  protected:
-  /// A small dam that breaks at once, seen from near.
+  /// A small dam that breaks at once, seen from close by.
   void SetUp() override { base::write_file_atomically(folder_ / "dam.toml", test::small_dam); }
 
   std::vector<std::string> arguments(const std::vector<std::string>& more) const {
@@ -31,7 +31,7 @@ class HeadsetViewE2e : public test::HeadsetRuns {
     EXPECT_THAT(calls(), Not(HasSubstr("BREACH")));
     return ended;
   }
-  /// What each frame's line says behind a pattern.
+  /// Text in each frame's line that matches `what`.
   std::vector<std::string> logged(const std::string& what) const {
     std::vector<std::string> found;
     std::istringstream lines(calls());
@@ -54,7 +54,7 @@ TEST_F(HeadsetViewE2e, AFluidRunsAtItsOwnSpeedAndIsDrawnAnewInEverySlot) {
   EXPECT_THAT(ended.out, HasSubstr("levels      follow the eye tracker\n"));
   EXPECT_THAT(ended.out, HasSubstr("frames      12, of the last 11 mean 60.0, SD 0.0 frames/s\n"));
   EXPECT_THAT(ended.out, HasSubstr("ended       after its frames\n"));
-  // 60 frames a second at 120 Hz: two slots each, and a pose of its own in every one.
+  // 60 frames a second at 120 Hz: two slots each, with a different pose in every slot.
   const auto poses = logged("at [-.0-9]+ [-.0-9]+ [-.0-9]+ turned [-.0-9]+ [-.0-9]+ [-.0-9]+ [-.0-9]+");
   EXPECT_GE(poses.size(), 23u);
   EXPECT_EQ(std::set<std::string>(poses.begin(), poses.end()).size(), poses.size());
@@ -105,7 +105,7 @@ TEST_F(HeadsetViewE2e, ASessionThatIsLostIsMadeAnewAndARuntimeThatEndsIsAnError)
 TEST_F(HeadsetViewE2e, WithoutAHeadsetItFallsBackToTheDesktopAndSaysWhy) {
   const auto falls_back = [&](const Environment& environment, const std::string& why) {
     const auto ended = run_any(arguments({"--method", "LoRes"}), environment);
-    EXPECT_EQ(ended.exit_code, 1);  // there is no desktop here either
+    EXPECT_EQ(ended.exit_code, 1);  // the test machine has no desktop either
     EXPECT_THAT(ended.err,
                 ::testing::ContainsRegex("^no headset: [^\n]*" + why + "[^\n]*; shown on the desktop\n"));
     EXPECT_THAT(ended.err, HasSubstr(VIP_WINDOW ? "window: no display" : "window: this build has none"));
@@ -127,7 +127,7 @@ TEST_F(HeadsetViewE2e, WhatMakesNoSenseIsRefused) {
   const auto ended = run_any({bin + "/vip-view", folder_ / "dam.toml", "--clock", "virtual"}, {});
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.err, HasSubstr("--clock virtual: is for a headset"));
-  // A runtime whose time goes on is no place for the virtual clock, and none to fall back from.
+  // The virtual clock needs a runtime whose time waits; this one is refused without a fallback.
   const auto real = view("clock=real;rates=20;rate=20", {"--clock", "virtual"});
   EXPECT_EQ(real.exit_code, 1);
   EXPECT_THAT(real.err, HasSubstr("the headset's time does not wait"));

@@ -1,4 +1,4 @@
-/// Bakes of water with heat hold temperatures, and live and baked water is painted alike.
+/// Bakes of water with heat hold temperatures, and live and baked water are painted alike.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ std::unique_ptr<study::Stimulus> played(const std::filesystem::path& bake, bool 
   return make_stimulus(choice);
 }
 
-/// Mean over the picture's bytes, grey levels of 255.
+/// Mean difference of the pictures' bytes, of 255.
 double difference(const Picture& a, const Picture& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(double(a[i]) - double(b[i]));
@@ -184,7 +184,7 @@ TEST(HeatBakeGl, ItsDescriptionTellsWhatIsPainted) {
 TEST(HeatBake, ThatCannotBePaintedAsWantedIsADeparture) {
   NEEDS_EFFECTS;
   auto old = header_of(order_with(false));
-  old.reference_k.reset();  // as formats before 5
+  old.reference_k.reset();  // like formats before 5
   EXPECT_THAT(fluid_departures(old, header_of(order_with(true))),
               Contains("no temperatures instead of temperatures to paint (bakes before format 5 kept none)"));
   EXPECT_THAT(fluid_departures(old, header_of(order_with(false))), IsEmpty());

@@ -1,4 +1,4 @@
-/// A study whose participants see temperature, from bakes and live, to the record, exports and report.
+/// A study whose participants see temperature, baked and live, through to the record, exports and report.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using ::testing::Not;
 
 const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
-/// protocols/foam.toml about HotJet, coarse and short: LoRes and HiRes are compared, and painted.
+/// protocols/foam.toml with HotJet, coarse and short: LoRes and HiRes are compared, painted by temperature.
 class HeatStudyE2e : public ShownStudy {
  protected:
   void SetUp() override { NEEDS_EFFECTS; }
@@ -65,7 +65,7 @@ TEST_F(HeatStudyE2e, BakesHoldTemperaturesAndArePlayedPainted) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("hot_jet 256 HiRes bake"), HasSubstr("; painted temperature"),
                                 Not(HasSubstr("live"))));
-  // Given again, the command finds them whole.
+  // When repeated, the command finds complete bakes.
   EXPECT_THAT(bake().out, HasSubstr("hot_jet_256_LoRes.bake: whole, kept"));
 }
 

@@ -1,5 +1,5 @@
-/// A database that lost what its journal holds: every command that reads says so, and goes on with
-/// --incomplete.
+/// A database that lacks records which its journal holds: every command that reads it says so, and continues
+/// only with --incomplete.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 
 class IncompleteE2e : public ::testing::Test {
  protected:
-  /// Answers of P01 and P02 to Task 2 and a pilot, and P03's only in the journal.
+  /// Answers of P01 and P02 to Task 2 and a pilot; P03's are only in the journal.
   IncompleteE2e() {
     run("protocols/task2.toml", {"P01", "P02"});
     run("protocols/ptpe_pilot.toml", {"P01", "P02"});
@@ -67,7 +67,7 @@ TEST_F(IncompleteE2e, IsSaidByEveryReaderThatGoesOnOnlyWhenTold) {
     EXPECT_THAT(json["study"]["incomplete"].get<std::string>(), HasSubstr("are in the journal only"));
   }
   EXPECT_THAT(Process({stats, "task1", database_}).wait().err, HasSubstr("--incomplete"));
-  // The fit of random answers fails, after it was read.
+  // The fit of random answers fails, but only after reading.
   const Ended fit = Process({stats, "fit-ptpe", database_, "--json", folder_ / "fit.json"}).wait();
   EXPECT_THAT(fit.err, HasSubstr("--incomplete"));
   EXPECT_FALSE(fs::exists(folder_ / "fit.json"));

@@ -1,5 +1,6 @@
-/// The programs as cmake --install leaves them: what they need at run time comes with them. An installed
-/// program looks nowhere else (base::resource), so a file that the install rules forget is an error here.
+/// The programs after cmake --install: everything that they need at run time is installed with them. An
+/// installed program looks nowhere else (base::resource), so a file missing in the install rules is an error
+/// here.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ class InstallE2e : public ::testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
   void SetUp() override { ASSERT_TRUE(installed_) << base::read_file(*folder_ / "install.log", 1 << 20); }
 
-  /// From the root folder, where no relative path leads into a source tree.
+  /// Runs in the root folder, where no relative path leads into a source tree.
   static Ended run(std::vector<std::string> arguments) {
     arguments[0] = *folder_ / ("prefix/bin/" + arguments[0]);
     return run_program(arguments, [] {
@@ -56,7 +57,7 @@ TEST_F(InstallE2e, AProtocolIsFoundByItsName) {
   EXPECT_THAT(unknown.err, HasSubstr("the nearest is \"ptpe_pilot\""));
 }
 
-/// What bash offers after these words, the last of which is being typed.
+/// bash's completions after these words, the last of which is incomplete.
 std::string offered_after(const fs::path& prefix, const std::string& words) {
   const std::string script = "export PATH='" + (prefix / "bin").string() + "':$PATH; cd /; . '" +
                              (prefix / "share/bash-completion/completions/vip-study").string() +

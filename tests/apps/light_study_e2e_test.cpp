@@ -20,12 +20,11 @@ using ::testing::Not;
 
 const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 
-/// protocols/foam.toml about PoolLight: without light on the floor, and with caustics and half of the
-/// shadows.
+/// protocols/foam.toml with PoolLight: without light on the floor, and with caustics and half of the shadows.
 class LightStudyE2e : public ShownStudy {
  protected:
   LightStudyE2e() : ShownStudy("light", "128x72") { write(protocol_, ""); }
-  /// `small`: coarse and short, of LoRes alone.
+  /// `small`: n_* of a coarse and short protocol with only LoRes.
   void write(const std::string& path, const std::string& small) const {
     std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
     text = replaced(text, "sea_spray", "pool_light");
@@ -42,7 +41,7 @@ class LightStudyE2e : public ShownStudy {
   }
 };
 
-// P(lit chosen) = Phi(1 / sqrt 2) = .76 for noise of 1 on each of the two.
+// P(lit chosen) = Phi(1 / sqrt 2) = .76 with noise of 1 on each of the two.
 TEST_F(LightStudyE2e, TheReportFindsWhatLightIsWorth) {
   const std::string results = folder_ / "results.json", page = folder_ / "report.html";
   const Ended ran = run_program({vip_study, "run", protocol_, "--db", database_, "--participants", "40",
@@ -109,7 +108,7 @@ TEST_F(LightStudyE2e, BakesOfParticlesTellTheirLightAndAreDrawnByIt) {
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("pool_light 256 LoRes none bake"),
                                 HasSubstr("pool_light 256 LoRes lit bake"), Not(HasSubstr("live"))));
-  // Numbers changed since: the bakes are of other light.
+  // A changed number makes the bakes those of other light.
   base::write_file_atomically(
       protocol_, replaced(base::read_file(protocol_, 1 << 20), "strength = 0.5", "strength = 0.25"));
   fs::remove(database_);
@@ -119,7 +118,7 @@ TEST_F(LightStudyE2e, BakesOfParticlesTellTheirLightAndAreDrawnByIt) {
                                    "strength = 0.25"));
 }
 
-/// The water is the same at both levels, so that nothing but light parts their pictures.
+/// The water is the same at both levels, so the pictures differ only in light.
 TEST_F(LightStudyE2e, BakesOfPicturesHoldTheirLight) {
   write(protocol_, "256");
   ASSERT_EQ(bake({"--keep", "pictures"}).exit_code, 0);

@@ -12,7 +12,7 @@ using ::testing::Each;
 using ::testing::Ge;
 using ::testing::Le;
 
-/// Passes up to a limit and remembers what was tried.
+/// Passes up to a limit and records what was tried.
 struct UpTo {
   double limit;
   std::vector<double>& tried;
@@ -33,7 +33,7 @@ TEST(LargestFactor, IsWithinItsResolutionOfTheLimit) {
       EXPECT_EQ(found.runs, static_cast<int>(tried.size()));
       EXPECT_THAT(tried, Each(Le(4)));
       EXPECT_THAT(tried, Each(Ge(1)));
-      // What failed is told of the nearest that did.
+      // The message is that of the nearest failure.
       double nearest = 4;
       for (const double one : tried) {
         if (one > limit) nearest = std::min(nearest, one);
@@ -62,7 +62,7 @@ TEST(LargestFactor, SaysThatAllPassed) {
   EXPECT_EQ(tried.size(), 1u);
 }
 
-/// What is no single limit is not found out: the search trusts that what passes passes below, too.
+/// A range of failures below a passing value is not found: the search assumes that smaller values pass, too.
 TEST(LargestFactor, TrustsThatWhatPassesPassesBelow) {
   const auto found = largest_factor(
       [](double factor) { return factor > 1.5 && factor < 1.9 ? "a hole"

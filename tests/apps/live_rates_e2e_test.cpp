@@ -1,4 +1,4 @@
-/// What vip-study run does about live cells that the station cannot show, from the outside.
+/// vip-study run with live cells that the station cannot show, as a user runs it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class LiveRatesE2e : public ::testing::Test {
   }
   /// No machine makes a thousand such frames a second.
   void write_too_fast() { write_protocol("1000", "0.5"); }
-  /// A trial is cut as soon as its time is over, also on a machine that makes most of its frames.
+  /// Trials are cut as soon as their time is over, so that even a machine that makes most frames cuts them.
   void cut_at_once() {
     const std::string text = base::read_file(protocol_, 1 << 20);
     base::write_file_atomically(
@@ -102,7 +102,7 @@ TEST_F(LiveRatesE2e, WhatIsReachedIsToldAndPlayed) {
   const Ended ended = run();
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.err, AllOf(HasSubstr("live on this station"), HasSubstr("(1, 0)")));
-  // What its frames cost goes to the record, and from there to who reads the tasks.
+  // The cost of its frames is in the record, and reaches readers of the tasks.
   const auto session = study::read_tasks(database_).protocols.at(0).sessions.at(0);
   ASSERT_EQ(session.frame_costs.size(), 1u);
   EXPECT_EQ(session.frame_costs[0].what, (study::StimulusSpec{scene_, "LoRes", "64"}));

@@ -1,4 +1,4 @@
-/// vip-bench accuracy: timed cells run one after the other on one machine, whoever started them.
+/// vip-bench accuracy: timed cells run one after the other on a machine, whichever programs started them.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class MachineLockTest : public ::testing::Test {
   const std::filesystem::path file_ = folder_ / "vip-bench.lock";
 };
 
-/// Tries the lock as another program would.
+/// Tries the lock like another program.
 class Other {
  public:
   explicit Other(const std::filesystem::path& file) : fd_(::open(file.c_str(), O_RDONLY | O_CREAT, 0644)) {}
@@ -70,7 +70,7 @@ TEST_F(MachineLockTest, WhatIsNoLockFileIsNamedWithItsMend) {
 
 class MachineLockE2e : public MachineLockTest {
  protected:
-  /// Its stdout and stderr come line by line.
+  /// Prints stdout and stderr line by line.
   test::Process bench(const std::string& arguments) const {
     return test::Process({"/bin/sh", "-c",
                           "exec env -u DISPLAY VIP_CACHE_DIR= " VIP_BIN_DIR "/vip-bench accuracy " +

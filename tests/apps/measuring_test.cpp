@@ -1,4 +1,4 @@
-/// What live cells are measured by before a session, and what is judged from it.
+/// Measurements of live cells before a session, and the judgement based on them.
 #include "apps/study/check/measuring.hpp"
 
 #include <gmock/gmock.h>
@@ -78,7 +78,7 @@ TEST(Measure, GoesThroughTheLongestTrialAsASessionDoes) {
   const auto protocol = pilot_with("start_frame = 0", "start_frame = 7");
   SlowStage stage([](std::int64_t step) { return 1e-5 * static_cast<double>(step); }, 0.004);
   const StepTimes times = measured(protocol, stage);
-  // (50, 20) for 10 s: 500 frames, the first of which a session makes before the trial.
+  // (50, 20) for 10 s: 500 frames; a session makes the first one before the trial.
   ASSERT_EQ(times.compute_s.size(), 500u);
   EXPECT_EQ(times.draw_s.size(), 500u);
   EXPECT_THAT(stage.starts, ElementsAre(7));
@@ -188,7 +188,8 @@ TEST(Rehearsal, ContentInRealTimeComputesSeveralStepsForAFrame) {
   auto protocol = pilot_with("mode = \"per_frame\"", "mode = \"real_time\"");
   const FpsSetting slow{10, 0, 10}, fast{50, 0, 10};
   EXPECT_EQ(content_steps(protocol, slow, 0), content_steps(protocol, fast, 0));
-  // A step of 1/60 s takes 20 ms: six of them are too many for 100 ms, one or two for 20.
+  // A step of 1/60 s takes 20 ms: the six steps of a frame do not fit into 100 ms, while one or two fit into
+  // the fast setting's interval.
   const Rehearsal six = rehearse(protocol, slow, steps_of(0.020, 0.001, 600), {}, 0);
   EXPECT_NEAR(six.frame_s.at(10), 6 * 0.020 + 0.001, 1e-9);
   EXPECT_EQ(six.frame_s.size(), 99u);
@@ -206,8 +207,8 @@ TEST(Rehearsal, StepsThatWereNotMeasuredTakeWhatTheLastOnesDid) {
   EXPECT_EQ(rehearsal.measured, times.compute_s.size() - 1);
 }
 
-// A hundred steps were measured, six of them slow; the other hundred of the trial take the mean of the
-// last 30.
+// A hundred steps were measured, six of them slow; the other hundred of the trial use the mean of the last
+// 30.
 TEST(Rehearsal, TheNinetyFifthPercentileIsOfMeasuredFramesAlone) {
   StepTimes times = steps_of(0.001, 0, 100);
   std::fill(times.compute_s.end() - 6, times.compute_s.end(), 0.04);
@@ -231,7 +232,7 @@ TEST(KeptTimes, AreReadBackUnderTheirKeyAlone) {
   EXPECT_EQ(read->draw_s, times.draw_s);
   EXPECT_FALSE(read_step_times(folder.path() / "made", "another station"));
   EXPECT_FALSE(read_step_times({}, "this station"));
-  keep_step_times({}, "this station", times);  // nothing is kept, which is no error
+  keep_step_times({}, "this station", times);  // keeps nothing, without an error
 }
 
 TEST(KeptTimes, DamagedFilesAreMeasuredAgain) {

@@ -1,5 +1,5 @@
-/// Task 1 with dropout: what was planned, on whom pairs rest, the mixed model and tipping points in the
-/// results.
+/// Task 1 with dropout: the planned answers, the people of each pair, the mixed model and tipping points in
+/// the results.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Every third participant leaves behind the seventh trial; every answer but of those.
+/// Every third participant leaves after the seventh trial; all other answers exist.
 study::TaskProtocol with_dropout(int participants) {
   auto protocol = made_study::task1(participants);
   for (std::size_t p = 0; p < protocol.sessions.size(); p += 3) {
@@ -97,7 +97,7 @@ TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
   std::vector<std::string> terms;
   for (const auto& term : mixed[0].at("terms")) terms.push_back(term.at("term"));
   EXPECT_THAT(terms, ::testing::ElementsAre("scene jet_impact", "scene faucet"));
-  // Here each n_* is a period of its own, and each method has its place.
+  // Here each n_* has its own period, and each method a fixed place.
   EXPECT_EQ(mixed[0].at("left_out"), (Json{"position", "period 2"}));
   int less = 0;
   for (const auto& one : json.at("task1").at("comparisons")) {
@@ -167,7 +167,7 @@ TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {
   EXPECT_THAT(report::results_page(json), HasSubstr("unknown, "));
 }
 
-// What is tested stands in the results of each pair already.
+// The tests equal those in the results of each pair.
 TEST(MissingAnswers, ThePlanMayDecideByTheMixedModel) {
   const auto json = results_of(with_dropout(12), stats::ScoreTests::Mixed);
   EXPECT_EQ(json.at("plan").at("tests"), "mixed");

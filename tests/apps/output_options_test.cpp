@@ -1,4 +1,4 @@
-/// Every option that names an output: where that cannot be written, the command says so and leaves nothing.
+/// Every option that names an output: if it cannot be written, the command says so and leaves nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class OutputOptionsE2e : public ::testing::Test {
     base::write_file_atomically(folder_ / "file", "mine");
     fs::create_symlink("/dev/full", folder_ / "full");
     make_quick_share(share_.path());
-    // As few people as a fit can be made of.
+    // The smallest number of people that can be fitted.
     for (const std::string people : {"ptpe_pilot.toml --participants 4 --observer ptpe:a=24,b=0.02",
                                      "task2.toml --participants 2 --observer random"}) {
       const Ended ended = program("vip-study run protocols/" + people + " --seed 7 --db " + database_);
@@ -38,7 +38,7 @@ class OutputOptionsE2e : public ::testing::Test {
     EXPECT_EQ(program(cell).exit_code, 0) << cell;
   }
 
-  /// A program of the build with its arguments, as TableTest runs it.
+  /// Runs a program of the build with its arguments, like TableTest.
   Ended program(const std::string& program_and_arguments) const {
     return run_shell(
         "cd " + share_.path().string() +
@@ -51,7 +51,7 @@ class OutputOptionsE2e : public ::testing::Test {
     return program(command + " --list").out.substr(0, 16);
   }
 
-  /// Commands with the option at their ends, by what is asked for there.
+  /// Commands that end with an option for an output file.
   std::vector<std::string> file_options() const {
     const std::string bench =
         "vip-bench frame data/scenes/single_dam.toml --n-star 64 --frames 1 --no-render";
@@ -105,7 +105,7 @@ class OutputOptionsE2e : public ::testing::Test {
             "vip-view data/scenes/single_dam.toml --headless --n-star 64 --frames 1 --size 64x36 --png "};
   }
 
-  /// place: what is to be named.
+  /// place: text that must be in the error.
   void expect_refused(const std::string& line, const std::string& target, const std::string& place) {
     const auto before = names_in(folder_.path());
     const Ended ended = program(line + target);
@@ -142,11 +142,11 @@ TEST_F(OutputOptionsE2e, ThatCannotBeWrittenEndWithPlaceAndMend) {
   }
   for (const std::string& line : folder_options()) {
     expect_refused(line, full, "/full");
-    expect_refused(line, below, file);  // a folder is made with those above it
+    expect_refused(line, below, file);  // a folder is made with its missing parents
   }
 }
 
-// What is wrong with the input is found by the work, the place of an output before it.
+// Errors in the input are found during the work, those of an output's place before it.
 TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
   base::write_file_atomically(folder_ / "empty", "");
   const std::string input = folder_ / "empty", below = folder_ / "file/out";
@@ -159,7 +159,7 @@ TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
           std::string("data/scenes/single_dam.toml")}) {
       if (const auto at = line.find(read); at != std::string::npos) line.replace(at, read.size(), input);
     }
-    // table1 and table2 read no file that is named; bake looks at its scene first.
+    // table1 and table2 read no input file; bake reads its scene first.
     if (line.find(input) == std::string::npos || line.find("bake") != std::string::npos) continue;
     ++checked;
     const Ended ended = program(line + below);
@@ -172,7 +172,7 @@ TEST_F(OutputOptionsE2e, PlacesAreCheckedBeforeTheWork) {
 TEST_F(OutputOptionsE2e, FoldersThatAreMissingAreMade) {
   auto all = file_options();
   for (const std::string& line : folder_options()) all.push_back(line);
-  // The tables take long: each runs once, with all of its outputs.
+  // The tables take long, so each runs once, with all its outputs.
   std::map<std::string, std::string> outputs;  // by command
   std::vector<fs::path> targets;
   for (const std::string& line : all) {

@@ -1,5 +1,5 @@
-/// Texts of a database or a protocol of somebody else move no cursor, clear no screen and name no file
-/// outside of the folder that was asked for.
+/// Texts of a foreign database or protocol move no cursor, clear no screen and name no file outside the
+/// requested folder.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 constexpr const char* clears = "\x1b[2J\r\x07\xC2\x9B";
 
-/// Bytes that a terminal would obey.
+/// Bytes that a terminal would interpret.
 std::string controls_in(const std::string& text) {
   std::string found;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -44,7 +44,7 @@ class OutsideTextsE2e : public ::testing::Test {
   std::string database_ = folder_ / "study.db";
 };
 
-// All texts of a database that the schema leaves free.
+// Tests all texts of a database that the schema does not restrict.
 TEST_F(OutsideTextsE2e, OfADatabaseReachNoTerminal) {
   for (const char* column :
        {"protocol.name",   "protocol.version",  "question.wording", "question.code",
@@ -57,7 +57,7 @@ TEST_F(OutsideTextsE2e, OfADatabaseReachNoTerminal) {
     try {
       change("UPDATE " + table + " SET " + name.substr(table.size() + 1) + " = " +
              name.substr(table.size() + 1) + " || '" + clears + "'");
-    } catch (const std::exception&) {  // the schema leaves it not free
+    } catch (const std::exception&) {  // the schema restricts it
     }
   }
   const std::string stats = VIP_BIN_DIR "/vip-stats", out = folder_ / "out", copy = folder_ / "copy.db";
@@ -115,7 +115,7 @@ TEST_F(OutsideTextsE2e, OfADatabaseNameNoFileOutsideOfAnExport) {
   EXPECT_EQ(names(), before);
 }
 
-/// A locale of German numbers, made for one test; empty where the system lacks what it takes.
+/// A locale with German numbers, made for one test; empty if the system cannot make it.
 std::string german_locales(const fs::path& folder) {
   const std::string made = folder / "de_DE.UTF-8";
   const bool done = std::system(("localedef -i de_DE -f UTF-8 " + made + " >/dev/null 2>&1").c_str()) == 0;

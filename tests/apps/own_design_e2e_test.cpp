@@ -1,5 +1,5 @@
-/// A design of one's own from check to report: what the programs cannot tell of it they say, and the rest is
-/// true.
+/// A user's own design from check to report: the programs say what they cannot analyse, and everything else
+/// is correct.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
   EXPECT_EQ(checked.exit_code, 0) << checked.out;
   EXPECT_THAT(checked.out, HasSubstr("each break 60 s longer than it must be"));
 
-  // Nothing about methods and questions that the protocol does not have is frozen.
+  // Methods and questions that the protocol lacks are not frozen.
   const auto frozen = typed("vip-stats preregister " + protocol + " --out " + at("bundle"));
   ASSERT_EQ(frozen.exit_code, 0) << frozen.out;
   EXPECT_THAT(frozen.out, HasSubstr("not tested: H1 to H3 of comfort"));
@@ -43,7 +43,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
               HasSubstr("None.\n- Not tested: H1 to H3 of comfort: the trials ask no question 'realism'"));
   EXPECT_THAT(words, HasSubstr("- Not tested: H4 to H6 of comfort: no pairs of methods are shown.\n"));
   EXPECT_THAT(words, Not(HasSubstr("FovFluid")));
-  // plan.toml lists rules that cannot act as comments.
+  // plan.toml lists rules without effect as comments.
   for (const char* rule :
        {"\nrealism = ", "\nsickness = ", "\nmin_catch_correct = ", "\nmax_repeat_difference = "})
     EXPECT_THAT(file(folder / "bundle" / "plan.toml"), Not(HasSubstr(rule)));
@@ -76,7 +76,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
     ASSERT_EQ(question.at("cells").size(), 6u);
     for (const auto& cell : question.at("cells")) EXPECT_EQ(cell.at("n"), 24);
   }
-  // A question outside of the trials is described too.
+  // A question outside the trials is described too.
   const Json& tired = json.at("people").at(0).at("questions").at(0);
   EXPECT_EQ(tired.at("question"), "tired");
   EXPECT_EQ(tired.at("n"), 24);
@@ -89,7 +89,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
   EXPECT_EQ(html.find("catch pages right"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder / "tables" / "descriptives.csv"));
 
-  // The commands of the paper's tasks say that it is none of theirs, and what to do.
+  // The commands of the paper's tasks say that they do not apply, and what to do.
   for (const char* command : {"fit-ptpe", "task1", "task2"}) {
     const auto refused = typed(std::string("vip-stats ") + command + " " + at("s.db"));
     EXPECT_EQ(refused.exit_code, 1) << refused.out;
@@ -138,7 +138,7 @@ TEST(OwnDesignE2e, AMendedVersionStandsBesideTheFirst) {
   const auto no_question = report(" --question nosuch");
   EXPECT_EQ(no_question.exit_code, 1);
   EXPECT_THAT(no_question.out, HasSubstr("choose one with --question: comfort, strain"));
-  // A level is for the curve of a pilot alone.
+  // A level applies only to a pilot's curve.
   const auto level = report(" --level 2");
   EXPECT_EQ(level.exit_code, 1);
   EXPECT_THAT(level.out, HasSubstr("--level: does not apply here"));

@@ -1,4 +1,4 @@
-/// What a protocol's texts need is drawn, or refused before anybody sits down.
+/// All characters of a protocol's texts are drawn, or the protocol is refused before a participant sits down.
 #include "apps/study/pages/page_fonts.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// The pilot with another question.
+/// The pilot with another question text.
 std::string asking(const std::string& words) {
   return replaced(short_protocol("1"),
                   "How satisfied are you with the step speed and the smoothness of the fluid?", words);
@@ -56,7 +56,7 @@ TEST(PageFonts, ScriptsThatWouldBeDrawnWronglyAreRefusedWithTheReason) {
   }
 }
 
-// Where a font has a character beyond the usual ones, pages have it too, and not a question mark.
+// Characters beyond the usual ones are drawn if a font has them, not replaced by a question mark.
 TEST(PageFonts, CharactersOfTheProtocolComeIntoTheAtlas) {
   const PageType type(page_characters(protocol_asking("☃ snow?")));
   ImFontAtlas atlas;
@@ -67,7 +67,7 @@ TEST(PageFonts, CharactersOfTheProtocolComeIntoTheAtlas) {
   EXPECT_EQ(PageType({}).undrawn(U"☃a"), U"☃");
 }
 
-// Chinese has no spaces: lines end between characters, and no mark begins one.
+// Chinese has no spaces: lines break between characters, and no punctuation mark starts a line.
 TEST(PageFontsGl, WordsWithoutSpacesAreWrapped) {
   const sim::GlContext gl = sim::GlContext::make_headless();
   const sim::Offscreen picture(400, 300);
@@ -90,7 +90,7 @@ class PageFontsE2e : public ::testing::Test {
  protected:
   PageFontsE2e() {
     base::write_file_atomically(folder_ / "chinese.toml", asking("您对刚才看到的画面满意吗？"));
-    // A system with the usual fonts alone.
+    // A system that has only the usual fonts.
     base::write_file_atomically(
         folder_ / "fonts.conf",
         "<?xml version=\"1.0\"?><!DOCTYPE fontconfig SYSTEM \"fonts.dtd\"><fontconfig>"
@@ -119,7 +119,7 @@ TEST_F(PageFontsE2e, CheckAndRunRefuseWhatNoFontDraws) {
                       HasSubstr("apt-get install fonts-noto-cjk")));
     EXPECT_FALSE(fs::exists(folder_ / "s.db"));
   }
-  // An observer reads no pages.
+  // An observer reads no pages, so no fonts are needed.
   const Ended observer = without_fonts(run_arguments(folder_ / "chinese.toml", folder_ / "s.db",
                                                      {"--participant", "P01", "--clock", "virtual"}));
   EXPECT_EQ(observer.exit_code, 0) << observer.err;

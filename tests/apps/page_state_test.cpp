@@ -1,4 +1,4 @@
-/// What keys, clicks and time do on a participant's page.
+/// Effects of keys, clicks and time on a participant's page.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -16,7 +16,7 @@ using study::Question;
 
 constexpr std::int64_t shown = 5'000'000'000;
 
-/// An instant, ms after the page was shown.
+/// A time, ms after the page was shown.
 std::int64_t at(int ms) { return shown + 1'000'000LL * ms; }
 
 Question scale(int low, int high, bool required = true) {
@@ -96,7 +96,7 @@ TEST(PageState, AnAnswerTellsWhatItsLastChangeCameFrom) {
   state.digit(5, at(1000));
   state.use(AnswerInput::Ray);
   state.click(1, 3, at(1500));
-  state.click(0, 5, at(1600));  // no change
+  state.click(0, 5, at(1600));  // no change of the answer
   state.write(2, "grainy", at(1700));
   state.use(AnswerInput::Stick);
   state.click_confirm(at(2000));
@@ -121,7 +121,7 @@ TEST(PageState, DigitsOffTheScaleAndScalesBeyondOneDigit) {
   for (const int off : {0, 8, 9}) state.digit(off, at(1000));
   EXPECT_FALSE(state.answered(0));
   state.press(PageKey::Down, at(1000));
-  state.digit(1, at(1100));  // could be the beginning of 12
+  state.digit(1, at(1100));  // could be the start of 12
   EXPECT_FALSE(state.answered(1));
   state.click(1, 21, at(1200));
   EXPECT_FALSE(state.answered(1));
@@ -283,7 +283,7 @@ TEST(PageState, NoAnswersBeforeTheConfirmation) {
 }
 
 TEST(Viewing, ThePictureIsAWindowOntoTheScene) {
-  // As high as twice the distance: 45 degrees up and 45 down.
+  // Height twice the distance: 45 degrees up and 45 down.
   EXPECT_NEAR(vertical_fov_deg(1200, 600), 90, 1e-12);
   EXPECT_NEAR(vertical_fov_deg(2 * 700 * 0.57735026918962576, 700), 60, 1e-9);  // tan 30 degrees
   EXPECT_NEAR(picture_height_mm(531.2, 1920, 1080), 298.8, 1e-9);

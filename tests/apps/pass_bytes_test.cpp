@@ -28,7 +28,7 @@ std::unique_ptr<sim::Simulation> few(sim::MethodKind method) {
   return sim::make_simulation(sim::read_scene(base::resource("data/scenes/peers_dam.toml")), options);
 }
 
-/// The launches of a few frames.
+/// Names of the launches in a few frames.
 std::set<std::string> labels_of(sim::MethodKind method) {
   const auto fluid = few(method);
   fluid->profile_launches(true);
@@ -39,13 +39,13 @@ std::set<std::string> labels_of(sim::MethodKind method) {
   return out;
 }
 
-// A pass that gets another name would lose its floor in silence.
+// A renamed pass would silently lose its floor.
 TEST(PassBytes, EveryPassOfTheTableIsLaunched) {
   auto launched = labels_of(sim::MethodKind::HiRes);
   EXPECT_FALSE(launched.contains("density beside fresh"));
   launched.merge(labels_of(sim::MethodKind::Ours));
   for (const auto& pass : pass_bytes()) EXPECT_TRUE(launched.contains(pass.label)) << pass.label;
-  // A launch over a few particles moves less than one over all: it has a name, and no floor.
+  // A launch over a few particles moves fewer bytes than one over all, so it has a name but no floor.
   EXPECT_TRUE(launched.contains("density beside fresh"));
   EXPECT_TRUE(launched.contains("displacement beside fresh"));
   EXPECT_FALSE(least_bytes("density beside fresh", {}));
@@ -53,7 +53,7 @@ TEST(PassBytes, EveryPassOfTheTableIsLaunched) {
 
 TEST(PassBytes, TheTableHasAsManyBytesAsTheFunctorsMove) {
   const PassWater water{.particles = 1000, .solved_share = 1, .listed = 50};
-  // Places and support 16, count 4, two results 4 each, and 50 entries of 4.
+  // Position and support 16, count 4, two results of 4, and 50 entries of 4.
   EXPECT_EQ(least_bytes("density", water), 1000 * (16 + 4 + 4 + 4 + 50 * 4));
   EXPECT_EQ(least_bytes("displacement", water), 1000 * (16 + 4 + 4 + 16 + 50 * 4));
   EXPECT_EQ(least_bytes("list neighbours", water), 1000 * (16 + 4 + 50 * 4));

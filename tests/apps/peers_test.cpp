@@ -156,7 +156,7 @@ TEST_F(PeersE2e, RefusesWhatWouldChangeTheSetting) {
 }
 
 TEST_F(PeersE2e, ABrokenFileIsNamedBeforeTheWork) {
-  // A share folder of its own, where the file is broken.
+  // A share folder for this test, with a broken file.
   const auto share = folder.path() / "share";
   std::filesystem::create_directories(share / "data");
   base::write_file_atomically(share / "data/peers.csv", head + "A,PBF\n");

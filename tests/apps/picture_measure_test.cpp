@@ -1,4 +1,4 @@
-/// Features of pictures whose grain and motion are known.
+/// Features of pictures with known grain and motion.
 #include "apps/common/picture_measure.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using apps::MeasuredPicture;
 
-/// 240 x 160 px with a border of 20 px that is not fluid and far brighter.
+/// 240 x 160 px with a much brighter border of 20 px that is not fluid.
 MeasuredPicture picture(const std::function<double(int, int)>& luminance) {
   MeasuredPicture out{240, 160, {}, {}};
   for (int y = 0; y < 160; ++y) {
@@ -32,7 +32,8 @@ double granularity_of(const std::function<double(int, int)>& luminance) {
 }
 
 TEST(PictureMeasure, GranularityIsTheWavelengthOfAWave) {
-  // A wave along x has slope along one axis alone; the difference to the next pixel is the tangent's to 2 %.
+  // A wave along x has a slope along one axis only; the difference to the next pixel equals the tangent to 2
+  // %.
   for (const double length_px : {8.0, 12.0, 16.0})
     EXPECT_NEAR(granularity_of([&](int x, int) { return 0.3 + 0.1 * wave(x, length_px); }), length_px,
                 0.05 * length_px);

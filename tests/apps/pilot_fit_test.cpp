@@ -41,7 +41,7 @@ TaskSelection with_timing(stats::TimingRule rule) {
   return out;
 }
 
-/// How often each rule left a trial or a visit out.
+/// How often each rule excluded a trial or a visit.
 std::map<std::string, int> rules_of(const apps::TaskData& data) {
   std::map<std::string, int> out;
   for (const auto& one : data.exclusions) ++out[one.rule];
@@ -80,7 +80,7 @@ TEST(PilotFit, WritesEveryPromisedField) {
   EXPECT_LT(last.at("solver_ci")[0], last.at("solver_mu"));
 }
 
-// At a = 18, b = 0.01 the curve lies below the frame rates shown at large deviations.
+// At a = 18, b = 0.01 the curve is below the shown frame rates at large deviations.
 TEST(PilotFit, WidthIsJudgedWhereTheCurveIsInReach) {
   const auto fit = fit_of(simulated_pilot("ptpe:a=18,b=0.01", 16, 3));
   const auto& direct = fit.chosen().direct;
@@ -112,7 +112,8 @@ TEST(PilotFit, ACurveWithoutABandIsNotForASolver) {
 }
 
 TEST(PilotFit, AContourWithoutAnIntervalIsFlagged) {
-  // The contour of few people at the edge of the settings often has no fit; the first such pilot will do.
+  // With few people a contour at the edge of the settings often has no interval; the test uses the first such
+  // pilot.
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const auto fit = fit_of(simulated_pilot("ptpe:a=15,b=0.015", 8, seed));
     if (!fit.ok()) continue;
@@ -159,7 +160,7 @@ TEST(PilotFit, LeavesOutRepeatsAndWhatTheExperimenterExcluded) {
   EXPECT_EQ(data.exclusions[0].reason, "the phone rang");
 }
 
-// The same rules as for the tasks, person by person.
+// The same rules as for the tasks, for each person.
 TEST(PilotFit, ObeysThePlansRulesOfExclusion) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 8, 3);
   for (auto& trial : pilot.sessions[0].trials) trial.answers[0].score = 4;
@@ -224,12 +225,12 @@ TEST(PilotFit, NeverPoolsObserverModelsWithPeople) {
   EXPECT_EQ(people.flow.simulated_left_out, 4);
   EXPECT_EQ(people.ratings.size(), 2u * 21);
   EXPECT_TRUE(has_flag(apps::fit_pilot(people, 4, {200, 1, 0.95}), "simulated_left_out"));
-  // People whose data are only test data do not push the others out.
+  // If people's data are all test data, they do not exclude the simulated participants.
   for (auto& session : pilot.sessions) session.test_data = session.observer.empty();
   EXPECT_EQ(select(pilot)->simulated.size(), 4u);
 }
 
-// n, mean, standard deviation and t interval of one setting, worked out by hand.
+// n, mean, standard deviation and t interval of one setting, computed by hand.
 TEST(PilotFit, DescribesEachSettingOverItsParticipants) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 5, 3);
   const std::vector<int> scores{2, 3, 3, 5, 7};
@@ -278,7 +279,7 @@ TEST(PilotFit, NamesTheReasonWhenThereIsNoFit) {
 }
 
 TEST(PilotFit, KeepsNoNumberThatIsNone) {
-  // A NaN would be written as null: no null may stand where the status says ok.
+  // A NaN would be written as null: no null is allowed where the status is ok.
   const auto json = apps::fit_json(fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7)));
   const std::function<void(const ordered_json&, const std::string&)> check = [&](const ordered_json& value,
                                                                                  const std::string& place) {
@@ -301,7 +302,7 @@ TEST(PilotFit, ToleratesIncompleteParticipants) {
   EXPECT_TRUE(has_flag(fit, "incomplete_participants"));
 }
 
-// What the plan makes of people who use the scale the wrong way round, get tired, or press the lowest key.
+// The plan's effect on people who reverse the scale, get tired, or press the lowest key.
 TEST(PilotFit, ReportsHowPeopleUsedTheScaleAndFollowsThePlan) {
   auto pilot = simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
   for (auto& session : pilot.sessions)
@@ -352,7 +353,7 @@ TEST(ContourPolylines, FollowTheLevelWithoutGaps) {
   ASSERT_EQ(lines.size(), 1u);
   for (const auto& point : lines[0]) EXPECT_NEAR(point.mu + point.delta, 3.2, 1e-12);
   EXPECT_NEAR(std::abs(lines[0].front().delta - lines[0].back().delta), 2.8, 1e-12);
-  // A missing node takes its four cells with it.
+  // A missing node removes its four cells.
   grid.nodes[5].reset();
   for (const auto& line : apps::contour_polylines(grid, 3.2)) {
     for (const auto& point : line) EXPECT_TRUE(point.mu >= 2 - 1e-12 || point.delta >= 2 - 1e-12);
@@ -367,7 +368,7 @@ TEST(ContourPolylines, FollowTheLevelWithoutGaps) {
   EXPECT_EQ(loop[0].front().mu, loop[0].back().mu);
 }
 
-/// Every element is closed in order and every attribute quoted; enough of XML for what the figure uses.
+/// True if every element is closed in order and every attribute quoted; enough of XML for the figure.
 bool balanced(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {

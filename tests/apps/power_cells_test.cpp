@@ -1,4 +1,5 @@
-/// vip-stats power in cells: they make up the calculation, and their shards give what one run gives.
+/// vip-stats power in cells: together they are the whole calculation, and their shards give the result of one
+/// run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +32,7 @@ PowerRequest request_for(const std::string& protocol, std::vector<int> n, int st
   return out;
 }
 
-/// Two blocks of studies of 24 people, by the mixed model.
+/// Two blocks of studies of 24 people, with the mixed model.
 PowerRequest by_model() {
   auto out = request_for("protocols/task1.toml", {24}, 220, {"null"});
   out.plan.plan.tests = stats::ScoreTests::Mixed;
@@ -50,7 +51,7 @@ TEST(PowerCells, MakeUpTheCalculation) {
   auto request = request_for("protocols/task1.toml", {2, 26, 2000}, 2000, {"null"});
   for (const auto tests : {stats::ScoreTests::Paired, stats::ScoreTests::Mixed}) {
     request.plan.plan.tests = tests;
-    std::map<int, int> next;  // study by n
+    std::map<int, int> next;  // next study by n
     for (const auto& cell : power_cells(request)) {
       EXPECT_EQ(cell.studies.first, next[cell.n]) << to_text(cell);
       EXPECT_GT(cell.studies.count, 0);
@@ -84,7 +85,7 @@ TEST(PowerCells, AreKnownByAllThatTheirStudiesDependOn) {
 
 class PowerShards : public ::testing::Test {
  protected:
-  /// One file a cell, from the last to the first.
+  /// Writes one file a cell, from the last cell to the first.
   std::vector<std::filesystem::path> run_apart(const PowerRequest& request) const {
     std::vector<std::filesystem::path> out;
     auto cells = power_cells(request);
@@ -103,7 +104,7 @@ TEST_F(PowerShards, GiveWhatOneRunGivesBitForBit) {
   for (const auto& request : {by_model(), pairs(), pilot()}) {
     auto shards = run_apart(request);
     EXPECT_GE(shards.size(), 2u);
-    shards.push_back(shards.front());  // one twice
+    shards.push_back(shards.front());  // one shard twice
     const auto serial = power_json(request, simulate_studies(request, {0, request.studies}));
     EXPECT_TRUE(power_json(request, join_shards(request, shards)).dump() == serial.dump()) << request.file;
   }
@@ -116,7 +117,7 @@ TEST_F(PowerShards, KeepIntervalsWithoutEnd) {
   shard["outcomes"][0] = Json::parse(R"([true, true, 24.5, "Inf", "-Inf", "Inf", 0.02, null, 0, 1])");
   base::write_file_atomically(shards[0], shard.dump());
   const auto joined = std::get<PilotOutcomes>(join_shards(request, shards));
-  const auto& read = joined[1][0];  // the last cell stands first
+  const auto& read = joined[1][0];  // the last cell's shard is the first file
   EXPECT_EQ(read.a.value, 24.5);
   EXPECT_TRUE(std::isinf(read.a.ci[1]) && std::isinf(read.a.ci[0]) && read.a.ci[0] < 0);
   EXPECT_TRUE(std::isnan(read.b.se));

@@ -1,4 +1,4 @@
-/// vip-stats power where effects are a factor.
+/// vip-stats power with effects as a factor.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ double binomial(int n, int k, double p) {
                   (n - k) * std::log(1 - p));
 }
 
-/// Power of the report's test where each of n people chooses once: over all that may come of it.
+/// Exact power of the report's test if each of n people chooses once: the sum over all outcomes.
 double exact_power(int n, double p) {
   double out = 0;
   for (int k = n / 2 + 1; k <= n; ++k) {
@@ -84,7 +84,7 @@ TEST(PowerEffects, TwoMethodsGiveTwoAnswersAndMorePower) {
   EXPECT_GT(two.value, one.value + 4 * (one.se + two.se));
 }
 
-/// All that are tried must hold: Holm goes over all pairs of levels, those without none too.
+/// All tests must hold: Holm covers all pairs of levels, including those without "none".
 TEST(PowerEffects, EveryLevelIsHeldAgainstNone) {
   auto request = foam_power("[\"LoRes\"]", "[\"foam\", \"none\", \"scene\"]", 0.8, 300);
   request.plan.plan.decision = stats::DecisionRule::Holm;

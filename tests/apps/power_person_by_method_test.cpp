@@ -1,4 +1,4 @@
-/// vip-stats power: the variance of person by method, which the answers at all n_* share.
+/// vip-stats power: the variance of person by method, which is common to the answers at all n_*.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -29,8 +29,7 @@ apps::PowerRequest request_for(const std::string& world, int studies) {
   return request;
 }
 
-/// The difference between two methods at one n_*, correlated over people with the same difference at the
-/// other.
+/// Correlation over people between the difference of two methods at one n_* and at the other.
 double correlation_between_n_stars(double person_by_method) {
   auto request = request_for("null", 1);
   request.answers = apps::AnswerScale::Continuous;
@@ -41,7 +40,7 @@ double correlation_between_n_stars(double person_by_method) {
   const auto worlds = apps::make_worlds(request, factors);
   const auto answers =
       apps::answer_task1(trials, factors, worlds.at(0).scenarios.at(0), apps::task1_scatter(request), 5);
-  std::vector<std::array<double, 2>> difference(people);  // by n_*: method 0 less method 1
+  std::vector<std::array<double, 2>> difference(people);  // by n_*: method 0 minus method 1
   for (const auto& one : answers.realism) {
     if (one.method < 2)
       difference[static_cast<std::size_t>(one.participant)][static_cast<std::size_t>(one.n_star)] +=
@@ -63,7 +62,7 @@ TEST(PowerPersonByMethod, IsTheSameAtEveryNStarAndLeavesTheSpreadAsItWas) {
   EXPECT_NEAR(correlation_between_n_stars(1), 1, 1e-9);
 }
 
-/// Power of the claim of H1, of eight tests, where a difference is half its standard deviation.
+/// Power of H1's claim, with eight tests, if a difference is half its standard deviation.
 apps::Estimated power_of_h1(apps::PersonByMethod person_by_method, int studies) {
   auto request = request_for("effect", studies);
   request.effect = 0.5;
@@ -84,8 +83,8 @@ TEST(PowerPersonByMethod, TestsThatHoldTogetherGiveTheirClaimMorePower) {
   EXPECT_GT(together.value, apart.value + 2 * (together.se + apart.se));
 }
 
-// docs/statistics.md gives these figures. Half of the scatter that is neither rounding nor that of single
-// items is .45 of the variance of realism and .25 of that of cybersickness.
+// docs/statistics.md gives these figures. Half of the scatter that comes neither from rounding nor from
+// single items is .45 of the variance of realism and .25 of that of cybersickness.
 TEST(PowerPersonByMethodSlow, RaisesThePowerOfH1) {
   EXPECT_NEAR(power_of_h1({0, 0}, 10000).value, 0.082, 0.012);
   EXPECT_NEAR(power_of_h1({0.45, 0.25}, 10000).value, 0.112, 0.013);

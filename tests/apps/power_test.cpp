@@ -1,4 +1,4 @@
-/// vip-stats power: the simulation against closed forms, its error rates, and what it refuses.
+/// vip-stats power: the simulation against closed forms, its error rates, and requests that it refuses.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ PowerRequest task2(std::vector<std::string> worlds, int studies) {
   return request;
 }
 
-/// Every test's uncorrected power against its formula.
+/// Compares every test's uncorrected power with its formula.
 void expect_closed_forms(const std::vector<apps::WorldPower>& worlds, double discreteness = 0) {
   int compared = 0;
   for (const auto& world : worlds) {
@@ -99,7 +99,7 @@ TEST(Power, EquivalenceWithinHalfAPointWith26People) {
   EXPECT_NEAR(*h2.tests[0].curve[0].closed_form, 0.22, 0.005);
 }
 
-// Two-sided as the other hypotheses: each of the two one-sided tests at half of alpha.
+// Two-sided like the other hypotheses: each of the two one-sided tests uses half of alpha.
 TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
   const auto worlds = apps::simulate_task_power(task1({"null"}, 800));
   expect_closed_forms(worlds);
@@ -108,7 +108,8 @@ TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
   EXPECT_NEAR(*test.curve[0].closed_form, *expected, 1e-12);
 }
 
-// A claim that needs all of its tests gains by not being corrected, and single tests are counted after Holm.
+// A claim that needs all of its tests gains power without correction, but single tests are counted after
+// Holm.
 TEST(Power, SupportIsJudgedByThePlansRule) {
   auto request = task2({"effect"}, 400);
   request.effect = 0.75;
@@ -119,7 +120,7 @@ TEST(Power, SupportIsJudgedByThePlansRule) {
   EXPECT_EQ(both.any.value, corrected.any.value);
 }
 
-// Of complete answers the mixed model says nearly what the paired tests say.
+// For complete answers the mixed model gives nearly the results of the paired tests.
 TEST(Power, TheMixedModelDecidesWhereThePlanSaysSo) {
   auto request = task1({"effect"}, 60);
   request.effect = 0.8;
@@ -143,7 +144,7 @@ TEST(Power, TheMixedModelDecidesWhereThePlanSaysSo) {
   EXPECT_GT(differ, 0);
 }
 
-// As the data of a study have it: position in the plan, and a period for each scene at one n_*.
+// Like in a study's data: the position in the plan, and a period for each scene at one n_*.
 TEST(Power, TrialsHaveThePeriodsOfThePlan) {
   const auto request = task1({"effect"}, 1);
   const apps::ShownFactors factors(request.protocol.design);
@@ -174,7 +175,7 @@ TEST(Power, WholeScoresLieNearTheFormulas) {
   auto request = task1({"effect"}, 600);
   request.effect = 0.6;
   request.answers = apps::AnswerScale::Likert;
-  // Steps of a point and the scale's ends change the power by up to this much at 26 people.
+  // Rounding to whole points and the scale's ends change the power by up to this much at 26 people.
   expect_closed_forms(apps::simulate_task_power(request), 0.03);
 }
 
@@ -288,7 +289,7 @@ TEST(PowerPilot, PrecisionGrowsWithPeople) {
   EXPECT_EQ(*power.n_for_a, 24);
 }
 
-// As fit-ptpe, report and the preregistered plan have it.
+// The same rule as in fit-ptpe, report and the preregistered plan.
 TEST(PowerPilot, TheCurveIsAtTheLevelOfThePlanOrTheProtocol) {
   auto request = request_for("protocols/ptpe_pilot.toml", {8}, 20);
   EXPECT_EQ(apps::rated_level(request), 4);

@@ -1,4 +1,4 @@
-/// Preregistration: one hash over all that is fixed, and what differs from it later.
+/// Preregistration: one hash over everything that is fixed, and later differences from it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ study::ProtocolRow row_of(const study::Protocol& protocol) {
   return row;
 }
 
-/// Both tasks answered under the protocols given, analysed under the bundle's plan.
+/// Both tasks answered under these protocols, analysed under the bundle's plan.
 struct Study {
   std::vector<study::ProtocolRow> rows;
   Json results;
@@ -123,7 +123,7 @@ TEST(Preregistration, NamesTheLevelOfAPilotsCurve) {
   EXPECT_THAT(base::read_file(folder / "named" / "PREREGISTRATION.txt", 1 << 20),
               HasSubstr("the curve of question satisfaction is fitted at level 4.5 of its scale, 1 to 7"));
 
-  // Fitted at another level, the page says so.
+  // If the curve is fitted at another level, the page says so.
   const auto bundle = report::read_bundle(folder / "named");
   auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 6, 7);
   pilot.sha256 = bundle.protocols.begin()->first;
@@ -152,7 +152,7 @@ TEST(Preregistration, AStudyThatKeepsToItDiffersInNothing) {
   EXPECT_TRUE(check.at("holds").get<bool>());
 }
 
-/// The first answer of Task 1 at the time given, of Task 2 long after the bundle.
+/// Task 1's first answer is at `first`, Task 2's is long after the bundle.
 Json check_with_first_answer(const report::Bundle& bundle, const std::string& first) {
   auto one = made_study::task1(12), two = made_study::task2(12);
   const auto task1 = protocol("task1.toml"), task2 = protocol("task2.toml");
@@ -175,7 +175,7 @@ TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
   EXPECT_TRUE(before.at("holds").get<bool>()) << before.dump(2);
   EXPECT_EQ(before.at("times")[0].at("text"),
             "The bundle was frozen before the first answer of Task 1, given 2999-01-01T00:00:00Z.");
-  // Of the same second nobody can say which was first.
+  // Within the same second the order cannot be known.
   for (const std::string& first : {std::string("2001-01-01T00:00:00Z"), frozen}) {
     const auto after = check_with_first_answer(bundle, first);
     EXPECT_EQ(after.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
@@ -188,7 +188,7 @@ TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
   }
 }
 
-// A rehearsal or an observer model that is set aside does not make a bundle late.
+// Rehearsals and observer models that are set aside do not make a bundle late.
 TEST(Preregistration, OnlySessionsThatAreAnalysedHaveAFirstAnswer) {
   auto task = made_study::task1(6);
   for (auto& session : task.sessions) session.first_answer_utc = "2026-05-01T00:00:00Z";
@@ -198,7 +198,7 @@ TEST(Preregistration, OnlySessionsThatAreAnalysedHaveAFirstAnswer) {
   EXPECT_EQ(select_task({{task}, 0}, {TaskKind::Task1, "", {}})->first_answer_utc, "2026-05-01T00:00:00Z");
 }
 
-// The pilot beside the tasks is exploratory: a bundle of the tasks need not hold it.
+// A pilot beside the tasks is exploratory: a bundle of the tasks need not contain it.
 TEST(Preregistration, APilotBesideTheTasksIsNoDifference) {
   const TemporaryFolder folder;
   report::freeze_bundle(both_tasks(), folder / "bundle");
@@ -241,7 +241,7 @@ TEST(Preregistration, AnotherMarginIsNamed) {
               HasSubstr("H2, Ours - HiRes, sickness, 16k, margin: preregistered 0.25, tested 0.5"));
 }
 
-/// A bundle as it was written before the plan had a decision rule: the same without its two keys.
+/// A bundle as written before plans had a decision rule: without its two keys.
 void freeze_as_before(const fs::path& folder) {
   auto request = both_tasks();
   request.plan.decision = stats::DecisionRule::Holm;
@@ -357,7 +357,7 @@ TEST(Preregistration, AFolderThatIsNoBundleIsRefused) {
   EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
 }
 
-/// Whatever stands in a bundle's files, the answer is a comparison or an error with a mend.
+/// For any content of a bundle's files the result is a comparison or an error with a remedy.
 TEST(Preregistration, PartsThatAreNotWhatTheyShouldBeAreRefusedInWords) {
   const TemporaryFolder folder;
   report::freeze_bundle(both_tasks(), folder / "bundle");

@@ -1,4 +1,4 @@
-/// What every program does before anything else.
+/// Start-up and error handling common to all programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// libgomp's account of its settings, from a start with `name` set to `value` (empty = neither is set).
+/// libgomp's report of its settings when started with `name` set to `value` (empty: neither variable is set).
 std::string openmp_settings(const std::string& name = "", const std::string& value = "") {
   const Ended ended = run_program({vip_study, "--version"}, [&] {
     ::unsetenv("OMP_WAIT_POLICY");
@@ -38,10 +38,10 @@ TEST(ProgramE2e, AChoiceOfTheUsersStays) {
   EXPECT_THAT(openmp_settings("GOMP_SPINCOUNT", "77"), HasSubstr("GOMP_SPINCOUNT = '77'"));
 }
 
-/// What a program says on stderr, and ends with, when its command throws this.
+/// Expects this text on stderr and exit status 1 if a program's command throws this.
 void expect_said(const std::function<void()>& thrower, const std::string& pattern) {
   const auto run = [&] {
-    ::setenv("OMP_WAIT_POLICY", "passive", 1);  // the program does not start over
+    ::setenv("OMP_WAIT_POLICY", "passive", 1);  // so that the program does not restart itself
     CLI::App app("", "vip-some");
     app.add_subcommand("thing", "")->callback(thrower);
     char name[] = "vip-some", command[] = "thing";

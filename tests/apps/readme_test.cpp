@@ -36,7 +36,7 @@ std::string help_of(const std::string& command) {
   return help.out;
 }
 
-/// "vip-study check" and so on, as `program` lists them; the program alone where it has no subcommands.
+/// The commands that `program` lists, like "vip-study check"; the program itself if it has no subcommands.
 Lines commands_of(const std::string& program) {
   static const std::regex entry(R"(^  ([a-z][a-z0-9-]*) .*)");
   Lines commands;
@@ -69,7 +69,7 @@ TEST(ReadmeE2e, TheTableNamesEveryCommandOnce) {
   EXPECT_THAT(commands_in_table(), ::testing::UnorderedElementsAreArray(all));
 }
 
-/// The command lines of a page's fenced blocks, each with its continuations.
+/// The command lines of a page's fenced blocks, with their continuation lines.
 Lines command_lines(const fs::path& path) {
   Lines found;
   bool fenced = false, goes_on = false;
@@ -112,12 +112,12 @@ TEST(ReadmeE2e, EveryOptionOfACommandLineExists) {
   EXPECT_FALSE(helps.empty());
 }
 
-/// The README fits a terminal.
+/// The README fits into a terminal.
 TEST(Readme, LinesHoldAHundredColumns) {
   for (const std::string& line : page(root / "README.md")) EXPECT_THAT(line, SizeIs(::testing::Le(100)));
 }
 
-/// Tables, pictures and the page that vip-study writes apart.
+/// Except tables, pictures and the page that vip-study writes.
 TEST(Docs, ProseHoldsAHundredAndTenColumns) {
   for (const auto& entry : fs::directory_iterator(root / "docs")) {
     if (entry.path().extension() != ".md" || entry.path().filename() == "protocol.md") continue;

@@ -75,7 +75,7 @@ study::TaskProtocol mended(study::TaskProtocol protocol, char digit) {
   return protocol;
 }
 
-/// The pilot with a second question of its own, on another scale.
+/// The pilot with its own second question, on another scale.
 study::TaskProtocol pilot_of_two_questions() {
   auto out = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 8, 7);
   out.questions.push_back(made_study::scale("smoothness", 0, 3));
@@ -87,7 +87,7 @@ study::TaskProtocol pilot_of_two_questions() {
   return out;
 }
 
-/// All of it on one page, each number in the JSON, each session in a flow.
+/// Everything is on one page, each number is in the JSON, and each session is in a flow.
 void expect_true_page(const Json& json) {
   const auto page = html_reader::read(report::results_page(json));
   EXPECT_THAT(report_walk::wrong_fields(page, json), IsEmpty());
@@ -136,7 +136,7 @@ TEST(ReportChoice, TwoVersionsOfATaskStandApart) {
   ASSERT_EQ(json.at("apart").size(), 1u);
   EXPECT_EQ(json.at("apart")[0].at("flow").at("task1").at("analysed"), 3);
   EXPECT_EQ(json.at("roster").at("protocols").at(0).at("sections"), Json{"apart 1"});
-  // Alone each says the same as beside the other.
+  // Analysed alone, each gives the same results as beside the other.
   const Json alone = results_of({{made_study::task1(12)}, 2});
   EXPECT_EQ(json.at("task1"), alone.at("task1"));
   EXPECT_EQ(json.at("hypotheses"), alone.at("hypotheses"));
@@ -182,7 +182,7 @@ TEST(ReportChoice, ProtocolsSetAsideAreInTheRoster) {
   EXPECT_NE(report::results_page(json).find("set aside"), std::string::npos);
 }
 
-// Two files of one name and version differ in their hashes alone.
+// Two files of the same name and version differ only in their hashes.
 TEST(ReportChoice, AProtocolSetAsideIsNotTakenForTheOneAnalysed) {
   auto test = comfort(1);
   test.sha256 = std::string(64, '6');
@@ -232,7 +232,7 @@ TEST(ReportChoice, RealismAloneIsAnalysed) {
   EXPECT_THAT(report::results_page(json), Not(HasSubstr("on cybersickness.")));
 }
 
-// "drawn and listed": each value, not how many there are.
+// "drawn and listed": every value, not only their number.
 TEST(ReportChoice, ValuesBeyondTheWhiskersAreListed) {
   auto task = made_study::task1(12);
   for (auto& trial : task.sessions[0].trials)
@@ -292,7 +292,7 @@ TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
                                             {"reason", "the protocol does not show FovFluid"}}}));
 }
 
-/// Each of six people judges one pair in three scenes. `alike`: all choose HiRes, always.
+/// Each of six people judges one pair in three scenes. `alike`: all always choose HiRes.
 study::TaskProtocol pairs_over_scenes(bool alike) {
   study::TaskProtocol pairs{
       "pairs", "1.0", std::string(64, '7'), true, 6, made_study::scenes, {"LoRes", "HiRes"}, {"1k"}, {}, {}};
@@ -311,7 +311,7 @@ study::TaskProtocol pairs_over_scenes(bool alike) {
       const bool swapped = person % 2 != 0;
       trial.first = made_study::showing(scene, swapped ? "HiRes" : "LoRes", "1k");
       trial.second = made_study::showing(scene, swapped ? "LoRes" : "HiRes", "1k");
-      const bool chosen = alike || position > person % 3;  // HiRes
+      const bool chosen = alike || position > person % 3;  // HiRes is chosen
       trial.answers = {{"smoother", swapped == chosen ? 1 : 2}};
       visit.trials.push_back(trial);
     }
@@ -333,8 +333,8 @@ TEST(ReportChoice, PairsOverScenesAreDescribedByScene) {
               HasSubstr("Clopper-Pearson over people"));
 }
 
-// The test over people is the one that was made: it is named, its interval is printed and drawn, and the
-// binomial test stands nowhere.
+// Here the test over people applies: it is named, its interval is printed and drawn, and the binomial test is
+// not mentioned.
 TEST(ReportChoice, PairsAnsweredSeveralTimesNameTheTestThatWasMade) {
   const Json json = results_of({{pairs_over_scenes(false)}, 0});
   expect_true_page(json);
@@ -356,7 +356,7 @@ TEST(ReportChoice, PairsAnsweredSeveralTimesNameTheTestThatWasMade) {
     printed += text.attribute("data-field") == "/task2/pairs/0/by_person/ci/0";
   EXPECT_EQ(printed, 2u) << "in the table and in APA style";
   EXPECT_NE(pairs.find("stroke-width=\"4.5\""), std::string::npos) << "the interval's line";
-  // Where each pair was answered once, all of it is about the binomial test.
+  // If each pair was answered once, everything refers to the binomial test.
   const Json once = results_of({{made_study::task2(9)}, 0});
   EXPECT_EQ(once.at("task2").at("pairs").at(0).at("test"), "exact binomial test");
   EXPECT_FALSE(once.at("task2").at("rules").contains("more_than_one_trial"));

@@ -1,4 +1,4 @@
-/// vip-stats report and preregister as typed.
+/// vip-stats report and preregister, run from their command lines.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(ReportCommandE2e, MakesThePageOfASimulatedPilotFromItsJson) {
   EXPECT_TRUE(html == report::results_page(json)) << "the page is not made of the JSON alone";
   EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
   EXPECT_NE(html.find("<svg"), std::string::npos);
-  // The bundle was frozen after the answers: the page says so.
+  // The page says that the bundle was frozen after the answers.
   EXPECT_EQ(json.at("preregistration").at("times").at(0).at("frozen_before"), false);
   EXPECT_NE(html.find("The bundle was not frozen before the first answer of Pilot"), std::string::npos);
   EXPECT_FALSE(json.at("preregistration").at("holds").get<bool>());

@@ -1,5 +1,5 @@
-/// What describes a study on the report: people, distributions, lines, reliability, detectable effects,
-/// times; and how its page is set.
+/// The report's description of a study: people, distributions, lines, reliability, detectable effects, times;
+/// and the layout of its page.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(PeopleOfTheReport, SmallGroupsAreTakenTogetherWithTheNextSmallest) {
   EXPECT_THAT(groups({{"f", 1}, {"m", 1}}).shown, IsEmpty());
 }
 
-// Whatever the counts: no group, no pool and no difference of the sums is smaller than smallest_group.
+// For all counts: no group, no pool and no difference of sums is smaller than smallest_group.
 TEST(PeopleOfTheReport, NoGroupThatIsShownOrFollowsIsSmaller) {
   for (int f = 0; f <= 9; ++f) {
     for (int m = 0; m <= 9; ++m) {
@@ -115,7 +115,7 @@ TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
 
 TEST(DescriptionOfTheReport, DistributionsCountEveryAnswer) {
   const auto study = made_study::task1(people);
-  std::map<std::string, int> wanted;  // of realism at 16k
+  std::map<std::string, int> wanted;  // counts of realism at 16k
   for (const auto& session : study.sessions)
     for (const auto& trial : session.trials)
       if (trial.first.what.n_star == "16k")
@@ -200,7 +200,7 @@ TEST(DescriptionOfTheReport, EachPictureOfTask1HasEveryMethodAndPerson) {
   EXPECT_EQ(lines, 2u * people) << "one for each participant at each n_*";
 }
 
-// Names of methods with a level of effects are long: nothing is drawn beyond the picture's edges.
+// Names of methods with a level of effects are long; nothing may be drawn beyond the picture's edges.
 TEST(PageOfTheReport, PicturesHaveRoomForLongNames) {
   const std::string name = "LoRes, rather_long_name_of_foam_and_spray";
   Json json = made();
@@ -218,7 +218,8 @@ TEST(PageOfTheReport, PicturesHaveRoomForLongNames) {
   EXPECT_GT(std::stod(html.substr(box + 13)) - room("preference", "translate(") - 606, needed);
 }
 
-// The row for the solver had the direct estimate's own interval, the sentence above it the wider one.
+// In an earlier version the solver's row had the direct estimate's own interval, but the sentence above it
+// the wider one.
 TEST(PageOfTheReport, TheSolversRowHasTheSolversInterval) {
   const auto from = page().find("For the solver</strong>");
   ASSERT_NE(from, std::string::npos);

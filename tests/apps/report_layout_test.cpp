@@ -30,7 +30,8 @@ const OrderedJson& example() {
 
 html_reader::Page page_of(const OrderedJson& json) { return html_reader::read(report::results_page(json)); }
 
-/// What the style sheet declares for a selector: within the @media block that begins so, or outside of all.
+/// Declarations of the style sheet for a selector: in the @media block that starts with `media`, or outside
+/// all blocks if it is empty.
 std::string style_of(const std::string& html, const std::string& media, const std::string& selector) {
   const auto from = html.find("<style>") + 7;
   const std::string css = html.substr(from, html.find("</style>") - from);
@@ -74,7 +75,7 @@ TEST(ReportLayout, AWideTableScrollsInABoxOfItsOwnAndAShadeShowsWhere) {
     EXPECT_THAT(style_of(html, "", box), HasSubstr("overflow-x: auto;")) << box;
     const std::string narrow = style_of(html, "@media screen and (max-width", box);
     for (const char* side : {"right", "left"}) {
-      // A white cover moves with the table, the shade below it stays at the box's edge.
+      // A white cover scrolls with the table; the shade below it stays at the box's edge.
       EXPECT_THAT(narrow,
                   ContainsRegex("to " + std::string(side) + ", #fff [^,]*, transparent\\) [^,]*local"))
           << box;
@@ -90,7 +91,7 @@ TEST(ReportLayout, AWideTableScrollsInABoxOfItsOwnAndAShadeShowsWhere) {
   EXPECT_THAT(style_of(html, "@media print", ".wide"), HasSubstr("overflow: visible"));
 }
 
-/// Width of the picture whose id begins so.
+/// Width of the picture whose id starts with `id`.
 double picture_width(const std::string& html, const std::string& id) {
   const auto at = html.find("aria-labelledby=\"" + id);
   if (at == std::string::npos) throw base::Error(id, "no such picture", "");
@@ -113,7 +114,7 @@ TEST(ReportLayout, MethodsStandSideBySideHoweverLongTheirNames) {
   EXPECT_GT(picture_width(html, "scene-lines-realism"), (needed + 40) * 3) << "three scenes in the legend";
 }
 
-// Stars touched the end of a bracket above them.
+// In an earlier version stars touched the end of a bracket above them.
 TEST(ReportLayout, NoBracketRunsThroughTheStarsOfAnother) {
   const std::string html = report::results_page(example());
   const auto from = html.find("aria-labelledby=\"box-plot-realism");
@@ -161,7 +162,7 @@ TEST(ReportLayout, ScoresThatWereNotGivenAreNotListed) {
   EXPECT_GT(left_out, 0);
 }
 
-/// Numbers of columns of each table's rows; the first row is the head.
+/// Number of columns in each row of each table; the first row is the head.
 std::vector<std::vector<int>> columns_of(const html_reader::Page& page) {
   std::vector<std::vector<int>> out;
   for (const auto& element : page.elements) {

@@ -1,4 +1,4 @@
-/// The page of a study's results: its numbers, its reach, its structure.
+/// The page of a study's results: its numbers, its completeness, its structure.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ const OrderedJson& made() {
   return json;
 }
 
-// [-0.000024, 0.0217] stood as [0.0000, 0.0217].
+// An earlier version printed [-0.000024, 0.0217] as [0.0000, 0.0217].
 TEST(IntervalsOfTheReport, ShowOnWhichSideOf0TheyLie) {
   const auto shown = [](double low, double high, int decimals) {
     const OrderedJson ci{low, high};
@@ -63,7 +63,7 @@ TEST(IntervalsOfTheReport, ShowOnWhichSideOf0TheyLie) {
   EXPECT_EQ(shown(-1e-17, 0.5, 2), "[0.00, 0.50]") << "rounding";
 }
 
-/// Without printing the whole page where it does not.
+/// Whether the page contains the words. Unlike HasSubstr, a failure does not print the whole page.
 bool holds(const std::string& html, const std::string& words) {
   return html.find(words) != std::string::npos;
 }
@@ -176,7 +176,7 @@ TEST(ReportPage, TablesAndFiguresCanBeReadAloud) {
   EXPECT_EQ(n["figcaption"], n["figure"]);
   EXPECT_EQ(n["svg"], n["figure"]);
   EXPECT_EQ(n["desc"], n["svg"]);
-  EXPECT_EQ(n["title"], n["svg"] + 1);  // and the page's own
+  EXPECT_EQ(n["title"], n["svg"] + 1);  // plus the page's own title
   EXPECT_GE(n["svg"], 10) << "three flows, three timings, heat map, two box plots, preferences";
 }
 

@@ -1,4 +1,4 @@
-/// What the report says of a pilot: who was left out and why, where people looked, how showings ran.
+/// The report about a pilot: exclusions with reasons, where people looked, timing of showings.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Json results_of(const std::vector<study::TaskProtocol>& protocols, const stats::
       .json;
 }
 
-/// The page's words without its tags.
+/// The page's text without its tags.
 std::string words_of(const Json& json) {
   std::string out;
   for (const auto& text : html_reader::read(report::results_page(json)).texts)
@@ -47,7 +47,7 @@ study::TaskProtocol pilot_of_people(int participants = 8) {
   return pilot;
 }
 
-// The case that a new user met: a trial excluded by hand, one whose showing was cut.
+// A case that a new user had: one trial excluded by hand, one whose showing was cut.
 TEST(ReportPilot, WhatWasLeftOutByHandAndByRuleIsListed) {
   auto pilot = pilot_of_people();
   EXPECT_THAT(words_of(results_of({pilot})), HasSubstr("Nothing of Pilot was left out by rule or by hand."));
@@ -86,7 +86,7 @@ TEST(ReportPilot, GazeDisplayFlowAndTimingArePrintedAsForTheTasks) {
   }
   EXPECT_EQ(showings, 8 * 21);
   EXPECT_EQ(failed, 1) << "a showing that was left out is still part of the certificate";
-  // The pilot's one method refines nothing by gaze.
+  // The pilot's only method does not use gaze.
   EXPECT_EQ(json.at("study").at("tracked_gaze"), true);
 }
 
@@ -135,7 +135,7 @@ TEST(ReportPilot, TheRulesOfTheTasksAreAppliedAndNamed) {
                                     HasSubstr("2 who had answered were left out")));
 }
 
-// Before, nothing stood of a part of which no answer counts, and "nothing was left out" with it.
+// Earlier versions printed only "nothing was left out" about a part of which no answer counts.
 TEST(ReportPilot, APartOfWhichNothingIsLeftStillSaysWhy) {
   auto pilot = pilot_of_people(3);
   for (auto& session : pilot.sessions)
@@ -185,7 +185,7 @@ TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
                 "answers."));
 }
 
-/// The text that vip-stats fit-ptpe prints about the pilot of these results.
+/// The text that vip-stats fit-ptpe prints for the pilot of these results.
 std::string terminal_of(const study::TaskProtocol& pilot) {
   const auto data = collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}});
   ::testing::internal::CaptureStdout();
@@ -199,7 +199,7 @@ int count_of(const std::string& text, const std::string& words) {
   return n;
 }
 
-// No protocol shows more than 1000 frames/s: an interval that reaches beyond has no upper bound.
+// No protocol shows more than 1000 frames/s, so an interval that reaches beyond has no upper bound.
 TEST(ReportPilot, AnIntervalWithoutUpperBoundSaysSoOnPageAndTerminal) {
   const auto pilot = simulated_pilot("ptpe:a=30,b=0.03,slope=0.04,noise=2", 6, 2);
   Json json = results_of({pilot});
@@ -226,7 +226,7 @@ TEST(ReportPilot, AnIntervalWithoutUpperBoundSaysSoOnPageAndTerminal) {
   EXPECT_EQ(count_of(terminal_of(pilot), ", no upper bound]"), on_terminal);
 }
 
-// Beyond all numbers, too; JSON has no sign for infinity.
+// The same for infinite ends; JSON cannot represent infinity.
 TEST(ReportPilot, AnInfiniteEndIsAWordInTheResultsAndSaidOnThePage) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Json estimate;

@@ -1,4 +1,5 @@
-/// Each sentence that the report prints, with results in which it would be false: there it is not printed.
+/// Each sentence of the report is tested with results for which it would be false: then it must not be
+/// printed.
 
 #include <fnmatch.h>
 #include <gmock/gmock.h>
@@ -46,7 +47,7 @@ const Json& whole_study() {
   return json;
 }
 
-/// Rows of one kind print the same sentences.
+/// Key of a row: rows with the same key print the same sentences.
 std::string kind_of(const Json& row) {
   std::string kind;
   for (const char* key : {"task", "score", "question", "n_star", "level"})
@@ -78,7 +79,7 @@ const Json& short_study() {
 
 using Sentences = std::set<std::string>;
 
-/// A page that is refused prints nothing.
+/// The sentences on the page; none if the page is refused.
 Sentences sentences_on_page(const Json& json) {
   Sentences out;
   try {
@@ -89,7 +90,8 @@ Sentences sentences_on_page(const Json& json) {
   return out;
 }
 
-/// The same. Many cases change nothing before they make their sentence false.
+/// The same, but with a cache for unchanged results: many cases change nothing before they make their
+/// sentence false.
 Sentences printed(const Json& json) {
   static const Sentences unchanged = sentences_on_page(short_study());
   return json == short_study() ? unchanged : sentences_on_page(json);
@@ -104,7 +106,7 @@ bool prints(const Json& json, const Case& one) {
   return std::any_of(all.begin(), all.end(), [&](const auto& sentence) { return matches(one, sentence); });
 }
 
-// What the other tests see of the short study holds for the whole one.
+// So what the other tests find with the short study is true of the whole one too.
 TEST(ReportSentences, TheShortStudyPrintsTheSentencesOfTheWholeOne) {
   EXPECT_EQ(sentences_on_page(short_study()), sentences_on_page(whole_study()));
 }
@@ -130,7 +132,7 @@ TEST(ReportSentences, EverySentenceHasSuchACase) {
   }
   Sentences unknown;
   for (const auto& sentence : all) {
-    if (sentence.find_first_not_of("#. ") == std::string::npos) continue;  // a value of the results
+    if (sentence.find_first_not_of("#. ") == std::string::npos) continue;  // only a value of the results
     const bool known =
         std::any_of(cases().begin(), cases().end(), [&](const Case& one) { return matches(one, sentence); });
     if (!known) unknown.insert(sentence);
@@ -138,19 +140,19 @@ TEST(ReportSentences, EverySentenceHasSuchACase) {
   EXPECT_THAT(unknown, ::testing::IsEmpty());
 }
 
-/// Another value of the same type.
+/// Changes a value to another one of the same type.
 void change(Json& value) {
   if (value.is_boolean()) {
     value = !value.get<bool>();
   } else if (value.is_number()) {
     const double number = value.get<double>();
-    value = number > 0.5 && number <= 1 ? number - 0.5 : number + 2;  // p above .999 all look alike
+    value = number > 0.5 && number <= 1 ? number - 0.5 : number + 2;  // p above .999 all print alike
   } else {
     value = value.get<std::string>() + " changed";
   }
 }
 
-// Whatever a sentence quotes: where the results say otherwise, so does the sentence.
+// If a quoted value changes in the results, the sentence must change too.
 TEST(ReportSentences, EveryValueQuotedIsTheResultsOwn) {
   const auto all = blocks_of(short_study());
   std::set<std::string> seen;

@@ -32,7 +32,7 @@ class SalvageCommandE2e : public ::testing::Test {
     return "  " + std::to_string(given_.size()) + " answers from " + where + "\n";
   }
 
-  /// Every page but the first is lost.
+  /// Destroys every page except the first.
   void destroy() {
     const auto size = static_cast<std::streamoff>(fs::file_size(database_));
     std::fstream file(database_, std::ios::binary | std::ios::in | std::ios::out);
@@ -42,7 +42,7 @@ class SalvageCommandE2e : public ::testing::Test {
 
   Ended salvage() const { return Process({vip_study, "salvage", "--db", database_, "--into", made_}).wait(); }
 
-  /// As given, whatever rows they stand in.
+  /// Expects all answers, in any rows.
   void expect_all_answers() const {
     const Answers found = answers_in(made_);
     ASSERT_EQ(found.size(), given_.size());

@@ -1,4 +1,4 @@
-/// How the sessions of a run end, and the exit status that says so.
+/// The endings of a run's sessions, and the command's exit status for them.
 #include "apps/study/session_player.hpp"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ study::Protocol consented() {
   return study::parse_protocol(text, "consented.toml");
 }
 
-/// Played like a window's sessions, without the window.
+/// Plays sessions as a window does, but without one.
 class Played : public ::testing::Test {
  protected:
   Played() {
@@ -53,7 +53,8 @@ class Played : public ::testing::Test {
     play_.database = folder_ / "study.db";
   }
 
-  /// Exit status of the command; `observer`: who answers by the plan, none for a person.
+  /// Plays the sessions and returns the command's exit status; `observer`: the planned observer, none for a
+  /// person.
   int play(const std::optional<std::string>& observer = {}, const std::vector<std::string>& codes = {"P01"}) {
     study::RunPlan plan = study::test::run_plan(protocol_, codes);
     for (auto& session : plan.sessions) session.observer = observer;
@@ -79,7 +80,7 @@ class Played : public ::testing::Test {
   ::test::TemporaryFolder folder_;
   const study::Protocol protocol_ = consented();
   SessionSetup setup_;
-  Scripted* person_ = nullptr;  ///< of setup_
+  Scripted* person_ = nullptr;  ///< owned by setup_
   PlayOptions play_;
   std::string out_;  ///< what was printed
 };
@@ -91,7 +92,7 @@ TEST_F(Played, ASessionThatIsDoneIsNought) {
 }
 
 TEST_F(Played, AStoppedSessionIsThree) {
-  setup_.wish = [](const auto&) { return study::Wish::EndSession; };
+  setup_.request = [](const auto&) { return study::Request::EndSession; };
   EXPECT_EQ(play(), 3);
   EXPECT_EQ(state("P01"), "stopped");
   EXPECT_THAT(out_, HasSubstr("P01 stopped before the end: the session is over"));
@@ -105,10 +106,10 @@ TEST_F(Played, ARefusedConsentIsFour) {
 }
 
 TEST_F(Played, OfSeveralSessionsAStopIsTold) {
-  setup_.wish = [this](const auto&) {
+  setup_.request = [this](const auto&) {
     if (!person_->seen.empty() && person_->seen.back() == "tell refused")  // the second one's turn
       person_->says["take_part"] = study::test::score(1);
-    return state("P01") == "refused" ? study::Wish::EndSession : study::Wish::GoOn;
+    return state("P01") == "refused" ? study::Request::EndSession : study::Request::GoOn;
   };
   person_->says["take_part"] = study::test::score(0);
   EXPECT_EQ(play({}, {"P01", "P02"}), 3);

@@ -1,4 +1,4 @@
-/// vip-study run --setting: which cells run at the file's numbers, what is refused, and where the fact goes.
+/// vip-study run --setting: the cells that use the file's settings, refusals, and the record of the settings.
 #include "apps/study/session_settings.hpp"
 
 #include <gmock/gmock.h>
@@ -143,7 +143,7 @@ TEST_F(SettingInStudyE2e, GoesFromTheFileToTheRecordToEveryExportAndToTheReport)
   const std::string sha256 = base::sha256_hex(text_), file = "setting_" + sha256.substr(0, 12) + ".toml";
   EXPECT_EQ(text_of("SELECT json_extract(options, '$.settings[0].text') FROM run"), text_);
   EXPECT_THAT(text_of("SELECT stimulus FROM session"), AllOf(HasSubstr(sha256), HasSubstr("iterations=6")));
-  // tau was given, so that no frame has the moments behind it.
+  // tau was given, so no frame has measured moments.
   EXPECT_EQ(test::count_in(database_, "SELECT count(*) FROM frame WHERE mu_fps IS NOT NULL"), 0);
   EXPECT_GT(test::count_in(database_, "SELECT count(*) FROM frame WHERE beta BETWEEN 0.8999 AND 0.9001"), 0);
 

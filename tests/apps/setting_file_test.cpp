@@ -1,4 +1,4 @@
-/// best.toml: what a sweep chose, on its way to the programs that run it.
+/// best.toml: the setting that a sweep chose, for the programs that run it.
 #include "apps/common/setting_file.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-/// What a sweep file says of one setting.
+/// Time and error of one setting in a sweep file.
 #include "apps/common/sweep/setting_price.hpp"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ TEST(SettingPrice, IsTheRowOfExactlyThisSettingBesideHiRes) {
   EXPECT_EQ(tables.tables[0].plan.n_star, 512);
   EXPECT_EQ(tables.tables[0].plan.seconds, 2);
   auto setting = hires_at(512);
-  setting.scene = "a name of no sweep";  // the file's hash tells which scene it is
+  setting.scene = "a name of no sweep";  // the file's hash identifies the scene
   setting[SolverKnob::Iterations] = 8;
   const auto prices = prices_of(tables, setting, scene_sha256());
   ASSERT_THAT(prices.found, SizeIs(1));
@@ -73,7 +73,7 @@ TEST(SettingPrice, SaysWhichKnobsDifferWhereNoRowIsTheSetting) {
   EXPECT_THAT(lines(prices_of(tables, hires_at(512), "beef")), HasSubstr("no table of this scene file"));
 }
 
-// Of Ours-TSp without a fixed beta: whatever beta a row has, it is not what runs.
+// Ours-TSp without a fixed beta: no row's beta is the one in use.
 TEST(SettingPrice, ABetaThatFollowsTheFrameRateIsNoRowsBeta) {
   auto cells = small_sweep();
   auto accelerated = usual_setting("SingleDam", sim::MethodKind::OursTsp, 512);
@@ -148,7 +148,7 @@ std::string without_scene(const SolverSetting& setting) {
   return text.substr(text.find(' '));
 }
 
-// vip-view's panel and its printed lines are of this setting.
+// vip-view's panel and printed lines describe this setting.
 TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
   const ::test::TemporaryFolder folder;
   base::write_file_atomically(folder / "dam.toml", test::small_dam);
@@ -176,7 +176,7 @@ TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
   options.display = "headless";
   take_setting(options, folder / "best.toml");
   EXPECT_EQ(without_scene(prepare_fluid(options).setting), without_scene(file.setting));
-  options.method = "HiRes";  // as the panel chooses it
+  options.method = "HiRes";  // like a choice in the panel
   const auto hires = prepare_fluid(options);
   EXPECT_EQ(hires.setting.method, sim::MethodKind::HiRes);
   EXPECT_EQ(hires.setting[SolverKnob::Substeps], 0) << "the file's numbers hold no more";

@@ -1,5 +1,5 @@
-/// Each protocol that is shipped, from check to report: each number of the page stands in the JSON, each
-/// session in a flow of participants.
+/// Each shipped protocol from check to report: each number of the page is in the JSON, and each session is in
+/// a flow of participants.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,13 +29,14 @@ struct Walk {
   std::string protocol, observer;
 };
 
-/// As the test's name has it.
+/// Its name in the test's name.
 std::string name_of(const Walk& walk) {
   return walk.protocol + (walk.observer == "random" ? "_left_out" : "");
 }
 void PrintTo(const Walk& walk, std::ostream* out) { *out << name_of(walk); }
 
-/// Each with an observer whose answers count, and one whose answers are all left out by the rules.
+/// Each protocol with an observer whose answers count; one also with an observer whose answers are all
+/// excluded by the rules.
 std::vector<Walk> walks() {
   std::vector<Walk> out{{"task2_lab", "random"}};
   for (const auto& entry : std::filesystem::directory_iterator(protocols)) {
@@ -56,7 +57,8 @@ TEST_P(ShippedProtocolsE2e, GoFromCheckToReport) {
     const Ended ended = run_shell(VIP_BIN_DIR "/" + line);
     EXPECT_EQ(ended.exit_code, 0) << ended.out;
   };
-  // The many schedules of a pilot take the check long; docs/statistics.md quotes it and is run.
+  // The check of a pilot takes long because of its many schedules; docs/statistics.md quotes it, and that page is
+  // run.
   if (!GetParam().protocol.starts_with("ptpe_pilot")) typed("vip-study check " + protocol);
   typed("vip-study run " + protocol + " --db " + database + " --observer " + GetParam().observer +
         " --seed 2 --participants " + std::to_string(people));

@@ -126,7 +126,7 @@ TEST(SicknessJson, ProtocolsAreNeverPooled) {
 
 TEST(SicknessTables, HoldEveryNumber) {
   auto plan = quick_plan();
-  plan.confidence = 0.5;  // three people bear no more
+  plan.confidence = 0.5;  // three people support no higher level
   const Json json{{"timing", Json::array()},
                   {"hypotheses", Json::array()},
                   {"sensitivity", Json::array()},
@@ -149,7 +149,7 @@ std::string html_of(const std::vector<SicknessSession>& sessions) {
   return report::results_page(json);
 }
 
-// A model answers within milliseconds: the page said 0.0 minutes for every asking.
+// A model answers within milliseconds; an earlier version printed 0.0 minutes for every rating.
 TEST(SicknessSection, WhoIsSimulatedHasNoMinutes) {
   EXPECT_THAT(html_of(three()), HasSubstr("Minutes (median)"));
   auto sessions = three();

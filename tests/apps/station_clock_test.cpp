@@ -1,4 +1,4 @@
-/// A station whose clock is wrong: said before the session, and not taken for a late preregistration.
+/// A station with a wrong clock: reported before the session, and not mistaken for a late preregistration.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ TEST(StationClock, IsComparedWithTheBuildAndTheNewestRow) {
   EXPECT_THAT(clock_problem("2027-06-01T00:00:00Z", newest, built), HasSubstr("more than a year after"));
 }
 
-/// A session at a time that the clock tells, finished.
+/// Records a finished session at this time of the clock.
 void record(const std::filesystem::path& path, const std::string& code, const std::string& utc) {
   const base::FixedUtc clock(utc);
   study::Store store(path, Open::Create);
@@ -77,8 +77,7 @@ TEST(StationClock, TheOrderOfRowsIsKeptWithTheSessionAndSurvivesAMerge) {
   }
 }
 
-/// What a comparison with a bundle of now says of Task 1, where the clock of one session told `told` after
-/// rows of `not_before`.
+/// Compares Task 1 with a bundle frozen now; one session's clock showed `told` after rows of `not_before`.
 base::Json compared(const std::string& told, const std::string& not_before) {
   const ::test::TemporaryFolder folder;
   report::BundleRequest request;
@@ -141,7 +140,7 @@ TEST(StationClock, WhereTheOrderDoesNotTellNothingIsCalledLate) {
   }
 }
 
-// A clock that is put right by a second disagrees with nothing.
+// A correction of the clock by a second is no contradiction.
 TEST(StationClock, ASmallStepIsNoContradiction) {
   const auto check = compared("2025-01-01T00:00:00Z", "2025-01-01T00:00:05Z");
   EXPECT_EQ(check.at("times").at(0).at("frozen_before"), false);

@@ -1,4 +1,4 @@
-/// vip-study run --stimulus FOLDER: what is baked, what runs live, what is missing, and what is refused.
+/// vip-study run --stimulus FOLDER: baked, live and missing stimuli, and refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ class StimulusFolderE2e : public ::testing::Test {
     const std::string scene = base::read_file(base::resource("data/scenes/single_dam.toml"), 1 << 20);
     base::write_file_atomically(scene_, replaced(scene, "settle_frames = 120", "settle_frames = 1"));
   }
-  /// One setting, trials of half a second; `more` stands at its top.
+  /// One setting, trials of half a second; `more` comes first in the file.
   void write_protocol(const std::string& methods, const std::string& more = "") {
     std::string text = replaced(short_protocol("0.5"), "data/scenes/single_dam.toml", scene_);
     text = replaced(text, "mean_fps = [20, 50]", "mean_fps = [20]");
@@ -40,7 +40,7 @@ class StimulusFolderE2e : public ::testing::Test {
     return run_program(run_arguments(protocol_, database, more));
   }
   Ended run_baked(const std::string& size = "64x36") { return run(database_, {"--stimulus", bakes_}, size); }
-  /// What the query finds, a line each.
+  /// The query's rows, one per line.
   std::string found(const std::string& database, const std::string& sql) {
     study::sqlite::Connection connection(database, study::sqlite::Open::Read);
     study::sqlite::Statement row(connection, sql);
@@ -144,7 +144,7 @@ TEST_F(StimulusFolderE2e, ResumeTakesAMovedBakeByItsHashAndNoOther) {
     EXPECT_EQ(gone.exit_code, 1);
     EXPECT_THAT(gone.err, AllOf(HasSubstr(place + ": is not there any more"), HasSubstr(hash),
                                 HasSubstr("vip-study resume --db " + database + " --stimulus PATH")));
-    // Another bake, by its hash.
+    // A bake with another hash.
     const std::string other = folder_ / "other.bake";
     const auto baked = run_program(
         {vip_study, "bake", scene_, "--method", "HiRes", "--n-star", "64", "--frames", "12", "--out", other});

@@ -1,4 +1,4 @@
-/// Is what a bake shows what the protocol names? Data of another stimulus are test data.
+/// Whether a bake shows the stimulus that the protocol names. Data of another stimulus are test data.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -80,7 +80,7 @@ TEST(StoreCommandsE2e, NumberedStationsShareTheAssignmentAndMergePrintsTheBalanc
       "WHERE participant = 'P01' ORDER BY position)";
   EXPECT_NE(row_of(folder / "1.db", first_order), row_of(folder / "2.db", first_order));
 
-  // The station's number is not forgotten in silence; the advice works.
+  // A forgotten station number is an error, and following its advice works.
   const Ended forgotten = record("1.db", {"--participant", "P07"});
   EXPECT_EQ(forgotten.exit_code, 1);
   EXPECT_THAT(forgotten.err, HasSubstr("mend: add --station 1/2"));
@@ -99,7 +99,7 @@ TEST(StoreCommandsE2e, NumberedStationsShareTheAssignmentAndMergePrintsTheBalanc
             HasSubstr("without a station number"), HasSubstr("mend: give each station a number of its own")));
 }
 
-/// Files below a folder, but the database and its journal, in whose bytes a text stands.
+/// Files below a folder, except the database and its journal, whose bytes contain the text.
 std::vector<std::string> files_with(const fs::path& folder, const std::string& text) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -126,16 +126,16 @@ TEST(StoreCommandsE2e, AWithdrawalReachesEveryReport) {
   call({stats, "report", database, "--html", folder / "r.html", "--json", folder / "r.json", "--csv",
         folder / "csv"});
   call({stats, "task2", database, "--json", folder / "t.json", "--csv", folder / "t"});
-  Process({stats, "fit-ptpe", database, "--json", folder / "fit.json"}).wait();  // of random answers
+  Process({stats, "fit-ptpe", database, "--json", folder / "fit.json"}).wait();  // a fit of random answers
   EXPECT_THAT(files_with(folder.path(), "QZ7"), ::testing::Not(::testing::Contains("fit.json")));
-  // They hold codes; the fit holds none.
+  // These files contain codes; the fit contains none.
   for (const char* made : {"r.html", "r.json", "t.json", "csv", "t", "csv/task2_choices.csv", "t/timing.csv"})
     EXPECT_EQ(fs::status(folder / made).permissions() & fs::perms(0077), fs::perms::none) << made;
   ASSERT_THAT(files_with(folder.path(), "QZ7"), ::testing::Contains("task2_choices.csv"));
   ASSERT_THAT(files_with(folder.path(), "QZ7"), ::testing::Contains("t.json"));
   call({vip_study, "withdraw", "QZ7", "--db", database, "--yes"});
   EXPECT_THAT(files_with(folder.path(), "QZ7"), ::testing::IsEmpty());
-  EXPECT_TRUE(fs::exists(folder / "fit.json"));  // of all, and of nobody alone
+  EXPECT_TRUE(fs::exists(folder / "fit.json"));  // it covers all people and names none
   EXPECT_FALSE(fs::exists(folder / "csv") || fs::exists(folder / "t"));
   EXPECT_EQ(count_in(database, "SELECT count(*) FROM export"), 0);
   call({stats, "report", database, "--html", folder / "r.html"});
@@ -155,7 +155,7 @@ TEST(StoreCommandsE2e, WhatIsLeftOfAWithdrawalIsNamedByEveryCommandUntilItIsDone
   EXPECT_EQ(withdrawn.exit_code, 1);
   EXPECT_THAT(withdrawn.out, HasSubstr("export " + (folder / "csv").string()));
   EXPECT_THAT(withdrawn.err, HasSubstr("one clean-up named above is left"));
-  const Ended next = run("P02");  // the session is played, the exit status tells
+  const Ended next = run("P02");  // the session is played; the exit status reports the problem
   EXPECT_EQ(next.exit_code, 1);
   EXPECT_THAT(next.out, HasSubstr("export " + (folder / "csv").string()));
   EXPECT_EQ(count_in(database, "SELECT count(*) FROM session WHERE state = 'done'"), 1);

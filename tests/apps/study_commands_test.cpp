@@ -1,4 +1,4 @@
-/// vip-study run, resume, status and export from the outside: results, and errors that change nothing.
+/// vip-study run, resume, status and export as a user runs them: results, and errors that change nothing.
 #include <gmock/gmock.h>
 #include <grp.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class StudyCommandsE2e : public ::testing::Test {
             const std::function<void()>& prepare = {}) {
     return run_program(run_arguments(folder_ / "short.toml", database_, more), prepare);
   }
-  /// One error with its place and mend, and every file as before.
+  /// Expects one error with its place and remedy, and all files unchanged.
   void expect_error(const std::vector<std::string>& arguments, const std::string& problem,
                     const std::function<void()>& prepare = {}) {
     const auto before = snapshot(folder_.path());
@@ -60,7 +60,7 @@ TEST_F(StudyCommandsE2e, RunPrintsTheCertificateAndStatusTheCounts) {
 TEST_F(StudyCommandsE2e, ARunInRealTimeSaysHowLongBeforeItStarts) {
   Process process(run_arguments(folder_ / "short.toml", database_,
                                 {"--participants", "40", "--clock", "real", "--display", "none"}));
-  ASSERT_TRUE(process.read_line());  // of --events: the first step begins
+  ASSERT_TRUE(process.read_line());  // from --events: the first step starts
   process.send(SIGINT);
   const Ended ended = process.wait();
   EXPECT_EQ(ended.exit_code, 1) << ended.err;
@@ -221,7 +221,7 @@ TEST_F(StudyCommandsE2e, AReadOnlyFolderIsAnErrorForAnUnprivilegedUserAndStillRe
   };
   fs::permissions(folder_.path(), fs::perms(0555));
   expect_error(run_arguments(folder_ / "short.toml", folder_ / "new.db", {}), "new.db", become_nobody);
-  // As made, both are the owner's alone. Who may not read the journal cannot know who withdrew.
+  // By default only the owner may read both. A user who may not read the journal cannot know who withdrew.
   fs::permissions(database_, fs::perms(0444));
   expect_error({vip_study, "status", "--db", database_}, "study.db.answers.jsonl: cannot be read",
                become_nobody);

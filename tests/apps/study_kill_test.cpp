@@ -138,7 +138,7 @@ id = "thanks"
 text = "Thank you."
 )";
 
-/// Runs until `lines` units were acknowledged and `delay` more, then kills. Returns all that was
+/// Runs until `lines` units were acknowledged, waits for `delay`, then kills. Returns everything that was
 /// acknowledged.
 std::string run_and_kill(const std::vector<std::string>& arguments, int lines,
                          std::chrono::microseconds delay) {
@@ -149,7 +149,7 @@ std::string run_and_kill(const std::vector<std::string>& arguments, int lines,
   return program.wait().out;
 }
 
-/// Nothing is there that was not asked once, and nothing is half done.
+/// Expects that everything was asked exactly once and nothing is half done.
 void check_whole(const std::string& database, std::size_t answers, std::size_t units) {
   EXPECT_EQ(answers_in(database).size(), answers);
   EXPECT_EQ(done_in(database).size(), units);
@@ -157,7 +157,8 @@ void check_whole(const std::string& database, std::size_t answers, std::size_t u
   EXPECT_EQ(count_in(database, "SELECT count(*) FROM event WHERE kind = 'done'"),
             static_cast<std::int64_t>(units));
   EXPECT_EQ(count_in(database, "SELECT count(*) FROM presentation WHERE state = 'running'"), 0);
-  // A trial is shown again only while it has a question left: its last answer is of its last showing.
+  // A trial is shown again only while it has an unanswered question: its last answer belongs to its last
+  // showing.
   EXPECT_EQ(count_in(database,
                      "SELECT count(*) FROM trial t WHERE (SELECT max(attempt) FROM presentation p "
                      "WHERE p.trial_id = t.trial_id) <> (SELECT max(r.attempt) FROM response r "
@@ -165,12 +166,12 @@ void check_whole(const std::string& database, std::size_t answers, std::size_t u
             0);
 }
 
-/// Kills a run, resumes it, and checks every promise; returns the answers.
+/// Kills a run, resumes it, and checks every guarantee; returns the answers.
 Answers check_one_kill(const std::string& database, const std::vector<std::string>& arguments, int lines,
                        std::chrono::microseconds delay, std::size_t answers, std::size_t units) {
   const std::string told = run_and_kill(arguments, lines, delay);
   const auto said = acknowledged(told);
-  // Killed before the plan: nothing to resume, so the run is given again.
+  // Killed before the plan was stored: nothing to resume, so the same run is started again.
   if (!fs::exists(database) || count_in(database, "SELECT count(*) FROM sqlite_schema") == 0 ||
       count_in(database, "SELECT count(*) FROM trial") == 0) {
     EXPECT_TRUE(said.empty());
@@ -178,7 +179,7 @@ Answers check_one_kill(const std::string& database, const std::vector<std::strin
     return answers_in(database);
   }
   const Answers before = answers_in(database);
-  // What was acknowledged is there; at most one more unit was safe but not yet told.
+  // Everything acknowledged is stored; at most one more unit was stored but not yet acknowledged.
   const Units done = done_in(database);
   for (const auto& key : said) EXPECT_TRUE(done.count(key)) << key.first << " " << key.second;
   EXPECT_LE(done.size(), said.size() + 1);
@@ -278,8 +279,8 @@ TEST(StudyKillE2e, OneRunMayBeKilledAgainAndAgain) {
   Answers before;
   std::size_t done_before = 0;
   for (int kill = 0; kill < 6; ++kill) {
-    // Units, not answers, grow: the two of one run may be the last page of a person and the first of the
-    // next.
+    // Units, not answers, must grow: the two units of one run may be the last page of one person and the
+    // first page of the next.
     const std::size_t done = done_in(database).size();
     EXPECT_GT(done, done_before);
     const Answers now = answers_in(database);

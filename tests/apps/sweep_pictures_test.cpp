@@ -88,14 +88,15 @@ TEST(SweepPictures, AfterThePartingOnlyTheFilmIsTold) {
   const CellRun twin = film({100, 100, 101, 104, 140, 140});
   const CellRun early = film({106, 106, 106, 106, 100, 100}), late = film({100, 100, 106, 106, 160, 160}),
                 usual = film({106, 106, 106, 106, 106, 106});
-  // The median difference is 6 at each instant but the last two, a third of it 2: the twin has 1, then 4.
+  // The median difference is 6 at each instant except the last two, and a third of it is 2: the twin differs
+  // by 1, then by 4.
   const auto scores = score_pictures({&early, &late, &usual}, reference, twin);
   EXPECT_NEAR(scores.parting_s, 0.2 + 1.0 / 30, 1e-12);
   EXPECT_NEAR(error(scores, 0, PictureError::Picture), 100 * 6 / 255.0, 1e-9);
   EXPECT_NEAR(error(scores, 1, PictureError::Picture), 100 * std::sqrt((0 + 36) / 2.0) / 255, 1e-9)
       << "without the last instant";
   EXPECT_GT(error(scores, 1, PictureError::Film), error(scores, 1, PictureError::Ssim));
-  // Parted from the first instant on.
+  // Diverged from the first instant on.
   const CellRun wild = film({190, 190, 190, 190, 190, 190});
   const auto none = score_pictures({&early}, reference, wild);
   EXPECT_NEAR(none.parting_s, 0.1, 1e-12);
@@ -122,7 +123,7 @@ TEST(SweepPictures, WithoutPicturesNothingIsSaidOfThem) {
 const SweepPlan plan{.n_star = 512, .kept = "32x32"};
 const SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
 
-/// A run whose front and energy lie so far from those of the truth, with frames of `ms`.
+/// A run whose front and energy differ by `off` from the truth's, with frames of `ms`.
 CellRun water(double off, double ms, const CellRun& seen) {
   CellRun out = seen;
   out.samples.push_back({.time_s = 0.1, .front_m = 5 + off, .kinetic_j_kg = 10 + off});
@@ -135,7 +136,7 @@ StoredCell stored(const SolverSetting& setting, int seed, const CellRun& run) {
   return {{setting, seed, plan.seconds, plan.size, plan.kept}, origin, run};
 }
 
-/// Of second order in the spacing, of first in the step.
+/// Errors of second order in the spacing and of first order in the step.
 std::vector<StoredCell> sweep() {
   const auto reference = reference_setting("SingleDam", 512);
   const auto usual = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
@@ -209,10 +210,10 @@ TEST(SweepPictures, ASweepWithoutThemSaysSo) {
   EXPECT_THAT(to_markdown(list), Not(HasSubstr("FLIP")));
   EXPECT_THAT(accuracy_page(list, bare), HasSubstr("The sweep kept no pictures"));
   EXPECT_TRUE(within_budget(list.settings, 30, SweepError::Flip).empty());
-  const BudgetWish wish{bare, 30, SweepError::Flip, 10};
-  EXPECT_THAT([&] { choose_setting(cells, origin, wish, {}, {}); },
+  const BudgetRequest request{bare, 30, SweepError::Flip, 10};
+  EXPECT_THAT([&] { choose_setting(cells, origin, request, {}, {}); },
               ThrowsMessage<base::Error>(HasSubstr("the sweep kept no pictures")));
-  // Cells with pictures are another sweep.
+  // Cells with pictures belong to another sweep.
   EXPECT_THROW(price_list(cells, plan, origin, 10), base::Error);
 }
 
@@ -229,8 +230,8 @@ TEST(SweepPictures, AnErrorThatNoRowHasIsSaidToBeUntold) {
   EXPECT_THAT(to_markdown(list), HasSubstr("salient_pct: the reference has no large enough part"));
   EXPECT_THAT(to_markdown(list), Not(HasSubstr("nan")));
   EXPECT_THAT(accuracy_page(list, plan), HasSubstr("Not known: the reference has no large enough part"));
-  const BudgetWish wish{plan, 30, SweepError::Salient, 10};
-  EXPECT_THAT([&] { choose_setting(cells, origin, wish, {}, {}); },
+  const BudgetRequest request{plan, 30, SweepError::Salient, 10};
+  EXPECT_THAT([&] { choose_setting(cells, origin, request, {}, {}); },
               ThrowsMessage<base::Error>(HasSubstr("--error salient: is not known for any setting")));
 }
 

@@ -1,4 +1,4 @@
-/// scripts/sweep.smk: what is killed half-way and goes on gives what the serial run gives.
+/// scripts/sweep.smk: a workflow that is killed half-way and continued gives the serial run's result.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,10 +23,11 @@ struct Worker {
 class SweepWorkflowE2e : public test::TableTest {
  protected:
   void SetUp() override {
-    ASSERT_EQ(test::run_shell("command -v snakemake").exit_code, 0) << "scripts/setup.sh sweeps installs Snakemake";
+    ASSERT_EQ(test::run_shell("command -v snakemake").exit_code, 0)
+        << "scripts/setup.sh sweeps installs Snakemake";
   }
 
-  /// In a session of its own, from this test's folder, on two cores.
+  /// Runs the workflow in its own session, from this test's folder, on two cores.
   test::Process workflow(const std::string& arguments) const {
     return test::Process(
         {"/bin/sh", "-c",
@@ -34,7 +35,7 @@ class SweepWorkflowE2e : public test::TableTest {
              "/scripts/sweep.smk --cores 2 " + arguments + " bin=" VIP_BIN_DIR " out=out >>log 2>&1"},
         [] { ::setsid(); });
   }
-  /// Settled states and locks are this test's own.
+  /// Uses settled states and locks of this test only.
   std::string environment() const {
     const std::string own = folder.path().string();
     return "env -u DISPLAY OMP_NUM_THREADS=2 VIP_CACHE_DIR= VIP_LOCK_DIR=" + own + " XDG_CACHE_HOME=" + own +
@@ -59,7 +60,7 @@ class SweepWorkflowE2e : public test::TableTest {
     return out;
   }
 
-  /// 'T' once it is stopped; 0 when it is gone.
+  /// State of a process: 'T' if it is stopped; 0 if it is gone.
   static char state_of(pid_t pid) {
     std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
     std::string text;
@@ -76,7 +77,8 @@ class SweepWorkflowE2e : public test::TableTest {
     return true;
   }
 
-  /// Once so many jobs are done: a worker in the midst of its cell, stopped. Throws after five minutes.
+  /// Waits for `least_done` finished jobs, then returns a worker that is stopped in the middle of its cell.
+  /// Throws after five minutes.
   template <class InCell>
   Worker stop_a_worker(const std::string& kind, std::size_t least_done, InCell in_cell) const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
@@ -102,7 +104,7 @@ class SweepWorkflowE2e : public test::TableTest {
   static Written written(const fs::path& shard) {
     return {fs::last_write_time(shard), base::read_file(shard, 1 << 24)};
   }
-  /// Of jobs that are done, which here are one cell each.
+  /// Shards of finished jobs; each job here is one cell.
   std::map<fs::path, Written> done_shards(const std::string& kind) const {
     std::map<fs::path, Written> out;
     const fs::path done = folder / ("out/" + kind + "/done");
@@ -131,7 +133,7 @@ TEST_F(SweepWorkflowE2e, AWorkerThatIsKilledHalfWayLeavesTheSerialRunsTable) {
 
   const std::string arguments = "--config accuracy='" + sweep + "'";
   auto killed = workflow(arguments + " retries=0");
-  // Who has the machine's lock runs a cell.
+  // The worker that holds the machine's lock runs a cell.
   const Worker worker = stop_a_worker("accuracy", 4, [&](const Worker&) {
     const int fd = ::open(path("vip-bench.lock").c_str(), O_RDONLY);
     const bool held = ::flock(fd, LOCK_EX | LOCK_NB) != 0;

@@ -110,7 +110,7 @@ TEST_F(CheckpointFile, RefusesWhatIsDamaged) {
   }
 }
 
-/// Two checkpoints with two gaze points, two repeats each; LoRes alone.
+/// Two checkpoints with two gaze points, two repeats each; only LoRes.
 ScoreBlock block_of(const std::vector<double>& values) {
   ScoreBlock out{"Pond", "1k", sim::Preset::Tuned, {}};
   out.checkpoints = {60, 120};
@@ -150,7 +150,7 @@ TEST_F(PairedCells, ReadBackToTheSameBits) {
   EXPECT_EQ(at(120, "def", 2, 2), values[7]);
 }
 
-// Differences 1, 2 | 3 | 6, 6: means of pairs 1.5, 3 and 6, of the last pair nothing is finite.
+// Differences 1, 2 | 3 | 6, 6: the means of pairs are 1.5, 3 and 6; the last pair has no finite difference.
 TEST_F(PairedCells, ChangeIsTheMeanOverPairsOfCheckpointAndGaze) {
   const auto then = written(block_of({10, 10, 20, 20, 30, 30, infinite, 40}));
   const auto now = block_of({11, 12, 23, infinite, 36, 36, 41, unknown});
@@ -231,7 +231,7 @@ TEST_F(Table1PairsE2e, AStoredRunIsReadAgainBitForBit) {
   EXPECT_THAT(ended.out, HasSubstr("| now_minus_then |"));
   EXPECT_THAT(base::read_file(path("t1.md"), 1 << 16), HasSubstr("| now_minus_then |"));
 
-  // One checkpoint fewer: known before anything runs.
+  // With one checkpoint fewer the error comes before anything runs.
   ended = table1("--checkpoints 1 --checkpoints-from " + path("kept/deep") + " --paired-with " +
                  path("then.csv"));
   EXPECT_EQ(ended.exit_code, 1) << ended.out;

@@ -1,4 +1,4 @@
-/// What vip-bench table1 is made of: starts, gaze points, masks, means and verdicts.
+/// Parts of vip-bench table1: starts, gaze points, masks, means and verdicts.
 
 #include <gtest/gtest.h>
 
@@ -28,9 +28,9 @@ TEST(Table1Gazes, AreTheScenesOwnNearestInTimeFirst) {
   using Points = std::vector<sim::Vec3d>;
   EXPECT_EQ(apps::gaze_points(dam, 120, 3),
             (Points{dam.gaze[2].point_m, dam.gaze[1].point_m, dam.gaze[3].point_m}));
-  // The key of frame 60 begins its jump there; frame 60 still looks at the point before.
+  // The key of frame 60 starts its jump there; frame 60 still looks at the previous point.
   EXPECT_EQ(apps::gaze_points(dam, 60, 2), (Points{dam.gaze[0].point_m, dam.gaze[1].point_m}));
-  // Faucet names one point twice.
+  // Faucet lists one point twice.
   const auto faucet = sim::read_scene("data/scenes/faucet.toml");
   for (const int frame : faucet.checkpoints) {
     const auto points = apps::gaze_points(faucet, frame, 3);

@@ -41,7 +41,7 @@ TEST_F(Table1E2e, HoldsARowForEachMethodAndMetric) {
       EXPECT_EQ(metrics.at(mask).at("skipped"), "0") << method;
     }
     EXPECT_LE(std::stod(metrics.at("ssim_cumul").at("mean")), 1) << method;
-    if (method == "HiRes") continue;  // an ulp away, next to nothing flickers in eight frames
+    if (method == "HiRes") continue;  // an ulp apart: hardly anything flickers in eight frames
     EXPECT_GT(std::stod(metrics.at("flicker_periphery").at("mean")), 0) << method;
     EXPECT_NE(metrics.at("flicker_periphery").at("mean"), metrics.at("flicker").at("mean")) << method;
   }

@@ -47,7 +47,7 @@ TEST_F(Table2E2e, HoldsARowForEachMethodWithItsParts) {
     const bool looks = method == "Ours" || method == "Ours-TSp";
     EXPECT_EQ(row.at("picture_by"), looks ? "host" : "none") << method;
   }
-  // The speed-up is that of a step's wall time, of which the table holds three digits behind the point.
+  // The speed-up is the ratio of the steps' wall times, which the table rounds to three decimals.
   const double hires_ms = std::stod(by_method["HiRes"]["ms_step_mean"]);
   for (const auto& row : table) {
     const double ms = std::stod(row.at("ms_step_mean")), speedup = std::stod(row.at("speedup"));

@@ -124,7 +124,7 @@ TEST_F(TaskCommandsE2e, BadInputIsNamedAndNothingIsWritten) {
   EXPECT_EQ(program("vip-stats task1 " + database).exit_code, 0) << "the database is whole";
 }
 
-/// The words of the line that begins so; none where there is no such line.
+/// The words of the line that starts with `beginning`; empty if there is no such line.
 Words line_of(const std::string& out, const std::string& beginning) {
   std::istringstream lines(out);
   for (std::string line; std::getline(lines, line);) {
@@ -135,7 +135,8 @@ Words line_of(const std::string& out, const std::string& beginning) {
   return {};
 }
 
-/// What the line of a pair says by the results: chosen, answers, share, p, p after Holm, interval, test.
+/// The words that a pair's line must have according to the results: chosen, answers, share, p, p after Holm,
+/// interval, test.
 Words line_of(const base::Json& pair) {
   const bool people = pair.contains("by_person");
   const auto& tested = people ? pair.at("by_person") : pair;
@@ -148,7 +149,7 @@ Words line_of(const base::Json& pair) {
           text(ci.at(1), 2) + "]", people ? "shares" : "binomial"};
 }
 
-/// Six people's answers to all ten pairs. `again`: to the first pair also on a second visit.
+/// Six people's answers to all ten pairs. `again`: also a second visit that answers the first pair.
 std::vector<task_database::Trial> answers_of_six(bool again) {
   const Words methods{"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"};
   std::vector<task_database::Trial> out;
@@ -177,7 +178,7 @@ struct Task2Output {
   base::Json results;
 };
 
-/// What the lines say that the interval of a pair is; empty: no line says it, or two say different names.
+/// The name of a pair's interval according to the lines; empty if no line names it, or two lines differ.
 std::string interval_name(const std::string& lines, const std::string& pair) {
   std::set<std::string> names;
   std::istringstream all(lines);
@@ -191,7 +192,7 @@ std::string interval_name(const std::string& lines, const std::string& pair) {
   return names.size() == 1 ? *names.begin() : "";
 }
 
-/// What vip-stats task2 prints and writes of them. Each line of a pair is held against the results.
+/// What vip-stats task2 prints and writes for these answers. Compares each pair's line with the results.
 Task2Output task2_of_six(bool again) {
   const TemporaryFolder folder;
   task_database::write(folder / "study.db", study::read_protocol(base::resource("protocols/task2.toml")),

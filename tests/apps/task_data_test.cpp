@@ -1,4 +1,4 @@
-/// What is analysed of Task 1 and Task 2, and what is not.
+/// Selection of the data of Task 1 and Task 2 for the analysis.
 
 #include "apps/stats/data/task_data.hpp"
 
@@ -155,7 +155,7 @@ TEST(TaskData, TimingTellsWhatTheSolverWentByWhereItWasMeasured) {
     if (cell["method"] != "Ours-TSp") {
       EXPECT_TRUE(cell["active_fraction"].is_null() && cell["tau_fps"].is_null()) << cell;
     } else if (!cell["tau_fps"].is_null()) {
-      // Means of the showings that measured them, whatever the others: tau and share go together here.
+      // Means over only the showings that measured them: in this data the active share follows from tau.
       EXPECT_NEAR(cell["active_fraction"].get<double>(), 1 + cell["tau_fps"].get<double>() / 16, 1e-12);
       EXPECT_LT(cell["tau_fps"].get<double>(), -3.9);
       found = true;

@@ -37,7 +37,7 @@ const Json& whole_study() {
   return json;
 }
 
-/// Dotted names of all fields; lists are one with their first element.
+/// Dotted names of all fields; a list counts as its first element.
 void names_of(const Json& json, const std::string& prefix, std::set<std::string>& names) {
   if (json.is_array() && !json.empty() && json[0].is_object()) return names_of(json[0], prefix + "[]", names);
   if (!json.is_object()) return;
@@ -47,8 +47,8 @@ void names_of(const Json& json, const std::string& prefix, std::set<std::string>
   }
 }
 
-/// Of the example's parts that the made study has too; counts by words of the data are no fields, nor is what
-/// depends on the answers.
+/// Names of the example's parts that the made study has too, without counts that are keyed by words of the
+/// data and without fields that depend on the answers.
 std::set<std::string> names_to_compare(const Json& json) {
   std::set<std::string> all, out;
   names_of(json, "", all);
@@ -64,14 +64,14 @@ std::set<std::string> names_to_compare(const Json& json) {
   return out;
 }
 
-// scripts/results_example.sh makes it anew.
+// scripts/results_example.sh makes the example again.
 TEST(TaskResults, TheExampleHasTheFieldsOfTodaysResults) {
   const std::string text = base::read_file(std::string(VIP_TEST_DIR) + "/apps/results_example.json", 1 << 24);
   EXPECT_EQ(names_to_compare(Json::parse(text)), names_to_compare(whole_study()));
 }
 
 TEST(TaskResults, NoNumberIsNaNInDisguise) {
-  // null stands where docs/report.md allows it, never for a number of a whole study.
+  // null is allowed where docs/report.md says so, never for a number of a complete study.
   for (const auto& one : whole_study().at("task1").at("comparisons")) {
     for (const char* field : {"p", "p_holm", "p_bh", "difference", "d_z", "g"})
       EXPECT_TRUE(one.at(field).is_number()) << field;
@@ -108,7 +108,8 @@ TEST(TaskResults, ClaimsAreCorrectedOverAllSix) {
   for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(of_six[i], holm[i], 1e-15);
 }
 
-// As pairs are over the pairs of one score at one n_*; a method that nobody answered about is of the family.
+// Like pairs, which are corrected over the pairs of one score at one n_*. A method without answers still
+// belongs to the family.
 TEST(TaskResults, OrdinalEffectsAreCorrectedOverTheMethodsOfTheirModel) {
   auto task = made_study::task1(26);
   for (auto& session : task.sessions)
@@ -130,7 +131,7 @@ TEST(TaskResults, OrdinalEffectsAreCorrectedOverTheMethodsOfTheirModel) {
 }
 
 TEST(TaskResults, AWorldWithBetterMethodsIsFound) {
-  // Quality differs by 1 to 1.3 points from FovFluid, noise 1: H1 and H5 must come out, H6 must not.
+  // Quality differs by 1 to 1.3 points from FovFluid, noise 1: H1 and H5 must be supported, H6 must not.
   const auto& hypotheses = whole_study().at("hypotheses");
   EXPECT_EQ(hypotheses[0].at("status"), "supported") << hypotheses[0].at("status_text");
   EXPECT_EQ(hypotheses[4].at("status"), "supported") << hypotheses[4].at("status_text");
@@ -148,7 +149,7 @@ TEST(TaskResults, WithoutTrackedGazeTwoHypothesesAreNotTestable) {
   EXPECT_EQ(json.at("study").at("tracked_gaze"), false);
 }
 
-// A study whose people all agree: exact tests, not "no data".
+// A study in which all people agree: exact tests, not "no data".
 TEST(TaskResults, UnanimousPeopleAreTestedExactly) {
   auto one = made_study::task1(6), two = made_study::task2(6);
   for (auto& session : one.sessions)
@@ -175,7 +176,7 @@ TEST(TaskResults, FewPeopleHaveNoBootstrapAndALevelOfTheirOwn) {
   for (const auto& pair : json.at("task1").at("comparisons")) {
     EXPECT_TRUE(pair.at("bca").is_null());
     EXPECT_THAT(pair.at("bca_reason").dump(), ::testing::AnyOf(HasSubstr("too few"), HasSubstr("equal")));
-    if (pair.at("wilcoxon").contains("refused")) continue;  // no difference that is not zero
+    if (pair.at("wilcoxon").contains("refused")) continue;  // no non-zero difference
     EXPECT_EQ(pair.at("wilcoxon").at("ci_level"), 0.9375);
     ++intervals;
   }
@@ -198,7 +199,7 @@ TEST(TaskResults, PartsThatTheStudyLacksAreAbsent) {
   EXPECT_THAT(results.missing[0].reason, HasSubstr("no protocol"));
 }
 
-// H1 to H3 need the items of cybersickness, and are not tested where effects vary.
+// H1 to H3 need the items of cybersickness, and are not tested if effects vary.
 TEST(TaskResults, RealismAloneIsEnoughWhereEffectsAreAFactor) {
   auto task = made_study::task1(12);
   std::erase_if(task.questions, [](const auto& question) { return question.id != "realism"; });
@@ -302,7 +303,7 @@ stats::AnalysisPlan plan_of(const std::string& text) {
   return read_plan(folder / "plan.toml").plan;
 }
 
-// A bundle's plan names its protocols; one of before the keys were there was frozen under Holm.
+// A bundle's plan names its protocols; a plan from before these keys existed was frozen under Holm.
 TEST(AnalysisPlan, AFrozenPlanWithoutADecisionRuleIsOneUnderHolm) {
   const auto fresh = plan_of("format = 1\n");
   EXPECT_EQ(fresh.decision, stats::DecisionRule::IntersectionUnion);

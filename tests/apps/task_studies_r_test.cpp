@@ -52,14 +52,14 @@ std::vector<task_database::Trial> trials_of(const Json& study, bool pairs) {
   return out;
 }
 
-/// The study that another one is of, or itself.
+/// The study whose answers this study uses, or itself.
 const Json& answers_of(const Json& study) {
   for (const Json& other : made_by_r().at("studies"))
     if (other.at("name") == study.at("of")) return other;
   return study;
 }
 
-/// What vip-stats writes about the study's answers under its plan.
+/// What vip-stats writes for the study's answers under its plan.
 Json results_of(const Json& study) {
   const bool pairs = study.at("task") == 2;
   const std::string task = pairs ? "task2" : "task1";
@@ -77,7 +77,7 @@ Json results_of(const Json& study) {
   return Json::parse(base::read_file(folder / "out.json", 1 << 26));
 }
 
-/// Holds what R made against the program's; keeps the names of fields whose numbers were compared.
+/// Compares R's results with the program's; keeps the names of fields whose numbers were compared.
 class Comparison {
  public:
   void compare(const Json& want, const Json& got, const std::string& name, const std::string& place) {
@@ -116,8 +116,8 @@ void names_of(const Json& json, const std::string& name, std::set<std::string>& 
   }
 }
 
-/// What the script does not make: bootstrap intervals, whose resamples are the program's own, and models that
-/// have fixtures of their own or no function in R alone (mixed_model.R, tests/stats/oracle).
+/// Fields that the script does not compute: bootstrap intervals, whose resamples are the program's own, and
+/// models that have their own fixtures or no function in base R (mixed_model.R, tests/stats/oracle).
 bool is_left_to_others(const std::string& name) {
   for (const std::string part :
        {".task1.ordinal", ".task1.mixed", ".task1.comparisons.mixed", ".task1.comparisons.tipping",
@@ -127,7 +127,7 @@ bool is_left_to_others(const std::string& name) {
   return false;
 }
 
-/// Large studies have more than 200 rows; `least`: so many numbers at least were compared.
+/// `large`: studies with more than 200 rows; `least`: the minimum number of compared numbers.
 void expect_as_r(bool large, int least) {
   constexpr std::size_t most_rows = 200;
   Comparison all;
@@ -144,7 +144,7 @@ void expect_as_r(bool large, int least) {
   std::set<std::string> only_here;
   for (const auto& name : printed)
     if (!all.names.contains(name) && !is_left_to_others(name)) only_here.insert(name);
-  // What was given, and counts of answers to a pair, which choose its test (suites Task2 and ShareTest).
+  // Inputs, and counts of answers to a pair, which choose its test (suites Task2 and ShareTest).
   EXPECT_THAT(only_here, ElementsAre(".hypotheses.alpha", ".task1.scores.margin", ".task1.scores.max",
                                      ".task1.scores.min", ".task2.choices.position", ".task2.pairs.several",
                                      ".task2.several_answers.most", ".task2.several_answers.of",

@@ -36,7 +36,7 @@ class ViewE2e : public ::testing::Test {
                 " --method LoRes --n-star 64 --backend cpu --size 64x48 --frames 3 " + more);
   }
 
-  /// A file of --ptpe.
+  /// A file for --ptpe.
   std::string fitted() const {
     sim::PtpeFile file;
     file.model = {31.5, 0.035};
@@ -182,7 +182,7 @@ TEST_F(ViewE2e, PaintsTheTemperatureOfAHotJet) {
       (folder / "hot").string());
   ASSERT_EQ(ended.exit_code, 0) << ended.out;
   EXPECT_NE(ended.out.find("temperature 293.15 to 353.15 K"), std::string::npos) << ended.out;
-  // Yellow, which neither cold water nor the room is.
+  // Yellow, unlike cold water and the room.
   const auto yellow = [&](const std::string& name) {
     const auto picture = sim::read_png(folder / "hot" / name);
     int count = 0;

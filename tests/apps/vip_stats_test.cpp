@@ -31,7 +31,7 @@ using testing_pilot::shown_exactly;
 using testing_pilot::simulated;
 using testing_pilot::write_database;
 
-/// `before` is what the shell does first, `as` what the program is started with.
+/// `before`: shell commands that run first; `as`: prefix of the program's command.
 apps::test::Ended vip_stats(const std::string& arguments, const std::string& before = "",
                             const std::string& as = "") {
   return apps::test::run_shell(before + as + VIP_BIN_DIR "/vip-stats " + arguments);
@@ -137,14 +137,14 @@ TEST(VipStatsE2e, KeepsEveryCalibration) {
   EXPECT_EQ(lines[0].at("file"), first);
   EXPECT_EQ(lines[1].at("file"), study::test::bytes_of(toml));
   EXPECT_EQ(lines[1].at("a").get<double>(), sim::read_ptpe_file(toml).model.a);
-  // A file changed by hand is taken down before it is replaced.
+  // A file changed by hand is recorded before it is replaced.
   base::write_file_atomically(toml, first + "# by hand\n");
   ASSERT_EQ(fit("4").exit_code, 0);
   lines = read_lines(history);
   ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[2].at("found"), true);
   EXPECT_EQ(lines[2].at("file"), first + "# by hand\n");
-  // A record that was tampered with stops everything.
+  // A modified record stops everything.
   const auto newest = study::test::bytes_of(toml);
   auto text = study::test::bytes_of(history);
   text[text.find("pilot")] = 'P';
@@ -267,7 +267,7 @@ TEST(VipStatsE2e, LeavesNothingHalfWrittenAtAFileSizeLimit) {
   const TemporaryFolder folder, out;
   const auto database = folder / "study.db";
   write_database(database, simulated("ptpe:a=24,b=0.02"));
-  // SQLite's own files beside it are there already, so that none of them meets the limit.
+  // SQLite's own files beside it exist already, so none of them reaches the limit.
   study::sqlite::Connection other(database, study::sqlite::Open::Write);
   other.integer("SELECT count(*) FROM session");
   const auto json = (out / "fit.json").string();

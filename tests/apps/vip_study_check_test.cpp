@@ -1,4 +1,4 @@
-/// vip-study check as users run it.
+/// vip-study check as a user runs it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(VipStudyCheckE2e, ReportsThePilotOn90Hz) {
   EXPECT_EQ(json.at("exact"), 14);
   EXPECT_EQ(json.at("settings").size(), 21u);
   EXPECT_EQ(json.at("common_refreshes").size(), 11u);
-  // Five to seven minutes with the answers (the paper's protocol as we read it).
+  // Five to seven minutes with the answers (our reading of the paper's protocol).
   EXPECT_GE(json.at("plan_with_answers_s").at(0), 5 * 60);
   EXPECT_LE(json.at("plan_with_answers_s").at(1), 7 * 60);
   for (const auto& setting : json.at("settings")) {
@@ -181,12 +181,12 @@ TEST(SessionOutline, BalanceNamesTheNextEvenNumbers) {
   EXPECT_EQ(apps::check_balance(shipped("ptpe_pilot")).even, 1);
 }
 
-/// Every step takes 1 / fps seconds, half of them to draw.
+/// Every step takes 1 / fps seconds, half of it for drawing.
 apps::StepTimes steps_at(double fps, std::size_t steps = 60) {
   return {std::vector<double>(steps, 0.5 / fps), std::vector<double>(steps, 0.5 / fps)};
 }
 
-/// Each cell measured by itself.
+/// Each cell is measured separately.
 std::vector<apps::MeasuredStimulus> all_at(const study::Protocol& protocol, double fps) {
   std::vector<apps::MeasuredStimulus> out;
   for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
@@ -233,7 +233,7 @@ TEST(MeasuredCheck, SlowMachinesAreNamedWithTheirRates) {
   const auto protocol = shipped("task1");
   const auto slow = judged(protocol, all_at(protocol, 30));
   EXPECT_TRUE(slow.too_slow);
-  EXPECT_EQ(slow.collapse, "");  // only native can collapse
+  EXPECT_EQ(slow.collapse, "");  // only native timing can collapse
   EXPECT_THAT(slow.cells.front().words, testing::HasSubstr("30 frames/s where 55.25 are asked for"));
   EXPECT_FALSE(judged(protocol, all_at(protocol, 80)).too_slow);
   const auto native = native_task1();

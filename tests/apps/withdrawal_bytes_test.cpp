@@ -1,5 +1,5 @@
-/// After a withdrawal no byte of all that a study left on the disk is of the person, and nobody else lacks
-/// one.
+/// After a withdrawal no byte of the person remains in anything that a study left on the disk, and no byte of
+/// anyone else is lost.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/// Two people were given this code: one in the study of the first version, one at the station "north".
+/// Two people have this code: one in the study of the first version, one at the station "north".
 constexpr const char* code = "QXJ7";
 constexpr const char* leaver = "QXJ7-north";
 constexpr const char* secret = "zebra-of-the-north";
@@ -37,7 +37,7 @@ constexpr std::int64_t telling_ns = 0x0102a3b4c5d6e7f8;
 constexpr double telling_x = 0.123456789012345, telling_place = 0.234567890123456,
                  telling_ipd = 61.2345678901234;
 
-/// As SQLite stores eight bytes.
+/// The eight bytes that SQLite stores for a number.
 template <class Number>
 std::string stored(Number number) {
   std::uint64_t bits = 0;
@@ -70,7 +70,7 @@ std::vector<std::string> content_of(const fs::path& path) {
   return all;
 }
 
-/// All that people said, saw and looked at, but the leaver.
+/// All answers, showings and gaze of everyone except the leaver.
 std::vector<std::string> kept_of_others(const fs::path& path) {
   const std::string who = " FROM session s JOIN unit u USING (session_id) ";
   const std::string others = " WHERE s.participant <> '" + std::string(leaver) + "' ";
@@ -94,8 +94,8 @@ std::vector<std::string> kept_of_others(const fs::path& path) {
   return all;
 }
 
-/// Of a database its bytes once the tombstones are overwritten in their places; of a journal the lines that
-/// are no tombstones; of any other file its bytes.
+/// For a database its bytes after its tombstones are overwritten in place; for a journal the lines except
+/// tombstones; for any other file its bytes.
 std::string without_tombstones(const fs::path& path) {
   if (path.string().ends_with(".answers.jsonl")) {
     std::istringstream lines(bytes_of(path));
@@ -117,7 +117,7 @@ std::string without_tombstones(const fs::path& path) {
   return bytes_of(copy);
 }
 
-/// What below a folder bears a text in its name, or holds it outside of tombstones.
+/// Files and folders below a folder with the text in their name or, outside tombstones, in their content.
 std::vector<std::string> files_with(const fs::path& folder, const std::string& text) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -143,7 +143,7 @@ study::Protocol asking_pairs() {
   return study::parse_protocol(text, "asking_pairs.toml");
 }
 
-/// One person's session of it: words, gaze, a note and an exclusion, all of which tell who it was.
+/// One person's session of it: words, gaze, a note and an exclusion, all of which identify the person.
 void take_part(study::Store& store, const study::OpenSession& session) {
   const bool leaves = session.plan.participant == code;
   const std::string words = leaves ? secret : "calm water, says " + session.plan.participant;
@@ -222,8 +222,8 @@ void write_everything_out(const fs::path& database, const fs::path& folder) {
 
 class WithdrawalBytes : public ::testing::Test {
  protected:
-  /// A database of the first version is upgraded by the merge with a station; then comes all that a database
-  /// may leave beside it.
+  /// A database of the first version is upgraded by the merge with a station; then every kind of file that a
+  /// database may leave beside it is made.
   WithdrawalBytes() {
     fs::create_directory(out);
     const TemporaryFolder north;
@@ -232,7 +232,7 @@ class WithdrawalBytes : public ::testing::Test {
     succeeds({vip_study, "merge", north / "north.db", "--into", path});
     first_version = study::backups_of(path).at(0);
     Connection now(path, Open::Write);
-    Statement(now, "VACUUM INTO ?").bind_all(later_backup.string()).run();  // as an upgrade makes it
+    Statement(now, "VACUUM INTO ?").bind_all(later_backup.string()).run();  // like an upgrade's backup
     study::PersonalFile(path).keep({{leaver, "age", "How old?", secret}, {"P02", "age", "How old?", "33"}});
     write_everything_out(path, out);
     leave_drafts(path, out);
@@ -264,7 +264,7 @@ TEST_F(WithdrawalBytes, OfThePersonAreNowhereAndOfAllOthersAsTheyWere) {
   for (const std::string& one : telling) EXPECT_THAT(files_with(folder.path(), one), Not(IsEmpty())) << one;
   const auto others = kept_of_others(path);
   const auto older = content_of(first_version);
-  ASSERT_THAT(older, Contains(HasSubstr(code)));  // another person's
+  ASSERT_THAT(older, Contains(HasSubstr(code)));  // belongs to another person
 
   Connection reader(path, Open::Write);  // keeps a log beside the database
   reader.integer("SELECT count(*) FROM session");

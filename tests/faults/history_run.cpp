@@ -109,10 +109,10 @@ void HistoryRun::consent(const Step& step) {
   const char* name = what == What::Gaze ? "gaze" : "sharing";
   told_ += std::string("consent of ") + key + ": " + name + (step.yes ? " yes" : " no");
   const SessionFacts before = facts().sessions[key];
-  study::PermissionWish wish;
-  (what == What::Gaze ? wish.gaze : wish.sharing) = step.yes;
+  study::PermissionRequest request;
+  (what == What::Gaze ? request.gaze : request.sharing) = step.yes;
   const bool done = command(step, false, [&] {
-    const auto change = study::change_permissions(database(), before.participant, wish);
+    const auto change = study::change_permissions(database(), before.participant, request);
     check_cleaned(database(), change.left, export_was_cut_);
   });
   const SessionFacts after = facts().sessions[key];

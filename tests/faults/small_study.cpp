@@ -158,7 +158,7 @@ void play_session(Store& store, PersonalFile& personal, const Protocol& protocol
     record_words("done " + person.key() + " " + std::to_string(done.unit.position));
     --units;
   };
-  hooks.wish = [&] { return units > 0 ? Wish::GoOn : Wish::Stop; };
+  hooks.request = [&] { return units > 0 ? Request::GoOn : Request::Stop; };
   run_session(protocol, session, parts, hooks);
 }
 

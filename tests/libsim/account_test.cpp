@@ -1,4 +1,4 @@
-/// Each frame's account (Simulation::account) against what the particles themselves say.
+/// Each frame's account (Simulation::account) against values computed from the particles.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ sim::SimulationOptions options_of(Backend backend, MethodKind method) {
   return options;
 }
 
-/// Particles of each level that the method may hold, counted one by one.
+/// Particles of each level that the method may use, counted one by one.
 std::vector<std::int64_t> counted(const sim::Simulation& fluid) {
   std::vector<sim::RenderParticle> particles;
   fluid.read_particles(particles);
@@ -65,7 +65,7 @@ void counts_what_is_there(Backend backend) {
 TEST(Account, CountsWhatIsThere) { counts_what_is_there(Backend::Cpu); }
 TEST(AccountGpu, CountsWhatIsThere) { counts_what_is_there(Backend::Cuda); }
 
-/// The sum over all frames is what the run's own report says.
+/// The sum over all frames must equal the run's report.
 void guards_are_of_one_frame(Backend backend) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   const auto fluid = sim::make_simulation(scene, options_of(backend, MethodKind::Ours));
@@ -102,7 +102,7 @@ void methods_without_tau_have_none(Backend backend) {
 TEST(Account, MethodsWithoutTauHaveNone) { methods_without_tau_have_none(Backend::Cpu); }
 TEST(AccountGpu, MethodsWithoutTauHaveNone) { methods_without_tau_have_none(Backend::Cuda); }
 
-/// The frame was solved before its own time was known: what it went by is what was known then.
+/// A frame is solved before its own time is known: its account has the tau known at that time.
 TEST(Account, TauIsWhatTheFrameWentByNotWhatCameAfterIt) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   const auto fluid = sim::make_simulation(scene, options_of(Backend::Cpu, MethodKind::OursTsp));
@@ -117,8 +117,8 @@ TEST(Account, TauIsWhatTheFrameWentByNotWhatCameAfterIt) {
   EXPECT_EQ(fluid->account().temporal->active, fluid->particle_count()) << "too few frames to switch on";
 }
 
-/// From one start both back ends account for the first frames alike: all that is exact to the last bit, the
-/// choice of the active particles but for those that rounding moves over the border.
+/// From the same start, both back ends give equal accounts of the first frames: exact values to the last bit;
+/// the choice of active particles may differ only where rounding crosses the threshold.
 TEST(AccountGpu, AgreesWithTheCpus) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   auto options = options_of(Backend::Cpu, MethodKind::OursTsp);

@@ -1,4 +1,5 @@
-/// A pull towards an axis: its table in a scene file, one particle against a closed form, a turning drop.
+/// A central force towards an axis: its table in a scene file, one particle against a closed form, a rotating
+/// drop.
 
 #include "libsim/scene/central_force.hpp"
 
@@ -57,10 +58,10 @@ void a_particle_swings(Backend backend) {
   options.backend = backend;
   options.n_star = 64;
   options.substeps = 2;
-  // 2 m above the centre along the axis, where nothing pulls.
+  // 2 m above the centre along the axis, which adds no force.
   options.start = std::vector<ParticleState>{{0, 0, 4 + amplitude, 4, 6, 0, 0, 0}};
   const auto fluid = sim::make_simulation(space(omega, {0, 0, 1}), options);
-  // v -= Omega^2 dt x, x += dt v has x_n = A cos((n + 1/2) theta) / cos(theta / 2).
+  // v -= Omega^2 dt x, x += dt v has the solution x_n = A cos((n + 1/2) theta) / cos(theta / 2).
   const double dt = 1.0 / 120;
   const double theta = 2 * std::asin(omega * dt / 2);
   EXPECT_NEAR(theta, omega * dt, 1e-5) << "the period is 2 pi / Omega but for the method's error";
@@ -77,7 +78,7 @@ void a_particle_swings(Backend backend) {
 TEST(CentralForce, AParticleSwingsWithItsPeriod) { a_particle_swings(Backend::Cpu); }
 TEST(CentralForceGpu, AParticleSwingsWithItsPeriod) { a_particle_swings(Backend::Cuda); }
 
-/// About the y axis through (4, ., 4), over m_*, m2/s.
+/// Angular momentum about the y axis through (4, ., 4), over m_*, m2/s.
 double angular_momentum(const std::vector<ParticleState>& state) {
   double sum = 0;
   for (const auto& p : state) {
@@ -110,8 +111,8 @@ void a_turning_drop_keeps_its_spin(Backend backend) {
   for (int frame = 0; frame < 120; ++frame) fluid->step_frame();
   const double after = angular_momentum(fluid->read_state());
   std::printf("central force: angular momentum %.5f of the start's after 120 frames\n", after / before);
-  // The pull acts where a substep begins, the pressure where it ends, dt further round the axis: what it
-  // holds up turns faster by at most Omega^2 dt a second.
+  // The pull acts at a substep's begin, the pressure at its end, dt later in the rotation: the supported
+  // water speeds up by at most Omega^2 dt a second.
   EXPECT_NEAR(after / before, 1, omega * omega * (1.0 / 240) * 2);
 }
 TEST(CentralForce, ATurningDropKeepsItsSpin) { a_turning_drop_keeps_its_spin(Backend::Cpu); }

@@ -74,12 +74,11 @@ TEST(Coarsen, KeepsMassMomentumAndCentreOfMass) {
   };
   for (const auto& p : fine) add(before, p);
   for (const auto& p : coarse) add(after, p);
-  for (int k = 0; k < 4; ++k) EXPECT_NEAR(after[k], before[k], 1e-2) << k;  // of sums of about 1e4 m
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(after[k], before[k], 1e-2) << k;  // sums are about 1e4 m
 }
 
 TEST(Coarsen, NeverMergesBeyondATarget) {
-  // One finest wish in a cloud of coarse ones keeps its particle, and its leaf of eight falls to 1 + 1 + 2
-  // + 4.
+  // One particle with target 0 among coarse targets stays, so its leaf of eight merges only to 1 + 1 + 2 + 4.
   const auto fine = cloud(1024, 5);
   std::vector<std::uint8_t> targets(fine.size(), 3);
   targets[77] = 0;

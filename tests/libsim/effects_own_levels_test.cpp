@@ -1,4 +1,4 @@
-/// Effects that leave coarse water out, in scenes and whole runs.
+/// Effects that leave out coarse water, in scenes and whole runs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(OwnLevels, EveryEffectHasACoarsestLevelAndAdhesionThatOfCohesion) {
   }
 }
 
-/// All effects up to this level, of coefficients that ask for no substeps more.
+/// All effects up to this level, with coefficients that need no additional substeps.
 std::vector<sim::Effect> effects_to(double coarsest) {
   std::vector<sim::Effect> out{{EffectKind::Viscosity, 0.05}, {EffectKind::Cohesion, 20},
                                {EffectKind::Adhesion, 10},    {EffectKind::AirDrag, 2},

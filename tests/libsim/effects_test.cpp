@@ -1,5 +1,4 @@
-/// Effects that a scene lists: their tables, what they cost when they are not there, their steps, their
-/// books.
+/// Effects that a scene lists: their tables, their cost when absent, their substeps, their documentation.
 
 #include "libsim/scene/effects.hpp"
 
@@ -82,7 +81,7 @@ TEST(Effects, ErrorsNameThePlaceAndTheMend) {
   EXPECT_THAT(error(tension + "colour = 1\n"), HasSubstr("is not a known key"));
   const std::string twice = error(tension + tension);
   EXPECT_THAT(twice, AllOf(HasSubstr("kind"), HasSubstr("is listed twice"), HasSubstr("keep one")));
-  // At the second table's kind.
+  // The error points at the second table's `kind`.
   const std::string text = dam_with(tension);
   const auto line = 2 + std::count(text.begin(), text.end(), '\n');
   EXPECT_THAT(twice, HasSubstr("scene.toml:" + std::to_string(line) + ":"));
@@ -114,7 +113,7 @@ sim::SimulationOptions options_of(sim::MethodKind method = sim::MethodKind::HiRe
   return out;
 }
 
-/// What a run costs and comes to.
+/// Cost and result of a run.
 struct Cost {
   std::string explanation;
   std::map<std::string, int> launches;
@@ -151,7 +150,7 @@ TEST(Effects, OfCoefficientZeroCostNothingAndChangeNoBit) {
     EXPECT_TRUE(same_bits(zero.state, bare.state)) << method.name;
     EXPECT_THAT(bare.explanation, Not(HasSubstr("dropped")));
     EXPECT_THAT(zero.explanation, HasSubstr("dropped: the scene lists tension_n_m = 0"));
-    // The same measure sees an effect that is there.
+    // The same measurement detects an effect that is present.
     scene.effects = {{EffectKind::Cohesion, 20}};
     const Cost with = cost_of(scene, method.kind);
     EXPECT_EQ(bare.launches.count("cohesion"), 0u);
@@ -253,7 +252,7 @@ TEST(Effects, AreEntriesOfTheAccountOfMomentum) {
   EXPECT_GT(gave, 1);
 }
 
-/// Each ```cpp block of a page stands in the file that the page names last before it.
+/// Each ```cpp block of the page must be in the source file that the page named last before it.
 TEST(Effects, ThePageQuotesTheSources) {
   std::istringstream page(base::read_file(base::resource("docs/architecture.md"), 1 << 20));
   const std::string root = std::string(VIP_TEST_DIR) + "/../";
@@ -301,7 +300,7 @@ TEST(Effects, ExplainSaysBelowWhichShearAThickPoolResistsMore) {
   const std::string words = "resist shear slower than ";
   EXPECT_THAT(says(), Not(HasSubstr(words)));
   scene.effects = {{EffectKind::Viscosity, 0.5}};
-  std::ostringstream shear;  // 0.1 g h / nu, half of the height below the surface
+  std::ostringstream shear;  // 0.1 g h / nu at half the height below the surface
   shear << 0.1 * scene.gravity_m_s2 * (scene.fill_max_m[1] - scene.fill_min_m[1]) / 2 / 0.5;
   EXPECT_THAT(says(), HasSubstr(words + shear.str() + " /s by more than a quarter"));
   scene.gravity_m_s2 = 0;
@@ -311,7 +310,7 @@ TEST(Effects, ExplainSaysBelowWhichShearAThickPoolResistsMore) {
   EXPECT_THAT(says(), Not(HasSubstr(words)));
 }
 
-/// What the demo scenes say of themselves.
+/// The numbers in the comments of the demo scenes.
 TEST(Effects, DemoScenesHaveTheNumbersOfTheirComments) {
   NEEDS_EFFECTS;
   const auto scales = [](const char* name) {

@@ -1,4 +1,4 @@
-/// Effects written as a scene file lists them.
+/// Effects in the text form of a scene file.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST(Effects, AreWrittenAsTheyAreRead) {
   EXPECT_FALSE(sim::effect_named("froth"));
 }
 
-/// Two runs that differ do not look alike.
+/// All digits are printed, so that two different runs do not look alike.
 TEST(Effects, AreExplainedInAllTheirDigits) {
   NEEDS_EFFECTS;
   auto scene = fluid_test::tank({1, 1, 1}, {0.5, 0.5, 0.5});

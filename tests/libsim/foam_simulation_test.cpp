@@ -1,4 +1,4 @@
-/// Foam in whole runs: its books, its bits, its file, and that the water does not know of it.
+/// Foam in whole runs: its counts, its reproducibility, its file, and no influence on the water.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ void set(sim::Effect& effect, EffectOption option, double value) {
   effect.options[static_cast<std::size_t>(option)] = value;
 }
 
-/// A dam of 1.2 m that foams well.
+/// A dam of 1.2 m that makes much foam.
 sim::Scene dam(double emission_per_s = 1) {
   auto scene = fluid_test::tank({2.4, 2, 1.2}, {1.2, 1.2, 1.2});
   scene.v_ref_m_s = 5;

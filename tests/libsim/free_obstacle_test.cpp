@@ -65,7 +65,7 @@ TEST(FreeObstacles, MomentsOfInertiaAreThoseOfTheShape) {
   }
 }
 
-/// A body that nothing else touches falls as water does, and the floor stops it.
+/// A body without contact falls as water does, and the floor stops it.
 TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
   Obstacle brick = free_one(box({1.2, 1.0, 1.2}, {0.4, 0.3, 0.5}), 700);
   brick.start.turn = {0, 0, 0.2588190451, 0.9659258263};  // 30 degrees about z
@@ -75,13 +75,13 @@ TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
   for (int frame = 0; frame < 120; ++frame) {
     fluid->step_frame();
     const auto now = fluid->read_obstacles().at(0);
-    // The first substep begins at rest.
+    // The body is still at rest in the first substep.
     if (frame == 0) rested_s = scene.frame_dt_s / fluid->substeps().taken;
     if (frame < 15) {
       EXPECT_NEAR(now.velocity_m_s[1], -9.81 * (fluid->time_s() - rested_s), 1e-4);
     }
     for (int corner = 0; corner < 8; ++corner) {
-      // No place inside the floor is inside the brick by more than a millimetre.
+      // No point more than a millimetre below the floor may be inside the brick.
       const sim::Vec3d below{now.pose.centre_m[0] + (corner & 1 ? 0.1 : -0.1), -1e-3,
                              now.pose.centre_m[2] + (corner & 4 ? 0.1 : -0.1)};
       EXPECT_GT(sim::signed_distance(brick, now.pose, below), -1e-9) << frame;
@@ -93,7 +93,7 @@ TEST(FreeObstacles, FallAndComeToRestOnTheFloor) {
   EXPECT_NEAR(last.walls_n_s[1], mass_of(brick) * 9.81 * scene.frame_dt_s, 0.01);
 }
 
-/// Water + body + walls: what the body gained is what the water and the walls gave it.
+/// The body's change of momentum must equal what the water and the walls gave it.
 void momentum_is_the_waters_and_the_walls(const sim::Scene& scene) {
   auto options = options_of();
   options.wall_impulse = true;
@@ -153,7 +153,7 @@ TEST(FreeObstacles, MomentumIsThatOfEffectsToo) {
   }
 }
 
-/// Turning of a ball in water that turns at 1 /s, after half a second and at its fastest.
+/// Rotation of a ball in water that rotates at 1 /s, after half a second and at its fastest.
 void water_that_turns_spins_a_ball(const sim::Effect& effect, bool triangles = false) {
   for (const double density : {100.0, 1000.0}) {
     const sim::Vec3d middle{0.5, 0.5, 0.5};
@@ -219,7 +219,7 @@ TEST(FreeObstacles, ASavedRunGoesOnBitForBit) {
   EXPECT_NE(at[0].velocity_m_s[1], 0);
 }
 
-/// Fixed ones run what they always did.
+/// Fixed obstacles run only their usual passes.
 TEST(FreeObstacles, CostNothingWhereNoneIs) {
   auto scene = pool_with(free_sphere(500));
   const auto launches = [](const sim::Scene& of) {
@@ -236,11 +236,11 @@ TEST(FreeObstacles, CostNothingWhereNoneIs) {
   scene.obstacles[0].motion = ObstacleMotion::Fixed;
   EXPECT_THAT(launches(scene),
               testing::Not(testing::AnyOf(HasSubstr("move bodies"), HasSubstr("push bodies"),
-                                          HasSubstr("clamp and hear"), HasSubstr("fastest body"),
+                                          HasSubstr("clamp and record"), HasSubstr("fastest body"),
                                           HasSubstr("an obstacle is free"))));
   if (!sim::has_effects()) return;
-  // Nobody asks what a fixed one gives.
-  const auto hears = HasSubstr("hear bodies");
+  // Nothing reads the impulse on a fixed obstacle.
+  const auto hears = HasSubstr("record bodies");
   scene.effects = {{sim::EffectKind::Viscosity, 1}};
   EXPECT_THAT(launches(scene), AllOf(HasSubstr("viscous pairs\n"), testing::Not(hears)));
   scene.obstacles[0].motion = ObstacleMotion::Free;
@@ -263,7 +263,7 @@ TEST(FreeObstacles, BeginWithTheRun) {
 }
 
 TEST(FreeObstacles, AreCarriedWhereLittleRoomIsLeftBesideThem) {
-  // Three cells across the tank, and less than one of them between the sphere and each wall.
+  // The tank is three cells wide, and less than one cell is between the sphere and each wall.
   const Obstacle ball = free_one(sphere({0.5, 0.55, 0.5}, 0.35), 400);
   const auto fluid = sim::make_simulation(pool_with(ball, 1.1), options_of());
   for (int frame = 0; frame < 30; ++frame) fluid->step_frame();

@@ -1,4 +1,4 @@
-/// Heat in whole runs: temperatures in scenes, what stays and what is told of what comes and goes.
+/// Heat in whole runs: temperatures in scenes, conservation, and the account of heat that enters and leaves.
 
 #include "libsim/scene/heat.hpp"
 
@@ -88,7 +88,7 @@ std::vector<float> temperatures(const sim::Simulation& fluid) {
   return out;
 }
 
-/// Everything merges, then a ball of it splits, while two thirds of the water may rest.
+/// All particles merge, then a ball of water splits, while up to two thirds of the water rest.
 void the_total_stays(Backend backend) {
   NEEDS_EFFECTS;
   auto options = levels_test::options_for(backend, 288, levels_test::everywhere(3));
@@ -112,7 +112,7 @@ void the_total_stays(Backend backend) {
   EXPECT_GT(report.levels.splits, 10u);
   EXPECT_GT(rested, 1000);
   EXPECT_NEAR(report.heat.held / before, 1, 1e-5);
-  // Nothing gets warmer than what was warmest.
+  // No water gets warmer than the warmest at the start.
   const auto theta = temperatures(*fluid);
   const auto [least, most] = std::minmax_element(theta.begin(), theta.end());
   EXPECT_GE(*least, -1e-4f);
@@ -120,7 +120,8 @@ void the_total_stays(Backend backend) {
   EXPECT_GT(*most - *least, 0.5f);
 }
 
-/// A warm nozzle, an outlet and warm walls: what is there is what was there and what came and went.
+/// A warm nozzle, an outlet and warm walls: the heat in the tank must equal that of the start plus what
+/// entered less what left.
 void the_ledger_closes(Backend backend, MethodKind method) {
   NEEDS_EFFECTS;
   auto scene = fluid_test::tank({4, 3, 4}, {4, 1, 4});

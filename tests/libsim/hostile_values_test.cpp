@@ -1,5 +1,5 @@
-/// Whatever stands behind a key of a scene or of the solver's file: it is taken, and all that follows before
-/// memory is asked for can be done, or an error says where it stands and what to do.
+/// Any value of any key of a scene or of the solver's file: either it is accepted and all steps up to the
+/// allocation of memory work, or an error gives its place and the remedy.
 
 #include <gtest/gtest.h>
 

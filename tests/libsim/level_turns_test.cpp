@@ -1,4 +1,4 @@
-/// In which frames saliency, splits and merges have their turn.
+/// The frames in which saliency, splits and merges run.
 
 #include "libsim/methods/level_turns.hpp"
 
@@ -60,7 +60,7 @@ std::unique_ptr<sim::Simulation> make(Backend backend, MethodKind method, int pe
   return sim::make_simulation(pool(), options);
 }
 
-/// Share of the water within half a metre of what is looked at that is of level 0.
+/// Share of level 0 in the water within half a metre of the gaze point.
 double fine_share(const sim::Simulation& fluid, double x_m) {
   double fine = 0;
   double all = 0;
@@ -72,8 +72,9 @@ double fine_share(const sim::Simulation& fluid, double x_m) {
   return all > 0 ? fine / all : 0;
 }
 
-/// Where the eye jumps to, water becomes fine as soon as with a turn in each frame. Who splits first differs
-/// by chance, and a frame's share by up to 0.09 (a CPU and a GPU); a frame's wait costs up to 0.4.
+/// Where the gaze jumps to, water becomes fine as soon as if levels ran in every frame. Which particles split
+/// first is random: shares of a frame differ by up to 0.09 (a CPU and a GPU); a delay of one frame costs up
+/// to 0.4.
 void a_saccade_does_not_wait(Backend backend) {
   for (const MethodKind method : {MethodKind::Ours, MethodKind::FovFluid}) {
     std::vector<double> shares[2];

@@ -15,7 +15,7 @@ using fluid_test::ParticleState;
 using sim::Backend;
 
 inline constexpr double d = 0.15;      // finest spacing
-inline constexpr double far_m = 1000;  // holds everything
+inline constexpr double far_m = 1000;  // radius of a region that contains everything
 inline constexpr double gravity = 9.81;
 
 inline sim::TargetRegion everywhere(int level) { return {{0, 0, 0}, far_m, level, level}; }

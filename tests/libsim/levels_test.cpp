@@ -1,5 +1,5 @@
-/// Splitting and merging (paper 3.3): bad input, and what methods of one level hold of it. Its hard cases
-/// stand in tests/stability.
+/// Splitting and merging (paper 3.3): bad input, and the memory of methods with one level. tests/stability
+/// has the hard cases.
 
 #include "stats/base/error.hpp"
 #include "tests/libsim/levels_helpers.hpp"

@@ -1,4 +1,4 @@
-/// Effects that come and go while the water runs, and the clock round each pass.
+/// Effects that start and stop while the water runs, and the time of each pass.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ void set(sim::Effect& effect, EffectOption option, double value) {
   effect.options[static_cast<std::size_t>(option)] = value;
 }
 
-/// Two that keep something of their own, one with a step, one with memory of its own, one of tension.
+/// Two effects with columns of their own, one that limits the step, one with its own memory, and tension.
 std::vector<sim::Effect> several() {
   sim::Effect foam{EffectKind::Foam, 20};
   set(foam, EffectOption::FoamEnergyFrom, 0.05);
@@ -82,13 +82,13 @@ std::vector<float> temperatures(const sim::Simulation& fluid) {
   return out;
 }
 
-/// The schedule in words, without the line that tells how many bytes there are.
+/// The schedule in words, without the line that gives the number of bytes.
 std::string schedule_of(const sim::Simulation& fluid) {
   const std::string all = fluid.explain();
   return all.substr(all.find('\n'));
 }
 
-/// All that two runs could differ in but for their memory.
+/// Compares everything that can differ between two runs except their memory.
 void expect_alike(sim::Simulation& a, sim::Simulation& b) {
   EXPECT_EQ(bits(a.read_state()), bits(b.read_state()));
   EXPECT_EQ(foam_of(a), foam_of(b));
@@ -121,8 +121,8 @@ TEST(LiveEffectsGpu, OnAndOffAtOnceLeaveNoTrace) {
   on_and_off_at_once_leave_no_trace(Backend::Cuda);
 }
 
-/// A run that goes over from some effects to others, beside one that had the others all along from that
-/// state on.
+/// A run that changes from effects `before` to `after` must continue like one that has had `after` since the
+/// state of the change.
 void goes_on_as_one_that_had(const std::vector<sim::Effect>& before, const std::vector<sim::Effect>& after,
                              Backend backend) {
   const test::TemporaryFolder folder;
@@ -140,7 +140,7 @@ void goes_on_as_one_that_had(const std::vector<sim::Effect>& before, const std::
     run(*turned, 12);
     run(*other, 12);
     expect_alike(*turned, *other);
-    // Where the water splits, what passes write for themselves is as large as it was at its most.
+    // With splits, the passes' buffers stay as large as at their maximum.
     if (!method.adaptive()) {
       EXPECT_EQ(turned->particle_bytes(), other->particle_bytes());
     }
@@ -168,8 +168,8 @@ TEST(LiveEffectsGpu, WithThemTheWaterGoesOnAsIfTheyHadAlwaysBeenThere) {
   goes_on_as_one_that_had({}, several(), Backend::Cuda);
 }
 
-/// Before the first frame a turn makes what a scene with these effects makes, also of what is only met later:
-/// a bullet shows the guard's limit of speed.
+/// Before the first frame, set_effects gives the same simulation as a scene that lists these effects,
+/// including limits that take effect only later: a fast particle shows the guard's speed limit.
 void at_the_start_are_the_scenes(Backend backend) {
   for (const auto& [before, after] : {std::pair{std::vector<sim::Effect>{}, several()}, {several(), {}}}) {
     const auto turned = sim::make_simulation(dam(before), options_of(backend, MethodKind::OursTsp));
@@ -209,7 +209,7 @@ void what_stays_keeps_its_own(Backend backend) {
   EXPECT_EQ(fluid->report().foam.emitted, emitted);
   run(*fluid, 5);
   EXPECT_NEAR(fluid->report().heat.held / held, 1, 1e-5);
-  // What goes takes its own with it, and begins anew.
+  // An effect that stops discards its data and starts empty again.
   fluid->set_effects(without(EffectKind::Foam));
   EXPECT_EQ(fluid->foam_capacity(), 0);
   EXPECT_EQ(fluid->report().foam.emitted, 0u);
@@ -318,7 +318,7 @@ void passes_are_those_that_run(Backend backend) {
   fluid->time_passes(true);
   EXPECT_EQ(sum_of(fluid->passes()), 0) << "no frame yet";
   run(*fluid, 2);
-  // Each with a time, in the words and the order of --explain.
+  // Each pass has a time, with the names and in the order of --explain.
   std::size_t at = 0;
   const std::string explained = fluid->explain();
   for (const auto& pass : fluid->passes()) {

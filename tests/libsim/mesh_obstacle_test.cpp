@@ -1,4 +1,4 @@
-/// Obstacles that are meshes: their tables, files beside the scene, what identifies them, and the water.
+/// Obstacles that are meshes: their tables, files beside the scene, their hash, and the water.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST(MeshObstacles, ErrorsNameThePlaceAndTheMend) {
               HasSubstr("comes without a folder"));
 }
 
-/// The file's content is a part of what a scene is, and its text stands alone.
+/// The scene's hash includes the file's content, and scene_text needs no other file.
 TEST(MeshObstacles, IdentifyTheSceneByTheirContent) {
   const test::TemporaryFolder folder;
   const auto scene_file = folder.path() / "scene.toml", mesh_file = folder.path() / "brick.obj";
@@ -91,7 +91,7 @@ TEST(MeshObstacles, IdentifyTheSceneByTheirContent) {
   base::write_file_atomically(mesh_file, box_text({1, 1, 1}, {1.6, 1.5, 1.5}));
   EXPECT_NE(sim::read_scene(scene_file).sha256, scene.sha256);
   EXPECT_THAT(alone, HasSubstr("obj = '''\nv 1 1 1\n"));
-  // Without a file the text is the file's.
+  // Without a mesh file the text is the scene file's own.
   base::write_file_atomically(scene_file, mesh_with(inline_brick()));
   EXPECT_EQ(sim::scene_text(scene_file), mesh_with(inline_brick()));
   const std::string one_line =
@@ -115,7 +115,7 @@ std::string text_error(const std::filesystem::path& scene_file) {
   return "no error";
 }
 
-/// Whatever stands round it: only the `file` of an obstacle is replaced, and none is overlooked.
+/// Only the `file` of an obstacle is replaced, whatever text surrounds it, and none is missed.
 TEST(MeshObstacles, OnlyTheFileOfAnObstacleIsReplaced) {
   const test::TemporaryFolder folder;
   const auto scene_file = folder.path() / "scene.toml";
@@ -129,7 +129,7 @@ TEST(MeshObstacles, OnlyTheFileOfAnObstacleIsReplaced) {
   EXPECT_EQ(text(names + " #" + blanks + "file\n"), mesh_with(obj));
   EXPECT_EQ(text(blanks + "\n\t" + names + blanks + "\r\n"), mesh_with(blanks + "\n" + obj));
   EXPECT_EQ(text("  file='brick.obj'"), mesh_with(obj));
-  // Within a text, after what looks like the beginning or the end of one.
+  // In a multi-line string, after text that looks like the begin or end of one.
   const std::string other = "[[obstacle]]\nshape = \"mesh\"\ncentre_m = [1.0, 1.0, 1.0]\n";
   const std::string three = "'''", doubled = "\"\"\"";
   for (const auto& [quotes, others] : {std::pair{three, doubled}, std::pair{doubled, three}}) {
@@ -161,8 +161,8 @@ TEST(MeshObstacles, TooManyTrianglesForTheTextAreAnErrorOfTheirFile) {
   EXPECT_EQ(text_error(scene_file), "no error");
 }
 
-/// A mesh whose text has turned a box by 30 degrees about x, which the scene turns by 50 about y, and the box
-/// that both turn: the order of the two counts.
+/// A mesh whose text holds a box turned by 30 degrees about x, turned by the scene by 50 about y, and a box
+/// with both rotations: their order matters.
 TEST(MeshObstacles, AttitudesAreThoseOfTheFileThenOfTheScene) {
   auto turned_text = mesh_test::triangles(brick);
   const double x_turn = std::numbers::pi / 6, y_turn = std::numbers::pi / 3.6;
@@ -233,7 +233,7 @@ TEST(MeshObstacles, WaterInsideIsLeftOutAndStaysOut) {
   }
 }
 
-/// Means over the second second.
+/// Means over the run's second second.
 struct Afloat {
   double height_m = 0, push_n = 0;
 };
@@ -255,10 +255,10 @@ Afloat afloat(bool as_mesh, ObstacleMotion motion) {
 
 TEST(MeshObstacles, ACubeOfTrianglesIsABox) {
   const Afloat box = afloat(false, ObstacleMotion::Free), mesh = afloat(true, ObstacleMotion::Free);
-  // Box 0.66 m, mesh 0.68 m, Archimedes 0.72 m, at a spacing of 0.09 m.
+  // Measured: box 0.66 m, mesh 0.68 m, Archimedes 0.72 m, at a spacing of 0.09 m.
   EXPECT_NEAR(mesh.height_m, box.height_m, 0.25 * 0.09);
   EXPECT_NEAR(mesh.push_n, 9.81 * 500 * 0.064, 0.03 * 9.81 * 500 * 0.064) << "it bears its weight";
-  // 370 N and 401 N: before its edges a mesh keeps the water farther away.
+  // Measured: 370 N and 401 N, because a mesh keeps the water farther from its edges.
   const Afloat held = afloat(false, ObstacleMotion::Fixed), mesh_held = afloat(true, ObstacleMotion::Fixed);
   EXPECT_NEAR(mesh_held.push_n, held.push_n, 0.08 * 9810 * 0.064);
 }

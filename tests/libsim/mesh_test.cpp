@@ -107,7 +107,7 @@ TEST(Mesh, MassOfABoxAndOfATetrahedronIsExact) {
     EXPECT_NEAR(box.inertia_m2[k][k], moments[k], 1e-12);
     EXPECT_NEAR(box.inertia_m2[k][(k + 1) % 3], 0, 1e-12);
   }
-  // Of x2 + y2 <= 1: volume 1/6, int x2 = 1/60, int x y = 1/120.
+  // For x2 + y2 <= 1: volume 1/6, int x2 = 1/60, int x y = 1/120.
   const auto corner = sim::mass_properties(triangles(tetrahedron));
   EXPECT_NEAR(corner.volume_m3, 1.0 / 6, 1e-15);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -117,7 +117,7 @@ TEST(Mesh, MassOfABoxAndOfATetrahedronIsExact) {
   }
 }
 
-/// A box that its text has turned gets its own axes back, and its mass does not change.
+/// A mesh of a turned box recovers its principal axes, and its mass does not change.
 TEST(Mesh, OwnAxesArePrincipal) {
   sim::Triangles turned = triangles(box_text({0, 0, 0}, {3, 2, 1}));
   for (Vector& at : turned.places) {
@@ -137,7 +137,7 @@ TEST(Mesh, OwnAxesArePrincipal) {
   std::sort(sides.begin(), sides.end());
   EXPECT_NEAR(sides[0], 1, 1e-8);
   EXPECT_NEAR(sides[2], 3, 1e-8);
-  // Back in the text's axes the first corner lies where it was.
+  // Turned back, the first corner lies at its place in the text.
   const auto [x, y, z, w] = mesh.turn();
   EXPECT_NEAR(x * x + y * y + z * z + w * w, 1, 1e-12);
   const Vector u{x, y, z}, own = mesh.places_m()[7];
@@ -174,7 +174,7 @@ TEST(Mesh, DistancesAreThoseOfTheShape) {
     const double from_middle = std::hypot(p[0], p[1], p[2]);
     EXPECT_NEAR(ball.distance_m(p), from_middle - 0.5, 0.002) << "facets lie below the sphere";
   }
-  // Beyond edges and corners the sign is not that of the first face: the apex of a sharp wedge.
+  // Beyond edges and corners the sign must not come from the first face: the apex of a sharp wedge.
   const sim::Mesh wedge(triangles("v 0 0 0\nv 1 0.02 0\nv 1 -0.02 0\nv 0 0 1\nv 1 0.02 1\nv 1 -0.02 1\n"
                                   "f 1 2 3\nf 4 6 5\nf 1 4 5 2\nf 1 3 6 4\nf 2 5 6 3\n"),
                         0.01);
@@ -183,9 +183,8 @@ TEST(Mesh, DistancesAreThoseOfTheShape) {
     EXPECT_NEAR(wedge.distance_m({apex - 0.1, y, 0}), std::hypot(0.1, y), 1e-9);
 }
 
-/// What a thread computes depends on no other: all nodes are those of the exact distance, to a float's
-/// rounding. Where products and sums are contracted, this file may round the place of a node otherwise than
-/// the mesh did.
+/// Threads compute nodes independently: each node holds the exact distance up to a float's rounding. With
+/// contracted products and sums, this file may round a node's place differently than the mesh did.
 TEST(Mesh, TheGridHoldsTheDistancesOfItsNodes) {
   const sim::Mesh ball(triangles(ball_text(0.5, 12)), 0.1);
   const sim::DistanceGrid& grid = ball.grid();

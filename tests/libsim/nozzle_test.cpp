@@ -1,4 +1,4 @@
-/// Nozzles and recirculation: the timetable, the scenes that have them, and their ledger.
+/// Nozzles and recirculation: the schedule of layers, scenes with nozzles, and their mass balance.
 
 #include "libsim/scene/nozzle.hpp"
 #include "libsim/scene/gaze.hpp"
@@ -73,7 +73,7 @@ TEST(LayersDue, KeepTheFlowWhenTheSpacingChangesFromFrameToFrame) {
     volume += due.count * layer.sites * std::pow(spacing, 3);
     poured.length_m += due.count * layer.pitch_m;
     const double open_s = (frame / 200 * 80 + std::min(frame % 200 + 1, 80)) / 60.0;
-    // Half of the coarsest layer at most, 8.5 m3 thick times half.
+    // The error is at most half of the coarsest layer.
     ASSERT_NEAR(volume, flow * open_s, 0.51 * 0.31 * flow / nozzle.speed_m_s) << frame;
   }
 }
@@ -84,7 +84,7 @@ TEST(LayersDue, NothingComesWhileTheNozzleRests) {
     const bool open = frame % 120 < 60;
     const auto before = sim::poured_before(nozzle, 0.15, frame, 1.0 / 60);
     const auto due = sim::layers_due(nozzle, 0.15, before, frame, 1.0 / 60);
-    EXPECT_EQ(due.count > 0, open) << frame;  // 1.78 layers a frame: never none while open
+    EXPECT_EQ(due.count > 0, open) << frame;  // 1.78 layers a frame: at least one while open
   }
 }
 
@@ -166,7 +166,7 @@ void counts_flow_and_walls_hold(Backend backend) {
 TEST(Nozzle, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cpu); }
 TEST(NozzleGpu, CountsFlowAndWallsHold) { counts_flow_and_walls_hold(Backend::Cuda); }
 
-/// Volume poured by each 60th of a second that is a frame's end, in m_*.
+/// Volume poured by the end of each frame that is a multiple of 1/60 s, in m_*.
 std::vector<std::int64_t> poured_over_time(const sim::Scene& scene, double frame_dt_s, int frames) {
   auto options = small(Backend::Cpu, MethodKind::LoRes);
   options.frame_dt_s = frame_dt_s;
@@ -210,7 +210,7 @@ bool same(const std::vector<ParticleState>& a, const std::vector<ParticleState>&
          });
 }
 
-/// Twenty frames across the end of a pulse.
+/// Runs twenty frames across the end of a pulse.
 std::vector<ParticleState> run_on(const sim::Scene& scene, sim::SimulationOptions options,
                                   std::vector<ParticleState> start, int start_frame) {
   options.start = std::move(start);
@@ -239,7 +239,7 @@ void runs_are_bit_equal(Backend backend) {
   EXPECT_TRUE(same(through, run_on(scene, options, middle, 50))) << "the number of threads matters";
   omp_set_num_threads(threads);
 }
-/// Exchanges and splits included; such a run begins anew with its levels' history.
+/// The same with exchanges and splits; these runs start without a history of levels.
 void mixed_levels_are_bit_equal(Backend backend) {
   const auto scene = faucet();
   auto fine = scene;
@@ -262,13 +262,13 @@ TEST(NozzleGpu, MixedLevelsAreBitEqual) { mixed_levels_are_bit_equal(Backend::Cu
 TEST(Nozzle, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cpu); }
 TEST(NozzleGpu, RunsAreBitEqual) { runs_are_bit_equal(Backend::Cuda); }
 
-/// A tracker that has gone wrong: a ray of NaN that claims to be valid.
+/// A defective tracker: a NaN ray marked as valid.
 sim::EyeLook lost_eye(const sim::Scene& scene) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   return {{{nan, 0, 0}, {nan, nan, nan}, true}, sim::make_view(scene.view, 320, 240), nullptr};
 }
 
-/// Domain and reservoir together hold the scene's mass, whatever splits, merges and is poured.
+/// Domain and reservoir together hold the scene's mass through splits, merges and pouring.
 void ledger_closes(Backend backend) {
   auto scene = faucet();
   scene.settle_frames = 20;
@@ -311,7 +311,7 @@ void ledger_closes(Backend backend) {
                 sim::method_name(method).c_str(), volume, flow, static_cast<long long>(report.particles),
                 static_cast<long long>(report.mass_units), static_cast<long long>(report.reservoir),
                 report.density_max);
-    // Half a layer of the coarsest level at most: 60 open frames.
+    // The error is at most half a layer of the coarsest level after 60 open frames.
     const double coarsest = sim::jet_layer(nozzle, 2 * finest).pitch_m * flow / nozzle.speed_m_s;
     EXPECT_NEAR(volume, flow, 0.51 * coarsest);
   }
@@ -333,7 +333,7 @@ TEST(Nozzle, IsAbsentWhereTheSceneHasNone) {
   without->step_frame();
   for (int frame = 0; frame < 3; ++frame) with->step_frame();  // a layer every 2.6 frames
   ASSERT_GT(with->report().poured, 0);
-  // The choice of the lowest particles is all that a nozzle allocates: the dam has none of it.
+  // A nozzle allocates memory only for the choice of the lowest particles; the dam has none of it.
   auto plain = scene;
   plain.nozzles.clear();
   const auto closed = sim::make_simulation(plain, options);

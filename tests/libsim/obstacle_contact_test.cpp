@@ -1,5 +1,5 @@
-/// Obstacles that meet in the tank: their tables, the water beside them, the account of what they give each
-/// other, saved states.
+/// Obstacles in contact with each other in the tank: their tables, the water beside them, the account of
+/// their impulses, saved states.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(ObstacleContact, OverlapsAreSeenWhateverLiesInWhat) {
   EXPECT_GT(sim::overlap_m(cube, sphere({0.1, 0, 0}, 0.1)), 0.1) << "all of it";
   EXPECT_NEAR(sim::overlap_m(cube, box({0.95, 0, 0}, {1, 0.5, 0.5})), 0.05, 1e-9);
   EXPECT_LT(sim::overlap_m(cube, box({1.05, 0, 0}, {1, 0.5, 0.5})), 0);
-  // Neither has a corner or a middle in the other.
+  // Neither box has a corner or its centre inside the other.
   EXPECT_NEAR(sim::overlap_m(box({0, 0, 0}, {2, 0.2, 0.2}), box({0.5, 0.15, 0}, {0.2, 0.2, 2})), 0.05, 1e-6);
   EXPECT_GT(sim::overlap_m(cube, mesh({0.6, 0.6, 0}, mesh_test::ball_text(0.3, 24))), 0.1);
 }
@@ -97,7 +97,7 @@ TEST(ObstacleContact, ACubeOfTrianglesRestsOnAnother) {
   EXPECT_NEAR(fluid->read_obstacles().at(1).pose.centre_m[1], 0.45, 0.01);
 }
 
-/// Water, walls and others: what a body gained is what they gave it.
+/// A body's change of momentum must equal the impulses of water, walls and other bodies.
 TEST(ObstacleContact, TenBallsInAPoolKeepApartAndKeepTheAccount) {
   std::vector<Obstacle> balls;
   for (int k = 0; k < 10; ++k) {
@@ -189,7 +189,7 @@ TEST(ObstacleContact, APaddlePushesWhatFloats) {
 }
 
 TEST(ObstacleContact, ABallAfloatStaysOutOfAPost) {
-  // The post stands out of the water, and a slope of the floor lets the ball drift onto it.
+  // The post rises above the water, and the sloping floor lets the ball drift onto it.
   const Obstacle post = box({1.0, 0.5, 0.5}, {0.3, 1.0, 0.3});
   auto scene = pool({post, free_one(sphere({0.62, 0.62, 0.5}, 0.15), 400)});
   scene.fill_max_m = {0.7, 0.9, 1};  // water runs towards the post
@@ -288,7 +288,7 @@ TEST(ObstacleContact, ThreadsChangeNoBit) {
   EXPECT_EQ(std::memcmp(one.data(), three.data(), one.size() * sizeof one[0]), 0);
 }
 
-/// 20,000 kg/m3 on 50 kg/m3, in water and between walls.
+/// A body of 20,000 kg/m3 on one of 50 kg/m3, in water and between walls.
 TEST(ObstacleContact, TheHeaviestLiesOnTheLightest) {
   const auto scene = pool({free_one(box({0.75, 0.2, 0.5}, {0.5, 0.4, 0.5}), 50),
                            free_one(box({0.75, 0.65, 0.5}, {0.4, 0.4, 0.4}), 20000)});
@@ -306,7 +306,7 @@ TEST(ObstacleContact, TheHeaviestLiesOnTheLightest) {
       << "it lies on the light one, which holds it";
 }
 
-/// Water between two faces that close has no way out but along them.
+/// Water between two closing faces can escape only sideways.
 TEST(ObstacleContact, LittleWaterIsCaughtBetweenFaces) {
   const auto scene = pool({free_one(box({0.75, 0.16, 0.5}, {0.4, 0.3, 0.4}), 3000),
                            free_one(box({0.75, 0.85, 0.5}, {0.4, 0.3, 0.4}), 4000)});

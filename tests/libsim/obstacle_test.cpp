@@ -1,4 +1,4 @@
-/// Obstacles that a scene lists: their tables, the water that they leave out and push.
+/// Obstacles that a scene lists: their tables, and the water that they displace and push.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(Obstacles, AreReadFromASceneFile) {
   EXPECT_EQ(scene.obstacles[0].radius_m, 0.5);
   EXPECT_EQ(scene.obstacles[1].motion, ObstacleMotion::Turns);
   EXPECT_NEAR(scene.obstacles[1].start.turn[1], std::sqrt(0.5), 1e-12);
-  // Turned by 90 degrees its long side lies along z.
+  // After a turn by 90 degrees its long side lies along z.
   EXPECT_NEAR(sim::signed_distance(scene.obstacles[1], scene.obstacles[1].start, {3, 1, 2.6}), 0.1, 1e-12);
   const sim::Pose half = sim::pose_at(scene.obstacles[1], 3.14159265358979);
   EXPECT_NEAR(half.centre_m[0], 2, 1e-9);
@@ -86,7 +86,7 @@ TEST(Obstacles, WaterInsideIsLeftOutAndStaysOut) {
   }
 }
 
-/// The water before a face that moves takes its speed along the normal.
+/// Water in front of a moving face gets the face's speed along the normal.
 TEST(Obstacles, GiveTheWaterTheirVelocity) {
   const auto scene = pool(ObstacleMotion::Swings);
   auto options = options_of();
@@ -122,7 +122,7 @@ TEST(Obstacles, ASavedRunGoesOnBitForBit) {
   auto options = options_of(sim::MethodKind::Ours);
   options.n_star = 512;
   const auto whole = sim::make_simulation(scene, options);
-  // The paddle is far from where it began.
+  // By now the paddle is far from its start.
   for (int frame = 0; frame < 40; ++frame) whole->step_frame();
   whole->save_state(folder.path() / "state");
   options.resume_from = folder.path() / "state";

@@ -1,4 +1,4 @@
-/// Outlets in the scene's file and in the schedule; the cases S15 stand in tests/stability.
+/// Outlets in the scene's file and in the schedule; tests/stability has the cases S15.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,7 +52,8 @@ TEST(OutletScene, ErrorsNameThePlaceAndTheMend) {
               AllOf(HasSubstr("scene.toml:"), HasSubstr("max_m"), HasSubstr("leaves the outlet no area"),
                     HasSubstr("mend:")));
   EXPECT_THAT(error_of(replaced(good, "[2.0, 3.0]", "[2.0, 300.0]")), HasSubstr("reaches beyond the wall"));
-  EXPECT_THAT(error_of(replaced(good, "[0.5, 1.0]", "[-0.5, 1.0]")), AllOf(HasSubstr("min_m"), HasSubstr("beyond the wall")));
+  EXPECT_THAT(error_of(replaced(good, "[0.5, 1.0]", "[-0.5, 1.0]")),
+              AllOf(HasSubstr("min_m"), HasSubstr("beyond the wall")));
   EXPECT_THAT(error_of(replaced(good, "[0.5, 1.0]", "[0.5, 1.0, 0.0]")), HasSubstr("min_m"));
   EXPECT_THAT(error_of(good + "speed_m_s = 1.0\n"), HasSubstr("speed_m_s"));
   EXPECT_THAT(error_of(good + good + good + good + good), HasSubstr("one outlet too many"));
@@ -66,7 +67,7 @@ void is_shut_while_the_water_settles(Backend backend) {
   options.backend = backend;
   const auto fluid = sim::make_simulation(scene, options);
   EXPECT_EQ(fluid->particle_count(), 512);
-  // 1.2 m fall in half a second.
+  // Water falls 1.2 m in half a second.
   for (int frame = 0; frame < 40; ++frame) fluid->step_frame();
   EXPECT_EQ(fluid->particle_count(), 0);
   const auto report = fluid->report();

@@ -1,4 +1,4 @@
-/// What the paper shows of its scenes must appear: HiRes at n_* = 4k on the CPU, at 32k on CUDA.
+/// Phenomena that the paper shows in its scenes must appear: HiRes at n_* = 4k on the CPU, at 32k on CUDA.
 
 #include "tests/libsim/phenomena.hpp"
 
@@ -21,19 +21,19 @@ class Run {
   }
   const sim::Scene& scene() const { return scene_; }
   double spacing() const { return fluid_->spacing_m(); }
-  /// The state after `frame` frames; frames are asked for in order.
+  /// The state after `frame` frames; call it with increasing frames.
   State at(int frame) {
     for (; frame_ < frame; ++frame_) fluid_->step_frame();
     return fluid_->read_state();
   }
-  /// The run was no worse than it looks: water at its density, nobody lost, nothing limited.
+  /// Expects a healthy run: water at its density, no particles lost, no guard active.
   void expect_healthy() {
     const auto report = fluid_->report();
     std::printf("frame %d: density error mean %.5f, max %.3f, fastest %.1f m/s, limited %llu\n", frame_,
                 report.density_error_mean, report.density_max, report.speed_max_m_s,
                 static_cast<unsigned long long>(report.guards.speed_limited));
     EXPECT_LT(report.density_error_mean, 0.002);
-    // S8. Poured layers that overlap once threw water of Faucet at 1.9 times the speed of a fall.
+    // S8. Overlapping poured layers once made water of Faucet 1.9 times as fast as a fall.
     EXPECT_LT(report.speed_max_m_s, 1.5 * fall_speed());
     EXPECT_LT(report.density_max, 1.05);
     EXPECT_EQ(report.guards.not_finite, 0u);
@@ -107,7 +107,7 @@ double crown_height(const State& state, phenomena::Axis axis) {
 }
 
 /// Radius of the highest ring of water beyond the crown's foot. The walls, 10.5 m away, are left out: when a
-/// pulse raises its ripple the one before still stands there, as high (2.33 m both at frame 160).
+/// pulse raises its ripple, the previous ripple is still there and as high (2.33 m both at frame 160).
 double ripple_radius(const State& state, phenomena::Axis axis, double spacing) {
   constexpr double width = 0.75;
   const auto depths = phenomena::ring_depths(state, axis, 9, width, spacing);

@@ -14,7 +14,7 @@ namespace {
 
 sim::PtpeFile example() {
   sim::PtpeFile file;
-  file.model = {23.68, 0.1 + 0.2 - 0.28, stats::FpsMean::Arithmetic};  // no short decimal
+  file.model = {23.68, 0.1 + 0.2 - 0.28, stats::FpsMean::Arithmetic};  // not a short decimal
   file.level = 4;
   file.a_ci = {1.0 / 3, 25};
   file.b_ci = {-1e-17, 0.03};

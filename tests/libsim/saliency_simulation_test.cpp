@@ -1,4 +1,4 @@
-/// Saliency inside a simulation: who runs it, who does not, and what comes out.
+/// Saliency inside a simulation: the methods that run it, and its results.
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -77,7 +77,7 @@ void parts_make_up_the_whole(Backend backend) {
   for (const auto& p : saliency) {
     ASSERT_GE(p.s, 0);
     ASSERT_LE(p.s, 1);
-    // Grading may make a target finer than Eq. 9 asks for, never coarser.
+    // Grading may make a target finer than Eq. 9, never coarser.
     EXPECT_LE(p.target, std::clamp(static_cast<int>(std::floor(4 * (1 - p.s))), 0, 3));
     EXPECT_NEAR(p.combined, (p.acuity + p.manifold) / 3 + 2 * p.temporal / 3, 1e-5f * (1 + p.combined));
     moving = moving || p.temporal > 0.1f;
@@ -91,8 +91,8 @@ void parts_make_up_the_whole(Backend backend) {
 TEST(SaliencyInSimulations, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cpu); }
 TEST(SaliencyInSimulationsGpu, PartsMakeUpTheWhole) { parts_make_up_the_whole(Backend::Cuda); }
 
-/// Saliency reads the lists of the last substep; measuring it on the way throws them away, and the next frame
-/// searches anew.
+/// Saliency reads the neighbour lists of the last substep; a measurement in between discards them, and the
+/// next frame searches again.
 void recalled_neighbours_tell_what_a_search_tells(Backend backend) {
   for (const bool temporal : {false, true}) {
     sim::SimulationOptions options;
@@ -129,7 +129,7 @@ TEST(SaliencyInSimulationsGpu, RecalledNeighboursTellWhatASearchTells) {
   recalled_neighbours_tell_what_a_search_tells(Backend::Cuda);
 }
 
-/// A fluid whose numbers change on the way does from then on what one that was made with them does.
+/// A run whose numbers change continues like a run that was made with the new numbers.
 void numbers_change_while_it_runs(Backend backend) {
   const auto changed = make(backend, MethodKind::Ours, true);
   const auto before = changed->live_numbers();
@@ -257,7 +257,8 @@ bool same(const std::vector<fluid_test::ParticleState>& a, const std::vector<flu
 }
 
 void saccades_split_no_more_than_the_cap(Backend backend) {
-  // S21: between two points 45 degrees apart at 500 degrees/s, 6 frames a way, then a rest of 12.
+  // S21: the gaze jumps between two points 45 degrees apart at 500 degrees/s, in 6 frames each, then rests
+  // for 12.
   const auto fluid = make(backend, MethodKind::Ours);
   std::uint64_t before = 0, most = 0;
   for (int frame = 0; frame < 72; ++frame) {
@@ -282,7 +283,7 @@ TEST(SaliencyInSimulationsGpu, SaccadesSplitNoMoreThanTheCap) {
 }
 
 void a_blink_leaves_no_trace(Backend backend) {
-  // S21: the tracker loses the eye for 12 frames, 0.2 s; the gaze is held, so nothing may differ.
+  // S21: the tracker loses the eye for 12 frames, 0.2 s; the gaze is held, so the result must be the same.
   const auto steady = make(backend, MethodKind::Ours), blinking = make(backend, MethodKind::Ours);
   for (int frame = 0; frame < 30; ++frame) {
     steady->look({{eye_at(ahead)}});

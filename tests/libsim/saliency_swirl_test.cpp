@@ -1,4 +1,4 @@
-/// Vortices draw the eye where a scene lists vorticity.
+/// Vortices raise saliency if the scene lists vorticity.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ using sim::MethodKind;
 using testing::HasSubstr;
 using State = std::vector<sim::ParticleState>;
 
-constexpr double core = 0.6, middle = 1.2;  // m: of the vortex, and its axis from two walls
+constexpr double core = 0.6,
+                 middle = 1.2;  // m: radius of the vortex, and distance of its axis from two walls
 
 /// A long tank of water; none of it is in the eye's fovea.
 sim::Scene tank_with(std::vector<sim::Effect> effects) {
@@ -40,7 +41,7 @@ struct Outcome {
   std::size_t bytes = 0;
   State state;
 };
-/// From water at rest but for a Lamb-Oseen vortex of 8 / s at most at one end.
+/// Runs water that is at rest except for a Lamb-Oseen vortex of at most 8 / s at one end.
 Outcome run(const sim::Scene& scene, MethodKind method, int frames, Backend backend = Backend::Cpu) {
   sim::SimulationOptions options;
   options.backend = backend;
@@ -65,7 +66,7 @@ bool same_bits(const State& a, const State& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
 }
 
-/// Mean level of the water in the vortex's core, by mass, or of that a metre and more from it.
+/// Mean level, by mass, of the water in the vortex's core, or of the water more than 1.8 m from its axis.
 double mean_level(const State& state, bool in_core) {
   double sum = 0, all = 0;
   for (const auto& p : state) {
@@ -108,7 +109,7 @@ TEST(SaliencyOfSwirl, CostsNothingWhereItIsNotSeen) {
     EXPECT_EQ(seen.explanation.find("-  swirl") == std::string::npos, sees);
     EXPECT_EQ(seen.bytes > unseen.bytes, sees);
     EXPECT_EQ(same_bits(seen.state, unseen.state), !sees);
-    // The effect of coefficient 0 is none.
+    // A coefficient of 0 turns the effect off.
     const Outcome bare = run(tank_with({}), method.kind, 4);
     const Outcome zero = run(tank_with(vorticity(1, 0)), method.kind, 4);
     EXPECT_TRUE(same_bits(bare.state, zero.state));
@@ -136,7 +137,7 @@ void step(sim::Simulation& fluid, int frames) {
 TEST(SaliencyOfSwirl, StandsInSavedStates) {
   NEEDS_EFFECTS;
   const test::TemporaryFolder folder;
-  // Levels have a turn in the first six frames and in every fourth later, 9 and 13 among them.
+  // Levels run in the first six frames and in every fourth later, among them 9 and 13.
   for (const int frames : {10, 11, 13}) {
     const auto fluid = dam(vorticity(5));
     step(*fluid, frames);

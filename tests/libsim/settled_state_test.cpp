@@ -119,7 +119,7 @@ TEST_F(SettledState, DamagedFileIsSettledAgain) {
   }
 }
 
-/// The hash of such a file fits: what it holds is no water.
+/// The file's hash matches, but its content is not a valid state of water.
 TEST_F(SettledState, StateThatIsNotFiniteOrOfOtherParticlesIsSettledAgain) {
   const auto first = after_five_frames();
   const auto sound = *sim::read_settled(folder_, sim::settled_key(scene_, options_));

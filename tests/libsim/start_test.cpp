@@ -1,4 +1,5 @@
-/// Starts in the middle of a run: density projections and the velocity grid that a checkpoint leaves open.
+/// Starts in the middle of a run: density projections and the velocity grid, which a checkpoint does not
+/// contain.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@ using fluid_test::ParticleState;
 using sim::Backend;
 using sim::MethodKind;
 
-/// A dam that has fallen for half a second, coarsened as far as it goes in its left half.
+/// A dam that has fallen for half a second, coarsened as far as possible in its left half.
 struct Fallen {
   sim::Scene scene = sim::read_scene("data/scenes/single_dam.toml");
   sim::SimulationOptions options;
@@ -43,7 +44,7 @@ struct Fallen {
 
 /// Mass-weighted mean of max(rho / rho_0 - 1, 0).
 double compression_of_mass(sim::Simulation& fluid) {
-  // Saliency of the present state needs the density where the particles are, and leaves it in the column.
+  // measure_saliency computes the density at the particles' positions and leaves it in the column.
   const sim::View view = sim::make_view({}, 64, 48);
   std::vector<sim::ParticleSaliency> unused;
   const sim::EyeLook eye{{{0, 1, 3}, {0, 0, -1}, true}, view, nullptr};
@@ -128,7 +129,7 @@ void the_velocity_grid_comes_with_the_start(Backend backend) {
     fluid->step_frame();
     return static_cast<double>(fluid->report().temporal.active) / static_cast<double>(dam.finest.size());
   };
-  // Without V and E nothing tells the particles apart, and all of them are solved.
+  // Without V and E all particles have the same importance, and all are solved.
   EXPECT_EQ(active_share(0), 1);
   EXPECT_LT(active_share(50), 0.97);
 }

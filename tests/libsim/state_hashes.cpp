@@ -1,6 +1,6 @@
-/// vip-state-hashes DATA_FOLDER [N_STAR [FRAMES]]: what the solver computes, as hashes, for comparing two
-/// states of the sources on one machine: three scenes, five methods, every 20th frame, and the schedule of
-/// each. Ours-TSp runs at tau = -6. A change that only moves code leaves every line as it was.
+/// vip-state-hashes DATA_FOLDER [N_STAR [FRAMES]]: hashes of the solver's results, to compare two versions of
+/// the sources on one machine: three scenes, five methods, every 20th frame, and the schedule of each.
+/// Ours-TSp runs at tau = -6. A change that only moves code leaves every line unchanged.
 
 #include <cmath>
 #include <cstdlib>
@@ -44,7 +44,7 @@ void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Everything that a program can read of a frame.
+/// Hash of everything that a program can read of a frame.
 std::string hash_of(sim::Simulation& fluid) {
   std::string bytes;
   for (const auto& p : fluid.read_state()) append(bytes, p);

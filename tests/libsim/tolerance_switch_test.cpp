@@ -41,7 +41,7 @@ TEST(ToleranceSwitch, GoesOnBelowZeroAndOffAboveOne) {
   EXPECT_FALSE(s.on());
 }
 
-// Of intervals of 10 and 90 ms the harmonic mean is 20 frames/s, the arithmetic one 55.6.
+// For intervals of 10 and 90 ms the harmonic mean is 20 frames/s, the arithmetic one 55.6.
 TEST(ToleranceSwitch, HonoursTheMeanOfTheModel) {
   for (const auto& [mean, expected] :
        {std::pair{stats::FpsMean::Harmonic, 20.0}, std::pair{stats::FpsMean::Arithmetic, 500.0 / 9}}) {

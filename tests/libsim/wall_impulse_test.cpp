@@ -1,4 +1,4 @@
-/// What the walls give the water: the account of its momentum, and gauges.
+/// Impulses of the walls on the water: the account of its momentum, and gauges.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ void account_closes_over_walls_and_gauges(Backend backend) {
     ASSERT_EQ(account.gauges.size(), 4u);
     const auto wall = [&](Wall which) { return account.walls[static_cast<std::size_t>(which)]; };
     const double stroke = column.weight / 60;
-    // A gauge holds all parts of its share of the wall: 1e-5 is the rounding of single squares.
+    // Two gauges cover a wall, so their sums must equal the wall's: 1e-5 is the rounding of single squares.
     EXPECT_NEAR(account.gauges[0].sum() + account.gauges[1].sum(), wall(Wall::Floor).sum(), 1e-5 * stroke);
     EXPECT_NEAR(account.gauges[2].sum() + account.gauges[3].sum(), wall(Wall::HighX).sum(), 1e-5 * stroke);
     EXPECT_NEAR(account.gauges[2].coarse_pressure + account.gauges[3].coarse_pressure,
@@ -94,8 +94,8 @@ TEST(WallImpulseGpu, AskingChangesNoBit) { asking_changes_no_bit(Backend::Cuda);
 /// Sums over frames, each as a share of the weight's impulse.
 struct Books {
   double change = 0, forces = 0, walls = 0;  ///< along y
-  double open = 0;                  ///< what forces and walls leave of the change, the largest component
-  std::vector<double> pressure_pa;  ///< of the gauges, mean
+  double open = 0;                  ///< change that forces and walls do not explain, the largest component
+  std::vector<double> pressure_pa;  ///< mean pressure at each gauge
 };
 
 Books books_of(sim::Simulation& fluid, const Column& column, int frames) {
@@ -122,7 +122,7 @@ Books books_of(sim::Simulation& fluid, const Column& column, int frames) {
   return out;
 }
 
-/// Fine water in the middle, splits and merges round it.
+/// Moves a region of fine water, with splits and merges round it.
 void wander(sim::Simulation& fluid, int frame) {
   fluid.force_targets({{4 * d, 8 * d * (1 + std::sin(0.3 * frame)), 8 * d}, 5 * d, 0, 3});
 }
@@ -184,8 +184,8 @@ void column_presses_by_its_depth(Backend backend, bool ours, double bound) {
   for (int frame = 0; frame < 60; ++frame) fluid->step_frame();
   const auto books = books_of(*fluid, column, 60);
   const auto truth = fluid_test::read_columns("data/truth/hydrostatic_column.csv");
-  // A settled pool stands a little lower than its volume over its floor (docs/results.md); its weight
-  // stays.
+  // A settled pool is a little lower than its volume over its floor (docs/results.md); its weight is the
+  // same.
   double moment = 0;
   for (const auto& p : fluid->read_state()) moment += static_cast<double>(p.y_m) * (1 << p.level);
   const double depth = 2 * moment / static_cast<double>(fluid->report().mass_units);
@@ -207,7 +207,7 @@ void column_presses_by_its_depth(Backend backend, bool ours, double bound) {
       "column, %s: on the floor %.4f of rho g H, walls bear %.4f of the weight, of it %.4f for its own "
       "motion, profile within %.4f rho g H\n",
       ours ? "Ours" : "HiRes", floor, books.walls, books.change, worst);
-  // A column that still moves when the second is over has momentum left over, which the walls gave as well.
+  // If the column still moves after the second, the walls also gave it this momentum.
   EXPECT_NEAR(books.walls, 1 + books.change, 1e-3);
   EXPECT_LT(std::abs(books.change), 0.03);
   EXPECT_NEAR(floor, 1, 0.05);

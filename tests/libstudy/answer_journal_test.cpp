@@ -30,7 +30,7 @@ using sqlite::Transaction;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// What a program does that ends without a word: `work` in a process of its own, killed at its end.
+/// Runs `work` in a child process that is then killed, like a program that ends without clean-up.
 void killed(const std::function<void()>& work) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -52,7 +52,7 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   return path;
 }
 
-/// The next answer of P01, by hand, up to where `until` says.
+/// Stores the next answer of P01 step by step and is killed after the step `until`.
 enum class Until { Statements, Journal, Commit, Kept };
 void answer_by_hand(const fs::path& path, Until until) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
@@ -120,7 +120,7 @@ TEST(AnswerJournal, EqualsTheDatabaseAfterAllThatHappensInASession) {
   const fs::path path = make_study(folder);
   test::expect_journal_equals(path);
   Store store(path, Open::Write);
-  store.open_runs();  // marks the cut presentation
+  store.open_runs();  // marks the interrupted presentation
   test::expect_journal_equals(path);
 }
 
@@ -218,7 +218,7 @@ TEST(AnswerJournal, IsHealedWhereverItsLastLinesAreTorn) {
   EXPECT_EQ(test::lines_of(path), truth);
 }
 
-// A power cut may keep later sectors of what was not yet brought to the disk, and lose earlier ones.
+// A power cut may lose an unsynced sector and keep a later one.
 TEST(AnswerJournal, LastRowsOfWhichALineIsLostAreNotTakenOver) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder), file = journal_beside(path);
@@ -270,7 +270,7 @@ TEST(AnswerJournal, ThatKnowsMoreThanTheDatabaseIsAnErrorThatNamesSalvage) {
 TEST(AnswerJournal, ThatCannotBeWrittenIsToldBeforeTheAnswerIsKept) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder);
-  // A limit on the size of files that the journal alone reaches.
+  // A limit on file sizes that only the journal reaches.
   constexpr std::size_t full = 4 << 20;
   std::ofstream(journal_beside(path), std::ios::app)
       << R"({"kept":0,"more":")" << std::string(full, 'x') << "\"}\n";

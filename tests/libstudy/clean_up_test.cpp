@@ -1,4 +1,4 @@
-/// What follows a withdrawal or a merge in the files beside the database, whatever stops it.
+/// Clean-up of the files beside the database after a withdrawal or a merge, and after interruptions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ std::vector<std::string> select(const fs::path& path, const std::string& sql) {
   return lines;
 }
 
-/// Files below a folder in whose bytes a text stands.
+/// Files below a folder that contain the text.
 std::vector<std::string> files_with(const fs::path& folder, const std::string& text) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -48,7 +48,7 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
   return names;
 }
 
-/// Participants of one station; P02 says the secret, and all have personal data.
+/// Participants of one station; P02's note is the secret, and all have personal data.
 void write_station(const fs::path& path, const std::string& station, const std::vector<std::string>& people) {
   RunPlan run = test::run_plan(test::pairs(), people);
   for (SessionPlan& session : run.sessions) session.station = station;
@@ -73,7 +73,7 @@ std::string age_of(const fs::path& path, const std::string& code) {
   return entries.empty() ? "" : entries.front().answer;
 }
 
-/// Commits a withdrawal as withdraw() does, and is killed then.
+/// Commits a withdrawal like withdraw(), but does none of the clean-up that follows.
 void withdraw_and_stop(const fs::path& path, const std::string& code) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
   const std::string person = database->text("SELECT person FROM session WHERE participant = '" + code + "'");
@@ -116,7 +116,8 @@ TEST(CleanUp, ARepeatedWithdrawalAndAMergeDoItToo) {
   }
 }
 
-// Each chore is stopped between what it changes and its own deletion: the database is put back as it was.
+// A chore may stop after its change and before its own deletion: the test puts the database back and repeats
+// it.
 TEST(CleanUp, DoneTwiceItComesToTheSame) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db", before = folder / "before";
@@ -159,7 +160,7 @@ TEST(CleanUp, WhatCannotBeDoneStaysAndIsNamedUntilItCan) {
   back_up(path, ".v2-old.bak");
   base::write_file_atomically(broken, std::string(5000, 'x'));
   EXPECT_THAT(withdraw(path, "P02").beside.left, ElementsAre(HasSubstr(".v1-old.bak")));
-  EXPECT_THAT(files_with(folder.path(), secret), IsEmpty());  // what can be done is done
+  EXPECT_THAT(files_with(folder.path(), secret), IsEmpty());  // all that is possible is done
   EXPECT_THAT(Store(path, Open::Write).left_to_clean(), ElementsAre(HasSubstr(".v1-old.bak")));
   write_station(folder / "south.db", "south", {"P03"});
   EXPECT_THAT(merge({folder / "south.db"}, path).beside.left, ElementsAre(HasSubstr(".v1-old.bak")));
@@ -169,7 +170,7 @@ TEST(CleanUp, WhatCannotBeDoneStaysAndIsNamedUntilItCan) {
   EXPECT_THAT(select(path, "SELECT * FROM chore"), IsEmpty());
 }
 
-// The new P02 comes after the old one's personal data are gone, while a backup still waits.
+// A new P02 comes after the old one's personal data are deleted, while a backup still waits for its clean-up.
 TEST(CleanUp, AFailedChoreTakesNothingFromALaterPersonOfTheSameCode) {
   const test::TemporaryFolder folder;
   const fs::path north = folder / "north.db";
@@ -187,8 +188,8 @@ TEST(CleanUp, AFailedChoreTakesNothingFromALaterPersonOfTheSameCode) {
 
 class Backups : public ::testing::TestWithParam<std::size_t> {};
 
-/// A database that was upgraded from a schema, so that a backup of that schema with P01 and P02 stands beside
-/// it, and was merged with another station that has a P02 too.
+/// A database that was upgraded, so that a backup of the earlier schema with P01 and P02 lies beside it, and
+/// that was merged with another station that has a P02 too.
 TEST_P(Backups, LoseTheRightPersonAndNobodyElse) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "old.db",

@@ -1,4 +1,4 @@
-/// One rule says which answers and showings count (schema step 4), and all that read or write them follow it.
+/// One rule decides which answers and showings count (schema step 4); all readers and writers follow it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ using ::test::NamedRows;
 /// Positions of the trials of a lab session of Task 1, the practice first.
 enum Trials { practice, plain, unanswered, set_aside, repeated, excluded, cut, again, parted };
 
-/// A session in which each of these trials went as its name says. The reason of a showing's verdict is
-/// "attempt N".
+/// A session in which each of these trials has the history that its name gives. The reason of a showing's
+/// verdict is "attempt N".
 class Counting : public ::testing::Test {
  protected:
   Counting() {
@@ -46,7 +46,7 @@ class Counting : public ::testing::Test {
     judge(parted, 1, 4, false);
     show(parted, 2);
     keep(parted, 2, {{"fms", 7}}, true);
-    store_.open_runs();  // marks the cut
+    store_.open_runs();  // marks the interrupted presentation
   }
 
   OpenSession session() { return store_.open_runs().at(0).sessions.at(0); }
@@ -73,7 +73,7 @@ class Counting : public ::testing::Test {
     for (const auto& [question, score] : page) answers.push_back({question, {test::score(score), 1}});
     store_.answer(session().id, unit(position), attempt, answers, last, 900);
   }
-  /// Shows it and answers everything, or all but the last question.
+  /// Shows the trial and answers all questions, or all but the last one.
   void judge(int position, int attempt, int realism, bool whole) {
     show(position, attempt);
     std::vector<std::pair<std::string, int>> page{
@@ -89,7 +89,7 @@ class Counting : public ::testing::Test {
   std::map<int, std::int64_t> trial_ids_;
 };
 
-/// By trial and attempt: empty where the showing counts.
+/// By trial and attempt: why the showing does not count; empty if it counts.
 const std::map<std::pair<int, int>, std::string> expected{{{practice, 1}, "practice"},
                                                           {{plain, 1}, ""},
                                                           {{unanswered, 1}, "not answered"},
@@ -133,7 +133,7 @@ TEST_F(Counting, TheCertificateIsOfJudgedShowingsAlone) {
   EXPECT_EQ(trials, 7);
 }
 
-// A pilot of 40 people holds millions of frames.
+// A pilot of 40 people holds millions of frames, so a showing's means must read only its own.
 TEST_F(Counting, AShowingsMeansAreReadFromItsOwnFramesAlone) {
   sqlite::Connection database(path_, Open::Read);
   sqlite::Statement plan(database,
@@ -170,7 +170,7 @@ TEST_F(Counting, EveryExportSaysOfEachShowingWhetherItCounts) {
     const std::string& why = expected.at({std::stoi(line["trial"]), std::stoi(line["attempt"])});
     EXPECT_EQ(line["why_not"], why.empty() ? "n/a" : why);
     EXPECT_EQ(line["counts"], why.empty() ? "1" : "0");
-    // Those that were cut have no frame.
+    // Interrupted showings have no frames.
     EXPECT_EQ(line["active_fraction"], line["state"] == "played" ? "0.75" : "n/a");
     EXPECT_EQ(line["tau_fps"], line["state"] == "played" ? "-2.5" : "n/a");
   }

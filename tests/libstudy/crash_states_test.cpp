@@ -1,4 +1,4 @@
-/// The two models of a power cut, and the model of who decided what, that vip-faults tries commands against.
+/// The two models of a power cut, and the model of permission decisions, that vip-faults tests commands with.
 #include <gtest/gtest.h>
 
 #include "tests/faults/crash_states.hpp"
@@ -69,8 +69,7 @@ TEST_P(CrashStates, ARenamedFileThatWasNotSyncedMayBeEmpty) {
 INSTANTIATE_TEST_SUITE_P(, CrashStates, ::testing::Values(Model::Ext4, Model::Posix),
                          [](const auto& one) { return std::string(name_of(one.param)); });
 
-// On ext4 a sync of any file makes the names before it durable; elsewhere an export that was deleted comes
-// back.
+// On ext4 a sync of any file makes earlier changes of names durable; elsewhere a deleted export comes back.
 TEST(CrashStatesOfNames, ASyncOfAnotherFileHelpsOnExt4Alone) {
   const std::vector<Call> calls{unlinked("/f/old", old_file), created("/f/new", new_file), synced(new_file)};
   EXPECT_FALSE(least(calls, Model::Ext4).names.contains("/f/old"));

@@ -1,4 +1,4 @@
-/// Databases spoilt by SQL that a grammar makes (tests/fuzz/database_grammar.hpp), with fixed seeds.
+/// Databases damaged by SQL from a grammar (tests/fuzz/database_grammar.hpp), with fixed seeds.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Most of processor time that all commands on one database may take.
+/// Limit of processor time for all commands on one database.
 constexpr int most_seconds = 10;
 
 void attack_many(std::uint64_t first_seed, int count) {
@@ -29,7 +29,7 @@ void attack_many(std::uint64_t first_seed, int count) {
     const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(i);
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
-    // Of one statement there is often something to be taken; of many there seldom is.
+    // Commands often accept a database after one statement, but seldom after many.
     std::vector<std::uint8_t> bytes(4 + random() % 60);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     const test::ProcessorTime limit(most_seconds);
@@ -40,7 +40,8 @@ void attack_many(std::uint64_t first_seed, int count) {
   EXPECT_GE(made.size(), 5u) << "the grammar chooses among few statements";
 }
 
-/// Each text of a table that its constraints and triggers let be changed: rows of the event log stay.
+/// Changes each text of a table if its constraints and triggers allow it: rows of the event log cannot
+/// change.
 void set_texts(const fs::path& path, const std::string& table) {
   sqlite::Connection database(path, sqlite::Open::Write);
   database.execute("PRAGMA foreign_keys = OFF");

@@ -28,7 +28,7 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   return folder / "study.db";
 }
 
-/// Opening for every purpose fails with `problem` and leaves the file and its folder alone.
+/// Every way of opening fails with `problem` and leaves the file and its folder unchanged.
 void expect_refused(const fs::path& path, const std::string& problem) {
   const std::string before = test::bytes_of(path);
   const auto count = [&] { return std::distance(fs::directory_iterator(path.parent_path()), {}); };
@@ -102,8 +102,8 @@ TEST(Database, NameWithUriSyntaxIsAName) {
   EXPECT_TRUE(fs::exists(folder / "a?mode=memory#%41.db"));
 }
 
-/// What a power cut leaves of the very first transaction: some pages without the first, and a journal by
-/// which the file was empty before.
+/// State after a power cut in the very first transaction: some pages without the first, and a journal that
+/// says the file was empty before.
 void put_unmade(const fs::path& path) {
   base::write_file_atomically(path, std::string(4096, '\0') + std::string(8192, '\r'));
   std::string journal("\xd9\xd5\x05\xf9\x20\xa1\x63\xd7\0\0\0\0\0\0\0\1\0\0\0\0\0\0\2\0\0\0\x10\0", 28);
@@ -121,7 +121,7 @@ TEST(Database, CutOffInItsFirstTransactionIsMadeAnew) {
               ThrowsMessage<base::Error>(HasSubstr("holds nothing")));
   Store(run, Open::Create).add_run(test::run_plan(test::pilot(), {"P02"}));
   EXPECT_EQ(merge({path, run}, into).sessions, 2);
-  // The same journal beside a whole database is of another file.
+  // Beside a complete database the same journal belongs to another file.
   fs::copy_file(path, folder / "whole.db");
   put_unmade(folder / "other.db");
   fs::rename(folder / "other.db-journal", folder / "whole.db-journal");
@@ -158,7 +158,7 @@ TEST(Database, UpgradeKeepsACopyAndTheData) {
   const std::string before = test::bytes_of(path);
   EXPECT_EQ(open_database(path, Open::Read, steps)->integer("SELECT count(weather) FROM session"), 0);
   EXPECT_TRUE(test::bytes_of(path) == before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // and its journal
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // with the journal of answers
   const auto upgraded = open_database(path, Open::Write, steps);
   EXPECT_EQ(upgraded->integer("PRAGMA user_version"), static_cast<std::int64_t>(steps.size()));
   EXPECT_EQ(upgraded->integer("SELECT count(*) FROM trial"), 21);
@@ -200,7 +200,7 @@ TEST(Database, ReadingLeavesNothingBehind) {
   const std::string before = test::bytes_of(path);
   EXPECT_EQ(test::trials_of(path).size(), 21u);
   EXPECT_TRUE(test::bytes_of(path) == before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // and its journal
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // with the journal of answers
 }
 
 TEST(Database, Version1KeepsEveryAnswerAndEveryFrame) {
@@ -260,7 +260,7 @@ TEST(Database, Version1IsUpgradedByAnExportWhichIsRegisteredInIt) {
   test::write_version_1(path);
   EXPECT_EQ(export_csv(path, folder / "out").size(), 23u);
   EXPECT_EQ(read_status(path).sessions.size(), 2u);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // and the copy that upgrades leave
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // with the backup of the upgrade
 }
 
 TEST(Database, CopiesOfVersion1AreRecognisedAfterTheirUpgrade) {
@@ -274,7 +274,8 @@ TEST(Database, CopiesOfVersion1AreRecognisedAfterTheirUpgrade) {
   EXPECT_EQ(uids[0], uids[1]);
 }
 
-/// What schema 3 made up of each frame is not taken for measured, whichever way its rows come into schema 4.
+/// Values that schema 3 invented for each frame must not appear as measured, however its rows come into
+/// schema 4.
 TEST(Database, FramesOfEarlierSchemasTellWhatWasMeasuredAlone) {
   const test::TemporaryFolder folder;
   const auto expect_frames = [](const fs::path& path, std::int64_t frames) {
@@ -305,11 +306,11 @@ TEST(Database, FramesOfEarlierSchemasTellWhatWasMeasuredAlone) {
   const auto before = read(old);
   ASSERT_EQ(before.size(), 40u);
   EXPECT_THAT(before, ::testing::Contains(HasSubstr("|2218 939|"))) << "counted then, so measured";
-  expect_frames(old, 40);  // the temporary copy that reading makes
+  expect_frames(old, 40);  // reading makes a temporary copy
   open_database(upgraded, Open::Write, read_schema_steps());
   expect_frames(upgraded, 40);
   EXPECT_EQ(read(upgraded), before);
-  // Page by page, where SQLite reads nothing any more.
+  // Without its header SQLite cannot read the file, so salvage reads page by page.
   std::string bytes = test::bytes_of(old);
   std::fill_n(bytes.begin(), 100, '\0');
   base::write_file_atomically(old, bytes);

@@ -1,4 +1,4 @@
-/// Effects as a factor of the design: levels, cells, plans and what the database holds of them.
+/// Effects as a factor of the design: levels, cells, plans and their rows in the database.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -158,7 +158,7 @@ TEST(EffectLevels, WithoutTheFactorTheDatabaseHoldsNone) {
   EXPECT_THAT(test::column(folder / "study.db", "SELECT coalesce(effects, effect_set) FROM cell"), Each("~"));
 }
 
-/// Cells of the schema before, whichever way they come into this one.
+/// Cells of the schema before, after an upgrade and after a salvage.
 TEST(EffectLevels, OfTheSchemaBeforeAreNone) {
   const test::TemporaryFolder folder;
   const fs::path old = folder / "old.db", upgraded = folder / "upgraded.db";

@@ -1,5 +1,5 @@
-/// Words of people in exports: no spreadsheet takes them for formulas, what was said can be read back, and
-/// who may read the files.
+/// Words of people in exports: spreadsheets do not take them for formulas, the original words can be
+/// recovered, and only the owner may read the files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -30,7 +30,7 @@ const std::vector<std::string> hostile{"=HYPERLINK(\"http://x\",\"y\")",
                                        "=a,\"b\"\r\nc",
                                        "-3.5"};
 
-/// Whether a spreadsheet begins to reckon here.
+/// True if a spreadsheet would take the field for a formula.
 bool is_formula(const std::string& field) {
   for (const char* sign : {"=", "+", "-", "@", "\t", "\r", "\n", "\uFF1D", "\uFF0B", "\uFF0D", "\uFF20"}) {
     if (field.starts_with(sign)) return true;
@@ -38,14 +38,14 @@ bool is_formula(const std::string& field) {
   return false;
 }
 
-/// As the dictionary says.
+/// Recovers the original words by the rule in the dictionary.
 std::string read_back(const std::string& field) {
   const std::size_t first = field.find_first_not_of('\'');
   const bool guarded = first != 0 && first != std::string::npos && is_formula(field.substr(first));
   return guarded ? field.substr(1) : field;
 }
 
-/// Fields of all lines, as RFC 4180 has them.
+/// Fields of all lines, by RFC 4180.
 std::vector<std::string> fields_of(const fs::path& path) {
   const std::string text = test::bytes_of(path);
   std::vector<std::string> fields{""};
@@ -70,7 +70,7 @@ bool is_number(const std::string& field) {
   return !field.empty() && *end == '\0';
 }
 
-/// Every free text of a session is hostile; one of the questions takes words.
+/// Every free text of a session is hostile; one question asks for words.
 void make_hostile_study(const fs::path& path) {
   std::string text = test::pairs_toml;
   Store store(path, sqlite::Open::Create);

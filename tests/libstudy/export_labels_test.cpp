@@ -1,4 +1,4 @@
-/// Labels of people and protocols in public exports are given once.
+/// Public labels of people and protocols never change once given.
 #include "libstudy/store/export_labels.hpp"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ class GivenLabels : public ::testing::Test {
   void add(const fs::path& database, const std::vector<std::string>& codes) {
     Store(database, Open::Create).add_run(test::run_plan(test::pairs(), codes));
   }
-  /// Somebody as a version without rules for codes and without labels planned them.
+  /// Adds a person as planned by a version without rules for codes and without labels.
   void add_old(const fs::path& database, const std::string& code) {
     add(database, {"OLD"});
     Connection(database, Open::Write)
@@ -67,7 +67,7 @@ TEST_F(GivenLabels, OfOlderDatabasesAreThoseThatWerePublishedLast) {
   add_old(path, "P-01");
   add_old(path, "p01");
   Connection(path, Open::Write).execute("DELETE FROM label");
-  // Names of files on other computers do not differ in case.
+  // File names on some systems ignore case.
   EXPECT_EQ(published(path),
             "participant_id\tcode\tsimulated\nsub-P01\tP-01\t1\nsub-P01x2\tP01\t1\nsub-p01x3\tp01\t1\n");
 }
@@ -79,7 +79,8 @@ TEST_F(GivenLabels, AreNotGivenAgainAfterAWithdrawal) {
   EXPECT_EQ(published(path), "participant_id\tcode\tsimulated\nsub-P01x2\tP-01\t1\n");
 }
 
-// The other P01 was planned first, and keeps the plain label in a database of its own.
+// The other P01 was planned first: it gets the plain label in a new database, but not when it is merged into
+// this one.
 TEST_F(GivenLabels, OfTheDatabaseThatTakesOthersInStay) {
   const fs::path south = folder / "south.db";
   add(south, {"P01", "P03"});
@@ -119,7 +120,7 @@ TEST_F(GivenLabels, OfProtocolsOfOneNameStay) {
   Protocol other = test::pairs();
   other.sha256 = std::string(64, 'a');
   other.version = "2.0";
-  Store(path, Open::Write).add_run(test::run_plan(other, {"A01"}));  // comes first by code
+  Store(path, Open::Write).add_run(test::run_plan(other, {"A01"}));  // comes first in the order of codes
   published(path);
   EXPECT_TRUE(fs::exists(folder / "bids" / "sub-P05" / "ses-pairsv1"));
   EXPECT_TRUE(fs::exists(folder / "bids" / "sub-A01" / "ses-pairsaaaaaav1"));

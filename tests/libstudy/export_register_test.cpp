@@ -1,4 +1,4 @@
-/// Exports are registered with whom they hold, and go when one of those withdraws.
+/// Exports are registered with the people that they contain, and deleted when one of these withdraws.
 #include "libstudy/store/export_register.hpp"
 
 #include <gmock/gmock.h>
@@ -62,7 +62,7 @@ TEST_F(Exports, OfEveryKindGoWithWhomTheyHold) {
   EXPECT_TRUE(fs::exists(folder / "other.json"));
   EXPECT_EQ(count("export"), 0);
   EXPECT_EQ(count("export_person"), 0);
-  export_csv(path, csv);  // of those who stay
+  export_csv(path, csv);  // of the remaining people
   EXPECT_TRUE(fs::exists(csv / "sessions.csv"));
 }
 
@@ -87,7 +87,7 @@ TEST_F(Exports, OfOnePathAreOne) {
   EXPECT_EQ(count("export"), 2);
 }
 
-// A kill leaves the draft, a row that was written before it, and no target.
+// A killed export leaves its draft and a row that was written before, but no target.
 TEST_F(Exports, DraftsOfAKilledExportGoToo) {
   const auto people = everybody(*open_database(path, Open::Read, read_schema_steps()));
   fs::path draft, page;
@@ -122,8 +122,8 @@ TEST_F(Exports, AnExportThatNeverCameToItsPlaceIsNotAskedFor) {
   EXPECT_EQ(count("export"), 0);
   export_csv(path, csv);
   { const RegisteredExport failed(path, "csv", csv, people); }
-  EXPECT_EQ(count("export"), 1);            // the earlier one is there
-  change("UPDATE export SET sha256 = ''");  // killed before its first
+  EXPECT_EQ(count("export"), 1);            // the earlier export still exists
+  change("UPDATE export SET sha256 = ''");  // as if its first export was killed
   fs::remove_all(csv);
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
   EXPECT_EQ(count("export"), 0);
@@ -151,7 +151,7 @@ TEST_F(Exports, OnAnotherComputerAreNamed) {
   change("UPDATE export SET host = 'elsewhere'");
   EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("'elsewhere'")));
   EXPECT_TRUE(fs::exists(csv));
-  EXPECT_THAT(Store(path, Open::Write).left_to_clean(), IsEmpty());  // nothing to be done here
+  EXPECT_THAT(Store(path, Open::Write).left_to_clean(), IsEmpty());  // nothing to do on this computer
   EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("'elsewhere'")));
 }
 
@@ -162,7 +162,7 @@ TEST_F(Exports, ThatWereMovedAreNamedOnce) {
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
 }
 
-// Stopped after the mark, after the step aside, and within the removal.
+// Interrupted after the mark, after the rename to the draft, and during the removal.
 TEST_F(Exports, ADeletionThatWasCutIsFinished) {
   for (const int step : {0, 1, 2}) {
     const std::string code = "Q" + std::to_string(step);
@@ -205,14 +205,14 @@ TEST_F(Exports, OfASourceAreKnownAfterAMerge) {
   export_csv(path, csv);
   merge({path}, folder / "all.db");
   EXPECT_THAT(withdraw(folder / "all.db", "P01").beside.cleaned, ElementsAre(csv));
-  // Elsewhere: the export of a station that merges a tombstone.
+  // On another station: merging a tombstone deletes the station's export.
   add("P02");
   export_csv(path, csv);
   EXPECT_THAT(merge({folder / "all.db"}, path).beside.cleaned, ElementsAre(csv));
 }
 
-// Registering takes no lock of writers, so it falls between any two calls of a merge; not between too many,
-// or SQLite gives up to read what is changed all the time.
+// Registering takes no writer lock, so it can happen between any two calls of a merge. It must not happen
+// between too many, or SQLite gives up reading a database that changes all the time.
 TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
   Store(folder / "south.db", Open::Create).add_run(test::run_plan(test::pairs(), {"P02"}));
   test::FaultVfs vfs;
@@ -224,7 +224,7 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
     const std::string name = "'/e" + std::to_string(vfs.calls()) + "'";
     try {
       Connection now(path, Open::Write);
-      now.mark_commits();  // as every program of ours does
+      now.mark_commits();  // as every program of the project does
       now.execute("PRAGMA busy_timeout = 0");
       sqlite::Transaction transaction(now);
       now.execute("INSERT INTO export (kind, path, host, sha256, utc, tackled) VALUES ('csv', " + name +
@@ -238,7 +238,7 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
   });
   merge({folder / "south.db"}, path);
   vfs.before_each({});
-  EXPECT_GT(refused, 0);  // by the merge's own commits
+  EXPECT_GT(refused, 0);  // during the merge's own commits
   ASSERT_GT(entered.size(), 10u);
   for (const std::string& name : entered) EXPECT_EQ(count("export WHERE path = " + name), 1) << name;
 }
@@ -270,12 +270,12 @@ TEST_F(Exports, FoldersMadeForFilesGoWhenNothingIsLeftInThem) {
   }
   std::ofstream(folder / "c" / "my notes.txt") << "mine";
   add("P02");
-  RegisteredFiles(path).make_folder(folder / "c");  // is there
+  RegisteredFiles(path).make_folder(folder / "c");  // the folder exists already
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty());
   EXPECT_FALSE(fs::exists(folder / "a"));
   EXPECT_TRUE(fs::is_empty(folder / "theirs"));
   EXPECT_TRUE(fs::exists(folder / "c" / "my notes.txt"));
-  EXPECT_EQ(count("export"), 1);  // "c", which goes with a later withdrawal
+  EXPECT_EQ(count("export"), 1);  // "c", deleted with a later withdrawal
 }
 
 TEST_F(Exports, ThatFailWriteNothingIntoTheRegister) {

@@ -1,4 +1,4 @@
-/// Exports hold the rules of BIDS 1.11 and Psych-DS, and the rules see what breaks them.
+/// Exports follow the rules of BIDS 1.11 and Psych-DS, and the checks of the rules detect violations.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-/// What is moved or deleted is on the disk before the database says so: whenever it commits, each folder in
-/// which a name of an export was moved or removed has been synced since. File systems such as btrfs may
-/// otherwise bring a deleted export back after a power loss, of which nothing is registered any more.
+/// Moves and deletions must be on the disk before the database records them: at each commit, every folder in
+/// which an export was renamed or removed has been synced. File systems such as btrfs may otherwise bring a
+/// deleted export back after a power loss, without a row that registers it.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -19,10 +19,10 @@
 
 namespace {
 
-/// Follows the calls of this process while it lives.
+/// Records this process's calls during its lifetime.
 struct Follower {
-  std::set<std::string> unsynced;        ///< folders in which a name was moved or removed
-  std::vector<std::string> early, seen;  ///< commits with such folders; all that was seen
+  std::set<std::string> unsynced;        ///< folders with a name that was moved or removed
+  std::vector<std::string> early, seen;  ///< commits with such folders; all calls
 };
 Follower* follower = nullptr;
 
@@ -108,7 +108,7 @@ TEST(ExportSync, NoCommitComesBeforeWhatItSaysIsOnTheDisk) {
   Store(path, sqlite::Open::Create).add_run(test::run_plan(test::pairs(), {"P01", "P02"}));
   Follower seen;
   follower = &seen;
-  for (int times = 0; times < 2; ++times) {  // new, and over an earlier one
+  for (int times = 0; times < 2; ++times) {  // first a new export, then over an earlier one
     export_csv(path, csv);
     RegisteredFiles(path).write("vip-stats report", page, "P01");
   }

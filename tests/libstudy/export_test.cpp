@@ -50,7 +50,7 @@ TEST(ExportCsv, WritesEveryTableOnceAndAgainTheSame) {
   const std::string before = test::bytes_of(folder / "out" / "frames.csv");
   export_csv(database, folder / "out/");
   EXPECT_TRUE(test::bytes_of(folder / "out" / "frames.csv") == before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // the journal of answers
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 3);  // with the journal of answers
 }
 
 TEST(ExportCsv, DictionaryTellsEveryColumnOfTheSchema) {
@@ -165,7 +165,7 @@ TEST(ExportCsv, QuotesWhatNeedsIt) {
   EXPECT_THAT(test::bytes_of(folder / "out" / "questions.csv"), HasSubstr(",\"Happy, \"\"or\"\" not?\","));
 }
 
-// As LibreOffice and Excel read a file at a double click where numbers are written 0,5.
+// The format that LibreOffice and Excel expect at a double click in locales that write 0,5.
 TEST(ExportCsv, ForSpreadsheetsHasTheLocalesMarks) {
   const test::TemporaryFolder folder;
   const fs::path database = make_study(folder);
@@ -184,7 +184,7 @@ TEST(ExportCsv, ForSpreadsheetsHasTheLocalesMarks) {
                 "';' between fields, ',' as the decimal mark. R reads it by read.csv2("));
   EXPECT_EQ(csv_field("a;b", {';', ',', true}), "\"a;b\"");
   EXPECT_EQ(csv_field("a,b", {';', ',', true}), "a,b");
-  export_csv(database, folder / "out");  // an earlier export all the same
+  export_csv(database, folder / "out");  // recognised as an earlier export too
   EXPECT_THAT(test::bytes_of(folder / "out" / "dictionary.csv"), ::testing::StartsWith("file,column,"));
 }
 

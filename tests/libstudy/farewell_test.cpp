@@ -1,4 +1,4 @@
-/// How a session ends before its last unit, and what follows.
+/// Sessions that end before their last unit, and the steps that follow.
 #include "libstudy/session/farewell.hpp"
 
 #include <gmock/gmock.h>
@@ -41,14 +41,14 @@ kind = "ssq"
 id = "afterwards"
 )";
 
-/// Pairs after a page of consent.
+/// Pairs after a consent page.
 Protocol consented() {
   std::string text = paced_pairs().text;
   text.insert(text.find("[[block]]"), std::string(consent_toml) + "\n");
   return parse_protocol(text, "consented.toml");
 }
 
-/// What was seen from the last page that begins so.
+/// The part of `seen` from the last line that begins with `begin`.
 std::vector<std::string> from(const std::vector<std::string>& seen, const std::string& begin) {
   const auto at = std::find_if(seen.rbegin(), seen.rend(),
                                [&](const std::string& line) { return line.starts_with(begin); });
@@ -81,7 +81,7 @@ TEST(Farewell, AKeyHitByMistakeAtConsentSendsNobodyAway) {
 TEST(Farewell, AStopRestsOffersTheLastQuestionnaireAndAsksWhatBecomesOfTheData) {
   OneSession one(paced_pairs("", ssq_toml));
   one.person.says["ssq_3"] = {};  // left out
-  const auto ending = one.run(wish_at_frame_5(Wish::EndSession, 1));
+  const auto ending = one.run(wish_at_frame_5(Request::EndSession, 1));
   EXPECT_EQ(ending.value().how, EarlyEnd::Stopped);
   const auto seen = from(one.person.seen, "tell over");
   ASSERT_EQ(seen.size(), 5u);
@@ -93,14 +93,14 @@ TEST(Farewell, AStopRestsOffersTheLastQuestionnaireAndAsksWhatBecomesOfTheData) 
   EXPECT_EQ(one.row().state, "stopped");
   EXPECT_EQ(one.count("response JOIN unit USING (unit_id) WHERE kind = 'ssq' AND score = 1"), 15);
   EXPECT_EQ(one.count("unit WHERE kind = 'ssq' AND state = 'done'"), 1);
-  EXPECT_THAT(wished_withdrawals(one.folder / "study.db"), IsEmpty());
+  EXPECT_THAT(requested_withdrawals(one.folder / "study.db"), IsEmpty());
   EXPECT_TRUE(one.open().empty());
 }
 
 TEST(Farewell, TheQuestionnaireMayBeDeclined) {
   OneSession one(paced_pairs("", ssq_toml));
   one.person.decides = [](Offer offer) { return offer != Offer::Questionnaire; };
-  one.run(wish_at_frame_5(Wish::EndSession, 1));
+  one.run(wish_at_frame_5(Request::EndSession, 1));
   EXPECT_THAT(from(one.person.seen, "tell over"),
               ElementsAre("tell over 60", "offer questionnaire", "offer keep", "tell kept"));
   EXPECT_EQ(one.count("unit WHERE kind = 'ssq' AND state = 'done'"), 0);
@@ -109,7 +109,7 @@ TEST(Farewell, TheQuestionnaireMayBeDeclined) {
 TEST(Farewell, WhoSawNothingNeitherRestsNorIsAsked) {
   OneSession one(paced_pairs("", ssq_toml));
   SessionHooks hooks;
-  hooks.wish = [] { return Wish::EndSession; };
+  hooks.request = [] { return Request::EndSession; };
   one.run(hooks);
   EXPECT_THAT(one.person.seen, ElementsAre("tell over", "tell goodbye"));
 }
@@ -117,9 +117,9 @@ TEST(Farewell, WhoSawNothingNeitherRestsNorIsAsked) {
 TEST(Farewell, AStopOnTheRequestOfTheProgramSkipsTheRest) {
   OneSession one(paced_pairs());
   SessionHooks hooks;
-  hooks.wish = [&] {
-    if (one.count("presentation") == 0) return Wish::GoOn;
-    return one.person.seen.back() == "tell over 60" ? Wish::Stop : Wish::EndSession;
+  hooks.request = [&] {
+    if (one.count("presentation") == 0) return Request::GoOn;
+    return one.person.seen.back() == "tell over 60" ? Request::Stop : Request::EndSession;
   };
   EXPECT_EQ(one.run(hooks).value().how, EarlyEnd::Stopped);
   EXPECT_EQ(one.person.seen.back(), "tell over 60");
@@ -130,7 +130,7 @@ TEST(Farewell, APersonWhoStoppedIsNotSentToResume) {
   OneSession one(paced_pairs());
   const auto again = [&] { one.store.add_run(test::run_plan(one.protocol, {"P01"})); };
   EXPECT_THAT(again, ThrowsMessage<base::Error>(HasSubstr("vip-study resume")));
-  one.run(wish_at_frame_5(Wish::EndSession, 1));
+  one.run(wish_at_frame_5(Request::EndSession, 1));
   EXPECT_THAT(again, ThrowsMessage<base::Error>(
                          AllOf(HasSubstr("it is over (stopped)"), Not(HasSubstr("vip-study resume")))));
 }
@@ -147,15 +147,16 @@ TEST(Farewell, WhatIsToBeDeletedIsDeletedByTheNextOpeningAtTheLatest) {
   test::Desk desk(protocol);
   SessionParts parts = desk.parts(person, *store);
   parts.personal = &personal;
-  run_session(protocol, store->open_runs().at(0).sessions.at(0), parts, wish_at_frame_5(Wish::EndSession, 1));
+  run_session(protocol, store->open_runs().at(0).sessions.at(0), parts,
+              wish_at_frame_5(Request::EndSession, 1));
   EXPECT_EQ(person.seen.back(), "tell deleted");
-  EXPECT_THAT(store->wished_withdrawals(), ElementsAre("P01"));
+  EXPECT_THAT(store->requested_withdrawals(), ElementsAre("P01"));
   store.reset();
-  EXPECT_THAT(wished_withdrawals(folder / "study.db"), ElementsAre("P01"));
+  EXPECT_THAT(requested_withdrawals(folder / "study.db"), ElementsAre("P01"));
 
   store = std::make_unique<Store>(folder / "study.db", sqlite::Open::Write);
   EXPECT_THAT(store->left_to_clean(), IsEmpty());
-  EXPECT_THAT(store->wished_withdrawals(), IsEmpty());
+  EXPECT_THAT(store->requested_withdrawals(), IsEmpty());
   const StudyStatus status = read_status(folder / "study.db");
   EXPECT_THAT(status.withdrawn, ElementsAre("P01"));
   ASSERT_EQ(status.sessions.size(), 1u);

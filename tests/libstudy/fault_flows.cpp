@@ -20,7 +20,7 @@ namespace {
 
 using faults::operator+;
 
-/// Survives the process, as a console's line does.
+/// Writes an acknowledgement that survives the process, like a line on the console.
 void acknowledge(const fs::path& folder, const UnitDone& done) {
   const int fd = ::open((folder / "said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   const std::string line = done.participant + " " + std::to_string(done.unit.position) + "\n";
@@ -43,13 +43,13 @@ void run_open_sessions(const fs::path& folder, Store& store, const Protocol& pro
         acknowledge(folder, done);
         --units;
       };
-      hooks.wish = [&] { return units > 0 ? Wish::GoOn : Wish::Stop; };
+      hooks.request = [&] { return units > 0 ? Request::GoOn : Request::Stop; };
       run_session(protocol, session, parts, hooks);
     }
   }
 }
 
-/// Plans where nothing is planned, and goes through what is open, as run and resume do.
+/// Plans sessions if there are none, and plays the open ones, like the commands run and resume.
 void play(const fs::path& folder, int units = 1000) {
   const Protocol protocol = paced_pairs();
   Store store(folder / "s.db", sqlite::Open::Create);
@@ -89,7 +89,7 @@ void whole_study(const fs::path& folder, const char* name, const std::vector<std
   }
 }
 
-/// P02 may be gone already. What cannot be cleaned is an error, as for the command.
+/// P02 may be gone already. Throws if a file cannot be cleaned, like the command.
 void withdraw_P02(const fs::path& folder, const char* name) {
   if (faults::database_content(folder / name).empty()) return;
   check_nothing_left(folder / name, withdraw(folder / name, "P02").beside.left);
@@ -103,7 +103,7 @@ void stations(const fs::path& folder) {
   withdraw_P02(folder, "north.db");
 }
 
-/// Two people who allow all, each with a place where they looked.
+/// Two people who allow everything, each with one gaze sample.
 void looked_at(const fs::path& folder) {
   Store store(folder / "s.db", sqlite::Open::Create);
   add_people(store, asking_protocol(), {{"P01", 1, 1}, {"P02", 1, 1}});

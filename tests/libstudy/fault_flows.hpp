@@ -1,5 +1,5 @@
 #pragma once
-/// The commands that store data, in versions short enough to try a fault at each call of SQLite.
+/// The commands that store data, in versions short enough to inject a fault at each call of SQLite.
 
 #include <filesystem>
 #include <functional>
@@ -12,7 +12,7 @@ namespace study::test {
 namespace fs = std::filesystem;
 using faults::Lines;
 
-/// One command to try faults on. `act` does the work; called again, it does the rest.
+/// One command to inject faults into. `act` does the work; a second call finishes the rest.
 struct Flow {
   const char* name;
   std::function<void(const fs::path&)> prepare;

@@ -1,5 +1,5 @@
-/// Every call that SQLite makes on a file, failed or the last: whatever was acknowledged is there afterwards,
-/// nothing twice and nothing changed, and the work can be finished.
+/// Each call that SQLite makes on a file fails or is the process's last: afterwards all acknowledged data are
+/// there, nothing is doubled or changed, and the command can be finished.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,7 +34,7 @@ Lines said_in(const fs::path& folder) {
 
 enum class How { WentOn, Refused, Stopped };
 
-/// A flow that is tried again and again from one start.
+/// Repeats a flow from the same start.
 class Trials {
  public:
   explicit Trials(const Flow& flow) : flow_(flow) {
@@ -49,7 +49,7 @@ class Trials {
 
   long calls() const { return calls_; }
 
-  /// What is wrong after it; empty: nothing.
+  /// Runs the flow with a fault. Returns the problem; empty: none.
   std::string attempt(const test::VfsFault& fault, How& how) {
     fs::remove_all(now_);
     fs::copy(start_, now_, fs::copy_options::recursive);
@@ -96,7 +96,7 @@ class Trials {
     return WEXITSTATUS(status) == 0 ? How::WentOn : How::Stopped;
   }
 
-  /// What a user does then: looks, and gives the command again.
+  /// The user's next steps: look at the database, and repeat the command.
   void finish() {
     for (const char* name : flow_.healthy) read_status(now_ / name);
     Lines before;
@@ -149,8 +149,8 @@ void try_calls(const Flow& flow, const Named& fault, long first, long step) {
   EXPECT_EQ(failed, 0) << flow.name << ", " << fault.name;
 }
 
-/// Some calls over the whole length of the flow, other ones for each kind of fault; FaultsSlow tries them
-/// all.
+/// Tries a few calls over the whole length of the flow, different ones for each kind of fault; FaultsSlow
+/// tries all.
 void try_some(const char* name) {
   constexpr long tries = 3;
   for (const Flow& flow : all_flows())
@@ -174,7 +174,7 @@ TEST(Faults, SomeCallsOfUpgradesFromSchema3) { try_some("upgrade from schema 3")
 TEST(Faults, SomeCallsOfUpgradesFromSchema4) { try_some("upgrade from schema 4"); }
 TEST(Faults, SomeCallsOfUpgradesFromSchema5) { try_some("upgrade from schema 5"); }
 
-/// Every call: one test for each flow and kind of fault, so that they run side by side.
+/// Tries every call: one test for each flow and kind of fault, so that they run in parallel.
 class FaultsSlow : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {};
 
 TEST_P(FaultsSlow, EveryCall) {
@@ -194,8 +194,9 @@ INSTANTIATE_TEST_SUITE_P(, FaultsSlow,
                                           testing::Range(std::size_t{0}, std::size(kinds))),
                          test_name);
 
-/// A disk that filled in the first commit of a new database leaves the plan in the journal alone. The next
-/// run takes it over and is then refused, since the plan stands: it must not go with that run's new file.
+/// If the disk fills in the first commit of a new database, only the journal has the plan. The next run takes
+/// it over and is then refused because the plan exists: the plan must not be deleted with that run's new
+/// file.
 TEST(Faults, PlanOfTheJournalOutlivesARefusedRun) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "s.db";
@@ -208,7 +209,7 @@ TEST(Faults, PlanOfTheJournalOutlivesARefusedRun) {
   EXPECT_EQ(Store(path, sqlite::Open::Write).open_runs().size(), 1u);
 }
 
-/// The model itself: what was not synced is gone after a power cut, what was synced is there.
+/// Test of the model itself: a power cut loses unsynced data and keeps synced data.
 TEST(FaultVfs, PowerCutLosesWhatWasNotSynced) {
   const test::TemporaryFolder folder;
   test::FaultVfs vfs;

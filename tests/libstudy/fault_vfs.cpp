@@ -21,7 +21,7 @@ using Bytes = std::vector<char>;
 
 constexpr std::int64_t sector = 512;
 
-/// Bytes of a file that are not yet sure to be on the disk, as they were before.
+/// Earlier bytes of a part of a file that is not yet synced.
 struct Undo {
   std::int64_t at, size_before;
   Bytes bytes;
@@ -33,12 +33,12 @@ struct State {
   long calls = 0;
   bool done = false;
   std::function<void()> before_each;
-  bool between = false;  ///< before_each runs
+  bool between = false;  ///< true while before_each runs
   std::map<std::string, std::vector<Undo>> unsynced;
 };
 State state;
 
-/// An open file; SQLite's own stands behind it.
+/// An open file; SQLite's own file object follows it in memory.
 struct File {
   sqlite3_file base;
   const char* path;  ///< SQLite keeps the name while the file is open; null: a temporary file
@@ -71,7 +71,7 @@ void take_back(int fd, const Undo& undo, bool torn, std::mt19937& random) {
   ::_exit(stopped_status);
 }
 
-/// What the call is to fail with; SQLITE_OK: it goes on.
+/// Counts a call. Returns the error that it must fail with, or SQLITE_OK.
 int count(int error, bool writes = false) {
   ++state.calls;
   if (state.before_each && !std::exchange(state.between, true)) {
@@ -91,7 +91,7 @@ int count(int error, bool writes = false) {
 
 bool cuts_power() { return state.fault.kind == Kind::PowerCut || state.fault.kind == Kind::TornCut; }
 
-/// Remembers what stands at [at, at + size) before it changes.
+/// Remembers the bytes at [at, at + size) before they change.
 void remember(sqlite3_file* file, std::int64_t at, std::int64_t size) {
   if (!cuts_power() || !of(file)->path) return;
   Undo undo{at, 0, {}};
@@ -99,12 +99,12 @@ void remember(sqlite3_file* file, std::int64_t at, std::int64_t size) {
   const std::int64_t there = std::clamp<std::int64_t>(undo.size_before - at, 0, size);
   undo.bytes.resize(static_cast<std::size_t>(there));
   if (there > 0) real(file)->pMethods->xRead(real(file), undo.bytes.data(), static_cast<int>(there), at);
-  // What was beyond the end reads as zeros where it is in the middle of a torn file.
+  // Bytes beyond the old end read as zeros if they are inside a torn file.
   if (state.fault.kind == Kind::TornCut) undo.bytes.resize(static_cast<std::size_t>(size));
   state.unsynced[of(file)->path].push_back(std::move(undo));
 }
 
-// Each of SQLite's calls: counted, failed or handed on.
+// Each of SQLite's calls is counted, then fails or goes to the real file.
 
 int do_close(sqlite3_file* file) { return real(file)->pMethods->xClose(real(file)); }
 int do_read(sqlite3_file* file, void* bytes, int size, sqlite3_int64 at) {
@@ -137,7 +137,7 @@ int do_lock(sqlite3_file* file, int lock) {
   if (const int code = count(SQLITE_IOERR_LOCK)) return code;
   return real(file)->pMethods->xLock(real(file), lock);
 }
-// A lock that cannot be given back is none that SQLite's own tests expect to be survived.
+// Unlocking never fails: SQLite's own tests do not expect it to survive that.
 int do_unlock(sqlite3_file* file, int lock) { return real(file)->pMethods->xUnlock(real(file), lock); }
 int do_check_reserved(sqlite3_file* file, int* held) {
   if (const int code = count(SQLITE_IOERR_CHECKRESERVEDLOCK)) return code;
@@ -150,7 +150,7 @@ int do_control(sqlite3_file* file, int what, void* value) {
   return real(file)->pMethods->xFileControl(real(file), what, value);
 }
 int do_sector_size(sqlite3_file*) { return static_cast<int>(sector); }
-/// No promise that a power cut would not keep.
+/// With power cuts, promises no characteristics that a power cut could break.
 int do_characteristics(sqlite3_file* file) {
   const int promised = real(file)->pMethods->xDeviceCharacteristics(real(file));
   return cuts_power() ? 0 : promised;

@@ -28,11 +28,11 @@ struct VfsFault {
 /// Exit status of a process that Stop, PowerCut or TornCut ended.
 inline constexpr int stopped_status = 77;
 
-/// SQLite's default VFS until it is destroyed. Without a fault it changes nothing.
+/// Replaces SQLite's default VFS until it is destroyed. Without a fault it changes nothing.
 ///
 /// A power cut is modelled by sectors of 512 bytes: each sector written since its file was last synced gets
-/// its old bytes back (PowerCut), or at random its old or new ones (TornCut, from a fixed seed). Files that
-/// were made or deleted stay so. The log's index (-shm) is never on a disk.
+/// its old bytes back (PowerCut), or at random its old or new ones (TornCut, from a fixed seed). Created and
+/// deleted files stay created and deleted. The log's index (-shm) is never on a disk.
 class FaultVfs {
  public:
   FaultVfs();

@@ -1,4 +1,4 @@
-/// A database that is deleted, replaced or written over while a session writes it.
+/// A database that is deleted, replaced or overwritten while a session writes it.
 #include "libstudy/store/file_watch.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// What `cp` does: the file stays the same, its bytes do not.
+/// Copies like `cp`: the same file gets other bytes.
 void copy_over(const fs::path& from, const fs::path& to) {
   const std::string bytes = test::bytes_of(from);
   std::FILE* file = std::fopen(to.c_str(), "wb");
@@ -31,7 +31,7 @@ void copy_over(const fs::path& from, const fs::path& to) {
   std::fclose(file);
 }
 
-/// Two studies; the session of one is under way.
+/// Two studies; a session of one is open.
 class Replaced : public ::testing::Test {
  protected:
   Replaced() {
@@ -52,7 +52,7 @@ class Replaced : public ::testing::Test {
     return {};
   }
 
-  /// The next write and all later ones tell what happened; then the session ends.
+  /// The next write and all later ones throw `problem`; then the session ends.
   void expect_stop(const std::string& problem) {
     EXPECT_THAT([&] { write("after"); },
                 ThrowsMessage<base::Error>(AllOf(HasSubstr(path_.string()), HasSubstr(problem))));
@@ -62,7 +62,8 @@ class Replaced : public ::testing::Test {
     EXPECT_FALSE(fs::exists(path_.string() + "-shm"));
   }
 
-  /// Everything up to the write that noticed it stands beside the path, for its owner alone.
+  /// A file beside the path has everything up to the write that noticed the problem, readable by its owner
+  /// only.
   void expect_rescued() {
     const fs::path saved = rescued(".db");
     ASSERT_FALSE(saved.empty());
@@ -93,7 +94,7 @@ TEST_F(Replaced, AnotherDatabaseMovedThereStaysAsItIs) {
   fs::rename(other_, path_);
   expect_stop("was replaced by another file");
   EXPECT_TRUE(test::bytes_of(path_) == before);
-  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // its journal is that of the first
+  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // its journal belongs to the first study
   fs::remove(path_);
   expect_rescued();
 }
@@ -108,8 +109,8 @@ TEST_F(Replaced, AnotherDatabaseCopiedOverItStaysAsItIs) {
   copy_over(other_, path_);
   expect_stop("was written over by another program");
   EXPECT_TRUE(test::bytes_of(path_) == test::bytes_of(other_));
-  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // its journal is that of the first
-  // Where SQLite's own pages do not make a whole of it, the log is kept, and the journal has the answers.
+  EXPECT_EQ(read_status({path_, true}).sessions.size(), 2u);  // its journal belongs to the first study
+  // If SQLite's own pages do not make a complete database, the log is saved, and the journal has the answers.
   EXPECT_FALSE(rescued(".db").empty() && rescued(".wal").empty());
 }
 
@@ -148,7 +149,7 @@ TEST_F(Replaced, ItsOwnLogMayBeCopiedBackAsOftenAsItLikes) {
   EXPECT_EQ(Connection(path_, Open::Read).integer("SELECT count(*) FROM frame"), 180000);
 }
 
-/// SQLite never gives back the shared memory of a connection that keeps no log.
+/// SQLite never releases the shared memory of a connection that keeps no log.
 TEST(FileWatch, OpensNoSharedMemoryWhereThereIsNoLog) {
   const test::TemporaryFolder folder;
   Connection database(folder / "s.db", Open::Create);

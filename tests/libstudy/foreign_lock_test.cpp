@@ -1,4 +1,4 @@
-/// Another program keeps the database locked: a session waits, and loses nothing when it is told not to.
+/// Another program keeps the database locked: a session waits, and loses nothing if it is asked to give up.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -5,7 +5,7 @@
 
 namespace study::test {
 
-/// With a screen 520 mm wide, seen from 600 mm.
+/// The screen is 520 mm wide, seen from 600 mm.
 inline std::filesystem::path make_gaze_study(const TemporaryFolder& folder) {
   const std::filesystem::path path = folder / "gaze.db";
   Store store(path, sqlite::Open::Create);

@@ -1,4 +1,4 @@
-/// Where people look is recorded from those who allow it, from the moment they do, and from nobody else.
+/// Gaze is recorded only from people who allow it, from the moment that they do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-/// Two samples whenever it is asked: one good, one of a blink.
+/// Delivers two samples at each request: one good, one of a blink.
 class TwoEach final : public GazeSource {
  public:
   explicit TwoEach(const Clock& clock) : clock_(clock) {}
@@ -43,7 +43,7 @@ class TwoEach final : public GazeSource {
   bool started_ = false;
 };
 
-/// A session of the asking protocol whose participant says this on the consent page.
+/// A session of asking_protocol() whose participant answers `gaze_kept` on the consent page.
 struct Asked : test::OneSession {
   explicit Asked(int gaze_kept, const Protocol& asking = test::asking_protocol()) : OneSession(asking) {
     person.says[gaze_question] = test::score(gaze_kept);
@@ -61,7 +61,7 @@ struct Asked : test::OneSession {
 TEST(Gaze, IsRecordedWithEachFrameOfWhoAllowsIt) {
   Asked asked(1);
   asked.run();
-  // Two presentations of 10 and 25 frames; each is asked after every frame and at its end.
+  // Two presentations of 10 and 25 frames; the source is read after every frame and at the end.
   EXPECT_EQ(asked.count("gaze"), 2 * (10 + 1 + 25 + 1));
   EXPECT_EQ(
       asked.count("gaze WHERE source = 'tracker' AND valid = 1 AND x = 0.25 AND y = 0.75 AND device_ns = 7"),

@@ -1,4 +1,4 @@
-/// Accuracy and precision of an eye tracker, and the block that asks for them.
+/// Accuracy and precision of an eye tracker, and the block that measures them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,7 +50,8 @@ TEST(GazeQuality, OfTooFewSamplesIsNotKnown) {
   EXPECT_FALSE(gaze_quality({&one, 1}).rms_s2s_deg);
 }
 
-/// Somebody whose eyes are read this far to the right of each target, by the number of the grid shown.
+/// A person whose measured gaze lies `off` degrees to the right of each target; `off` depends on the number
+/// of the grid.
 class OffTargets final : public GazeTargets {
  public:
   explicit OffTargets(std::function<double(int)> off) : off_(std::move(off)) {}

@@ -1,4 +1,4 @@
-/// What a headset brings in leaves in tables and in BIDS, as far as its person allows it.
+/// Exports of headset data to tables and to BIDS, as far as the person allows it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

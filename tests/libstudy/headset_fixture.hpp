@@ -24,7 +24,7 @@ inline HeadsetFacts headset_facts() {
   return facts;
 }
 
-/// A pose that differs by `number`.
+/// A pose; each `number` gives a different one.
 inline HeadPose head_at(double number) {
   return {{number, 1.5, -0.25}, {0, 0.6, 0, 0.8}, true, true, true, false};
 }
@@ -33,7 +33,7 @@ inline SlotRecord slot_at(std::int64_t predicted_ns, double ipd_mm = 63, double 
   return {predicted_ns, 11'111'111, true, head_at(head), ipd_mm};
 }
 
-/// A ray ahead and to the right.
+/// A gaze ray ahead and to the right.
 inline GazeSample ray_sample(std::int64_t sampled_ns, double x = 0.6) {
   return {sampled_ns, sampled_ns, true, GazePoint{0.25, 0.5}, false, GazeRay{{0, 0, 0.01}, {x, 0, -0.8}}};
 }

@@ -1,4 +1,4 @@
-/// What a headset brings in is kept: slots always, head and gaze of who allows them, through upgrades,
+/// Headset data are stored: slots always, head and gaze only of people who allow them, through upgrades,
 /// merges, salvage and refusals.
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-/// An eye tracker that is asked after each frame: `loses` says whether it does not see the eyes then.
+/// An eye tracker that is read after each frame; `loses` returns true if it does not see the eyes.
 class Eyes final : public GazeSource {
  public:
   explicit Eyes(const Clock& clock) : clock_(clock) {}
@@ -44,7 +44,7 @@ class Eyes final : public GazeSource {
   const Clock& clock_;
 };
 
-/// A session in a headset whose participant says this on the consent page.
+/// A session in a headset whose participant answers `gaze_kept` on the consent page.
 struct Worn : test::OneSession {
   explicit Worn(int gaze_kept) : OneSession(test::asking_protocol()) {
     person.says[gaze_question] = test::score(gaze_kept);
@@ -102,7 +102,7 @@ TEST(HeadsetRecords, HoldTheDistanceOfTheEyesWhenItChanges) {
     const std::int64_t gone_ms = (now_ns - begun_ns) / 1'000'000;
     return gone_ms < 300 ? 63.0 : gone_ms < 400 ? 63.15 : 64.0;
   };
-  // Between two frames nothing waits for the disk: it is written with them.
+  // Distances between the eyes are written with the frames, so nothing waits for the disk between two frames.
   std::int64_t between_frames = 0;
   SessionHooks hooks;
   hooks.shown = [&](const FrameRecord&) {
@@ -119,8 +119,8 @@ TEST(HeadsetRecords, HoldWhatHappenedToTheHeadset) {
   int frames = 0;
   SessionHooks hooks;
   hooks.shown = [&](const FrameRecord&) { ++frames; };
-  hooks.wish = [&]() -> Wish {
-    if (frames != 5) return Wish::GoOn;
+  hooks.request = [&]() -> Request {
+    if (frames != 5) return Request::GoOn;
     ++frames;
     worn.slots.news = {"it was lost", "it was made anew"};
     return CutCause::Minimised;
@@ -163,7 +163,7 @@ TEST(HeadsetRecords, AnAnswerIsKeptWithItsInput) {
               ElementsAre("dwell", "keyboard", "~"));
 }
 
-/// The person of each row that a headset brought in, as "table participant".
+/// The person of each row of headset data, as "table participant".
 std::vector<std::string> owners(const fs::path& path) {
   std::vector<std::string> out;
   const std::string of_presentation =
@@ -245,7 +245,7 @@ TEST(HeadsetRecords, ThatWereRefusedSinceAreNotBroughtBackBySalvage) {
   Connection(path, Open::Write).integer("PRAGMA wal_checkpoint(TRUNCATE)");
   const std::string old = test::bytes_of(path);
   change_permissions(path, "P01", {.gaze = false, .sharing = {}});
-  base::write_file_atomically(path, old);  // the journal beside it knows of the refusal
+  base::write_file_atomically(path, old);  // the journal beside it has the refusal
   salvage(path, folder / "new.db");
   EXPECT_THAT(owners(folder / "new.db"),
               ElementsAre("gaze P02", "gaze_validation P02", "head P02", "headset P01", "headset P02",

@@ -1,5 +1,5 @@
-/// Databases, logs and journals from strangers: refused with the reason by each command, before any of them
-/// changes a byte anywhere.
+/// Databases, logs and journals from strangers: each command refuses them with the reason before it changes
+/// any byte.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
 
-/// Most of processor time that a refusal may take.
+/// Limit of processor time for a refusal.
 constexpr int most_seconds = 10;
 
 class HostileDatabases : public ::testing::Test {
@@ -43,7 +43,7 @@ class HostileDatabases : public ::testing::Test {
 
   void SetUp() override { begin(); }
 
-  /// A box with a study to be spoilt, a sound one, another one and a file that is none.
+  /// Fills a folder with a study to be damaged, a sound one, another one and a file that is no study.
   void begin() {
     for (const auto& entry : fs::directory_iterator(folder / "box")) fs::remove_all(entry.path());
     for (const fs::path& to : {study, sound}) {
@@ -56,7 +56,7 @@ class HostileDatabases : public ::testing::Test {
 
   fs::path box(const std::string& name) const { return folder / "box" / name; }
 
-  /// Each command of vip-study and vip-stats by what it opens a database with.
+  /// Each command of vip-study and vip-stats, as the calls with which it opens a database.
   std::map<std::string, std::function<void()>> commands() const {
     return {{"status", [this] { read_status(study); }},
             {"report", [this] { read_tasks(study); }},
@@ -106,7 +106,7 @@ TEST_F(HostileDatabases, AreRefusedByEachCommandAndNothingIsTouched) {
   EXPECT_GE(kinds.size(), 8u);
 }
 
-/// The mend that the messages name. The journal helps only where a table is gone or its columns are.
+/// The remedy that the messages name. Salvage needs the journal only where a table or its columns are gone.
 TEST_F(HostileDatabases, SalvageMakesASoundStudyOfThem) {
   const auto truth = test::answers_of(sound);
   for (const test::HostileFile& file : test::hostile_files()) {
@@ -130,7 +130,7 @@ TEST_F(HostileDatabases, SalvageNamesWhatItLeavesOut) {
                                                              "changes of the table 'session'"));
 }
 
-/// The other mend that the messages name.
+/// The other remedy that the messages name.
 TEST_F(HostileDatabases, WhatTheMessageSaysToDropIsDropped) {
   test::spoil_with(study, "CREATE TABLE kept AS SELECT * FROM response");
   const std::string message = message_of([&] { read_status(study); });
@@ -139,7 +139,7 @@ TEST_F(HostileDatabases, WhatTheMessageSaysToDropIsDropped) {
   EXPECT_NO_THROW(read_status(study));
 }
 
-/// Old databases whose comments read otherwise, and the copies that upgrades leave, are ours.
+/// Databases of earlier versions, whose schema comments differ, and backups of upgrades are accepted.
 TEST_F(HostileDatabases, WhatEarlierVersionsWroteIsNoneOfThem) {
   for (const auto& entry : fs::directory_iterator(fs::path(VIP_TEST_DIR) / "libstudy" / "fixtures")) {
     if (entry.path().extension() != ".db") continue;
@@ -151,7 +151,7 @@ TEST_F(HostileDatabases, WhatEarlierVersionsWroteIsNoneOfThem) {
   }
 }
 
-/// A study whose session was killed has a log of its own, which readers leave where it is.
+/// A study whose session was killed has a log, which readers must leave in place.
 TEST_F(HostileDatabases, ReadersLeaveTheLogOfAKilledSessionAlone) {
   const fs::path killed = box("killed.db");
   {
@@ -175,7 +175,7 @@ TEST_F(HostileDatabases, ReadersLeaveTheLogOfAKilledSessionAlone) {
             1);
 }
 
-/// A log holds commits: no database is made over it.
+/// A log holds commits, so no new database may be made over it.
 TEST_F(HostileDatabases, ALogWithoutItsDatabaseIsKept) {
   {
     const Store store(study, Open::Write);
@@ -191,7 +191,7 @@ TEST_F(HostileDatabases, ALogWithoutItsDatabaseIsKept) {
   }
 }
 
-/// Backups beside a study hold people too: a foreign table in one is named, not passed over.
+/// Backups beside a study hold people too: a withdrawal names a foreign table in one.
 TEST_F(HostileDatabases, ABackupWithForeignPartsIsNamedByAWithdrawal) {
   fs::copy_file(sound, study.string() + ".v7-2026-01-01T00:00:00Z.bak");
   test::spoil_with(study.string() + ".v7-2026-01-01T00:00:00Z.bak",
@@ -199,7 +199,7 @@ TEST_F(HostileDatabases, ABackupWithForeignPartsIsNamedByAWithdrawal) {
   EXPECT_THAT(withdraw(study, "P01").beside.left, ::testing::Contains(HasSubstr("has a table 'kept'")));
 }
 
-/// Every cell of every page points to the one chain of all further pages.
+/// Every cell of every leaf page points to the same chain of overflow pages.
 TEST_F(HostileDatabases, RowsThatAllStandOnTheSamePagesEndASalvage) {
   constexpr std::size_t page_bytes = 4096, chain = 2000, leaves = 40, cells = 1400;
   const auto number = [](std::size_t value, int bytes) {
@@ -213,7 +213,7 @@ TEST_F(HostileDatabases, RowsThatAllStandOnTheSamePagesEndASalvage) {
     file += number(page < chain + 1 ? page + 1 : 0, 4);
     file.resize(page * page_bytes, '\0');
   }
-  // 489 bytes stand on the page, 4092 on each further one.
+  // A cell has 489 bytes on its own page, and 4092 on each overflow page.
   constexpr std::size_t cell_at = 3000, local = 489, size = local + chain * (page_bytes - 4);
   for (std::size_t page = 0; page < leaves; ++page) {
     std::string leaf = std::string("\x0d") + number(0, 2) + number(cells, 2) + number(cell_at, 2) + '\0';
@@ -245,7 +245,7 @@ TEST_F(HostileDatabases, DeepJsonInAJournalIsNoLineOfIt) {
     journal.insert(journal.find('\n') + 1, line + "\n");
     base::write_file_atomically(journal_beside(study), journal);
     EXPECT_EQ(salvage(study, box("new.db")).answers_lost.size(), 0u);
-    message_of([&] { Store(study, Open::Write).open_runs(); });  // taken or refused
+    message_of([&] { Store(study, Open::Write).open_runs(); });  // accepted or refused
   }
 }
 

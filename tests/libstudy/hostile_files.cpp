@@ -23,16 +23,16 @@ Spoil with(const std::string& sql) {
   return [sql](const fs::path& path, const fs::path&) { spoil_with(path, sql); };
 }
 
-/// Changes the SQL of a table where it stands, and leaves its rows.
+/// Changes the SQL of a table in the schema, and leaves its rows.
 Spoil with_schema(const std::string& table, const std::string& what, const std::string& by) {
   return with("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, '" + what + "', '" +
               by + "') WHERE name = '" + table + "'; PRAGMA writable_schema = RESET");
 }
 
-/// Writes the first page again.
+/// SQL that writes the first page again.
 std::string same_version() { return "PRAGMA user_version = " + std::to_string(read_schema_steps().size()); }
 
-/// The log of one commit to `source`, beside `path`.
+/// Puts the log of one commit to `source` beside `path`.
 void lend_log(const fs::path& source, const fs::path& path) {
   const auto database = open_database(source, Open::Write, read_schema_steps());
   sqlite::Transaction transaction(*database);
@@ -41,7 +41,7 @@ void lend_log(const fs::path& source, const fs::path& path) {
   fs::copy_file(source.string() + "-wal", path.string() + "-wal", fs::copy_options::overwrite_existing);
 }
 
-/// The log of an earlier moment of the database itself.
+/// Puts the log of an earlier state of the same database beside it.
 void put_earlier_log(const fs::path& path, const fs::path&) {
   const fs::path log = path.string() + "-wal", kept = path.string() + ".kept";
   lend_log(path, kept);
@@ -49,7 +49,7 @@ void put_earlier_log(const fs::path& path, const fs::path&) {
   fs::rename(kept.string() + "-wal", log);
 }
 
-/// The journal of a transaction under way in `other`.
+/// Puts the journal of an open transaction in `other` beside `path`.
 void put_foreign_journal(const fs::path& path, const fs::path& other) {
   Connection database(other, Open::Write);
   database.text("PRAGMA journal_mode = DELETE");
@@ -67,7 +67,7 @@ std::string big_endian(std::uint32_t value) {
 
 constexpr const char* journal_magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
 
-/// A journal that names a file for SQLite to look into, and to delete.
+/// Puts a journal that names a file, which SQLite would read and delete.
 void put_naming_journal(const fs::path& path, const fs::path& other) {
   const std::string victim = fs::absolute(other).string();
   std::uint32_t sum = 0;
@@ -80,7 +80,7 @@ void put_naming_journal(const fs::path& path, const fs::path& other) {
   base::write_file_atomically(path.string() + "-journal", bytes);
 }
 
-/// A journal by which the file was empty before.
+/// Puts a journal that says the file was empty before.
 void put_emptying_journal(const fs::path& path, const fs::path&) {
   std::string bytes =
       journal_magic + big_endian(0) + big_endian(1) + big_endian(0) + big_endian(512) + big_endian(4096);

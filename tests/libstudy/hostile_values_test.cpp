@@ -1,5 +1,5 @@
-/// Whatever stands behind a key of a protocol: it is taken, and the plan and its frames can be made, or an
-/// error says where it stands and what to do.
+/// Any value of any key of a protocol: either it is accepted and the plan and its frames can be made, or an
+/// error gives its place and the remedy.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// The protocols that ship and those of the fuzz corpus that are sound.
+/// The shipped protocols and the sound ones of the fuzz corpus.
 std::vector<test::SoundText> sound_protocols() {
   std::vector<test::SoundText> out;
   for (const char* folder : {"../protocols", "fuzz/corpus/protocol"}) {
@@ -33,7 +33,7 @@ std::vector<test::SoundText> sound_protocols() {
     std::sort(files.begin(), files.end());
     for (const auto& file : files) {
       test::SoundText text{file.filename().string(), base::read_file(file, 1 << 20)};
-      // Keys that no file needs.
+      // Adds keys that no file uses.
       const std::string format = "format = 2\n";
       if (const auto at = text.bytes.find(format); at != std::string::npos)
         text.bytes.insert(at + format.size(),
@@ -57,7 +57,7 @@ std::vector<test::SoundText> sound_protocols() {
   return out;
 }
 
-/// What follows from a protocol that was taken.
+/// The steps that follow an accepted protocol.
 void use(const study::Protocol& protocol) {
   study::next_slot(protocol, {});
   study::make_plan(protocol, "P01", 7, 0);
@@ -73,8 +73,8 @@ TEST(HostileValues, OfAnyKeyOfAProtocolAreTakenOrRefusedWithPlaceAndMend) {
   const auto names = test::try_hostile_values(
       sound_protocols(),
       [](const std::string& text) { return study::parse_protocol(text, test::hostile_name); }, use);
-  // No key of the reference is left out: tables and lists of tables are reached through what they hold. SCORE
-  // and KEY stand for keys of any name.
+  // Every key of the reference must occur; tables and lists of tables occur through their keys. SCORE and KEY
+  // are placeholders for any name.
   EXPECT_TRUE(names.contains("rate_per_s"));
   for (const auto& key : study::protocol_reference()) {
     if (key.type.find("table") == std::string::npos && key.key != "SCORE" && key.key != "KEY") {

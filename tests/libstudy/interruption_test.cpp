@@ -21,14 +21,14 @@ SessionHooks stop_in_showing(int showing) {
     if (frame.index == 0) ++*seen;
     *now = *seen == showing && frame.index == 5;
   };
-  hooks.wish = [now] { return *now ? Wish::Stop : Wish::GoOn; };
+  hooks.request = [now] { return *now ? Request::Stop : Request::GoOn; };
   return hooks;
 }
 
-/// paced_pairs() has one trial of practice and three that count, each of two stimuli: the third trial is cut.
+/// paced_pairs() has one practice trial and three that count, each with two stimuli: the third trial is cut.
 class InterruptionPolicy : public ::testing::Test {
  protected:
-  /// What resuming does before it goes on; then goes on to the end.
+  /// Cuts the session, settles the interruption like resume, then plays to the end.
   void cut_and_resume(const std::string& policy) {
     one = std::make_unique<OneSession>(paced_pairs(policy));
     EXPECT_THROW(one->run(stop_in_showing(5)), Stopped);
@@ -58,7 +58,7 @@ TEST_F(InterruptionPolicy, RestartBlockShowsItsTrialsFromTheFirst) {
   cut_and_resume("restart_block");
   EXPECT_TRUE(changed);
   EXPECT_EQ(times_asked("preference"), 3) << "practice is another block";
-  // The answer given before the cut stays, set aside.
+  // The answer from before the cut stays, but is set aside.
   EXPECT_EQ(one->count("response JOIN question USING (question_id) WHERE code = 'ease'"), 5);
   EXPECT_EQ(one->count("note WHERE words LIKE 'block restarted%'"), 1);
   EXPECT_EQ(

@@ -1,5 +1,5 @@
-/// The journal of answers when its disk is full, when it is lost during a session, and after a kill between
-/// its line and the commit.
+/// The journal of answers if its disk is full, if it is lost during a session, and after a kill between its
+/// line and the commit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -25,7 +25,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// No file can grow beyond so many bytes while it lives.
+/// No file can grow beyond `bytes` during its lifetime.
 class FullDisk {
  public:
   explicit FullDisk(std::uintmax_t bytes) {
@@ -54,7 +54,7 @@ struct Journalled {
     journal = std::make_unique<AnswerJournal>(*database);
     journal->tell_with([this](const std::string& line) { told.push_back(line); });
   }
-  /// full: no file can grow once the note is committed.
+  /// full: no file can grow after the note's commit.
   void note(const std::string& words, bool full = false) {
     Transaction transaction(*database);
     database->execute("INSERT INTO note (session_id, utc, words) VALUES (1, 'now', '" + words + "')");
@@ -117,7 +117,7 @@ TEST(JournalTrouble, ALostJournalIsNoticedAtTheNextCommitAndWrittenAnew) {
     one.note("later");
     EXPECT_EQ(one.notes_kept(), 3) << how;
     test::expect_journal_equals(one.path);
-    // What somebody else put there stays.
+    // A file that another program put there stays.
     std::vector<std::string> aside;
     for (const auto& entry : fs::directory_iterator(one.folder.path())) {
       if (entry.path().string().find(".replaced-") != std::string::npos)
@@ -144,7 +144,7 @@ TEST(JournalTrouble, ASessionGoesOnWithoutLossWhenItsJournalIsDeleted) {
   one.store.require_journal();
 }
 
-/// The end of a showing, killed after its line is in the journal.
+/// Writes the end of a showing and is killed after its line is in the journal.
 void end_showing_by_hand(const fs::path& path, std::int64_t frames) {
   const auto database = open_database(path, Open::Write, read_schema_steps());
   AnswerJournal journal(*database);

@@ -13,7 +13,7 @@ namespace {
 using sqlite::Open;
 using ::testing::ElementsAre;
 
-/// Hands chosen frames over late: presenting frame i takes delay_ns(i) on the virtual clock.
+/// Presents chosen frames late: presenting frame i takes delay_ns(i) on the virtual clock.
 class LateDisplay final : public Display {
  public:
   LateDisplay(VirtualClock& clock, std::function<std::int64_t(std::int64_t)> delay_ns)
@@ -36,7 +36,7 @@ class LateDisplay final : public Display {
   std::int64_t frame_ = 0;
 };
 
-/// The pilot's setting (50, 0) alone: one trial of 500 frames of 20 ms.
+/// Only the pilot's setting (50, 0): one trial of 500 frames of 20 ms.
 Protocol one_constant_setting() {
   std::string text = test::bytes_of(base::resource("protocols/ptpe_pilot.toml"));
   const std::pair<std::string, std::string> changes[] = {
@@ -52,7 +52,7 @@ const Delay frame_100_is_2_ms_late = [](std::int64_t frame) { return frame == 10
 const Delay each_takes_25_ms = [](std::int64_t) { return 25'000'000; };
 const Delay each_takes_250_ms = [](std::int64_t) { return 250'000'000; };
 
-/// A run of one trial a participant, each at a display of its own; the certificate's only row.
+/// Runs one trial a participant, each with its own display; returns the certificate's only row.
 CertificateRow certificate_of(const std::filesystem::path& path, const std::vector<Delay>& delays) {
   const Protocol protocol = one_constant_setting();
   Store store(path, Open::Create);
@@ -99,7 +99,7 @@ TEST(LateFrames, OneFrameLateByTwoMillisecondsDegradesTheTrial) {
   EXPECT_THAT(late_frames(folder / "study.db"), ElementsAre(100));
   EXPECT_EQ(row.late, 1);
   EXPECT_NEAR(row.worst_late_ms, 2, 1e-9);
-  // Frame 99 stays on for 22 ms and frame 100 for 18; no other deadline moves, so the mean stays.
+  // Frame 99 lasts 22 ms and frame 100 18 ms; no other deadline moves, so the mean is unchanged.
   EXPECT_NEAR(row.mean, 50, 1e-9);
   const double slow = 1 / 0.022 - 50, fast = 1 / 0.018 - 50;
   EXPECT_NEAR(row.sd, std::sqrt((slow * slow + fast * fast) / 500 - std::pow((slow + fast) / 500, 2)), 1e-9);

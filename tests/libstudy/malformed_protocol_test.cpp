@@ -1,4 +1,4 @@
-/// Every mistake in a protocol is told at its own place, with what to do about it.
+/// Every mistake in a protocol is reported at its own place, with a remedy.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// Line and column of the '|' in `marked`, a part of `text` but for that mark.
+/// Line and column of the '|' in `marked`, which without the '|' is a part of `text`.
 std::string place_of(const std::string& text, std::string marked) {
   const auto mark = marked.find('|');
   const auto found = text.find(marked.erase(mark, 1));
@@ -41,7 +41,7 @@ std::string error_of(const std::string& text) {
 }
 
 struct Malformed {
-  const char* protocol;  // of those shipped
+  const char* protocol;  // name of a shipped protocol
   const char* from;
   const char* to;
   const char* place;    // part of the changed text, with '|' where the error must point
@@ -357,7 +357,7 @@ constexpr const char* gaze_box =
 constexpr const char* at_gaze_box = "|[[block.question]]\nid = \"gaze_kept\"";
 constexpr const char* as_obeyed = "kind = \"choice\" and anchors = {0 = \"no\", 1 = \"yes\"}";
 
-/// The questions that the program obeys.
+/// Questions whose answers the program acts on.
 INSTANTIATE_TEST_SUITE_P(
     Obeyed, MalformedProtocol,
     testing::Values(
@@ -374,7 +374,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "|[[block.question]]\nid = \"data_shared\"", "is in a block of kind stimulus",
                   "in a block of kind consent"}));
 
-/// A database may hold them: resuming and reading it must go on.
+/// A database may hold such protocols: resuming and reading it must still work.
 TEST(StoredProtocol, MayAskThemAsEarlierVersionsDid) {
   const std::string whole = base::read_file(base::resource("protocols/task1.toml"), 1 << 20);
   const std::string text =
@@ -382,7 +382,7 @@ TEST(StoredProtocol, MayAskThemAsEarlierVersionsDid) {
   EXPECT_EQ(study::parse_protocol(text, "p.toml", study::ProtocolUse::Stored).blocks.size(), 4u);
 }
 
-// What nothing knows would be run, and found out after the study.
+// Without these checks a wrong name would be noticed only after the study.
 INSTANTIATE_TEST_SUITE_P(
     Names, MalformedProtocol,
     testing::Values(Malformed{task1, "\"Ours\", \"Ours-TSp\"", "\"ours\", \"Ours-TSp\"", "|\"ours\"",
@@ -403,7 +403,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Malformed{pilot, "scale = [1, 7]", "scale = [1, 7]\nlevel = 7", "level = |7",
                               "does not lie between the ends of the scale, 1 and 7", "above 1 and below 7"}));
 
-// An analysis that looks for a question would not find it.
+// An analysis looks for a question by its exact id.
 TEST(ProtocolNames, AnIdThatIsNearlyOneThatAnalysesLookForIsRefused) {
   const auto of = [](const char* name) {
     return base::read_file(base::resource("protocols/" + std::string(name) + ".toml"), 1 << 20);
@@ -416,9 +416,9 @@ TEST(ProtocolNames, AnIdThatIsNearlyOneThatAnalysesLookForIsRefused) {
   EXPECT_THAT(error_of(renamed(of("task1"), "realism", "realsim")),
               HasSubstr("write \"realism\" if you mean it"));
   EXPECT_THAT(error_of(renamed(of("task1_lab"), "data_shared", "data_share")), HasSubstr("\"data_shared\""));
-  // An id of its own that is like one that is there too is another question.
+  // An id that resembles another one of the protocol is a separate question.
   EXPECT_EQ(error_of(renamed(of("task1"), "dizziness", "dizzy")), "(no error)");
-  // What was stored before names were checked is still read.
+  // Protocols stored before names were checked are still read.
   EXPECT_NO_THROW(study::parse_protocol(replaced(of("ptpe_pilot"), "[\"HiRes\"]", "[\"Bogus\"]"), "p.toml",
                                         study::ProtocolUse::Stored));
 }

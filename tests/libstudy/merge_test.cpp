@@ -39,8 +39,8 @@ Lines select(const fs::path& path, const std::string& sql) {
   return lines;
 }
 
-/// Every row of every table, with row numbers. Not the labels: those of the database that takes others in
-/// stay, so they depend on which one that is (GivenLabels).
+/// Every row of every table, with row numbers. Without labels: the target of a merge keeps its own, so they
+/// depend on the target (GivenLabels).
 Lines everything(const fs::path& path) {
   Lines all;
   for (const std::string& table :
@@ -53,7 +53,7 @@ Lines everything(const fs::path& path) {
   return all;
 }
 
-/// What stands in the sessions, without row numbers and codes: it must be the same in every copy.
+/// The content of the sessions, without row numbers and codes: it must be the same in every copy.
 Lines contents(const fs::path& path) {
   Lines all;
   for (const char* sql : {
@@ -112,7 +112,7 @@ void plan(const fs::path& path, const Protocol& protocol, const std::string& sta
   Store(path, Open::Create).add_run(run);
 }
 
-/// Answers `count` trials of every open session, with words and notes of their own.
+/// Answers `count` trials of every open session, with a note for each.
 void go_on(const fs::path& path, int count) {
   Store store(path, Open::Write);
   const auto runs = store.open_runs();
@@ -208,7 +208,7 @@ TEST_F(Stations, CodesStayDistinctWhereStationsDoNotTellThemApart) {
   merge({path("north"), path("twin"), path("trap"), path("south"), path("none"), path("odd")}, path("all"));
   const Lines found = codes(path("all"));
   ASSERT_EQ(found.size(), 9u);
-  EXPECT_EQ(std::count(found.begin(), found.end(), "P02-south"), 1);  // who had it before
+  EXPECT_EQ(std::count(found.begin(), found.end(), "P02-south"), 1);  // the person who had this code before
   EXPECT_EQ(std::count(found.begin(), found.end(), "P02-room-3-b"), 1);
   EXPECT_EQ(std::count(found.begin(), found.end(), "P02-north"), 0);
   EXPECT_EQ(
@@ -346,7 +346,7 @@ TEST_F(Stations, AFailureLeavesNothing) {
 }
 
 TEST_F(Stations, ASecondSessionUnderOneVisitIsRefused) {
-  fs::copy_file(path("east"), path("copy"));  // both go on with the pilot under the same person
+  fs::copy_file(path("east"), path("copy"));  // both record the next visit of the same person
   plan(path("east"), test::pilot(), "east", {"P04"});
   plan(path("copy"), test::pilot(), "east", {"P04"});
   EXPECT_THAT(

@@ -66,7 +66,7 @@ TEST(PtpeObserver, WithoutNoiseIsTheNearestCategory) {
 
 TEST(PtpeObserver, JudgesTheFramesShownNotTheNominalSetting) {
   PtpeObserver observer(parse_ptpe_observer("ptpe:a=30,b=0.02,noise=0,participant_sd=0"));
-  EXPECT_GT(score(observer, shown(50, 0, 1, 0)), 5);  // of a cell of 10 frames/s
+  EXPECT_GT(score(observer, shown(50, 0, 1, 0)), 5);  // in a cell of 10 frames/s
 }
 
 TEST(PtpeObserver, IsAFunctionOfSeedPersonAndPosition) {
@@ -187,7 +187,7 @@ Occasion pair_of(const ShownStimulus& first, const ShownStimulus& second, int pe
   return occasion;
 }
 
-/// Share of 4,000 people who prefer the second.
+/// Share of 4,000 people who prefer the second stimulus.
 double second_preferred(const Observer& observer, const ShownStimulus& first, const ShownStimulus& second) {
   int count = 0;
   for (int person = 0; person < 4000; ++person)

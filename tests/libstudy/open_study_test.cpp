@@ -1,4 +1,4 @@
-/// What a reader sees of a database whose journal says otherwise.
+/// Reading a database whose journal has more or other records.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ class OpeningToRead : public ::testing::Test {
  protected:
   OpeningToRead() : path_(test::gaze_of_two(folder_)) {}
 
-  /// A database as it was, beside the journal as it is now.
+  /// Restores an earlier database beside the current journal.
   void put_back(const std::string& bytes) const {
     for (const char* part : {"-wal", "-shm"}) fs::remove(path_.string() + part);
     base::write_file_atomically(path_, bytes);
@@ -85,7 +85,7 @@ TEST_F(OpeningToRead, WithoutItsLogIsRefusedByEveryReaderAndGoesOnOnlyWhenTold) 
   EXPECT_THAT([&] { read_sickness(copy); }, refused);
   EXPECT_THAT([&] { read_certificate(copy, 1, FpsMean::Harmonic); }, refused);
   EXPECT_THAT([&] { read_permissions(copy, "P01"); }, refused);
-  EXPECT_THAT([&] { wished_withdrawals(copy); }, refused);
+  EXPECT_THAT([&] { requested_withdrawals(copy); }, refused);
   EXPECT_THAT([&] { RegisteredFiles{copy}; }, refused);
   EXPECT_THAT([&] { export_csv(copy, folder_ / "csv"); }, refused);
   EXPECT_THAT([&] { export_bids(copy, folder_ / "bids"); }, refused);
@@ -94,11 +94,11 @@ TEST_F(OpeningToRead, WithoutItsLogIsRefusedByEveryReaderAndGoesOnOnlyWhenTold) 
   EXPECT_THAT(read_tasks({copy, true}).lacking, HasSubstr("1 answers and "));
   EXPECT_EQ(read_status({copy, true}).lacking, lacking_of(copy));
   EXPECT_EQ(merge({copy}, folder_ / "merged.db", true).sessions, 3);
-  // An export writes an event of its own, which takes no number of what the journal alone holds.
+  // The export's own event must not take the number of an event that only the journal holds.
   const std::string lacking = lacking_of(copy);
   export_csv({copy, true}, folder_ / "csv");
   EXPECT_EQ(lacking_of(copy), lacking);
-  // What the message advises.
+  // The remedy that the message names.
   EXPECT_EQ(salvage(copy, folder_ / "whole.db").answers_journal, 1);
   EXPECT_EQ(lacking_of(folder_ / "whole.db"), "");
 }
@@ -132,7 +132,7 @@ TEST_F(OpeningToRead, OfABackupThatWasPutBackObeysARefusalMadeSince) {
   EXPECT_THAT(gaze_seen(), ElementsAre("P02"));
 }
 
-/// Killed between the line in the journal and the commit.
+/// The command was killed between the journal's line and the commit.
 TEST_F(OpeningToRead, SeesACommitThatWasCutShort) {
   const std::string before = test::bytes_of(path_), journal = test::bytes_of(journal_beside(path_));
   change_permissions(path_, "P01", {.gaze = false, .sharing = false});
@@ -143,8 +143,8 @@ TEST_F(OpeningToRead, SeesACommitThatWasCutShort) {
       written.substr(0, written.find('\n', written.find("{\"ready\"", journal.size())) + 1));
   EXPECT_EQ(open_study(path_).lacking, "");
   EXPECT_THAT(gaze_seen(), ElementsAre("P02"));
-  EXPECT_EQ(test::gaze_of(path_).size(), 3u);  // nothing was written for that
-  // An export writes an event of its own, which must not take the number of one that is under way.
+  EXPECT_EQ(test::gaze_of(path_).size(), 3u);  // reading wrote nothing to the database
+  // The export's own event must not take the number of an event in the uncommitted change.
   EXPECT_EQ(export_bids(path_, folder_ / "bids", true).people.refused, 1);
   Store(path_, Open::Write);
   EXPECT_THAT(test::gaze_of(path_), ElementsAre("P02"));
@@ -165,7 +165,7 @@ TEST_F(OpeningToRead, OfAWithdrawalThatWasCutShortLeavesThePersonOutAndAWriterFi
   EXPECT_TRUE(read_journal(journal_beside(path_)).forgotten.empty());
 }
 
-/// A reader beside a session never takes what is under way for a loss.
+/// A reader during a session must not mistake an open transaction for lost data.
 TEST_F(OpeningToRead, BesideASessionThatWritesIsNeverRefused) {
   Store store(path_, Open::Write);
   std::atomic<bool> done = false;

@@ -1,4 +1,4 @@
-/// A withdrawal deletes what this installation registered, as it was written, and nothing else.
+/// A withdrawal deletes only exports that this installation registered and that are unchanged.
 #include "libstudy/store/own_exports.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-/// $VIP_STATE_DIR as one test wants it.
+/// Sets $VIP_STATE_DIR for one test.
 class StateAt {
  public:
   explicit StateAt(const fs::path& folder) : before_(std::getenv("VIP_STATE_DIR")) {
@@ -61,7 +61,7 @@ class OwnExports : public ::testing::Test {
   const fs::path path = folder / "study.db", csv = folder / "csv";
 };
 
-/// A database of somebody else that says of any path here that it is an export of somebody who withdrew.
+/// A foreign database that claims that several paths here are exports of a person who withdrew.
 class ForeignDatabase : public OwnExports {
  protected:
   ForeignDatabase() {
@@ -117,7 +117,8 @@ TEST_F(ForeignDatabase, DeletesNothingWhenItIsMerged) {
   expect_nothing_deleted("a merge");
 }
 
-// A copy of the study of before P03, with somebody's withdrawal in it, is put back: its journal holds more.
+// A copy of the study from before P03, with a withdrawal in it, replaces the database; the journal holds
+// more.
 TEST_F(OwnExports, StayWhenTheDatabaseIsNotTheOneThatWasWritten) {
   fs::copy_file(path, folder / "before.db");
   add(path, {"P03"});
@@ -165,7 +166,7 @@ TEST_F(OwnExports, ThatAreDeletedAlreadyRaiseNoAlarmInDatabasesOfBefore) {
   EXPECT_THAT(withdraw(path, "P01").beside.cleaned, ElementsAre(csv));
   EXPECT_THAT(test::bytes_of(own_exports_file()), ::testing::Not(HasSubstr(csv.string())));
   EXPECT_THAT(merge({path}, all).beside.left, IsEmpty());
-  // What was moved away is named all the same.
+  // An export that was moved away is still named.
   export_csv(path, csv);
   fs::rename(csv, folder / "moved");
   EXPECT_THAT(withdraw(path, "P02").beside.left, ElementsAre(HasSubstr("no longer there")));
@@ -224,7 +225,7 @@ TEST_F(OwnExports, OfARegisterThatOthersMayWriteAreOnlyNamed) {
   EXPECT_FALSE(fs::exists(csv));
 }
 
-/// Files below a folder, but the databases and their journals, in which a text stands.
+/// Files below a folder, except the databases and their journals, that contain the text.
 std::vector<std::string> files_with(const fs::path& folder, const std::string& text) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -235,7 +236,7 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
   return names;
 }
 
-// An export over an earlier one is stopped at each call of SQLite, which stand between all its steps.
+// An export over an earlier one stops at calls of SQLite, which lie between all its steps.
 TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   const StateAt state(folder / "state");
   int stops = 0;
@@ -260,7 +261,7 @@ TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   EXPECT_GT(stops, 10);
 }
 
-// And so is the withdrawal.
+// The same for the withdrawal.
 TEST_F(OwnExports, AreDeletedWhereverTheWithdrawalWasStopped) {
   const StateAt state(folder / "state");
   int stops = 0;

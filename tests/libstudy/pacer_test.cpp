@@ -20,7 +20,7 @@ constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t half_ms = 500'000;
 constexpr study::ShowingBounds bounds{half_ms, 10'000 * ms};
 
-/// A process whose steps take time on a virtual clock.
+/// A stimulus whose steps take time on a virtual clock.
 class TimedStimulus final : public study::Stimulus {
  public:
   explicit TimedStimulus(study::VirtualClock& clock, std::int64_t length = 0)
@@ -188,7 +188,7 @@ TEST(PlayTrial, RefusesBadSchedulesAndShortContent) {
   EXPECT_TRUE(brief.steps.empty());
 }
 
-/// Five frames of 20 ms, each of which takes this long, cut 50 ms past the planned end.
+/// Plays five frames of 20 ms that each take `cost_ns`, and are cut 50 ms past the planned end.
 study::PlayedTrial played_at(std::int64_t cost_ns) {
   Stage stage;
   for (std::int64_t i = 1; i < 5; ++i) stage.stimulus.cost_ns[i] = cost_ns;
@@ -227,7 +227,7 @@ TEST(PlayNative, IsCutWhenItsLastFrameTakesTooLong) {
   for (const std::int64_t last_ms : {60, 61}) {
     Stage stage;
     for (std::int64_t i = 1; i < 3; ++i) stage.stimulus.cost_ns[i] = 40 * ms;
-    stage.stimulus.cost_ns[3] = last_ms * ms;  // 80 ms are gone of 90
+    stage.stimulus.cost_ns[3] = last_ms * ms;  // 80 of 90 ms are over
     const auto played =
         study::play_native(0.09, stage.content, stage.stimulus, stage.display, stage.clock, 50 * ms, {});
     EXPECT_EQ(played.frames.size(), 3u);
@@ -319,7 +319,7 @@ TEST(JudgeTrial, ACompositorsFramesAreOnAndLateByWhatItPredicted) {
   auto played = played_with(std::vector<std::int64_t>(10, 20 * ms), {});
   for (auto& frame : played.frames) frame.times.predicted_display_ns = frame.scheduled_ns;
   played.frames[3].times.predicted_display_ns += 5 * ms;
-  for (auto& frame : played.frames) frame.times.submitted_ns -= 11 * ms;  // handed over a period before
+  for (auto& frame : played.frames) frame.times.submitted_ns -= 11 * ms;  // submitted one period earlier
   const auto on = study::realised_intervals(played, TimingGrade::Compositor);
   EXPECT_NEAR(on[2], 0.025, 1e-12);
   EXPECT_NEAR(on[3], 0.015, 1e-12);

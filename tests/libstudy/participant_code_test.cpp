@@ -76,7 +76,7 @@ TEST(ParticipantCode, OldPairsAndOptionsStillGoOn) {
   ASSERT_EQ(runs.at(0).sessions.size(), 4u);
   for (const OpenSession& session : runs.at(0).sessions) test::finish_pilot(store, session, 5);
   EXPECT_TRUE(store.open_runs().empty());
-  // A second visit of one who was there before is no newcomer.
+  // A second visit may keep an earlier code that would be refused for a new person.
   for (const char* code : {"p01", "NA"}) {
     RunPlan again = test::run_plan(test::pilot(), {code});
     again.sessions.at(0).visit = 2;

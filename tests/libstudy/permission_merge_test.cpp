@@ -1,4 +1,4 @@
-/// What is allowed after copies of a database went on apart and were merged, whatever their clocks said.
+/// Permissions after copies of a database were used apart and merged, independent of their clocks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ class PermissionMerge : public ::testing::Test {
       merge({from, into}, all);
       EXPECT_EQ(test::permissions_of(all), permitted);
       EXPECT_EQ(test::gaze_of(all), gaze);
-      merge({from}, all);  // once more changes nothing
+      merge({from}, all);  // merging again changes nothing
       EXPECT_EQ(test::permissions_of(all), permitted);
       EXPECT_THAT(
           test::column(all,
@@ -65,7 +65,7 @@ TEST_F(PermissionMerge, ARefusalInOneCopyHoldsThoughTheOtherWentOn) {
               ElementsAre("4"));
 }
 
-/// The clock of the station that allows is years ahead, and then years behind.
+/// The clock of the allowing station is years ahead, and then years behind.
 TEST_F(PermissionMerge, ARefusalWinsOverAnAnswerThatDidNotKnowOfIt) {
   change_permissions(here_, "P01", {.gaze = false, .sharing = false});
   change_permissions(there_, "P01", {.gaze = true, .sharing = true});
@@ -96,8 +96,8 @@ TEST_F(PermissionMerge, AConsentThatIsRecordedInTheMergedDatabaseCounts) {
   EXPECT_EQ(test::permissions_of(all), all_allowed_);
 }
 
-/// One session of P01 in three databases, of which the first goes on with it. Beside each database stands
-/// what the rule says, by brute force: a record counts unless a later one was made where it was known.
+/// One session of P01 in three databases, of which the first continues it. Beside each database is the rule's
+/// result by brute force: a record counts unless a later one was made where it was known.
 class Histories {
  public:
   explicit Histories(unsigned seed) : random_(seed) {}
@@ -173,7 +173,7 @@ class Histories {
     note(stations_[station], granted);
   }
 
-  /// As Store::answer() writes it.
+  /// Writes an answer like Store::answer().
   void answer_page() {
     const bool granted = draw(2) == 1;
     Connection& database = *stations_[0].database;
@@ -192,7 +192,7 @@ class Histories {
     note(stations_[0], granted);
   }
 
-  /// A showing, with gaze where it is allowed.
+  /// A showing, with gaze if it is allowed.
   void show() {
     Connection& database = *stations_[0].database;
     const std::string utc = some_time();
@@ -260,8 +260,8 @@ class Histories {
                    "SELECT attempt FROM gaze JOIN presentation USING (presentation_id) ORDER BY attempt");
   }
 
-  /// Merged in steps, a database has the same decisions, and no gaze that it has not when merged at once. It
-  /// has less where what was merged first was refused, and deleted it.
+  /// A merge in steps must give the same decisions as one at once, and no additional gaze. It has less gaze
+  /// if the first sources refused, which deleted it.
   static void check_steps(Connection& in_steps, Connection& at_once, bool was_refused) {
     EXPECT_EQ(changes_of(in_steps), changes_of(at_once));
     const auto some = gaze_of(in_steps), all = gaze_of(at_once);
@@ -288,7 +288,7 @@ class Histories {
 };
 
 TEST(PermissionHistories, EndAsTheRuleSaysWhateverTheClocksSaid) {
-  // The last two once ended otherwise: by the order of the sources, and by what was merged first.
+  // The last two seeds once depended on the order of the sources and on which were merged first.
   for (const unsigned seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 1368, 1816}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Histories(seed).run();

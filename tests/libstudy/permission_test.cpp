@@ -1,4 +1,4 @@
-/// What the answers to gaze_kept and data_shared mean, whoever wrote the database, and who changes it.
+/// The meaning of the answers to gaze_kept and data_shared in databases of all versions, and later changes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ TEST(Permission, OneRefusalOfAPersonCountsForAllSessions) {
               ElementsAre("P01 0", "P02 1", "P03 ~"));
 }
 
-/// The fixture's README tells who said what.
+/// The fixture's README lists the answers.
 TEST(Permission, OfAnEarlierSchemaFollowsItsAnswers) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
@@ -66,12 +66,12 @@ TEST(Permission, OfAnEarlierSchemaFollowsItsAnswers) {
     EXPECT_THAT(test::column(path, granted + "0 AND what = 'sharing' ORDER BY participant"),
                 ElementsAre("P01", "P02", "P04", "P05", "P08"));
   };
-  expect_answers();  // of the temporary copy that reading makes
+  expect_answers();  // reading makes a temporary copy
   open_database(path, Open::Write, read_schema_steps());
   expect_answers();
 }
 
-/// Earlier versions let the questions be asked in any way; what cannot be told from a refusal is one.
+/// Earlier versions accepted any form of these questions; an answer that could be a refusal counts as one.
 TEST(Permission, OfAScaleThatIsNotNoAndYesIsRefused) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";

@@ -1,4 +1,4 @@
-/// The file of personal data is believed only where what it says is deleted can be deleted.
+/// The file of personal data is accepted only if all its rows can be deleted.
 #include "libstudy/store/personal.hpp"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Refused, once `change` was made to the closed file.
+/// Expects a refusal after `change` was made to the closed file.
 template <class Change>
 void expect_refused(const Change& change, const std::string& words) {
   const test::TemporaryFolder folder;
@@ -23,7 +23,7 @@ void expect_refused(const Change& change, const std::string& words) {
   EXPECT_THAT([&] { PersonalFile{database}; }, ThrowsMessage<base::Error>(HasSubstr(words)));
 }
 
-// Deleting goes by the index: rows that it does not know would stand.
+// Deletion uses the index: rows that are missing in it would remain.
 TEST(Personal, AnIndexWithoutItsRowsIsRefused) {
   const auto empty_indices = [](const std::filesystem::path& path) {
     constexpr std::size_t page_bytes = 4096, leaf_of_index = 0x0a;

@@ -66,7 +66,7 @@ TEST(Plan, HoldsEverySettingOnceWithItsOwnSeed) {
   EXPECT_EQ(seeds.size(), 21u);
 }
 
-// 200 people: each setting at each place and after each other.
+// For 200 people: each setting at each place, and after each other setting.
 TEST(Plan, PermutesThePilotEvenlyOver200People) {
   const auto protocol = shipped("ptpe_pilot");
   constexpr std::size_t n = 21;
@@ -150,7 +150,7 @@ TEST(Plan, ARuleThatNoOrderKeepsIsAnError) {
 TEST(Plan, GroupsMayHaveUnequalNumbersOfCells) {
   auto protocol = shipped("task1");
   auto& cells = protocol.design.cells;
-  cells.erase(cells.begin());  // the first group has four methods now
+  cells.erase(cells.begin());  // the first group now has four methods
   protocol.design.order = study::TrialOrder::Williams;
   EXPECT_EQ(study::slot_count(protocol), 12 * std::lcm(4, 10));
   for (int slot = 0; slot < study::slot_count(protocol); slot += 7) {
@@ -240,8 +240,8 @@ struct Golden {
 
 class GoldenPlan : public testing::TestWithParam<Golden> {};
 
-// Equal numbers on every machine and in every build, with CUDA or without. The protocols' own hashes are left
-// out, so that a word changed in one of them changes none of these.
+// The numbers must be equal on every machine and in every build, with CUDA or without. The protocols' own
+// hashes are left out, so that changed words in a protocol change none of these.
 TEST_P(GoldenPlan, StaysTheSame) {
   const auto& golden = GetParam();
   auto protocol = shipped(golden.protocol);
@@ -270,7 +270,7 @@ INSTANTIATE_TEST_SUITE_P(Plans, GoldenPlan,
                                          Golden{"task2_lab", "", 7, 4, "bb3f740fda5ed94a"},
                                          Golden{"demo", "", 7, 0, "1db73a21b4545640"}));
 
-// Worked out by an independent implementation of Philox and Durstenfeld's shuffle.
+// Computed by an independent implementation of Philox and Durstenfeld's shuffle.
 TEST(Plan, ShufflesAsAnIndependentImplementationDoes) {
   auto protocol = shipped("ptpe_pilot");
   protocol.sha256 = std::string(64, '0');

@@ -168,7 +168,7 @@ TEST(Protocol, TasksHaveTheMomentsOfThePapersTable2) {
   EXPECT_EQ(row_count, 29);
 }
 
-/// The stimuli, rules, steps and questions of trials: what a variant for the lab must not change.
+/// Compares the stimuli, rules, steps and questions of trials: a lab variant must not change them.
 void expect_same_trials(const study::Protocol& one, const study::Protocol& other) {
   EXPECT_EQ(moments_of(one), moments_of(other));
   EXPECT_EQ(one.design.groups, other.design.groups);
@@ -201,7 +201,7 @@ TEST_P(LabVariant, AddsBlocksToThePapersProtocol) {
   for (const auto& question : block_of(lab, study::BlockKind::Demographics).questions)
     EXPECT_TRUE(question.personal) << question.id;
   EXPECT_TRUE(block_of(lab, study::BlockKind::Fms).questions.at(0).stop_at);
-  // Asked between trials, where its stop rule counts.
+  // FMS is asked between trials, where its stop rule applies.
   const auto& steps = block_of(lab, study::BlockKind::Stimulus).steps;
   EXPECT_TRUE(std::any_of(steps.begin(), steps.end(), [](const auto& step) {
     return std::find(step.asks.begin(), step.asks.end(), "fms") != step.asks.end();
@@ -296,7 +296,7 @@ TEST(Protocol, QuestionsComeWithTheirBlocksInOrder) {
   EXPECT_EQ(questions[6].second->id, "confusion");
 }
 
-/// Task 1 with so many scenes, at the rates that the solver reaches.
+/// Task 1 with this number of scenes, at native frame rates.
 std::string large_design(int scenes, int groups) {
   std::string text = shipped("task1");
   const auto put = [&](const std::string& from, const std::string& end, const std::string& to) {

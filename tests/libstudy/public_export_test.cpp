@@ -1,4 +1,4 @@
-/// Public exports hold only whose data may be shared; the lab's own copy says who they are.
+/// Public exports hold only people whose data may be shared; the lab's own export lists who they are.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ using ::testing::Not;
 
 constexpr const char *refuser = "QXJ7refuses", *silent = "QXJ8silent";
 
-/// One allows sharing, one refuses it, one said yes at the first visit and no at the second, one has not
-/// answered, one was not asked.
+/// P01 allows sharing, one person refuses, one allows it at the first visit and refuses at the second, one
+/// has not answered, P05 was not asked.
 fs::path make_study(const test::TemporaryFolder& folder) {
   Store store(folder / "study.db", Open::Create);
   test::add_people(store, test::asking_protocol(),
@@ -34,7 +34,7 @@ fs::path make_study(const test::TemporaryFolder& folder) {
   return folder / "study.db";
 }
 
-/// Files whose name or bytes hold any of the texts.
+/// Files whose name or bytes contain any of the texts.
 std::vector<std::string> files_with(const fs::path& folder, const std::vector<std::string>& texts) {
   std::vector<std::string> found;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -103,7 +103,8 @@ TEST(OwnExport, SaysWhoMayBeShared) {
     const auto line = sessions.substr(0, at);
     ends.push_back(line.substr(line.rfind(',', line.rfind(',') - 1)));
   }
-  // P01, the refuser, both visits of who refused later, who did not answer, who was not asked to share.
+  // P01, the refuser, both visits of the later refuser, the person without an answer, the person who was not
+  // asked.
   EXPECT_THAT(ends,
               ElementsAre(",sharing_allowed,gaze_allowed", ",1,1", ",0,1", ",0,1", ",0,0", ",0,1", ",,1"));
   const std::string dictionary = test::bytes_of(folder / "csv/dictionary.csv");
@@ -122,7 +123,7 @@ std::string unzipped(const fs::path& path) {
 
 class GazeExport : public ::testing::Test {
  protected:
-  /// P01: an eye in the first presentation; P05: the mouse; the refuser: the mouse.
+  /// P01: eye tracker in the first presentation; P05: mouse; the refuser: mouse.
   GazeExport() : path_(make_study(folder_)) {
     Store store(path_, Open::Write);
     const std::vector<GazeSample> samples{{10'000'000, 3, true, GazePoint{0.25, 0.5}},

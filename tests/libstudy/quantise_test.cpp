@@ -40,7 +40,7 @@ int hold_bound(const FpsSetting& setting, double refresh_hz) {
 /// Divided by n it is the extreme over all lists of variance + (arithmetic mean - c)^2.
 double extreme_square(int n, int total, int longest, double refresh_hz, double c, bool largest) {
   const double worst = largest ? -1 : std::numeric_limits<double>::infinity();
-  const auto spare = static_cast<std::size_t>(total - n);  // periods beyond one each
+  const auto spare = static_cast<std::size_t>(total - n);  // periods beyond one for each frame
   std::vector<double> best(spare + 1, worst), next;
   best[0] = 0;
   for (int frame = 0; frame < n; ++frame) {
@@ -59,7 +59,7 @@ double extreme_square(int n, int total, int longest, double refresh_hz, double c
   return best[spare] / n;
 }
 
-/// Whether the brute force rules out every list of holds for the setting: on a grid of c, the least variance
+/// True if the brute force rules out every list of holds for the setting: on a grid of c, the least variance
 /// is at least the least extreme minus (spacing / 2)^2, and the greatest is at most every greatest extreme.
 bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   const int n = static_cast<int>(setting.mean * setting.duration_s);
@@ -79,7 +79,7 @@ bool ruled_out(const FpsSetting& setting, double refresh_hz) {
   return least - spacing * spacing / 4 > top * top || most < floor * floor;
 }
 
-/// The exact conditions of the definition, checked on the list itself.
+/// Checks the exact conditions of the definition on the list itself.
 void expect_exact_list(const FpsSetting& setting, const study::RefreshVerdict& verdict, double refresh_hz) {
   ASSERT_EQ(verdict.holds.size(), static_cast<std::size_t>(setting.mean * setting.duration_s));
   EXPECT_EQ(std::accumulate(verdict.holds.begin(), verdict.holds.end(), 0), refresh_hz * setting.duration_s);
@@ -103,9 +103,9 @@ struct Count {
 
 class PilotOnRefresh : public testing::TestWithParam<Count> {};
 
-// Every exact setting is proved by its list, every other by brute force. At 72 Hz a count with two holds of
-// fractional frequency gives 11: (50, 15) would need 31.43 of 500 frames held 8 periods. Whole frames reach
-// no sd below 15.35, and 15.3 is the bound.
+// Every exact setting is proved by its list, every other one by brute force. At 72 Hz a count with two holds
+// of fractional frequency gives 11: (50, 15) would need 31.43 of 500 frames held 8 periods. Whole frames
+// reach no sd below 15.35, and 15.3 is the bound.
 TEST_P(PilotOnRefresh, HasThisManyExactSettings) {
   const auto [refresh_hz, expected] = GetParam();
   int exact = 0;
@@ -140,7 +140,7 @@ TEST(Quantise, BruteForceRulesOutNothingThatExists) {
 }
 
 TEST(Quantise, BoundsHoldWhatTheBruteForceFinds) {
-  // Least and greatest variance over whole holds lie within the bounds over distributions.
+  // The least and greatest variance over whole holds lie within the bounds over distributions.
   study::HoldTarget target;
   target.refresh_hz = 60;
   target.longest = 5;
@@ -184,7 +184,7 @@ TEST(Quantise, ApproximateKeepsTheMeanAndTheBound) {
   const auto verdict = study::quantise(setting, {}, 90, 1);
   EXPECT_EQ(verdict.feasibility, Feasibility::Approximate);
   EXPECT_NEAR(verdict.mean, 50, 0.25);
-  EXPECT_GE(verdict.sd, 16);  // 50 frames/s on 90 Hz force it
+  EXPECT_GE(verdict.sd, 16);  // forced by 50 frames/s on 90 Hz
   EXPECT_LE(verdict.longest_hold, hold_bound(setting, 90));
   EXPECT_THAT(verdict.reason, testing::HasSubstr("forces an sd of 18"));
 }

@@ -1,4 +1,4 @@
-/// A database that a kill, a full disk or a power cut left behind is opened like any other.
+/// A database after a kill, a full disk or a power cut opens like any other.
 #include <gmock/gmock.h>
 #include <grp.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using sqlite::Open;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Runs in a process of its own, which then ends as a kill ends it: nothing is closed. Returns its result.
+/// Runs `action` in a child process that ends like a killed one: nothing is closed. Returns its result.
 int in_child(const std::function<int()>& action) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -56,7 +56,7 @@ void add_notes(Connection& database, int count) {
 constexpr int notes = 60;
 
 /// A study whose log holds all its notes, left by a process that died while it copied the log back: the file
-/// system took the first `bytes` of the file and nothing beyond. False when that was all of it.
+/// system accepted only the first `bytes` of the file. Returns false if that was the whole file.
 bool left_in_a_checkpoint(const fs::path& path, rlim_t bytes) {
   Store(path, Open::Create).add_run(test::run_plan(test::pilot(), {"P01"}));
   const int result = in_child([&] {
@@ -111,7 +111,7 @@ TEST(Recovery, StatusIsReadBesideASessionThatCopiesItsLog) {
   EXPECT_EQ(Store(path, Open::Write).open_runs().size(), 1u);
 }
 
-/// As somebody who may read the files and write nothing.
+/// Runs `action` as a user who may read the files but write nothing.
 int as_reader(const fs::path& path, const std::function<int()>& action) {
   const fs::path folder = path.parent_path();
   for (const auto& entry : fs::directory_iterator(folder)) ::chmod(entry.path().c_str(), 0444);
@@ -159,7 +159,7 @@ TEST(Recovery, WhereNothingMayBeWrittenAClosedFileAndABackupAreRead) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), files);
 }
 
-/// Dies in a transaction without a log, with pages in the file that the journal beside it undoes.
+/// Dies in a transaction without a log: the file has changed pages, and the journal beside it undoes them.
 void die_with_a_journal(const fs::path& path, const std::string& sql) {
   EXPECT_EQ(in_child([&] {
               Connection database(path, Open::Create);

@@ -1,4 +1,4 @@
-/// docs/protocol.md against what the readers of protocols really ask for.
+/// docs/protocol.md against the keys that the readers of protocols ask for.
 
 #include "libstudy/protocol/reference.hpp"
 
@@ -32,14 +32,14 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
   return out;
 }
 
-/// Scores are keys of `anchors`, and a kind of effect has keys of its own.
+/// Replaces scores in `anchors` and keys of an effect by the placeholders of the reference.
 std::string without_scores(const std::string& name) {
   const std::string effect =
       std::regex_replace(name, std::regex(R"((effect_set\.effect)\.(?!kind$)\w+$)"), "$1.KEY");
   return std::regex_replace(effect, std::regex(R"(anchors\.[0-9]+$)"), "anchors.SCORE");
 }
 
-/// Everything that reading all protocols of this tree asks for.
+/// All keys that are asked for when all protocols of the source tree are read.
 const std::map<std::string, std::vector<base::AskedKey>>& asked_keys() {
   static const auto asked = [] {
     std::map<std::string, std::vector<base::AskedKey>> out;
@@ -82,7 +82,7 @@ std::vector<std::string> choices_of(const std::string& name) {
   return {};
 }
 
-/// The protocol with this key set so in each table that may have it.
+/// The protocol with this key set to `word` in each table that may have it.
 std::string with(const std::string& protocol, const study::KeyReference& key, const std::string& word) {
   const std::string set = key.key + " = \"" + word + "\"\n";
   bool inside = key.table.empty();
@@ -97,7 +97,7 @@ std::string with(const std::string& protocol, const study::KeyReference& key, co
   return out;
 }
 
-// No file above has each word of each choice, and a word may bring keys of its own.
+// The files do not use each word of each choice, and a word may have keys of its own.
 TEST(Reference, NamesWhatEachWordOfAChoiceBrings) {
   const auto known = reference_names();
   int words = 0, keys = 0;
@@ -108,7 +108,7 @@ TEST(Reference, NamesWhatEachWordOfAChoiceBrings) {
         const auto root = base::parse_toml(with(text, key, word), file.filename());
         try {
           study::read_protocol_table(root);
-        } catch (const base::Error&) {  // what it asked for by then counts
+        } catch (const base::Error&) {  // keys asked for until then count
         }
         for (const auto& [name, what] : root.asked()) {
           EXPECT_TRUE(known.contains(without_scores(name))) << name << " with " << key.key << " = " << word;
@@ -128,7 +128,7 @@ std::string in_words(const std::vector<std::string>& choices) {
   return out;
 }
 
-/// Empty parts of what was asked agree with everything.
+/// Empty fields of `asked` agree with everything.
 void expect_agrees(const study::KeyReference& key, const base::AskedKey& asked) {
   const std::string name = name_of(key);
   EXPECT_THAT(key.type, testing::HasSubstr(asked.type)) << name;

@@ -1,5 +1,5 @@
-/// A refusal of gaze takes all gaze with it, wherever the program that recorded the refusal ended, and
-/// exports go by what is allowed whatever stands in the database.
+/// A refusal of gaze deletes all gaze, wherever the program that recorded the refusal was killed, and exports
+/// follow the permissions whatever the database holds.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ using ::testing::Not;
 
 constexpr double telling = 0.7123456789;
 
-/// As SQLite stores a number.
+/// The bytes with which SQLite stores a number.
 std::string bytes_of_number(double value) {
   std::string bytes(8, '\0');
   std::memcpy(bytes.data(), &value, 8);
@@ -37,8 +37,8 @@ std::string bytes_of_number(double value) {
   return bytes;
 }
 
-/// P01, who allows gaze, has a sample of it, a pose of the head and a validation in each of two visits; P02
-/// too.
+/// P01 and P02 allow gaze. P01 has a gaze sample, a head pose and a validation in each of two visits; P02 in
+/// one.
 fs::path make_study(const test::TemporaryFolder& folder) {
   const fs::path path = test::gaze_of_two(folder, telling);
   Connection(path, Open::Write)
@@ -67,7 +67,7 @@ std::vector<std::string> recorded_of(const fs::path& path, const std::string& pa
                                 whose);
 }
 
-/// The database and its journal as they stand, put down at another place.
+/// Copies of the database and its journal that can be written back later.
 struct Files {
   std::string database, journal;
   explicit Files(const fs::path& path)
@@ -90,7 +90,7 @@ TEST(Refusal, KilledAnywhereAroundItsCommitLeavesNoGazeOfWhoRefuses) {
   int refused = 0;
   for (std::size_t end = before.journal.size(); end <= written.size(); ++end) {
     if (end < written.size() && written[end - 1] != '\n') continue;
-    if (end > written.find('\n', ready) + 1) break;  // kept: the database had it
+    if (end > written.find('\n', ready) + 1) break;  // beyond this line the database had committed
     SCOPED_TRACE(written.substr(before.journal.size(), end - before.journal.size()));
     Files cut = before;
     cut.journal = written.substr(0, end);
@@ -107,7 +107,7 @@ TEST(Refusal, KilledAnywhereAroundItsCommitLeavesNoGazeOfWhoRefuses) {
   EXPECT_EQ(refused, 1);
 }
 
-/// Rolled forward by a command that itself allows gaze again: what was refused is gone before.
+/// A command that allows gaze again first completes the refusal, which deletes the refused gaze.
 TEST(Refusal, ThatWasCutShortIsFinishedBeforeGazeIsAllowedAgain) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder);
@@ -126,7 +126,7 @@ TEST(Refusal, ThatIsFinishedLaterNamesBackupsAndExports) {
   const fs::path path = make_study(folder);
   fs::copy_file(path, path.string() + ".v6-then.bak");
   export_csv(path, folder / "csv", {.words = false, .gaze = true});
-  Store(path, Open::Write);  // the export in its journal as well
+  Store(path, Open::Write);  // writes the export to the journal too
   Files files(path);
   change_permissions(path, "P01", {.gaze = false, .sharing = {}});
   const std::string written = Files(path).journal;
@@ -166,7 +166,7 @@ TEST(Refusal, InAMergeNamesTheExportsBesideTheResult) {
   EXPECT_THAT(merge({other}, path).beside.left, IsEmpty());
 }
 
-/// What a kill, an earlier version or a fault may leave: rows of gaze of somebody who refuses it.
+/// A kill, an earlier version or a fault may leave gaze rows of a person who refuses.
 TEST(Refusal, KeepsGazeOutOfExportsThoughItStandsInTheDatabase) {
   const test::TemporaryFolder folder;
   const fs::path path = make_study(folder);

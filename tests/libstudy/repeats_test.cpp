@@ -1,4 +1,4 @@
-/// No cause of a cut makes a stimulus flash: a trial is shown again three times, with black between, and then
+/// No repeated cut makes a stimulus flash: a trial is repeated up to three times, with black between, then
 /// the session pauses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using ::testing::ThrowsMessage;
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 
-/// Writes down when it turns from black to a stimulus and back.
+/// Records when the display changes from black to a stimulus and back.
 class Lamp final : public Display {
  public:
   explicit Lamp(const Clock& clock) : clock_(clock) {}
@@ -50,7 +50,7 @@ class Lamp final : public Display {
   bool lit_ = false;
 };
 
-/// An eye tracker of eyes that close when `closed` says so.
+/// An eye tracker of eyes that are closed if `closed` returns true.
 class Eyes final : public GazeSource {
  public:
   Eyes(const Clock& clock, std::function<bool()> closed) : clock_(clock), closed_(std::move(closed)) {}
@@ -72,7 +72,7 @@ class Eyes final : public GazeSource {
   std::function<bool()> closed_;
 };
 
-/// A person, who goes on at once at each page; a simulated one where `simulated_by` says so.
+/// A person who continues at once on each page; simulated if `simulated_by` is set.
 class Person final : public Participant {
  public:
   explicit Person(test::Scripted& scripted) : scripted_(scripted) {}
@@ -96,21 +96,21 @@ class Person final : public Participant {
   test::Scripted& scripted_;
 };
 
-/// One trial without any black of its own, in front of a lamp.
+/// One trial without black of its own, on a Lamp.
 struct Flashing : test::OneSession {
   Flashing() : OneSession(test::asking_protocol()) {
     person.says[gaze_question] = test::score(1);
     person.says["rating"] = test::score(4);
   }
 
-  /// Each showing is cut for this cause as soon as it can be, until the session has paused `pauses` times.
+  /// Cuts each showing for this cause as soon as possible, until the session has paused `pauses` times.
   SessionHooks cut_by(CutCause cause, int pauses) {
     SessionHooks hooks;
-    hooks.wish = [=, this]() -> Wish {
+    hooks.request = [=, this]() -> Request {
       const bool endless = lamp.turns_ns.size() > 40;
-      if (sitting.troubles >= pauses || endless) return Wish::Stop;
+      if (sitting.troubles >= pauses || endless) return Request::Stop;
       if (cause != CutCause::Gaze && lamp.lit()) return cause;
-      return Wish::GoOn;
+      return Request::GoOn;
     };
     if (cause == CutCause::Gaze) closed = [this] { return lamp.lit(); };
     return hooks;
@@ -146,7 +146,7 @@ TEST(Repeats, NoCauseOfACutMakesAStimulusFlashAndTheSessionPauses) {
     ASSERT_FALSE(words_of(cause).mend.empty());
     Flashing one;
     EXPECT_THROW(one.play(one.cut_by(cause, 2)), Stopped) << why;
-    // Two rounds of a showing and three repeats.
+    // Two rounds of one showing and three repeats.
     const auto& turns_ns = one.lamp.turns_ns;
     ASSERT_EQ(turns_ns.size(), 16u) << why;
     for (std::size_t i = 3; i < turns_ns.size(); ++i)
@@ -183,11 +183,11 @@ TEST(Repeats, ThreeCutsAreNoReasonToPause) {
 TEST(Repeats, ThePauseLastsUntilTheExperimenterGoesOn) {
   Flashing one;
   std::vector<Trouble> told;
-  int held = -1;  // asks left while the experimenter holds the session
+  int held = -1;  // remaining calls while the experimenter holds the session
   SessionHooks hooks = one.cut_by(CutCause::Rate, 100);
-  hooks.wish = [&, cut = hooks.wish]() -> Wish {
-    if (held > 0 && --held > 0) return Wish::Pause;
-    return held == 0 ? Wish(Wish::GoOn) : cut();
+  hooks.request = [&, cut = hooks.request]() -> Request {
+    if (held > 0 && --held > 0) return Request::Pause;
+    return held == 0 ? Request(Request::GoOn) : cut();
   };
   hooks.trouble = [&](const Trouble& trouble) {
     told.push_back(trouble);
@@ -227,9 +227,9 @@ TEST(Repeats, AfterACutForWantOfGazeTheEyesMustBeSeenAgain) {
   bool gone = false;
   one.closed = [&] { return gone = gone || one.lamp.lit(); };
   SessionHooks hooks;
-  hooks.wish = [&] {
+  hooks.request = [&] {
     const bool endless = one.lamp.turns_ns.size() > 40;
-    return one.sitting.troubles < 2 && !endless ? Wish::GoOn : Wish::Stop;
+    return one.sitting.troubles < 2 && !endless ? Request::GoOn : Request::Stop;
   };
   EXPECT_THROW(one.play(hooks), Stopped);
   EXPECT_EQ(one.lamp.turns_ns.size(), 2u) << "it was shown to eyes that are not seen";

@@ -25,7 +25,7 @@ using ::testing::ThrowsMessage;
 
 constexpr std::size_t page_bytes = 4096;
 
-/// A small study, what stands in it, and its bytes, to be damaged again and again.
+/// A small study, its content and its bytes, to be damaged again and again.
 class Salvaging : public ::testing::Test {
  protected:
   Salvaging() {
@@ -36,7 +36,7 @@ class Salvaging : public ::testing::Test {
     journal = test::bytes_of(journal_beside(path));
   }
 
-  /// The file with other bytes, with its journal or without.
+  /// Salvages the file with other bytes, with its journal or without.
   Salvage salvaged(const std::string& damaged, bool with_journal = true) {
     write(path, damaged);
     if (with_journal)
@@ -53,7 +53,7 @@ class Salvaging : public ::testing::Test {
     std::ofstream(file, std::ios::binary) << content;
   }
 
-  /// Rows of the result but those that the salvage adds itself.
+  /// Rows of the result, except those that the salvage adds itself.
   std::vector<std::string> lines_salvaged() {
     auto found = test::lines_of(into);
     std::erase_if(found, [](const std::string& line) {
@@ -91,22 +91,23 @@ class Salvaging : public ::testing::Test {
     EXPECT_THAT(done.different, IsEmpty());
     EXPECT_THAT(done.answers_lost, IsEmpty());
   }
-  /// Returns whether every answer was found.
+  /// Returns true if every answer was found.
   bool finds_all_and_invents_nothing_without_a_journal(const std::string& damaged) {
     try {
       const Salvage done = salvaged(damaged, false);
       expect_no_answer_invented_or_changed();
       const auto found = test::answers_of(into).size();
       EXPECT_EQ(done.answers_database, static_cast<std::int64_t>(found));
-      // What is missing is said: as lost, or as belonging to nothing.
+      // Missing answers are reported as lost, or as rows without an owner.
       EXPECT_TRUE(found == truth.size() || !done.answers_lost.empty() || !done.rows_lost.empty());
       return found == truth.size();
     } catch (const base::Error& error) {
-      EXPECT_THAT(error.what(), HasSubstr("nothing of a study was found"));  // the page of sessions
+      EXPECT_THAT(error.what(),
+                  HasSubstr("nothing of a study was found"));  // the page of sessions is destroyed
       return false;
     }
   }
-  /// Every `step`-th page in turn.
+  /// Destroys every `step`-th page in turn.
   void destroy_pages(std::size_t step) {
     ASSERT_GE(pages(), 20u);
     std::size_t tried = 0, found_all = 0;
@@ -118,7 +119,7 @@ class Salvaging : public ::testing::Test {
     }
     EXPECT_GE(found_all, tried / 2);
   }
-  /// At every `step`-th end of a page, and without a journal within pages.
+  /// Cuts the file at every `step`-th page end, and, without a journal, within pages.
   void cut(std::size_t step) {
     for (std::size_t end = 0; end < bytes.size(); end += step * page_bytes) {
       SCOPED_TRACE(end);
@@ -137,7 +138,7 @@ class Salvaging : public ::testing::Test {
   std::string bytes, journal;
 };
 
-/// Some pages and cuts; all of them take most of a minute, and are slow.
+/// A step that tries some pages and cuts; all of them take most of a minute, in a slow test.
 constexpr std::size_t some = 5;
 class SalvagingSlow : public Salvaging {};
 
@@ -212,11 +213,11 @@ TEST_F(Salvaging, WhatIsInTheLogIsFoundAndALostLogIsMadeUpForByTheJournal) {
   const Salvage sound = salvage(folder / "kept.db", folder / "1.db");
   EXPECT_TRUE(sound.sound);
   EXPECT_EQ(test::answers_of(folder / "1.db"), all);
-  // The first page of the log is damaged, the journal is not there: what was committed before is found.
+  // The log is missing, but the journal has the answers.
   const Salvage lost = salvage(folder / "lost_log.db", folder / "2.db");
   EXPECT_EQ(test::answers_of(folder / "2.db"), all);
   EXPECT_EQ(lost.answers_journal, 2);
-  // Only the log is left.
+  // Only the log is left, without the database file.
   fs::remove(folder / "kept.db");
   salvage(folder / "kept.db", folder / "3.db");
   EXPECT_EQ(test::answers_of(folder / "3.db"), all);
@@ -266,7 +267,7 @@ TEST_F(Salvaging, TheJournalOfAnotherStudyIsRefused) {
 TEST_F(Salvaging, WhoWithdrewStaysOut) {
   withdraw(path, "P01");
   const std::string after = test::bytes_of(journal_beside(path));
-  // From the journal alone, and from a file that still holds everything.
+  // Salvage from the journal alone, and from a file that still holds everything.
   fs::remove(path);
   Salvage done = salvage(path, into);
   EXPECT_THAT(done.withdrawn, ::testing::ElementsAre("P01"));

@@ -185,11 +185,11 @@ TEST(FrameOrder, LagOneOfKnownLists) {
 }
 
 TEST(TruncatedNormal, TendsToItsLimits) {
-  // No cut: a normal around -cut. Its quartiles lie 0.674489750196 standard deviations out.
+  // Not truncated: a normal around -cut. Its quartiles lie 0.674489750196 standard deviations out.
   const auto bell = study::truncated_normal_strata(-12, INFINITY, 2);
   EXPECT_NEAR(bell[0], 12 - 0.6744897501960817, 1e-12);
   EXPECT_NEAR(bell[1], 12 + 0.6744897501960817, 1e-12);
-  // Cut at the mean: the median of a half-normal.
+  // Truncated at the mean: the median of a half-normal.
   EXPECT_NEAR(study::truncated_normal_strata(0, INFINITY, 1)[0], 0.6744897501960817, 1e-14);
   // Far out: exponential with rate `cut`.
   const auto tail = study::truncated_normal_strata(1e6, INFINITY, 2);

@@ -1,4 +1,4 @@
-/// The summary at the end of a session tells what the database holds.
+/// The summary at the end of a session reports what the database holds.
 #include "libstudy/store/session_counts.hpp"
 
 #include <gmock/gmock.h>

@@ -108,11 +108,11 @@ TEST(Session, ARepeatAfterTheFirstAnswerAsksItAgain) {
   OneSession one(paced_pairs());
   bool wished = false;
   SessionHooks hooks;
-  hooks.wish = [&] {
+  hooks.request = [&] {
     // In the rest between the two questions of the first trial.
     const bool now = !wished && one.person.seen.size() > 1 && one.person.seen.back() == "rest 9";
     wished = wished || now;
-    return now ? Wish(CutCause::Experimenter) : Wish::GoOn;
+    return now ? Request(CutCause::Experimenter) : Request::GoOn;
   };
   one.run(hooks);
   const auto asked = std::count(one.person.seen.begin(), one.person.seen.end(), "ask preference");
@@ -124,7 +124,7 @@ TEST(Session, ARepeatAfterTheFirstAnswerAsksItAgain) {
 TEST(Session, AfterAStopBetweenTwoQuestionsOnlyTheSecondIsAsked) {
   OneSession one(paced_pairs());
   SessionHooks hooks;
-  hooks.wish = [&] { return one.person.seen.back() == "rest 9" ? Wish::Stop : Wish::GoOn; };
+  hooks.request = [&] { return one.person.seen.back() == "rest 9" ? Request::Stop : Request::GoOn; };
   one.person.seen = {"begin"};
   EXPECT_THROW(one.run(hooks), Stopped);
   one.person.seen.clear();
@@ -136,7 +136,7 @@ TEST(Session, AfterAStopBetweenTwoQuestionsOnlyTheSecondIsAsked) {
 
 TEST(Session, TheExperimenterEndsIt) {
   OneSession one(paced_pairs());
-  one.run(wish_at_frame_5(Wish::EndSession, 1));
+  one.run(wish_at_frame_5(Request::EndSession, 1));
   const auto& seen = one.person.seen;
   EXPECT_THAT(std::vector(seen.end() - 3, seen.end()),
               ElementsAre("tell over 60", "offer keep", "tell kept"));
@@ -149,7 +149,7 @@ TEST(Session, APauseWaitsBeforeTheNextUnit) {
   OneSession one(paced_pairs());
   int left = 50;
   SessionHooks hooks;
-  hooks.wish = [&] { return left-- > 0 ? Wish::Pause : Wish::GoOn; };
+  hooks.request = [&] { return left-- > 0 ? Request::Pause : Request::GoOn; };
   one.run(hooks);
   EXPECT_EQ(one.row().state, "done");
   EXPECT_LE(left, 0);

@@ -150,17 +150,17 @@ struct OneSession {
   Scripted person;
 };
 
-/// Makes the wish at frame 5 of each of the first `showings` showings.
-inline SessionHooks wish_at_frame_5(Wish wish, int showings) {
+/// Requests `wish` at frame 5 of each of the first `showings` showings.
+inline SessionHooks wish_at_frame_5(Request request, int showings) {
   auto frame = std::make_shared<std::int64_t>(-1);
   auto left = std::make_shared<int>(showings);
   SessionHooks hooks;
   hooks.shown = [frame](const FrameRecord& record) { *frame = record.index; };
-  hooks.wish = [=]() -> Wish {
-    if (*frame != 5 || *left == 0) return Wish::GoOn;
+  hooks.request = [=]() -> Request {
+    if (*frame != 5 || *left == 0) return Request::GoOn;
     *frame = -1;
     --*left;
-    return wish;
+    return request;
   };
   return hooks;
 }

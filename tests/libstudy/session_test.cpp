@@ -26,13 +26,13 @@ using test::OneSession;
 using test::paced_pairs;
 using test::ptpe_observer;
 
-/// One process's share of a study: plays what is open until `frames` more frames were shown.
+/// One process's part of a study: plays open sessions until `frames` more frames were shown.
 void play(Store& store, const Protocol& protocol, std::int64_t frames) {
   Desk desk(protocol);
   const auto observer = ptpe_observer();
   SessionHooks hooks;
   hooks.shown = [&](const FrameRecord&) { --frames; };
-  hooks.wish = [&] { return frames <= 0 ? Wish::Stop : Wish::GoOn; };
+  hooks.request = [&] { return frames <= 0 ? Request::Stop : Request::GoOn; };
   for (const OpenRun& run : store.open_runs()) {
     for (const OpenSession& session : run.sessions)
       run_session(protocol, session, desk.parts(*observer, store), hooks);
@@ -100,7 +100,7 @@ TEST(Session, ResumedAnswersEqualAnUninterruptedRun) {
   sqlite::Connection look(folder / "cut.db", Open::Read);
   EXPECT_EQ(look.integer("SELECT count(*) FROM response"), 44);  // consent is an answer too
   EXPECT_EQ(look.integer("SELECT count(*) FROM presentation WHERE state = 'played'"), 42);
-  // Frames of what was cut stay, and a trial is shown again only while it has no answer.
+  // Frames of cut showings stay, and a trial is shown again only while it has no answer.
   const auto cut = look.integer("SELECT count(*) FROM presentation WHERE state = 'interrupted'");
   EXPECT_GT(cut, 5);
   EXPECT_LE(cut, stops);  // a stop in a pause cuts nothing
@@ -144,7 +144,7 @@ TEST(Session, GoesThroughPagesPracticeAndPairsInOrder) {
   EXPECT_EQ(one.person.seen, expected);
   EXPECT_EQ(one.row().state, "done");
   EXPECT_EQ(one.desk.stimuli.asked.size(), 8u);
-  // Each judgement is about both stimuli as they were shown.
+  // Each judgement refers to both stimuli as they were shown.
   const Occasion& judged = one.person.occasions.at(1);
   ASSERT_EQ(judged.shown.size(), 2u);
   for (const std::size_t i : {0u, 1u}) {
@@ -186,7 +186,7 @@ TEST(Session, WithoutAPersonalFileNothingPersonalIsAsked) {
 
 TEST(Session, NativeFramesAreTakenAsTheyComeAndHaveNoVerdict) {
   OneSession one(test::pairs());
-  /// Every picture takes 10, then 20 ms.
+  /// Every picture takes 10 or 20 ms, in turn.
   class Slow final : public Display {
    public:
     explicit Slow(VirtualClock& clock) : clock_(clock) {}
@@ -224,7 +224,8 @@ TEST(Session, NativeTimingOnAClockThatStandsStillIsAnError) {
   EXPECT_THROW(one.run(), base::Error);
 }
 
-/// What a fluid says of a frame stands in its row, whatever the timing; the session adds nothing of its own.
+/// A frame's row holds the facts that the fluid reports, for every kind of timing; the session adds none of
+/// its own.
 TEST(Session, FramesHoldWhatTheFluidSaysAndNothingElse) {
   class Accounting final : public Stimulus {
    public:

@@ -40,7 +40,7 @@ class SicknessStudy : public ::testing::Test {
   fs::path path() const { return folder_ / "study.db"; }
   OpenSession session() { return store_.open_runs().at(0).sessions.at(0); }
 
-  /// The first unit that is not done of a block.
+  /// The first open unit of a block.
   OpenUnit unit_of(const std::string& block) {
     for (const OpenUnit& unit : session().units) {
       if (protocol_.blocks.at(static_cast<std::size_t>(unit.plan.block)).id == block) return unit;
@@ -48,7 +48,7 @@ class SicknessStudy : public ::testing::Test {
     throw std::logic_error("no open unit of " + block);
   }
 
-  /// All items alike but for one that is left out (from 1; 0: none).
+  /// Gives all items the same score, except one that is left out (from 1; 0: none).
   void answer_ssq(const std::string& block, int score, int left_out = 0) {
     std::vector<KeptAnswer> kept;
     for (int item = 1; item <= stats::ssq_item_count; ++item) {
@@ -133,7 +133,7 @@ TEST_F(SicknessStudy, AnAnswerOffItsScaleIsAnError) {
   EXPECT_THAT(
       [&] {
         read_sickness({path(), true});
-      },  // the journal has it otherwise
+      },  // the journal has another score
       ThrowsMessage<base::Error>(HasSubstr("answer of P01 to ssq_1: is 7, outside 0 to 3")));
 }
 
@@ -163,7 +163,7 @@ TEST_F(SicknessStudy, CsvHoldsItemsScoresAndTheCourseWithTheirMeanings) {
       EXPECT_THAT(dictionary,
                   HasSubstr("\r\n" + table.name + ".csv," + column.name + "," + column.type + ","));
   }
-  export_csv(path(), folder_ / "csv");  // an earlier export is known with these files in it
+  export_csv(path(), folder_ / "csv");  // an earlier export with these files is recognised
 }
 
 TEST_F(SicknessStudy, BidsHasTheScoresBesideTheItems) {

@@ -48,7 +48,7 @@ TEST(Store, NothingIsAnsweredTwice) {
   OpenUnit unit = first_trial(session);
   const int attempt = test::show(store, session, unit);
   answer(store, session, unit, attempt, {{"preference", {test::score(2), 1}}}, false);
-  unit.attempts = attempt;  // shown again after an interruption: what was answered stands
+  unit.attempts = attempt;  // shown again after an interruption: earlier answers stay
   const int again = test::show(store, session, unit);
   EXPECT_THROW(answer(store, session, unit, again, {{"preference", {test::score(1), 1}}}, false),
                base::Error);

@@ -61,7 +61,7 @@ TEST(Store, TakesEveryProtocolThatShips) {
     std::set<std::string> ids;
     for (const auto& [block, question] : all_questions(protocol)) ids.insert(question->id);
     EXPECT_EQ(look.integer("SELECT count(*) FROM question"), static_cast<std::int64_t>(ids.size()));
-    // Each page block asks all that stands on it.
+    // Each page block asks all its questions.
     for (const Block& block : protocol.blocks) {
       if (has_trials(block.kind)) continue;
       sqlite::Statement asked(look, "SELECT count(*) FROM ask WHERE block = ?");
@@ -250,7 +250,7 @@ TEST(Store, WhatNobodyMeasuredOfAFrameIsEmpty) {
   const auto id = store.begin_presentation(session.id, unit.trial_id, 1, 0, unit.trial->first, 0);
   auto frames = test::frames(0, 2);
   frames[0].facts = {};
-  frames[1].facts.tolerance->mu_fps.reset();  // tau was given
+  frames[1].facts.tolerance->mu_fps.reset();  // as for a given tau
   frames[1].facts.tolerance->delta_fps.reset();
   store.add_frames(id, 0, frames);
   sqlite::Connection look(folder / "study.db", Open::Read);

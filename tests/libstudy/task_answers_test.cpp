@@ -22,7 +22,7 @@ using ::testing::SizeIs;
 
 constexpr const char* lab = "protocols/task1_lab.toml";
 
-/// Answers of one page: question and score.
+/// Answers on one page: question and score.
 using Page = std::vector<std::pair<std::string, int>>;
 
 void keep(Store& store, const OpenSession& session, const OpenUnit& unit, int attempt, const Page& page,
@@ -61,7 +61,7 @@ TEST(TaskAnswers, PairsSayWhichIntervalHeldWhat) {
   store.add_run(test::run_plan(protocol, {"P01"}));
   const OpenSession session = open_session(store);
   int choice = 1;
-  std::map<int, int> given;  // by trial's position
+  std::map<int, int> given;  // by the trial's position
   for (const OpenUnit& unit : session.units) {
     if (!unit.trial) continue;
     keep(store, session, unit, test::show(store, session, unit), {{"preference", choice}, {"ease", 5}}, true);
@@ -119,7 +119,7 @@ TEST(TaskAnswers, NativeTimingHasNoVerdict) {
   EXPECT_FALSE(trial.second->played);
 }
 
-/// A lab session of Task 1 in which every trial was answered with its position's score.
+/// A lab session of Task 1 in which the score of every trial follows from its position.
 class LabSession : public ::testing::Test {
  protected:
   LabSession() : protocol_(read_protocol(base::resource(lab))), store_(folder_ / "study.db", Open::Create) {
@@ -308,7 +308,7 @@ TEST(TaskAnswers, ADatabaseOfTheFirstVersionHoldsItsPilot) {
   EXPECT_EQ(trials[1].first.verdict, Verdict::Fail);
 }
 
-// A later version knows no angles of what an earlier one drew, before the upgrade and after it.
+// Angles in sessions of an earlier version are not known, before the upgrade and after it.
 TEST(TaskAnswers, AnEarlierVersionsAnglesAreNotKnown) {
   const test::TemporaryFolder folder;
   test::write_version_1(folder / "old.db");

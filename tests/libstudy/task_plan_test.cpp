@@ -1,4 +1,4 @@
-/// Who meets what in Tasks 1 and 2.
+/// The plans of Tasks 1 and 2: sequences, orders and slots.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using study::Plan;
 using study::PlannedTrial;
 using study::Protocol;
 
-/// "scene n_*, scene n_*" as a participant meets them.
+/// "scene n_*, scene n_*" in the order of a participant's trials.
 std::string sequence_of(const Protocol& protocol, const Plan& plan) {
   std::string out;
   int last = -1;
@@ -69,7 +69,8 @@ TEST(Task1Plan, PaperRandomDrawsScenesAndNStarFreely) {
   std::map<std::string, int> count;
   for (int person = 0; person < 480; ++person)
     ++count[sequence_of(protocol, study::make_plan(protocol, "P" + std::to_string(person), 1, 0))];
-  // Six orders of two scenes, each with either n_*: never one scene twice, but the same n_* twice at times.
+  // Six orders of two scenes, each with either n_*: never the same scene twice, but sometimes the same n_*
+  // twice.
   ASSERT_EQ(count.size(), 24u);
   std::vector<int> counts;
   for (const auto& [sequence, times] : count) {
@@ -100,7 +101,7 @@ TEST(Task1Plan, WilliamsRowsAreBalancedWithinEachSequence) {
   for (const auto& [what, count] : successors) EXPECT_EQ(count, 2);
 }
 
-/// (scene, method, method) -> how often the first of them, by name, was shown first, and second.
+/// (scene, method, method) -> how often the first of them by name was shown first, and how often second.
 using IntervalCounts = std::map<std::tuple<std::string, std::string, std::string>, std::pair<int, int>>;
 
 void count_intervals(const Protocol& protocol, const Plan& plan, IntervalCounts& counts) {
@@ -142,7 +143,7 @@ TEST(Task2Plan, CouplesOfRoundsShowEachPairInBothOrders) {
     for (const auto& [what, count] : one) pattern.push_back(count.first == 1);
     patterns.insert(pattern);
   }
-  EXPECT_GT(patterns.size(), 10u);  // the couples differ
+  EXPECT_GT(patterns.size(), 10u);  // groups of six slots differ
 }
 
 TEST(Task2Plan, Deals26PeopleThreeScenesNearlyEqually) {
@@ -179,7 +180,7 @@ TEST(Task2Plan, PaperRandomDrawsIntervalsFreely) {
 TEST(Task2Plan, RowsMeetBothIntervalOrders) {
   auto protocol = shipped("task2");
   protocol.design.order = study::TrialOrder::Latin;
-  // (scene, pair at the first place) -> both orders equally often
+  // (scene, pair in the first trial) -> both orders equally often
   IntervalCounts counts;
   for (int slot = 0; slot < study::slot_count(protocol); ++slot) {
     auto plan = study::make_plan(protocol, "P", 1, slot);
@@ -203,7 +204,7 @@ TEST(Slots, FillGapsFirstAndStartOverWhenAllAreTaken) {
   EXPECT_EQ(study::next_slot(protocol, taken), 0);
   taken.push_back(0);
   taken.push_back(1);
-  // Those in slots 7 and 3 drop out: their places are filled before the second round goes on.
+  // The people in slots 7 and 3 drop out: new people fill these slots before the second round continues.
   std::erase(taken, 7);
   std::erase(taken, 3);
   EXPECT_EQ(study::next_slot(protocol, taken), 3);
@@ -222,7 +223,7 @@ TEST(Slots, StayBalancedThroughManyWithdrawals) {
     taken.push_back(study::next_slot(protocol, taken));
     if (step % 3 == 2) taken.erase(taken.begin() + static_cast<std::ptrdiff_t>(random.below(taken.size())));
   }
-  // Newcomers without further withdrawals even out what the last ones left.
+  // After the withdrawals, new people restore the balance.
   for (int step = 0; step < slots; ++step) taken.push_back(study::next_slot(protocol, taken));
   std::vector<int> count(static_cast<std::size_t>(slots));
   for (const int slot : taken) ++count[static_cast<std::size_t>(slot)];

@@ -22,11 +22,11 @@ using ::testing::ThrowsMessage;
 
 constexpr const char* leaver = "QXJ7withdraws";
 constexpr const char* secret = "zebra-of-the-north";
-// As SQLite stores a whole number of eight bytes.
+// SQLite stores an eight-byte integer with these bytes.
 constexpr std::int64_t telling_start_ns = 0x1122334455667788;
 const std::string telling_bytes = "\x11\x22\x33\x44\x55\x66\x77\x88";
 
-/// How often `needle` stands in the bytes of the files of a folder, itself alone.
+/// Number of occurrences of `needle` in the files directly in a folder.
 int occurrences(const fs::path& folder, const std::string& needle) {
   int found = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -37,7 +37,7 @@ int occurrences(const fs::path& folder, const std::string& needle) {
   return found;
 }
 
-/// Two participants of the pairs study; the leaver says the secret wherever words are kept.
+/// Two participants of the pairs study; the leaver's words are the secret wherever words are stored.
 void write_study(const fs::path& path) {
   Store store(path, Open::Create);
   store.add_run(test::run_plan(test::pairs(), {leaver, "P02"}));
@@ -75,7 +75,7 @@ TEST(Withdraw, LeavesNoTraceOfTheAnswers) {
   EXPECT_EQ(look.text("SELECT participant FROM tombstone"), leaver);
   look.execute("PRAGMA foreign_keys = ON");
   EXPECT_EQ(look.integer("SELECT count(*) FROM pragma_foreign_key_check"), 0);
-  // The code stands in the tombstone twice, in its index, and as often in the journal's tombstone, nowhere
+  // The code occurs twice in the tombstone, once in its index and twice in the journal's tombstone, nowhere
   // else.
   EXPECT_EQ(occurrences(folder.path(), leaver), 5);
 }
@@ -111,7 +111,7 @@ TEST(Withdraw, CleansTheLogWhileAnotherProgramHasTheDatabaseOpen) {
   const fs::path path = folder / "study.db";
   write_study(path);
   Connection other(path, Open::Write);
-  other.integer("SELECT count(*) FROM frame");  // the log stays as long as it is there
+  other.integer("SELECT count(*) FROM frame");  // the log stays while this connection is open
   withdraw(path, leaver);
   EXPECT_EQ(occurrences(folder.path(), secret), 0);
   EXPECT_EQ(occurrences(folder.path(), telling_bytes), 0);
@@ -121,7 +121,7 @@ TEST(Withdraw, CleansBackupsOfBothSchemas) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
   test::write_version_1(path, leaver);
-  Store(path, Open::Write);  // upgrades, and leaves a backup
+  Store(path, Open::Write);  // upgrades and leaves a backup
   {
     Connection now(path, Open::Write);
     sqlite::Statement(now, "VACUUM INTO ?").bind_all(path.string() + ".v2-later.bak").run();
@@ -218,7 +218,7 @@ TEST(Withdraw, TheLogIsStillKeptForAllOthers) {
 TEST(Personal, IsReadableByItsOwnerOnlyAndStandsApart) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";
-  base::write_file_atomically(PersonalFile::beside(path), "");  // made by another program, open to all
+  base::write_file_atomically(PersonalFile::beside(path), "");  // another program's file, which all may read
   PersonalFile file(path);
   EXPECT_EQ(fs::status(PersonalFile::beside(path)).permissions(),
             fs::perms::owner_read | fs::perms::owner_write);

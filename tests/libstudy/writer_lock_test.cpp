@@ -1,4 +1,4 @@
-/// One writer makes, locks and removes a database; what it writes is for its owner alone.
+/// One writer at a time creates, locks and removes a database; only its owner may read its files.
 #include "libstudy/store/writer_lock.hpp"
 
 #include <gmock/gmock.h>
@@ -26,15 +26,16 @@ using ::testing::ThrowsMessage;
 
 enum Outcome { Kept = 0, Busy = 1, Failed = 2, Other = 3 };
 
-/// Until the other end is closed.
+/// Waits until the other end is closed.
 void wait_for(int pipe) {
   char byte = 0;
   while (::read(pipe, &byte, 1) < 0) {
   }
 }
 
-/// Plans a session in a new database, all of a round at the same moment, and holds it until `release`. Every
-/// third finds no room. `tried` is told when it has the database or not.
+/// Plans a session in a new database, at the same moment as all others of a round, and holds it until
+/// `release`. Every third process finds no room on the disk. `tried` gets a byte once the process has the
+/// database or has failed.
 Outcome start(const fs::path& path, int number, int go, int tried, int release) {
   wait_for(go);
   bool told = false;
@@ -75,9 +76,10 @@ TEST(WriterLock, ManyFirstStartsAtOnceLoseNothing) {
         ::_exit(start(path, i, gate[0], tried[1], release[0]));
       }
     }
-    const bool overlap = round % 2 == 0;  // whoever has it holds it until all have tried; else as it comes
+    const bool overlap =
+        round % 2 == 0;  // the holder keeps it until all have tried; otherwise only as long as needed
     if (!overlap) ::close(release[1]);
-    ::close(gate[1]);  // now all of them go
+    ::close(gate[1]);  // starts all processes
     ::close(tried[1]);
     for (int i = 0; i < starts; ++i) {
       char byte = 0;
@@ -140,7 +142,7 @@ TEST(WriterLock, TakesOverTheEmptyFileOfAStartThatLostTheRace) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-/// What another process learns of a database: whether it could have it all to itself.
+/// True if another process can lock the database exclusively.
 bool free_for_others(const fs::path& path) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -1,4 +1,4 @@
-/// S13 and S17: few particles, and what is not a number, on the CPU and on CUDA.
+/// S13 and S17: few particles, and NaN and infinite values, on the CPU and on CUDA.
 
 #include <limits>
 

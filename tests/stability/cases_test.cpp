@@ -1,5 +1,5 @@
-/// Every hard case of libsim/cases with every method that it is for: S02TallColumn.HiRes on the CPU, small;
-/// suites that end in Slow are full size, in Gpu full size on CUDA.
+/// Every hard case of libsim/cases with each of its methods: S02TallColumn.HiRes is small and on the CPU;
+/// suites that end in Slow have full size, those that end in Gpu full size on CUDA.
 
 #include "libsim/cases/hard_case.hpp"
 
@@ -27,7 +27,7 @@ class CaseTest : public testing::Test {
   Setting setting_;
 };
 
-/// Cases whose full size is for a GPU.
+/// True for cases whose full size needs a GPU.
 bool too_large_for_a_cpu(const HardCase& one) { return std::string(one.id) == "S8b"; }
 
 void add(const HardCase& one, const Setting& setting, const std::string& suite) {

@@ -1,4 +1,4 @@
-/// The first trouble of a run is found in its frame, with the particle and the cause, and does not spread.
+/// The first trouble of a run is reported with its frame, particle and cause, and does not spread.
 
 #include <gmock/gmock.h>
 
@@ -23,8 +23,8 @@ std::unique_ptr<sim::Simulation> pool(Backend backend) {
   return fluid;
 }
 
-/// How far particles first .. last are from where they are in the twin, without `but`: for 99 % of them. The
-/// others' way is chaotic.
+/// Deviation of particles first .. last from the twin, except particle `but`: the 99th percentile. The path
+/// of the remaining 1 % is chaotic.
 struct Harm {
   double way_m = 0, speed_m_s = 0;
 };
@@ -76,7 +76,7 @@ void a_lost_velocity(Backend backend) {
   const Harm first = harm(*fluid, *twin);
   EXPECT_LT(first.way_m, 0.05 * d);
   EXPECT_LT(first.speed_m_s, 0.2);
-  // The first stays the first.
+  // The first trouble remains the reported one.
   particle = fluid->read_state()[7];
   particle.y_m = nan_value;
   fluid->put({particle});
@@ -94,7 +94,7 @@ void a_lost_place(Backend backend) {
     lost.push_back(fluid->read_state()[id]);
     lost.back().z_m = std::numeric_limits<float>::infinity();
   }
-  // What is found before the guard on speed comes first, whatever its number.
+  // Trouble found before the guard on speed is reported first, whatever its particle.
   lost.push_back(fluid->read_state()[50]);
   lost.back().vx_m_s = 1000;
   fluid->put(lost);
@@ -129,7 +129,8 @@ void a_bullet(Backend backend) {
   fluid->step_frame();
   twin->step_frame();
   expect_first(*fluid, Trouble::TooFast, id, 11);
-  // Of 1,000 m/s the guard leaves three times a fall's speed, 14.6 m/s; what it strikes gets a part of that.
+  // The guard reduces 1,000 m/s to three times the speed of a fall, 14.6 m/s; the particles that it strikes
+  // get a part of that.
   const Harm struck = harm(*fluid, *twin, id);
   EXPECT_LT(struck.speed_m_s, 3 * std::sqrt(2 * gravity * 8 * d));
   for (int frame = 0; frame < 60; ++frame) {
@@ -146,7 +147,7 @@ void a_bullet(Backend backend) {
 TEST(Divergence, ABulletIsBrakedAndNamed) { a_bullet(Backend::Cpu); }
 TEST(DivergenceGpu, ABulletIsBrakedAndNamed) { a_bullet(Backend::Cuda); }
 
-/// A pool at one end of a tank, and a thousand more particles far away, from 512 on.
+/// A pool at one end of a tank, and a thousand more particles far away, with ids from 512 on.
 std::unique_ptr<sim::Simulation> pool_and_crowd(Backend backend, const sim::SimulationOptions& options = {}) {
   auto start = block(8, 8, 8, {0, 0, 0});
   for (auto p : block(10, 10, 10, {6, 1, 0.2})) {
@@ -176,14 +177,14 @@ void a_crowd(Backend backend) {
   }
   const Harm pool = harm(*fluid, *twin);
   EXPECT_LT(pool.way_m, 0.05 * d);
-  // Without a limit on the way of what is braked some came here at once: 5.4 d and 6.5 m/s.
+  // Without the limit on the displacement of limited particles, some arrived here at once: 5.4 d and 6.5 m/s.
   EXPECT_LT(pool.speed_m_s, 0.5);
 }
 TEST(Divergence, AThousandInOnePlaceAreNamedAndHarmNobodyFar) { a_crowd(Backend::Cpu); }
 TEST(DivergenceGpu, AThousandInOnePlaceAreNamedAndHarmNobodyFar) { a_crowd(Backend::Cuda); }
 
 void a_squeeze(Backend backend) {
-  // One projection a frame: what it meets is what is there.
+  // With one projection a frame the density stays as it was put.
   sim::SimulationOptions options;
   options.substeps = 1;
   options.iterations = 1;
@@ -214,7 +215,7 @@ void more_than_the_store_holds(Backend backend) {
   fluid->step_frame();
   const auto found = fluid->divergence();
   ASSERT_TRUE(found);
-  // Who comes too late for the store is the threads' doing.
+  // The order of the threads decides which particle finds no room in the store.
   EXPECT_EQ(found->cause, Trouble::NeighboursDropped) << sim::in_words(*found);
   EXPECT_EQ(found->frame, 1);
 }

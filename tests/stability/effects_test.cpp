@@ -1,4 +1,4 @@
-/// Hard cases in water with effects: those of each demo scene that lists some.
+/// Hard cases in water with the effects of each demo scene that lists some.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using sim::cases::Setting;
 
 constexpr std::size_t cases_count = 3;
 
-/// With the effects of every `step`-th scene, from number `first` on.
+/// Runs the case with the effects of every `step`-th scene, starting with scene `first`.
 void runs(const char* id, const Setting& plain, std::size_t first = 0, std::size_t step = 1) {
   NEEDS_EFFECTS;
   const auto scenes = stability_test::scenes_with_effects();
@@ -35,8 +35,8 @@ class EffectsCases : public testing::TestWithParam<std::tuple<const char*, sim::
 class EffectsCasesSlow : public EffectsCases {};
 class EffectsCasesGpu : public EffectsCases {};
 
-/// Each case and method with the effects of its share of the scenes: together they take every scene three
-/// times. All scenes under each case and method take minutes, and are slow.
+/// Each case and method runs with the effects of a third of the scenes: together they use every scene three
+/// times. All scenes with each case and method take minutes, in the slow suite.
 TEST_P(EffectsCases, StayStable) {
   const auto [id, method] = GetParam();
   const std::string name = id;

@@ -1,5 +1,5 @@
-/// Bodies much lighter than water: the water that goes along with them has most of the inertia, and a body
-/// that follows its push at once swings apart.
+/// Bodies much lighter than water: the water that moves along has most of the inertia, so a body that reacts
+/// to its push at once becomes unstable.
 
 #include "tests/stability/stability_helpers.hpp"
 

@@ -1,5 +1,5 @@
-/// Faults put into running water: the run goes on, counters rise, and the water away from the fault does as
-/// its undisturbed twin does. Divergence.* holds the report of the first trouble.
+/// Faults injected into running water: the run continues, counters rise, and water far from the fault behaves
+/// like that of an undisturbed twin. Divergence.* tests the report of the first trouble.
 
 #include <gmock/gmock.h>
 
@@ -21,7 +21,7 @@ constexpr double d = sim::cases::d;
 constexpr double length = 24 * d, width = 8 * d, depth = 6 * d;
 const std::vector<MethodKind> methods{MethodKind::HiRes, MethodKind::Ours, MethodKind::OursTsp};
 
-/// A long pool; finest where the view's axis meets it.
+/// A long pool; finest around the view's axis.
 sim::Scene pool_scene() { return sim::cases::tank({length, 3, width}, {length, depth, width}); }
 
 State lattice() { return sim::cases::block(MethodKind::HiRes, {0, 0, 0}, {length, depth, width}); }
@@ -31,14 +31,14 @@ std::unique_ptr<sim::Simulation> pool(Backend backend, MethodKind method, const 
   sim::Scene scene = pool_scene();
   auto options =
       sim::cases::options_of({.method = method, .backend = backend, .frame_dt_s = frame_dt_s}, scene, start);
-  // Room for all of it at level 0, also where it begins coarser.
+  // Room for all water at level 0, even if it starts coarser.
   if (sim::traits_of(method).adaptive()) {
     options.particle_capacity = static_cast<std::int64_t>(lattice().size());
   }
   return sim::make_simulation(scene, options);
 }
 
-/// After twenty frames.
+/// The pool after twenty frames.
 std::unique_ptr<sim::Simulation> running_pool(Backend backend, MethodKind method) {
   auto fluid = pool(backend, method, lattice());
   for (int frame = 0; frame < 20; ++frame) fluid->step_frame();
@@ -60,7 +60,8 @@ State far_third(const sim::Simulation& fluid) {
   return state;
 }
 
-/// How far 99 % of the far third's particles are from where they are in the twin, m. Both have the same.
+/// 99th percentile of the distance between particles of the far third and of the twin, m. Both have the same
+/// particles.
 double way_far_away(const sim::Simulation& fluid, const sim::Simulation& twin) {
   const State all = fluid.read_state();
   std::vector<double> way;
@@ -85,7 +86,7 @@ State at_the_low_end(const sim::Simulation& fluid, std::size_t count) {
   return state;
 }
 
-/// Five frames with and without the fault.
+/// Compares five frames with and without the fault.
 void expect_local(const char* fault, Backend backend, MethodKind method, const auto& inject,
                   const auto& counted) {
   const auto fluid = running_pool(backend, method), twin = running_pool(backend, method);
@@ -105,7 +106,7 @@ void expect_local(const char* fault, Backend backend, MethodKind method, const a
               sim::method_name(method).c_str(), rise / d, stir, fluid->report().density_max);
   EXPECT_LT(std::abs(rise), 0.05 * d) << fault;
   EXPECT_LT(std::abs(stir), 0.1) << fault;
-  // Under levels the choice of who splits goes over the whole water, and particles have no twin.
+  // With levels, splits are chosen over the whole water, so particles have no twin.
   if (method == MethodKind::HiRes) {
     EXPECT_LT(way_far_away(*fluid, *twin), 0.1 * d) << fault;
   }
@@ -167,7 +168,7 @@ TEST(InjectedFaultsGpu, CoincidentParticlesHarmNobodyFar) { several_in_one_place
 void a_hitch(Backend backend) {
   for (const auto method : methods) {
     const State before = running_pool(backend, method)->read_state();
-    // One frame of 0.25 s, then as usual. Each part begins from where the one before ended.
+    // One frame of 0.25 s, then usual frames. Each part starts from the end of the one before.
     const auto hitch = pool(backend, method, before, 0.25);
     hitch->step_frame();
     double fastest = hitch->report().speed_max_m_s, densest = hitch->report().density_max;
@@ -229,7 +230,7 @@ TEST(InjectedFaults, AGazeThatJumpsEveryFrame) { a_gaze_that_jumps(Backend::Cpu)
 TEST(InjectedFaultsGpu, AGazeThatJumpsEveryFrame) { a_gaze_that_jumps(Backend::Cuda); }
 
 void no_room_in_the_middle_of_splits(Backend backend) {
-  // Coarse water that splits as a whole, with room for all of it and for a third.
+  // Coarse water that splits everywhere, with room for all of it and for a third.
   const levels_test::Settled tank(backend);
   auto options = levels_test::options_for(backend, levels_test::Settled::n_star, levels_test::everywhere(3));
   options.start = tank.state;
@@ -256,7 +257,7 @@ void no_room_in_the_middle_of_splits(Backend backend) {
   EXPECT_LE(fluid->report().particles, 800);
   EXPECT_GT(twin->report().particles, 800);
   EXPECT_LT(densest, 1.25);
-  // Water of mixed levels stands lower: by 4.6 % here.
+  // Water of mixed levels has a lower centre: by 4.6 % here.
   EXPECT_NEAR(height / before, 1, 0.08);
   levels_test::expect_sound(*fluid, next, 8 * levels_test::Settled::n_star);
 }
@@ -281,7 +282,7 @@ TEST(InjectedFaults, TheLeastNStarRuns) {
 TEST(InjectedFaults, NStarBeyondItsEndsIsOneClearError) {
   for (const char* bad : {"63", "4097k", "5M", "0", "-64"})
     EXPECT_THROW(sim::parse_n_star(bad), base::Error) << bad;
-  // The largest fits no 16 GiB; only LoRes' four million particles do.
+  // The largest n_* does not fit into 16 GiB, except for LoRes with four million particles.
   const auto largest = sim::parse_n_star("4096k");
   constexpr double gib = 1 << 30;
   for (const auto& method : sim::all_methods()) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Books of a run: mass, particles, momentum and energy, for a test of any scene. Make the run with
-/// SimulationOptions::wall_impulse, a Ledger of it, then call frame() after each step_frame.
+/// Balances of a run: mass, particles, momentum and energy, for a test of any scene. Set
+/// SimulationOptions::wall_impulse, make a Ledger of the run, then call frame() after each step_frame.
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,7 @@ inline double size_of(const Vec3d& v) { return std::max({std::abs(v[0]), std::ab
 
 class Ledger {
  public:
-  /// `fluid` must live as long as this. Potential energy counts from the floor; a central force has none
-  /// here.
+  /// `fluid` must outlive this. Potential energy counts from the floor and ignores a central force.
   Ledger(sim::Simulation& fluid, const sim::Scene& scene, std::int64_t n_star)
       : fluid_(fluid), scene_(scene) {
     const double edge = sim::resolution_of(scene, sim::MethodKind::HiRes, n_star).finest_spacing_m;
@@ -36,7 +35,7 @@ class Ledger {
     }
   }
 
-  /// Closes the books of the last frame.
+  /// Checks and adds up the balances of the last frame.
   void frame() {
     const auto report = fluid_.report();
     const auto state = fluid_.read_state();
@@ -50,15 +49,15 @@ class Ledger {
     momentum(state);
   }
 
-  /// Of the whole run; each as a share of `gross`, unless it has a unit.
+  /// Balance of the whole run; each value is a share of `gross` unless it has a unit.
   struct Balance {
-    double gross = 0;         ///< kg m/s: the larger of what forces and walls gave, frame by frame
-    double open = 0;          ///< what no entry explains
-    double unattributed = 0;  ///< of the constraint's push what no wall gave
-    double rests = 0;   ///< the same, less what particles that were not solved took from the velocity grid
-    double forces = 0;  ///< what the forces gave less g M dt
+    double gross = 0;         ///< kg m/s: sum over frames of the forces' or the walls' impulse, the larger
+    double open = 0;          ///< change of momentum that no entry explains
+    double unattributed = 0;  ///< part of the constraint's impulse that no wall gave
+    double rests = 0;   ///< the same, plus what particles that were not solved took from the velocity grid
+    double forces = 0;  ///< impulse of the forces less g M dt
     double event = 0;   ///< the largest frame's splits and merges, as a share of the sum of m |v|
-    double energy = 0;  ///< the largest energy over what start and nozzles brought
+    double energy = 0;  ///< largest energy, as a share of the energy of the start and of poured water
   };
   Balance balance() const {
     Balance out = most_;
@@ -100,7 +99,7 @@ class Ledger {
     }
     const double weight = mass * scene_.gravity_m_s2 * scene_.frame_dt_s;
     const Vec3d walls = account.walls_sum();
-    // The account's own sums, against the particles': 2^-24 m/s a particle is their rounding.
+    // The account's own sums must match the particles': rounding is 2^-24 m/s a particle.
     EXPECT_LT(size_of({now[0] - account.after[0], now[1] - account.after[1], now[2] - account.after[2]}),
               1e-6 * (moving + weight));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -122,7 +121,7 @@ class Ledger {
   std::int64_t particles_ = 0;
   std::int64_t mass_ = 0;     ///< in m_*
   double energy_ = 0;         ///< at the start, over m_*, m2/s2
-  double poured_energy_ = 0;  ///< of a poured m_*: over m_*, at most
+  double poured_energy_ = 0;  ///< at most, per poured m_*, over m_*
   double given_by_forces_ = 0, given_by_walls_ = 0;
   Vec3d open_{}, unattributed_{}, rests_{}, forces_{};
   Balance most_;

@@ -1,4 +1,4 @@
-/// The books of the study's scenes close over splits, merges, rests and nozzles.
+/// The balances of the study's scenes close with splits, merges, resting particles and nozzles.
 
 #include "tests/stability/ledger.hpp"
 
@@ -34,7 +34,7 @@ void books_close(Backend backend, const Case& run, std::int64_t n_star, int fram
   Ledger ledger(*fluid, scene, n_star);
   std::int64_t rested = 0;
   for (int frame = 0; frame < frames; ++frame) {
-    // Fine water wanders through the tank.
+    // A region of fine water moves through the tank.
     if (adaptive)
       fluid->force_targets({{middle[0] * (1 + std::sin(frame * 0.1)), middle[1], middle[2]}, reach, 0, 3});
     fluid->step_frame();
@@ -57,14 +57,15 @@ void books_close(Backend backend, const Case& run, std::int64_t n_star, int fram
     EXPECT_GT(report.levels.merges, 200u);
   }
   if (sim::traits_of(run.method).temporal) {
-    // Who is not solved does not yield to those who are; the velocity grid brings a part of it back.
+    // Resting particles do not yield to solved ones; the velocity grid returns a part of the momentum.
     EXPECT_GT(rested, 50);
     EXPECT_LT(books.rests, 0.1);
   } else {
     EXPECT_LT(books.unattributed, 1e-3);
   }
-  // Asked is 1. What merges overlaps and is parted, and coarse water stands higher. Measured: 1.03 to 1.06;
-  // with the filter of kicks on moving water as strong as on resting it was 1.04, but dams lost energy later.
+  // The target is 1. Merged particles overlap and are pushed apart, and coarse water stands higher. Measured:
+  // 1.03 to 1.06; it was 1.04 if the kick filter was as strong on moving water as on resting water, but dams
+  // lost energy later.
   EXPECT_LT(books.energy, adaptive ? 1.08 : 1.001);
 }
 

@@ -1,4 +1,4 @@
-/// What a case's findings come to: passes and margins.
+/// The outcome of a case's findings: passes and margins.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ TEST(CaseOutcome, AStoppedRunFails) {
 TEST(CaseOutcome, ARunStopsWhereItsBoundIs) {
   sim::Scene scene = tank({2, 2, 2}, {1, 1, 1});
   const State start = block(sim::MethodKind::HiRes, {0.5, 0.5, 0.5}, {1.1, 1.1, 1.1});
-  // It falls: faster than 1 m/s after 0.1 s.
+  // The block falls, so it is faster than 1 m/s after 0.1 s.
   Watch watch(scene, options_of({}, scene, start), {.speed_m_s = 1});
   int frames = 0;
   while (watch.step()) ASSERT_LT(++frames, 60);

@@ -1,4 +1,4 @@
-/// Splits in water at rest (S4): how dense, how energetic and how fast it gets, over an ensemble of tanks, on
+/// Splits in water at rest (S4): largest density, energy and velocity changes over an ensemble of tanks, on
 /// the CPU and on CUDA.
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace {
 
 using namespace levels_test;
 
-/// Largest change of a velocity from one state to the next, m/s; of those within `reach` of the centre that
-/// are in both by their ids, children with the parent's id among them.
+/// Largest change of velocity between two states, m/s, of particles within `reach` of the centre that are in
+/// both states by their ids; one child has the parent's id.
 double largest_kick(const std::vector<ParticleState>& before, const std::vector<ParticleState>& after,
                     const sim::Vec3d& centre, double reach) {
   double largest = 0;
@@ -35,20 +35,20 @@ double largest_kick(const std::vector<ParticleState>& before, const std::vector<
 
 constexpr double coarse_support = 4 * d;  // h of level 3
 
-/// What happened in the 30 frames after coarse water began to split.
+/// Maxima in the 30 frames after coarse water began to split.
 struct Unrest {
   double densest = 0;      ///< largest rho / rho_0
-  double gain = 0;         ///< of energy, as a share
+  double gain = 0;         ///< gain of energy, as a share
   double kick = 0;         ///< largest change of a velocity in a frame within a support of the split, m/s
   double split_share = 0;  ///< largest share of the particles that split in a frame
 };
 
-/// Centres of spheres that hold a particle, however small they are: the `count` particles nearest to the
-/// middle.
+/// The `count` particles nearest to the middle: centres of spheres that hold a particle even if they are
+/// small.
 std::vector<sim::Vec3d> middle_particles(const std::vector<ParticleState>& state, std::size_t count) {
   std::vector<sim::Vec3d> places;
   for (const auto& p : state) {
-    if (p.level < 3) continue;  // found no partner yet, and may have nothing to split
+    if (p.level < 3) continue;  // it found no partner to merge with, and may have nothing to split
     places.push_back({static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)});
   }
   const auto from_middle = [](const sim::Vec3d& at) {
@@ -60,14 +60,14 @@ std::vector<sim::Vec3d> middle_particles(const std::vector<ParticleState>& state
   return places;
 }
 
-/// The water of options.start, which rests, splits in the sphere down to level `to`.
+/// Splits the resting water of options.start in the sphere down to level `to`.
 Unrest split_within(const sim::Vec3d& centre, double radius, int to, const Settled& fine,
                     sim::SimulationOptions options) {
   const auto& start = *options.start;
   options.forced_targets = sim::TargetRegion{centre, radius, to, 3};
   options.readings.graded_targets = false;
   const auto fluid = sim::make_simulation(fine.scene, options);
-  // Coarse water at rest stands lower than fine water; split as a whole it rises to the fine one's height.
+  // Coarse water at rest is lower than fine water; if all of it splits, it rises to the fine water's height.
   const double before = radius == far_m ? std::max(energy(start), energy(fine.state)) : energy(start);
   Unrest out;
   auto last = start;
@@ -89,21 +89,21 @@ Unrest split_within(const sim::Vec3d& centre, double radius, int to, const Settl
   return out;
 }
 
-/// A tank that has split within a sphere by k levels, once from each of several starts.
+/// A tank that splits within a sphere by k levels, once from each of several starts.
 struct Splits {
   double radius = 0;
   int k = 0;
   std::vector<Unrest> runs;
 
-  /// What a quarter of the runs exceeds. The largest value over a chaotic flow differs from processor to
-  /// processor; this hardly does.
+  /// The value that a quarter of the runs exceeds. In a chaotic flow the largest value differs between
+  /// processors; the quartile hardly does.
   double upper_quartile(double Unrest::*what) const {
     std::vector<double> values;
     for (const Unrest& run : runs) values.push_back(run.*what);
     std::sort(values.begin(), values.end());
     return values[values.size() * 3 / 4 - 1];
   }
-  /// Over all runs, of what is no matter of chance.
+  /// Largest over all runs, for values that do not depend on chance.
   double most(double Unrest::*what) const {
     double out = 0;
     for (const Unrest& run : runs) out = std::max(out, run.*what);
@@ -111,7 +111,8 @@ struct Splits {
   }
 };
 
-/// The tank seen in a mirror, or with x and z changed: another start to the solver, whose rounding differs.
+/// The tank mirrored, or with x and z exchanged: for the solver a different start, because its rounding
+/// differs.
 std::vector<ParticleState> mirrored(std::vector<ParticleState> state, bool x, bool z, bool exchanged) {
   for (auto& p : state) {
     if (x) p.x_m = static_cast<float>(12 * d) - p.x_m, p.vx_m_s = -p.vx_m_s;
@@ -121,7 +122,7 @@ std::vector<ParticleState> mirrored(std::vector<ParticleState> state, bool x, bo
   return state;
 }
 
-/// A tank at rest that has merged to level 3, one of eight ways.
+/// A tank at rest that has merged to level 3, in one of eight orientations.
 std::vector<ParticleState> coarse_start(Backend backend, const Settled& fine, unsigned way) {
   auto options = options_for(backend, Settled::n_star, everywhere(3));
   options.start = mirrored(fine.state, way & 1, way & 2, way & 4);
@@ -130,7 +131,7 @@ std::vector<ParticleState> coarse_start(Backend backend, const Settled& fine, un
   return coarse->read_state();
 }
 
-constexpr double one = 1.2 * d, few = 2.5 * d;  // radii that hold so many particles of level 3
+constexpr double one = 1.2 * d, few = 2.5 * d;  // radii that hold one, or a few, particles of level 3
 constexpr double throttle = 0.05;               // largest share of the particles that splits in a frame
 
 /// S4: one particle, about 1 % or all of a settled tank of level 3 split by `levels` levels.
@@ -158,9 +159,9 @@ std::vector<Splits> splits_of(Backend backend, const sim::Readings& readings,
   return out;
 }
 
-/// m/s; 0.44, 0.86 and 1.48 were measured at most with -O2 and -march=native, and 1.0 for one particle
-/// without the filter. S4 asks for 0.5 sqrt(g d_*) = 0.61 in a frame, which one particle keeps. Merges beside
-/// a few push too, and what the parting leaves in the whole tank is still pushed.
+/// m/s; at most 0.44, 0.86 and 1.48 were measured with -O2 and -march=native, and 1.0 for one particle
+/// without the filter. S4 asks for 0.5 sqrt(g d_*) = 0.61 in a frame, which one particle meets. With a few,
+/// merges beside them push too; in the whole tank, overlaps that are not yet resolved still push.
 double most_kick(double radius) { return radius == one ? 0.8 : radius == few ? 1.3 : 2.2; }
 
 void splits_are_calm(Backend backend, const std::vector<int>& levels) {
@@ -179,13 +180,13 @@ void splits_are_calm(Backend backend, const std::vector<int>& levels) {
     EXPECT_LE(splits.most(&Unrest::split_share), throttle);
   }
 }
-/// Down to the finest level the water is stirred most; by one and two levels it splits in the slow suite.
+/// Splits down to the finest level stir the water most; the slow suite has those by one and two levels.
 TEST(S04Splits, AreCalm) { splits_are_calm(Backend::Cpu, {3}); }
 TEST(S04SplitsSlow, AreCalm) { splits_are_calm(Backend::Cpu, {1, 2, 3}); }
 TEST(S04SplitsGpu, AreCalm) { splits_are_calm(Backend::Cuda, {1, 2, 3}); }
 
-/// In water with the effects of each demo scene, from one start. Effects move water too, so that only what is
-/// dense or not sound counts.
+/// In water with the effects of each demo scene, from one start. Effects move water too, so only density and
+/// soundness are tested.
 void splits_with_effects_are_sound(Backend backend) {
   NEEDS_EFFECTS;
   Settled fine(backend);
@@ -202,7 +203,8 @@ void splits_with_effects_are_sound(Backend backend) {
 TEST(S04Splits, WithEffectsAreSound) { splits_with_effects_are_sound(Backend::Cpu); }
 TEST(S04SplitsGpu, WithEffectsAreSound) { splits_with_effects_are_sound(Backend::Cuda); }
 
-// What the bounds above are there for breaks them: without the filter one particle kicks at 1.0 m/s.
+// Without the measure that each bound tests, the bound fails: without the filter one particle kicks at 1.0
+// m/s.
 TEST(S04Splits, WithoutThrottleAreNotCalm) {
   const Settled fine(Backend::Cpu);
   auto options = options_for(Backend::Cpu, Settled::n_star, everywhere(3));

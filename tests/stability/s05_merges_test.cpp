@@ -43,7 +43,7 @@ TEST(S05Merges, UniformTankCoarsens) { tank_coarsens(Backend::Cpu); }
 TEST(S05MergesGpu, UniformTankCoarsens) { tank_coarsens(Backend::Cuda); }
 
 void square_wave_does_not_oscillate(Backend backend) {
-  // S5: targets that change every 1, 2 and 3 frames never give a merge.
+  // S5: targets that change every 1, 2 and 3 frames never cause a merge.
   const Settled tank(backend);
   auto start = tank.state;
   for (const int half : {1, 2, 3}) {
@@ -57,7 +57,7 @@ void square_wave_does_not_oscillate(Backend backend) {
     EXPECT_EQ(fluid->report().levels.merges, 0u) << "period " << 2 * half;
     EXPECT_EQ(fluid->particle_count(), 8 * Settled::n_star);
   }
-  // From coarse particles: split once, then nothing.
+  // Coarse particles split once, then nothing changes.
   auto options = options_for(backend, Settled::n_star, everywhere(3));
   options.start = start;
   auto fluid = sim::make_simulation(tank.scene, options);
@@ -65,7 +65,7 @@ void square_wave_does_not_oscillate(Backend backend) {
   options.start = fluid->read_state();
   fluid = sim::make_simulation(tank.scene, options);
   std::int64_t settled = 0;
-  // The last ones wait beside a wall until they have room.
+  // The last ones beside a wall wait until they have room.
   for (int frame = 0; frame < 300; ++frame) {
     fluid->force_targets(everywhere(frame / 2 % 2 ? 0 : 3));
     fluid->step_frame();

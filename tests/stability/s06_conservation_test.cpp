@@ -8,7 +8,7 @@ namespace {
 
 using namespace levels_test;
 
-/// `share` of sqrt(g d): how far the mean velocity may drift.
+/// `share` of sqrt(g d) is the limit for the drift of the mean velocity.
 void events_conserve(Backend backend, int coarse_cycles, double share) {
   // S6: a blob without gravity, far from walls, with random velocities and a target that comes and goes.
   auto scene = fluid_test::tank({8, 8, 8}, {12 * d, 16 * d, 12 * d});
@@ -28,7 +28,7 @@ void events_conserve(Backend backend, int coarse_cycles, double share) {
   const auto before = momentum(start);
   const auto mass = mass_units(start);
   for (int frame = 0; frame < 200; ++frame) {
-    // A sphere of fine particles that wanders along with the blob.
+    // A sphere of fine particles that moves along with the blob.
     fluid->force_targets({{3.5 + frame / 200.0, 4 + 0.6 * std::sin(frame * 0.1), 4}, 0.7, 0, 3});
     fluid->step_frame();
   }
@@ -49,13 +49,13 @@ void events_conserve(Backend backend, int coarse_cycles, double share) {
 }
 TEST(S06Conservation, EventsConserveMassAndMomentum) { events_conserve(Backend::Cpu, 0, 5e-5); }
 TEST(S06ConservationGpu, EventsConserveMassAndMomentum) { events_conserve(Backend::Cuda, 0, 5e-5); }
-// The pressure on cells is no pair force. Unbalanced it gave this blob up to 1.9 mm/s, as its offset from the
-// cells had it (libsim/solver/stages/push_balance.cpp).
+// The coarse pressure is no pair force. Without balancing it gave this blob up to 1.9 mm/s, depending on its
+// offset from the cells (libsim/solver/stages/push_balance.cpp).
 TEST(S06Conservation, CoarsePressureKeepsMomentum) { events_conserve(Backend::Cpu, 2, 5e-5); }
 TEST(S06ConservationGpu, CoarsePressureKeepsMomentum) { events_conserve(Backend::Cuda, 2, 5e-5); }
 
 void one_event_is_exact(Backend backend) {
-  // One split of each k and one merge, alone in the air without gravity.
+  // One split for each k and one merge, alone in the air without gravity.
   auto scene = fluid_test::tank({8, 8, 8}, {8 * d, 8 * d, 8 * d});
   scene.gravity_m_s2 = 0;
   for (const int k : {1, 2, 3}) {

@@ -1,4 +1,4 @@
-/// S9: the number of substeps that follows the fastest particle.
+/// S9: the number of substeps, which follows the fastest particle.
 
 #include <cmath>
 #include <limits>
@@ -19,8 +19,8 @@ TEST(S09Jet, AFrameGoesByTheFrameBeforeLast) {
     return rule.next();
   };
   EXPECT_EQ(rule.next(), 2);
-  EXPECT_EQ(after(30), 2);  // frame 1 goes by the start
-  EXPECT_EQ(after(0), 4);   // frame 2 by frame 0: 30 / 60 / 0.15 = 3.33
+  EXPECT_EQ(after(30), 2);  // frame 1 uses the start's speed
+  EXPECT_EQ(after(0), 4);   // frame 2 uses that of frame 0: 30 / 60 / 0.15 = 3.33
   EXPECT_EQ(after(0), 2);
   EXPECT_EQ(after(90), 2);
   EXPECT_EQ(after(45), 8);
@@ -31,7 +31,7 @@ TEST(S09Jet, AFrameGoesByTheFrameBeforeLast) {
 }
 
 TEST(S09Jet, FallingCountsBeforeItIsMeasured) {
-  // A frame of 0.25 s: two of them add 4.9 m/s.
+  // Two frames of 0.25 s add 4.9 m/s.
   const sim::SubstepRule rule({.frame_dt_s = 0.25,
                                .support_m = 0.3,
                                .courant = 0.5,

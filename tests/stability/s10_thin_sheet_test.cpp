@@ -1,5 +1,5 @@
-/// S10: sheets do not merge across their sides, on the CPU and on CUDA. What they cover is a case of
-/// libsim/cases.
+/// S10: sheets do not merge across their sides, on the CPU and on CUDA. A case of libsim/cases tests the area
+/// that they cover.
 
 #include "tests/libsim/levels_helpers.hpp"
 
@@ -19,7 +19,7 @@ std::vector<ParticleState> sheet(int n, int layers, const Vec3d& low, int first_
 }
 
 void sheets_do_not_merge_from_afar(Backend backend) {
-  // S10: whoever vanishes in a merge lay within one radius of what it became.
+  // S10: a particle that disappears in a merge lay within one radius of the merged particle.
   auto scene = fluid_test::tank({8, 8, 8}, {12 * d, 16 * d, 12 * d});
   scene.gravity_m_s2 = 0;
   for (const int layers : {1, 2}) {

@@ -1,4 +1,4 @@
-/// S15: what leaves the domain through an outlet is gone, and the ledger closes.
+/// S15: particles that leave the domain through an outlet are removed, and the mass balance closes.
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -15,7 +15,7 @@ using namespace stability_test;
 using sim::MethodKind;
 using sim::Wall;
 
-/// A jet of 5 m/s from above into a pool whose one side is open.
+/// A jet of 5 m/s from above into a pool with one open side.
 sim::Scene open_pool() {
   auto scene = fluid_test::tank({2.4, 2.4, 2.4}, {2.4, 0.9, 2.4}, 20);
   scene.outlets.push_back({Wall::HighX, {0, 0}, {2.4, 2.4}});
@@ -35,7 +35,7 @@ sim::SimulationOptions options_for(Backend backend, MethodKind method) {
   return out;
 }
 
-/// A tracker that has gone wrong: a ray of NaN that claims to be valid.
+/// A defective tracker: a NaN ray marked as valid.
 sim::EyeLook lost_eye(const sim::Scene& scene) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   return {{{nan, 0, 0}, {nan, nan, nan}, true}, sim::make_view(scene.view, 320, 240), nullptr};
@@ -80,7 +80,7 @@ TEST(S15DomainExit, TheLedgerCloses) { ledger_closes(Backend::Cpu); }
 TEST(S15DomainExitGpu, TheLedgerCloses) { ledger_closes(Backend::Cuda); }
 
 void a_jet_leaves_without_reflection(Backend backend) {
-  // S9's bar, but the wall is open where it strikes.
+  // The bar of S9, but the wall is open where it strikes.
   auto scene = fluid_test::tank({12, 8, 8}, {1, 1, 1});
   scene.gravity_m_s2 = 0;
   scene.outlets.push_back({Wall::HighX, {3, 3}, {5, 5}});
@@ -103,21 +103,21 @@ void a_jet_leaves_without_reflection(Backend backend) {
     pushed += std::abs(momentum.walls_sum()[0]);
     if (frame == 10) after_10 = fluid->particle_count();
   }
-  // 10 frames take it 5 m on, 1 m of that to the wall.
+  // In 10 frames it moves 5 m, 1 m of that to the wall.
   const double left = static_cast<double>(after_10) / (length * 64);
   std::printf("S15: slowest %.2f m/s, %.3f of the jet left after 10 frames\n", slowest, left);
   EXPECT_NEAR(left, 2.0 / 6, 0.03);
   EXPECT_GT(slowest, 0.98 * speed);
   EXPECT_EQ(fluid->particle_count(), 0);
   EXPECT_EQ(fluid->report().drained, length * 64);
-  // The water takes its momentum along, and no wall had a part in it.
+  // The water takes its momentum along, without any impulse of a wall.
   EXPECT_NEAR(carried / (length * 64 * 1000 * d * d * d * speed), 1, 1e-3);
   EXPECT_EQ(pushed, 0);
 }
 TEST(S15DomainExit, AJetLeavesWithoutReflection) { a_jet_leaves_without_reflection(Backend::Cpu); }
 TEST(S15DomainExitGpu, AJetLeavesWithoutReflection) { a_jet_leaves_without_reflection(Backend::Cuda); }
 
-/// Share of Torricelli's flow A sqrt(2 g h) that went through a hole of this share of the floor.
+/// Share of Torricelli's flow A sqrt(2 g h) through a hole that is this share of the floor.
 double discharge(double height, double left, double hole, double time) {
   return (std::sqrt(height) - std::sqrt(height * left)) / (hole * std::sqrt(2 * gravity) / 2 * time);
 }
@@ -148,9 +148,9 @@ void a_tank_drains_calmly(Backend backend) {
     const double share = discharge(1.8, left, 1.0 / 9, frames / 60.0);
     std::printf("S15 %s: %.3f drained, %.2f of Torricelli's flow, fastest %.2f m/s\n",
                 sim::method_name(method).c_str(), 1 - left, share, fastest);
-    // 0.61 through a sharp edge; the hole is four particles wide.
+    // Theory: 0.61 through a sharp edge; the hole is only four particles wide.
     EXPECT_NEAR(share, 0.58, 0.15);
-    // No water is faster than from the surface to the floor.
+    // No water is faster than after a fall from the surface to the floor.
     EXPECT_LT(fastest, 1.2 * std::sqrt(2 * gravity * 1.8));
     EXPECT_EQ(report.guards.speed_limited, 0u);
   }

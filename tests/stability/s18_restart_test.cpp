@@ -1,4 +1,4 @@
-/// S18: a run that is saved and resumed goes on bit for bit.
+/// S18: a run that is saved and resumed continues bit for bit.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ sim::SimulationOptions options_for(Backend backend, MethodKind method) {
   return out;
 }
 
-/// A wavy surface in front of everything, which moves.
+/// A wavy, moving surface in front of everything.
 sim::GBuffer picture_of(const sim::Scene& scene, int frame) {
   constexpr int width = 64, height = 36;
   sim::GBuffer out;
@@ -62,7 +62,7 @@ sim::GBuffer picture_of(const sim::Scene& scene, int frame) {
   return out;
 }
 
-/// Frames at changing frame rates, with a gaze that is lost at times; every third frame nobody looks anew.
+/// Frames at changing frame rates, with a gaze that is lost at times; every third frame has no new look.
 void run(sim::Simulation& fluid, const sim::Scene& scene, int frames) {
   for (int k = 0; k < frames; ++k) {
     const int frame = fluid.frame();
@@ -110,14 +110,14 @@ std::string read_all(sim::Simulation& fluid) {
 }
 
 void goes_on_bit_for_bit(Backend backend, const sim::Scene& scene, const fs::path& path) {
-  // Past the 30 frames that tau waits for, and odd, so that saliency's flow is not due.
+  // Past the 30 frames that tau needs, and odd, so that saliency's flow is not due.
   constexpr int half = 37;
   for (const auto& traits : sim::all_methods()) {
     SCOPED_TRACE(sim::method_name(traits.kind));
     auto options = options_for(backend, traits.kind);
     const auto through = sim::make_simulation(scene, options);
     run(*through, scene, half);
-    // Whoever saves goes on as whoever does not: the next one is never saved.
+    // Saving must not change a run: `through` is never saved.
     const auto saved = sim::make_simulation(scene, options);
     run(*saved, scene, half);
     saved->save_state(path);
@@ -148,7 +148,7 @@ void goes_on_bit_for_bit(Backend backend, const sim::Scene& scene, const fs::pat
 TEST_F(S18Restart, FiveMethodsGoOnBitForBit) { goes_on_bit_for_bit(Backend::Cpu, busy(), path_); }
 TEST_F(S18RestartGpu, FiveMethodsGoOnBitForBit) { goes_on_bit_for_bit(Backend::Cuda, busy(), path_); }
 
-/// Where nothing comes and goes, the lists of a frame's last substep serve the next frame's levels.
+/// Without inflow and outflow, the lists of a frame's last substep are reused for the next frame's levels.
 sim::Scene dam() {
   auto scene = busy();
   scene.nozzles.clear();
@@ -158,7 +158,7 @@ sim::Scene dam() {
 TEST_F(S18Restart, ListsThatHoldGoOnToo) { goes_on_bit_for_bit(Backend::Cpu, dam(), path_); }
 TEST_F(S18RestartGpu, ListsThatHoldGoOnToo) { goes_on_bit_for_bit(Backend::Cuda, dam(), path_); }
 
-/// The error that resuming ends in.
+/// Message of the error that resuming throws.
 std::string error_of(const sim::Scene& scene, sim::SimulationOptions options, const fs::path& path) {
   options.resume_from = path;
   try {

@@ -1,4 +1,4 @@
-/// S19: order, threads and looking change no bit, on the CPU and on CUDA; the two agree.
+/// S19: order, threads and reports change no bit, on the CPU and on CUDA; the two agree.
 
 #include <omp.h>
 
@@ -21,7 +21,7 @@ void order_does_not_matter(Backend backend) {
     a->step_frame();
     b->step_frame();
     c->step_frame();
-    if (frame == 10) c->report();  // looking must not change what is seen
+    if (frame == 10) c->report();  // reading must not change the run
   }
   EXPECT_TRUE(same(a->read_state(), b->read_state()));
   EXPECT_TRUE(same(b->read_state(), c->read_state()));
@@ -44,7 +44,7 @@ TEST(S19Determinism, ThreadCountChangesNoBit) {
 }
 
 TEST(S19BackendParityGpu, PositionsAgreeAfterFiftySteps) {
-  // From a settled state: a perfect lattice is an unstable equilibrium that multiplies the last bit.
+  // Starts from a settled state: a perfect lattice is an unstable equilibrium that amplifies the last bit.
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
   sim::SimulationOptions options;
   options.n_star = 1024;

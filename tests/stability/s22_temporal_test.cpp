@@ -1,4 +1,4 @@
-/// Temporal acceleration as a whole (S22): what leaving particles out of the solve does to a dam break.
+/// Temporal acceleration as a whole (S22): its effect on a dam break.
 
 #include <gtest/gtest.h>
 
@@ -131,7 +131,7 @@ DamRun run_dam(const sim::Scene& scene, sim::SimulationOptions options, double b
   return out;
 }
 
-/// Largest distance of the centres of mass as a share of the block's height.
+/// Largest distance between the centres of mass, as a share of the block's height.
 double centre_error(const DamRun& run, const DamRun& full, double height) {
   double most = 0;
   for (std::size_t i = 0; i < run.x.size(); ++i)
@@ -139,7 +139,7 @@ double centre_error(const DamRun& run, const DamRun& full, double height) {
   return most;
 }
 
-/// Kinetic energy over the whole run against the full solve's.
+/// Kinetic energy over the whole run, as a ratio to the full solve's.
 double kinetic_ratio(const DamRun& run, const DamRun& full) {
   double own = 0;
   double reference = 0;
@@ -159,7 +159,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Bounds hold for the median over `draws` draws of who rests: single runs scatter by 0.005 at beta 0.3.
+/// Bounds hold for the median over `draws` random choices of resting particles: single runs scatter by 0.005
+/// at beta 0.3.
 void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::vector<DamGate>& gates,
                    std::uint32_t draws) {
   const auto scene = sim::read_scene("data/scenes/single_dam.toml");
@@ -186,8 +187,8 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
     EXPECT_LT(median(kinetic), gate.kinetic_high);
   }
 }
-// S22: 10 s, or 2 s where a test must be short. It asks for 0.02 and 1.05 at each beta; docs/results.md
-// says why the lower ones have more.
+// S22: 10 s, or 2 s in short tests. It asks for 0.02 and 1.05 at each beta; docs/results.md explains the
+// larger bounds of the lower ones.
 const std::vector<DamGate> s22{{0.9, 0.02, 0.8, 1.05}, {0.67, 0.025, 0.8, 1.05}, {0.3, 0.035, 0.8, 1.08}};
 TEST(S22Temporal, DamBreaksAsWithTheFullSolve) {
   dam_with_rest(Backend::Cpu, 512, 120, {s22.begin(), s22.begin() + 2}, 1);

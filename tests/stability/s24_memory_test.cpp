@@ -1,4 +1,4 @@
-/// S24: a run of its own takes no more memory the longer it lasts.
+/// S24: a run takes no more memory the longer it lasts.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ TEST(S24Soak, TheProcessDoesNotGrow) {
   const auto grown = std::find_if(outcome.findings.begin(), outcome.findings.end(),
                                   [](const auto& one) { return one.name == "growth of the process"; });
   ASSERT_NE(grown, outcome.findings.end());
-  // In 600 frames: a leak of 30 KiB a frame shows.
+  // Over 600 frames: a leak of 30 KiB a frame would show.
   EXPECT_LT(grown->value, 16);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of hard cases share. Cases S1 to S24 stand in docs/results.md.
+/// Shared by the tests of hard cases. docs/results.md lists cases S1 to S24.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ inline std::unique_ptr<sim::Simulation> start_in_a_cube(Backend backend,
   return start_from(backend, fluid_test::tank({2, 2, 2}, {2, 2, 2}), start, options);
 }
 
-/// Bit for bit.
+/// True if both states are equal bit for bit.
 inline bool same(const std::vector<ParticleState>& a, const std::vector<ParticleState>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const auto& p, const auto& q) {
            return p.id == q.id && p.level == q.level && p.x_m == q.x_m && p.y_m == q.y_m && p.z_m == q.z_m &&

@@ -1,5 +1,5 @@
-/// Levels over water at rest under a gaze at rest: what splits and merges set free must not stir it. What
-/// calms it must not brake water that moves.
+/// Levels in water at rest with a fixed gaze: splits and merges must not stir it, and the damping of their
+/// kicks must not brake moving water.
 
 #include "libsim/cases/water.hpp"
 #include "tests/libsim/levels_helpers.hpp"
@@ -11,7 +11,7 @@ using sim::MethodKind;
 
 constexpr std::int64_t n_star = 512;  // 4,096 finest particles
 
-/// A tank of 4.8 m x 2.4 m, seen from in front of it.
+/// A tank of 4.8 m x 2.4 m, seen from the front.
 sim::Scene seen(double width, double height) {
   auto out = fluid_test::tank({4.8, 5, 2.4}, {width, height, 2.4}, 60);
   out.gate = width < 4.8;
@@ -35,9 +35,9 @@ std::unique_ptr<sim::Simulation> start(Backend backend, const sim::Scene& scene,
 }
 
 struct Stir {
-  double rms = 0;     ///< of the speeds by mass, on average from 2.5 to 4 s, m/s
+  double rms = 0;     ///< rms speed by mass, averaged from 2.5 to 4 s, m/s
   double jumps = 0;   ///< largest share of pairs whose levels differ by more than one
-  double splits = 0;  ///< a frame then
+  double splits = 0;  ///< splits per frame in that time
 };
 
 Stir stir(Backend backend, MethodKind method, const std::vector<ParticleState>& water, double x) {
@@ -71,14 +71,14 @@ struct Spread {
   }
 };
 
-/// From `first` on, in `steps` steps.
+/// `steps` values from `first` on.
 std::vector<double> steps_from(double first, double step, int steps) {
   std::vector<double> out;
   for (int k = 0; k < steps; ++k) out.push_back(first + k * step);
   return out;
 }
-const std::vector<double> all_gazes = steps_from(0.8, 0.4, 9);   // m along the pool
-const std::vector<double> all_depths = steps_from(2.0, 0.1, 9);  // of dams, m
+const std::vector<double> all_gazes = steps_from(0.8, 0.4, 9);   // positions along the pool, m
+const std::vector<double> all_depths = steps_from(2.0, 0.1, 9);  // depths of dams, m
 
 void still_water_stays_calm(Backend backend, const std::vector<double>& gazes) {
   const auto water = start(backend, seen(4.8, 1.2), MethodKind::HiRes)->read_state();
@@ -91,7 +91,7 @@ void still_water_stays_calm(Backend backend, const std::vector<double>& gazes) {
     }
     const Spread stirred(rms);
     std::printf("%s: %.3f m/s (%.3f)\n", sim::method_name(method).c_str(), stirred.mean, stirred.deviation);
-    // Asked is 0.08. FovFluid has 0.06 on a CPU and 0.07 on a GPU with a spread of 0.013.
+    // The target is 0.08. FovFluid has 0.06 on a CPU and 0.07 on a GPU with a spread of 0.013.
     EXPECT_LT(stirred.mean, method == MethodKind::Ours ? 0.08 : 0.11) << sim::method_name(method);
   }
 }

@@ -45,8 +45,8 @@ inline ScoreTable normal_table(const std::vector<double>& means, double particip
   return {std::move(scale), scores, n, n_stars, methods};
 }
 
-/// n answers to one pair, the first k of them for a; every answer of another participant, a first in every
-/// other.
+/// Adds n answers to one pair, the first k of them for a; each from another participant, with a shown first
+/// in every other one.
 inline void add_pair(std::vector<PairChoice>& choices, int a, int b, int k, int n) {
   for (int i = 0; i < n; ++i) {
     const bool a_first = i % 2 == 0, a_chosen = i < k;

@@ -10,7 +10,7 @@
 namespace {
 
 TEST(ResampleWeights, AreEqualOnEveryMachine) {
-  // Pinned, so that an interval printed in a paper can be had again.
+  // Fixed values, so that an interval in a paper can be reproduced.
   EXPECT_EQ(stats::resample_weights(6, 1, 0), (std::vector<double>{0, 0, 2, 0, 2, 2}));
   EXPECT_EQ(stats::resample_weights(6, 1, 1), (std::vector<double>{0, 1, 3, 2, 0, 0}));
 }

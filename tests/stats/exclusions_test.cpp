@@ -10,7 +10,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// Trials of one visit, all pass, with these main ratings and five answers each.
+/// Trials of one visit with these main ratings and five answers each; all pass.
 std::vector<TrialRecord> visit(const std::vector<double>& ratings, const std::string& participant = "P1") {
   std::vector<TrialRecord> out;
   for (const double rating : ratings) {

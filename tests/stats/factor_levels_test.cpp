@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Two levels by two of the rest: treatment 2 rest + level.
+/// Two levels of the factor by two combinations of the rest: treatment = 2 rest + level.
 const std::vector<FactorPlace> places{{0, 0}, {1, 0}, {0, 1}, {1, 1}};
 
 PairChoice choice(int participant, int first, int second, bool first_chosen) {
@@ -21,10 +21,10 @@ PairChoice choice(int participant, int first, int second, bool first_chosen) {
 TEST(LevelPreferences, CountPairsThatDifferInTheFactorAlone) {
   std::vector<PairChoice> choices;
   for (int person = 0; person < 4; ++person) {
-    choices.push_back(choice(person, 0, 1, false));       // level 1 chosen at rest 0
-    choices.push_back(choice(person, 3, 2, person > 0));  // level 1 of all but one at rest 1
-    choices.push_back(choice(person, 0, 3, true));        // of another rest: not counted
-    choices.push_back(choice(person, 0, 2, true));        // of one level: not counted
+    choices.push_back(choice(person, 0, 1, false));       // everyone chooses level 1 at rest 0
+    choices.push_back(choice(person, 3, 2, person > 0));  // all but one choose level 1 at rest 1
+    choices.push_back(choice(person, 0, 3, true));        // the rest differs too: not counted
+    choices.push_back(choice(person, 0, 2, true));        // same level: not counted
   }
   const auto found = level_preferences(choices, places, 2, {});
   ASSERT_EQ(found.size(), 1u);
@@ -32,7 +32,7 @@ TEST(LevelPreferences, CountPairsThatDifferInTheFactorAlone) {
   EXPECT_EQ(found[0].k, 1) << "level 0, by the one";
   EXPECT_EQ(found[0].participants, 4);
   ASSERT_TRUE(found[0].shares);
-  // Shares .5, 0, 0, 0 against .5: mean .125, standard error .125, t = -3 of 3 degrees of freedom.
+  // Shares .5, 0, 0, 0 against .5: mean .125, standard error .125, t = -3 with 3 degrees of freedom.
   EXPECT_DOUBLE_EQ(found[0].shares->mean, 0.125);
   EXPECT_NEAR(found[0].shares->t, -3, 1e-12);
   EXPECT_NEAR(*found[0].p(), 0.057669, 1e-6) << "R: 2 * pt(-3, 3)";
@@ -91,12 +91,12 @@ TEST(LevelDifferences, AverageOverTheOtherFactorWithinEachParticipant) {
   // -1.5, -1, -2: mean -1.5, standard error .5 / sqrt 3.
   EXPECT_DOUBLE_EQ(found[0].difference->mean, -1.5);
   EXPECT_NEAR(found[0].difference->t, -1.5 / (0.5 / std::sqrt(3)), 1e-12);
-  // Of the other factor: (3 + 5 - 4 - 5) / 2, (2 + 4 - 4 - 4) / 2, (5 + 6 - 3 - 6) / 2.
+  // For the other factor: (3 + 5 - 4 - 5) / 2, (2 + 4 - 4 - 4) / 2, (5 + 6 - 3 - 6) / 2.
   const std::vector<FactorPlace> other{{0, 0}, {0, 1}, {1, 0}, {1, 1}};
   EXPECT_NEAR(level_differences(table, other, 2, {})[0].difference->mean, (-0.5 - 1 + 1) / 3, 1e-12);
 }
 
-// 13/3 - 10/3 + 4 - 5 is nought, and as doubles it is not.
+// 13/3 - 10/3 + 4 - 5 is exactly zero, but not in doubles.
 TEST(LevelDifferences, OfThirdsThatCancelAreNoughtExactly) {
   std::vector<MethodScore> all;
   for (int person = 0; person < 5; ++person) {

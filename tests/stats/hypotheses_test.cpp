@@ -54,7 +54,7 @@ TEST(Hypotheses, AWorldAsClaimedIsSupportedThroughout) {
 }
 
 TEST(Hypotheses, BetterMeansMoreRealismAndLessSickness) {
-  // FovFluid looks better and sickens more: sickness alone speaks for ours.
+  // FovFluid looks better but sickens more, so only sickness supports the claim.
   const auto h1 = verdicts({2, 5, 3, 3, 5}, {1, 1, 0.5, 0.5, 0.5})[0];
   EXPECT_EQ(h1.status, HypothesisStatus::PartlySupported);
   EXPECT_EQ(h1.confirmed, 4);
@@ -67,8 +67,8 @@ TEST(Hypotheses, BetterMeansMoreRealismAndLessSickness) {
 }
 
 TEST(Hypotheses, NoDifferenceIsNoEquivalenceWithFewPeople) {
-  // The paper's rule takes silence for consent: six noisy people show no difference, and no equivalence
-  // either.
+  // The paper's rule takes a missing difference for equality: six noisy people show neither a difference nor
+  // equivalence.
   const auto realism = normal_table({4, 4, 4, 4, 4}, 0.5, 2, 6, 11);
   const auto sickness = normal_table({1, 1, 1, 1, 1}, 0.2, 1, 6, 12, test::sickness_scale());
   const auto h2 = task1_hypotheses(realism, sickness, {}, "")[1];
@@ -124,7 +124,7 @@ TEST(Hypotheses, TestsAreThoseOfTheTable) {
   EXPECT_NEAR(*sided[2].tests[2].p, against_margin(Alternative::Less), 1e-12);
 }
 
-/// Where the interval of a test must lie for its claim.
+/// True if the test's interval lies where the claim needs it.
 bool interval_holds(const Hypothesis& hypothesis, const HypothesisTest& test) {
   const auto [low, high] = *test.ci;
   const bool more = test.score != "sickness";
@@ -141,7 +141,7 @@ bool interval_holds(const Hypothesis& hypothesis, const HypothesisTest& test) {
   return low > 0.5;
 }
 
-// Two-sided all six or one-sided all six: the interval of 1 - alpha, or that of 1 - 2 alpha, decides each.
+// With all six two-sided or all six one-sided, the interval of 1 - alpha or of 1 - 2 alpha decides each test.
 TEST(Hypotheses, TheIntervalShownDecidesEachTestAlike) {
   for (const AnalysisPlan& plan : {AnalysisPlan{}, one_sided_throughout()}) {
     int holding = 0, tests = 0;
@@ -178,8 +178,8 @@ TEST(Hypotheses, HolmStaysWithinTheFamily) {
   }
 }
 
-/// Share of 1,000 studies of 26 people in which some test of a hypothesis rejects. Three standard errors of 5
-/// % are 2.1 %.
+/// Share of 1,000 studies of 26 people in which a test of a hypothesis rejects. Three standard errors of 5 %
+/// are 2.1 %.
 template <class Rejects>
 double share_of_studies(const std::vector<double>& realism, const std::vector<double>& sickness,
                         const AnalysisPlan& plan, Rejects rejects) {
@@ -232,7 +232,7 @@ TEST(Hypotheses, OnePersonIsNoData) {
   }
 }
 
-/// Everybody rates the methods alike, each by their own level: no difference has any spread.
+/// Everybody rates the methods alike, up to a level of their own: the differences have no spread.
 std::vector<Hypothesis> unanimous_verdicts(const std::vector<double>& realism,
                                            const std::vector<double>& sickness, int n,
                                            const AnalysisPlan& plan = {}) {
@@ -265,7 +265,8 @@ TEST(Hypotheses, UnanimousDifferencesAreTestedBySign) {
 }
 
 TEST(Hypotheses, UnanimousDifferencesThatSpeakForNothingHoldNothing) {
-  // Ours equals FovFluid, lies beyond the margin of HiRes, and Ours-TSp is as far below Ours as the margin.
+  // Ours equals FovFluid, HiRes differs from it by more than the margin, and Ours-TSp is below Ours by
+  // exactly the margin.
   const auto all = unanimous_verdicts({1, 2, 2, 1.5, 3}, {2, 1, 1, 1.25, 0}, 12);
   EXPECT_EQ(*all[0].tests[0].p, 1) << "no difference at all";
   EXPECT_EQ(*all[0].tests[2].p, std::ldexp(1, -11));
@@ -273,7 +274,7 @@ TEST(Hypotheses, UnanimousDifferencesThatSpeakForNothingHoldNothing) {
   EXPECT_EQ(*all[1].tests[0].p, 1) << "beyond the margin";
   EXPECT_EQ(*all[2].tests[0].p, 1) << "at the margin";
   for (const auto& one : all) EXPECT_EQ(one.confirmed, 0);
-  // Few people cannot show anything by sign: 2^-4 on each side.
+  // Few people cannot show anything with a sign test: 2^-4 on each side.
   for (const auto& one : unanimous_verdicts({1, 2, 4, 4, 4}, {2, 1, 0, 0, 0}, 5))
     EXPECT_EQ(one.status, HypothesisStatus::NotSupported) << one.status_text;
 }

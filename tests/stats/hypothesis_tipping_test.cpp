@@ -1,4 +1,4 @@
-/// Tipping points of H1 to H3: at the shift found the decision by the plan changes.
+/// Tipping points of H1 to H3: the plan's decision changes at the shift that is found.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Every third of 18 people leaves within the second n_*, where methods are shown in another order to each.
+/// Every third of 18 people leaves within the second n_*; each sees the methods in another order.
 std::vector<ScoreTable> tables_with_dropout(std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -39,7 +39,7 @@ std::vector<ScoreTable> tables_with_dropout(std::uint64_t seed) {
           {test::sickness_scale(), sickness, 18, test::n_stars, test::methods}};
 }
 
-/// p of a test and whether it points where it is claimed to, were its estimate another.
+/// p of a test for another estimate, and whether the estimate points in the claimed direction.
 std::pair<double, bool> p_at(const Hypothesis& claim, const HypothesisTest& test, double estimate) {
   const double up = test.score == "realism" ? 1 : -1, margin = test.margin.value_or(0),
                sides = claim.one_sided ? 1 : 2;
@@ -59,7 +59,8 @@ bool holds_at(const Hypothesis& claim, std::size_t index, double estimate) {
   return right && adjust(all, Adjustment::Holm)->p[index] < claim.alpha;
 }
 
-/// At each shift of one side the decision is still as it was just before, and another just behind.
+/// Expects the decision to be unchanged just before each side's shift and changed just behind it. Returns the
+/// number of shifts found.
 int expect_tips(const Hypothesis& claim, std::size_t index) {
   const HypothesisTest& test = claim.tests[index];
   const TippingPoint& tipping = **test.tipping;
@@ -113,8 +114,8 @@ TEST(HypothesisTipping, TheDecisionChangesAtTheShift) {
 }
 
 // By hand: a - b of 1, 2, 3, 2, 2 has mean 2 and error sqrt(0.1); two of seven lack a. Significant beyond
-// 2.776 errors (Student's .975 quantile of 4 degrees of freedom), so 2 - 2.776 * .3162 = 1.1220 is left,
-// which their answers take away when they are worse by 1.1220 * 7 / 2 = 3.927.
+// 2.776 errors (Student's .975 quantile with 4 degrees of freedom), so 2 - 2.776 * .3162 = 1.1220 remains,
+// which the missing answers remove if they are worse by 1.1220 * 7 / 2 = 3.927.
 TEST(HypothesisTipping, IsWhatAHandFinds) {
   const double none = std::nan("");
   const std::vector<ScoreTable> tables{

@@ -23,7 +23,7 @@ Image flat(int width, int height, int value) {
   return {width, height, std::vector<std::uint8_t>(bytes, static_cast<std::uint8_t>(value))};
 }
 
-/// Whole numbers from a 32-bit congruence (Numerical Recipes), the same in every language.
+/// Integers from a 32-bit linear congruential generator (Numerical Recipes), the same in every language.
 Image noise(int width, int height, std::uint32_t seed) {
   Image out = flat(width, height, 0);
   for (auto& byte : out.rgb) {
@@ -33,7 +33,7 @@ Image noise(int width, int height, std::uint32_t seed) {
   return out;
 }
 
-/// A slope with noise of +-16 on it.
+/// A slope plus noise of +-16.
 Image rough(const Image& noise_image) {
   Image out = noise_image;
   for (std::size_t i = 0; i < out.rgb.size(); ++i) {
@@ -55,7 +55,7 @@ TEST(Psnr, KnownOffsets) {
 TEST(Psnr, TakesTheThreeChannelsTogether) {
   const Image a = flat(4, 4, 100);
   Image b = a;
-  for (std::size_t i = 0; i < b.rgb.size(); i += 3) b.rgb[i] = 103;  // red alone by 3: MSE 9 / 3
+  for (std::size_t i = 0; i < b.rgb.size(); i += 3) b.rgb[i] = 103;  // red differs by 3: MSE 9 / 3
   EXPECT_DOUBLE_EQ(stats::mean_squared_error(a.view(), b.view()).value, 3);
 }
 
@@ -171,8 +171,8 @@ TEST(Ssim, EqualsItsDefinitionAtEveryPixel) {
   }
 }
 
-/// Gaussian means along rows, then along columns, of whole pictures: the plain form of what ssim_map does in
-/// bands.
+/// Gaussian means along rows, then along columns, of whole pictures: a plain version of ssim_map, which works
+/// in bands.
 std::vector<double> gaussian_means(const std::vector<double>& values, int width, int height) {
   std::vector<double> weights;
   double total = 0;
@@ -202,7 +202,7 @@ std::vector<double> gaussian_means(const std::vector<double>& values, int width,
 }
 
 TEST(Ssim, BandsOfRowsChangeNoValue) {
-  // Taller than several bands, and no multiple of one.
+  // Taller than several bands, and not a multiple of one.
   constexpr int width = 47, height = 131;
   const Image a = rough(noise(width, height, 7));
   const Image b = rough(noise(width, height, 8));
@@ -238,7 +238,7 @@ TEST(Ssim, MasksTheMapAndNotThePictures) {
   const auto map = stats::ssim_map(a.view(), b.view());
   std::vector<std::uint8_t> mask(900, 0);
   mask[12 * 30 + 17] = 1;
-  mask[3 * 30 + 3] = 1;  // in the border: no index
+  mask[3 * 30 + 3] = 1;  // at the border, which has no index
   const auto score = map.mean(mask);
   EXPECT_EQ(score.pixels, 1u);
   EXPECT_DOUBLE_EQ(score.value, map.index[(12 - 5) * 20 + 17 - 5]);
@@ -247,8 +247,7 @@ TEST(Ssim, MasksTheMapAndNotThePictures) {
   EXPECT_THROW(stats::ssim_map(flat(10, 11, 1).view(), flat(10, 11, 1).view()), std::invalid_argument);
 }
 
-// Values of tests/stats/oracle/flip.py; its inverse of the colour matrix has more digits than the published
-// one.
+// Values from tests/stats/oracle/flip.py, whose inverse colour matrix has more digits than the published one.
 TEST(Flip, AgreesWithAnIndependentProgram) {
   const Image a = noise(40, 30, 1), b = noise(40, 30, 2);
   const Image slope = rough(a), other = rough(b);
@@ -282,7 +281,7 @@ TEST(Flip, LooksAtTheMaskOnly) {
   Image b = a;
   std::vector<std::uint8_t> far(600, 0), none(600, 0);
   for (std::size_t p = 0; p < 600; ++p) {
-    if (p % 30 < 5) b.rgb[3 * p] = 250;  // the left edge alone differs
+    if (p % 30 < 5) b.rgb[3 * p] = 250;  // only the left edge differs
     far[p] = p % 30 >= 20;
   }
   EXPECT_GT(stats::flip(a.view(), b.view(), 20).value, 0.05);
@@ -291,7 +290,7 @@ TEST(Flip, LooksAtTheMaskOnly) {
   EXPECT_TRUE(std::isnan(stats::flip(a.view(), b.view(), 20, none).value));
 }
 
-// Weights far from a pixel are below the smallest number there.
+// Weights far from a pixel underflow.
 TEST(Flip, TellsOfPicturesWithFewPixelsADegree) {
   const double seen = stats::flip(noise(40, 30, 1).view(), noise(40, 30, 2).view(), 1).value;
   EXPECT_GT(seen, 0.5);

@@ -1,5 +1,5 @@
 #pragma once
-/// No field of the reference answers may be passed over in silence.
+/// Check that tests compare every field of the reference answers.
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 TEST(MeanInterval, IsStudentsOfHisOwnData) {
-  // Student 1908: hours of sleep that ten patients gained; the interval that R's t.test(sleep) prints.
+  // Student 1908: additional hours of sleep of ten patients; the interval that R's t.test(sleep) prints.
   const std::vector<double> first{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0};
   const std::vector<double> second{1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
   const auto gain = stats::mean_interval(stats::paired_group_means(second, first, 1));

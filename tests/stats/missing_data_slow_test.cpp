@@ -1,5 +1,5 @@
-/// Studies of Task 1 that lose people: how often do the paired t test and the mixed model find what is not
-/// there, and what is? The figures printed stand in docs/statistics.md.
+/// Studies of Task 1 with dropout: false alarms and power of the paired t test and the mixed model.
+/// docs/statistics.md has the printed figures.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ constexpr std::array<World, 4> worlds{{{"nobody leaves", Leaving::Nobody},
                                        {"after low answers", Leaving::ByAnswers},
                                        {"before low answers", Leaving::ByTheMissingAnswer}}};
 
-/// Such that about 55 % leave before the end, nobody before the second trial.
+/// About 55 % leave before the end, and nobody before the second trial.
 double chance_to_leave(Leaving leaving, double last, double next) {
   switch (leaving) {
     case Leaving::Nobody:
@@ -50,7 +50,7 @@ struct Study {
   int left = 0;
 };
 
-/// The last method is better by `lift` points before rounding; scenes, places and people differ.
+/// The last method is better by `lift` points before rounding; scenes, positions and people differ.
 Study simulate(int people, Leaving leaving, double lift, std::uint64_t seed) {
   Study out;
   std::mt19937_64 generator(seed);
@@ -83,7 +83,7 @@ Study simulate(int people, Leaving leaving, double lift, std::uint64_t seed) {
   return out;
 }
 
-/// Tests of the last method against each of the others, and of the others among each other.
+/// Counts of tests of the last method against each other one, and of the others among each other.
 struct Count {
   int false_alarms = 0, alike = 0, hits = 0, different = 0, refused = 0;
 
@@ -143,9 +143,9 @@ Counts simulate_all(int people, Leaving leaving, double lift, int studies) {
   return sum;
 }
 
-// Among the methods that are alike at most six of a hundred tests reject; with people missing the mixed model
-// finds more of what is there. Who leaves before the very answer that would have been low is missing neither
-// at random nor harmlessly: the figures are printed and the docs say so.
+// Among equal methods at most 6 % of tests reject; with dropout the mixed model finds more real differences.
+// Dropout before an answer that would have been low is not missing at random and biases the results: the
+// figures are printed, and the docs say so.
 TEST(MissingDataSlow, ErrorAndPowerUnderDropout) {
   constexpr int studies = 2000;
   for (const int people : {12, 26}) {

@@ -33,7 +33,7 @@ AnalysisPlan by_model(Directional directional = Directional::None) {
   return plan;
 }
 
-/// The answers of a study in mixed_model.json, as realism and once more as sickness.
+/// The answers of a study in mixed_model.json, used as realism and as sickness.
 std::vector<Hypothesis> judged(const json& study, const AnalysisPlan& plan) {
   std::vector<MethodScore> scores;
   int participants = 0;
@@ -80,8 +80,8 @@ TEST(MixedHypotheses, TestsAreThoseOfLmerTest) {
   }
 }
 
-// Two methods judged once by everybody: the model's test is the paired one. The differences 1, 2, 3, 2, 2
-// have mean 2 and error sqrt(0.5 / 5); people differ in level by more than they scatter.
+// For two methods that everybody judges once, the model's test is the paired one. The differences 1, 2, 3, 2,
+// 2 have mean 2 and error sqrt(0.5 / 5); the spread of people's levels exceeds that of the differences.
 TEST(MixedHypotheses, CompletePairsGiveThePairedTest) {
   const auto table = [](ScoreScale scale) {
     return test::table_of({{2, 1}, {4, 2}, {6, 3}, {7, 5}, {9, 7}}, {"Ours", "FovFluid"}, std::move(scale));
@@ -92,7 +92,7 @@ TEST(MixedHypotheses, CompletePairsGiveThePairedTest) {
   EXPECT_NEAR(*got.estimate, 2, 1e-9);
   EXPECT_NEAR(*got.t, 2 / std::sqrt(0.1), 1e-5);
   EXPECT_NEAR(*got.df, 4, 1e-4);
-  // Student's upper tail of 4 degrees of freedom: 1/2 - (3 s - s^3) / 4 with s = t / sqrt(t^2 + 4).
+  // Student's upper tail with 4 degrees of freedom: 1/2 - (3 s - s^3) / 4 with s = t / sqrt(t^2 + 4).
   const double s = std::sqrt(40.0 / 44);
   EXPECT_NEAR(*got.p, 1 - (3 * s - s * s * s) / 2, 1e-7);
   EXPECT_EQ(got.n, 5u);
@@ -101,7 +101,7 @@ TEST(MixedHypotheses, CompletePairsGiveThePairedTest) {
   EXPECT_THAT(h1.rule, HasSubstr("t tests of the mixed model, two-sided"));
 }
 
-// "half left" of mixed_model.R: the answers of those who left early count in one of the two.
+// "half left" of mixed_model.R: only one of the two tests uses the answers of people who left early.
 TEST(MixedHypotheses, TheKeyDecidesAndTheOtherStandsBeside) {
   const json study = made_by_r("mixed_model.json").at("studies")[1];
   const auto mixed = judged(study, by_model()), paired = judged(study, {});

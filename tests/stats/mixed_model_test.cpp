@@ -33,7 +33,7 @@ ScoreTable table_of_study(const json& study) {
   return {test::realism_scale(), scores, participants, test::n_stars, test::methods};
 }
 
-/// estimate, se, df, t, interval and p; `what` scales what may be nought.
+/// Compares estimate, se, df, t, interval and p; values that may be zero are compared in units of se.
 void expect_like(const MixedContrast& got, const json& want, const std::string& where) {
   const double se = want[1];
   EXPECT_NEAR(got.estimate, want[0], 2e-6 * se) << where;
@@ -85,7 +85,7 @@ TEST(MixedModel, SaysWhichSpreadIsNought) {
   EXPECT_EQ(singular(4), "participants do not differ in level");
 }
 
-// Of a complete table with one answer in each cell the model's differences are those of the means.
+// For a complete table with one answer in each cell, the model's differences equal those of the means.
 TEST(MixedModel, CompleteDataGiveThePairedDifferences) {
   const auto table = test::normal_table({3, 4, 5, 5, 6}, 1, 0.7, 12, 5);
   const auto model = fit_mixed_scores(table);
@@ -95,7 +95,7 @@ TEST(MixedModel, CompleteDataGiveThePairedDifferences) {
   EXPECT_NEAR(model->difference(1, 4, 0, 0.95)->estimate, mean, 1e-9);
 }
 
-// A term that the others make up is left out, and the rest is as without it.
+// A term that is a linear combination of others is left out, without effect on the rest.
 TEST(MixedModel, LeavesOutTermsThatOthersMakeUp) {
   std::vector<MethodScore> scores;
   std::mt19937_64 generator(3);

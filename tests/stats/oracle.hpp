@@ -43,7 +43,7 @@ inline std::vector<double> numbers(const base::Json& list) {
   return out;
 }
 
-/// Whether a field is there and not null, that is, to be compared.
+/// True if the field exists and is not null, so that it must be compared.
 inline bool asks(const base::Json& expect, const std::string& field) {
   return expect.contains(field) && !expect.at(field).is_null();
 }
@@ -53,8 +53,9 @@ inline double bound(double expected, double rtol, double scale) {
   return rtol * (expected == 0 ? scale : std::abs(expected));
 }
 
-/// `got` against one expected number, to `rtol` of it. Where the answer is zero, or zero but for the rounding
-/// of the program that computed it (1e-12 of `scale`, the size of what was subtracted), to rtol of `scale`.
+/// Compares `got` with one expected number, to `rtol` of it. If the answer is zero, or zero up to rounding of
+/// the program that computed it (1e-12 of `scale`, the size of the operands that were subtracted), to rtol of
+/// `scale`.
 inline void expect_number(const std::string& what, double got, const base::Json& expected, double rtol,
                           double scale = 1) {
   if (expected.is_null()) return;
@@ -67,8 +68,8 @@ inline void expect_number(const std::string& what, double got, const base::Json&
   EXPECT_LE(std::abs(got - want), allowed) << what << ": " << got << " instead of " << want;
 }
 
-/// expect_number for a field of a case: nothing when the pack does not ask for it, a failure when it does and
-/// there is no value. rtol is the case's own unless given.
+/// expect_number for a field of a case. Does nothing if the pack does not ask for the field; fails if it does
+/// and there is no value. rtol is the case's own unless given.
 inline void expect_field(const base::Json& c, const std::string& field, std::optional<double> got,
                          double scale = 1, std::optional<double> rtol = {}) {
   if (!asks(c.at("expect"), field)) return;
@@ -80,7 +81,7 @@ inline void expect_field(const base::Json& c, const std::string& field, std::opt
   expect_number(what, *got, c.at("expect").at(field), rtol.value_or(c.at("rtol").get<double>()), scale);
 }
 
-/// A case that has no answer must be refused with a reason.
+/// A case without an answer must be refused with a reason.
 template <class R>
 void expect_refused(const base::Json& c, const R& result) {
   EXPECT_FALSE(result) << c.at("id") << ": a number where there is none";

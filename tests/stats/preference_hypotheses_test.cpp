@@ -1,4 +1,4 @@
-/// H4 to H6, and the rules that hold for all six.
+/// H4 to H6, and rules that apply to all six hypotheses.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-/// As bundles were frozen before the plan had a decision rule.
+/// The plan of bundles that were frozen before plans had a decision rule.
 AnalysisPlan frozen_earlier() {
   AnalysisPlan plan;
   plan.decision = DecisionRule::Holm;
@@ -33,7 +33,8 @@ AnalysisPlan one_sided_throughout() {
   return plan;
 }
 
-/// H4 to H6 of ten pairs, each answered by 26 people; k of the first method named.
+/// H4 to H6 from ten pairs, each answered by 26 people; the arguments are the choices of the first method
+/// named.
 std::vector<Hypothesis> preferences(int tsp_over_ours, int ours_over_fov, int tsp_over_fov,
                                     int hires_over_ours, int hires_over_tsp,
                                     const std::string& untestable = "", const AnalysisPlan& plan = {}) {
@@ -67,7 +68,7 @@ TEST(PreferenceHypotheses, ThePapersFigureTen) {
   EXPECT_NEAR(*h5.tests[1].p_holm_of_five, 0.012, 0.0006);
   EXPECT_NEAR(*h5.tests[0].p_holm_of_ten, 0.261, 0.0015);
   EXPECT_NEAR(*h5.tests[1].p_holm_of_ten, 0.025, 0.0006);
-  // The paper calls H6 confirmed because nothing is significant; nothing is confirmed.
+  // The paper calls H6 confirmed because no test is significant; here nothing is confirmed.
   EXPECT_TRUE(all[2].paper_supported);
   EXPECT_EQ(all[2].status, HypothesisStatus::NotSupported);
 }
@@ -108,7 +109,7 @@ TEST(PreferenceHypotheses, OneSidedWhereThePlanSaysSo) {
   EXPECT_EQ(earlier.status, HypothesisStatus::NotSupported) << "2 x .038 after Holm";
 }
 
-// Berger 1982: a claim that needs all of its tests errs at most at alpha without any correction.
+// Berger 1982: a claim that needs all of its tests has an error of at most alpha without correction.
 TEST(PreferenceHypotheses, AClaimThatNeedsAllItsTestsIsNotCorrected) {
   const auto h5 = preferences(13, 19, 19, 13, 13)[1];  // p = .029 twice
   EXPECT_EQ(h5.status, HypothesisStatus::Supported) << h5.status_text;
@@ -122,7 +123,7 @@ TEST(PreferenceHypotheses, AClaimThatNeedsAllItsTestsIsNotCorrected) {
   EXPECT_NEAR(*earlier.p_claim, 0.058, 0.001);
 }
 
-// "At least one" is another claim, and keeps Holm.
+// "At least one" is a different claim, and needs Holm.
 TEST(PreferenceHypotheses, OneTestOfSeveralIsClaimedAfterHolmOnly) {
   const auto weak = preferences(13, 19, 13, 13, 13)[1];
   EXPECT_EQ(weak.confirmed, 1);
@@ -133,9 +134,8 @@ TEST(PreferenceHypotheses, OneTestOfSeveralIsClaimedAfterHolmOnly) {
 }
 
 TEST(PreferenceHypotheses, AClaimWithOneFalseTestIsSupportedAtTheLevelOfThatTest) {
-  // HiRes is chosen over Ours by .95 of people and over Ours-TSp by none more than by chance: H6 is false.
-  // The second test alone decides, at the attainable level of 26 choices: 18 and more one-sided, 19
-  // two-sided.
+  // 95 % of people choose HiRes over Ours, and 50 % HiRes over Ours-TSp: H6 is false. The second test alone
+  // decides, at the attainable level of 26 choices: 18 and more one-sided, 19 two-sided.
   constexpr int studies = 4000;
   std::mt19937_64 generator(8);
   std::binomial_distribution<int> often(26, 0.95), even(26, 0.5);
@@ -172,7 +172,7 @@ TEST(PreferenceHypotheses, TheSixClaimsAreCorrectedBesideTheDecisions) {
   EXPECT_EQ(claims[0].status, HypothesisStatus::Supported) << "the decision is the claim's own";
 }
 
-// compare_with_bundle holds these words against those of the bundle.
+// compare_with_bundle compares these words with those of the bundle.
 TEST(PreferenceHypotheses, BundlesFrozenEarlierFindTheirRulesWordForWord) {
   std::vector<std::string> rules;
   for (const auto& one : task1_hypotheses(

@@ -21,7 +21,7 @@ SsqAnswers all(int answer) {
   return answers;
 }
 
-/// Scales that a single item counts in, with how often in the total.
+/// How often a single item counts in a scale.
 int times_in(SsqScale scale, int item) {
   SsqAnswers answers = all(0);
   answers[static_cast<std::size_t>(item - 1)] = 1;
@@ -37,7 +37,7 @@ TEST(Ssq, AllThreesGiveThePublishedMaxima) {
 }
 
 TEST(Ssq, EveryItemCountsWhereKennedyPutsIt) {
-  // Symptom, then N, O, D as the paper's table 4 marks them.
+  // Symptom, then N, O, D as marked in the paper's table 4.
   const int marks[ssq_item_count][3] = {{1, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 1}, {1, 0, 0},
                                         {1, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 0, 1}, {0, 1, 1}, {0, 0, 1},
                                         {0, 0, 1}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}};
@@ -53,7 +53,7 @@ TEST(Ssq, EveryItemCountsWhereKennedyPutsIt) {
 
 TEST(Ssq, AMissingItemEmptiesItsScalesAndTheTotalAlone) {
   SsqAnswers answers = all(1);
-  answers[6] = {};  // sweating: nausea alone
+  answers[6] = {};  // sweating counts only for nausea
   EXPECT_FALSE(ssq_score(SsqScale::Nausea, answers).has_value());
   EXPECT_THAT(ssq_score(SsqScale::Oculomotor, answers), Optional(53.06));
   EXPECT_THAT(ssq_score(SsqScale::Disorientation, answers), Optional(97.44));
@@ -77,7 +77,7 @@ AnalysisPlan quick_plan() {
 TEST(SicknessChange, ComparesThoseWithBothAndDescribesAll) {
   const std::vector<ExactMean> before{{0}, {1}, {2}, {missing}, {4}}, after{{1}, {1}, {6}, {9}, {missing}};
   auto plan = quick_plan();
-  plan.confidence = 0.7;  // three values bear no more
+  plan.confidence = 0.7;  // three values support no higher level
   const auto change = compare_sickness(before, after, 2, plan);
   EXPECT_EQ(change.n, 3u);
   EXPECT_EQ(change.n_missing, 2u);
@@ -92,7 +92,7 @@ TEST(SicknessChange, ComparesThoseWithBothAndDescribesAll) {
 }
 
 TEST(SicknessChange, EqualChangesTieWhateverTheirLevel) {
-  // As doubles the changes of the first two differ.
+  // The changes of the first two differ as doubles.
   ASSERT_NE(9.54 * 7 - 9.54 * 1, 9.54 * 6 - 9.54 * 0);
   const std::vector<ExactMean> before{{1}, {0}, {0}}, after{{7}, {6}, {9}};
   const auto change = compare_sickness(before, after, 9.54, quick_plan());

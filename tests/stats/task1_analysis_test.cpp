@@ -44,7 +44,7 @@ TEST(ScoreTable, ScenesAreAveragedWithinParticipantBaselineAndMethod) {
 }
 
 TEST(ScoreTable, KeepsTheSumsOfItems) {
-  // Means of three items: (1 + 2 + 0) / 9 over three reports and 1 / 3 over one are one number.
+  // Means of three items: (1 + 2 + 0) / 9 over three reports and 1 / 3 over one are the same number.
   const std::vector<MethodScore> scores{
       {0, 0, 0, 0, 1, 3}, {0, 1, 0, 0, 2, 3}, {0, 2, 0, 0, 0, 3}, {0, 0, 0, 1, 1, 3}};
   const ScoreTable table(test::realism_scale(), scores, 1, {"16k"}, {"A", "B"});
@@ -76,7 +76,7 @@ TEST(Task1, PairedTestByHand) {
   EXPECT_EQ(one.n_missing, 0u);
   EXPECT_NEAR(*one.mean_a, 5.5, 1e-15);
   EXPECT_NEAR(*one.p_holm, one.t->p, 1e-15) << "a family of one";
-  // Wilcoxon: ranks 2, 1, 3 of 2, 1, 3, the zero dropped; exact two-sided 2 / 2^3.
+  // Wilcoxon: ranks 2, 1, 3 of the differences 2, 1, 3, without the zero; exact two-sided p 2 / 2^3.
   ASSERT_TRUE(one.wilcoxon);
   EXPECT_EQ(one.wilcoxon->w_plus, 6);
   EXPECT_NEAR(*one.wilcoxon->p_exact, 0.25, 1e-12);
@@ -98,7 +98,7 @@ TEST(Task1, MissingMethodsCostOnlyTheirPairs) {
 }
 
 TEST(Task1, HolmCountsRefusedTestsInItsFamily) {
-  // One person alone saw B: its tests are refused, and the other is corrected over three.
+  // Only one person saw B: its tests are refused, but the other test is still corrected over three.
   const auto table =
       table_of({{5, missing, 4}, {6, 6, 4}, {7, missing, 4}, {4, missing, 3}}, {"A", "B", "C"});
   const auto analysis = analyse_scores(table, quick_plan());
@@ -112,7 +112,7 @@ TEST(Task1, HolmCountsRefusedTestsInItsFamily) {
   EXPECT_NEAR(*other.p_bh, std::min(1.0, 3 * other.t->p), 1e-14);
 }
 
-// "No data" before, though everybody said the same.
+// Earlier versions reported "no data", although everybody agreed.
 TEST(Task1, DifferencesWithoutSpreadAreTestedBySign) {
   const auto table = table_of({{5, 5, 4}, {6, 6, 5}, {7, 7, 6}, {4, 4, 3}}, {"A", "B", "C"});
   const auto analysis = analyse_scores(table, quick_plan());
@@ -162,8 +162,8 @@ TEST(Task1, SwappingMethodsSwapsSignsAndKeepsP) {
   EXPECT_NEAR(one.equivalence->p, other.equivalence->p, 1e-14);
 }
 
-/// Share of 1,000 null studies in which the paired t test of the two columns says p < .05. Each participant
-/// has an own leaning between the methods, and two blocks at one n_*.
+/// Share of 1,000 null studies in which the paired t test of the two columns gives p < .05. Each participant
+/// has a preference of their own, and two blocks at one n_*.
 double false_alarms(bool averaged) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;

@@ -22,7 +22,7 @@ const PairPreference& pair_of(const PreferenceAnalysis& analysis, int a, int b) 
 }
 
 TEST(Task2, CountsWhoWasChosenWhereverItStood) {
-  // 1 over 0 shown second; 0 over 1 shown first; 1 over 0 shown first.
+  // 1 beats 0 as the second shown; 0 beats 1 as the first; 1 beats 0 as the first.
   const std::vector<PairChoice> choices{{0, 0, 0, 1, false, 0}, {1, 0, 0, 1, true, 0}, {2, 0, 1, 0, true, 0}};
   const auto pair = count_preferences(choices, 2, {}).at(0);
   EXPECT_EQ(pair.n, 3);
@@ -70,14 +70,14 @@ TEST(Task2, SeveralTrialsOfOnePersonAreRefusedOrWarnedOf) {
   EXPECT_THAT(count_preferences(choices, 2, plan).at(0).warning, IsEmpty());
 }
 
-// By default a second visit costs no test: each person's share counts once.
+// By default the test uses each person's share, so a second visit is no problem.
 TEST(Task2, SecondVisitsAreTestedByEachPersonsShare) {
   std::vector<PairChoice> choices;
   test::add_pair(choices, 0, 1, 9, 10);
   const auto once = count_preferences(choices, 2, {}).at(0);
   EXPECT_FALSE(once.shares);
   EXPECT_NEAR(*once.p(), 2 * 11 / 1024.0, 1e-15);
-  // Everybody answers as before: the same shares, and not twice the evidence.
+  // Everybody repeats their answers: the shares are the same, and the evidence is not doubled.
   for (auto again : std::vector<PairChoice>(choices)) choices.push_back(again);
   const auto twice = count_preferences(choices, 2, {}).at(0);
   ASSERT_TRUE(twice.shares);
@@ -97,7 +97,7 @@ TEST(Task2, SecondVisitsAreTestedByEachPersonsShare) {
   EXPECT_THAT(counted.warning, IsEmpty());
 }
 
-// Who answered a pair twice is not said to have left one out.
+// The reason must not claim that a person who answered a pair twice left one out.
 TEST(Task2, TheReasonForNoTriadsIsTheRightOne) {
   std::vector<PairChoice> choices;
   for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {1, 2}}) test::add_pair(choices, a, b, 5, 8);
@@ -120,7 +120,7 @@ TEST(ShareTest, IsExactByGoingThroughAllSigns) {
     std::vector<PersonChoices> people;
     for (std::size_t i = 0; i < 2 + static_cast<std::size_t>(sample) % 6; ++i)
       people.push_back(kinds[(static_cast<std::size_t>(sample) * (2 * i + 3) / (i + 2) + i) % kinds.size()]);
-    int seen = 0;  // in sixths, and twice
+    int seen = 0;  // twice the sum, in sixths
     std::vector<int> values;
     for (const auto& one : people) {
       values.push_back((2 * one.k - one.n) * (6 / one.n));

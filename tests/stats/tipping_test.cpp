@@ -1,4 +1,4 @@
-/// Tipping points: the shift that is found is the one at which the decision on the filled-in data changes.
+/// Tipping points: the decision on the completed data changes at the shift that is found.
 
 #include "stats/analysis/tipping.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Ten people with both; two lack the first, three the second, one both.
+/// Ten people have both values; two lack the first, three the second, one both.
 ScoreTable table_with_missing(double lift, ScoreScale scale) {
   std::vector<std::vector<double>> rows;
   for (int i = 0; i < 10; ++i) rows.push_back({3 + lift + 0.3 * (i % 4), 3 + 0.2 * (i % 3)});
@@ -40,7 +40,7 @@ Result<TippingPoint> tip(const ScoreTable& table) {
   return tipping_point_two_sided(table, 0, 0, 1, p.estimate, p.half);
 }
 
-/// The mean difference over all who were planned, the missing filled in as `worse` than expected.
+/// The mean difference over all planned people, with missing values `worse` than expected.
 double filled_in(const ScoreTable& table, std::size_t method, double worse) {
   const auto x = table.column(0, 0), y = table.column(0, 1);
   const double expected = paired(table).estimate, sign = table.scale().higher_is_better ? -1 : 1;
@@ -105,7 +105,7 @@ TEST(TippingPoint, NobodyMissingTipsNothing) {
   EXPECT_FALSE(tipping_point_two_sided(table, 0, 0, 1, 0, 1));
 }
 
-// Not planned is not missing.
+// A trial that was not planned is not missing.
 TEST(TippingPoint, CountsThosePlannedForBoth) {
   std::vector<MethodScore> scores;
   for (int p = 0; p < 8; ++p) {
@@ -119,7 +119,7 @@ TEST(TippingPoint, CountsThosePlannedForBoth) {
   EXPECT_EQ(got.b.missing, 1u);
 }
 
-// Equivalence holds between the margins: either method's missing answers can end it.
+// Equivalence needs both margins: missing answers of either method can end it.
 TEST(TippingPoint, ARangeWithTwoEndsCanBeLeftByBoth) {
   const auto table = table_with_missing(0, test::realism_scale());
   const double estimate = 0.1;

@@ -1,5 +1,5 @@
 #pragma once
-/// Are simulated p-values uniform? Kolmogorov and Smirnov's test, and draws that do not depend on a library.
+/// Test of uniform p-values (Kolmogorov-Smirnov), with draws that do not depend on the standard library.
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ class Draws {
   std::uint64_t state_;
 };
 
-/// sqrt(n) times the largest distance between the values' distribution and the uniform one. Above 1.95 with
+/// sqrt(n) times the largest distance between the values' distribution and the uniform one. Exceeds 1.95 with
 /// probability .001 if they are uniform.
 inline double distance(std::vector<double> values) {
   std::sort(values.begin(), values.end());

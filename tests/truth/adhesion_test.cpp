@@ -1,5 +1,5 @@
-/// Adhesion measured back from the contact angle of drops without gravity: W = sigma (1 + cos theta), Young
-/// and Dupre.
+/// Adhesion recovered from the contact angle of drops without gravity: W = sigma (1 + cos theta), Young and
+/// Dupre.
 
 #include "tests/common/needs_effects.hpp"
 #include "tests/truth/drop_scene.hpp"
@@ -16,7 +16,7 @@ Drop on_the_floor(Drop drop) {
   drop.height = 0;
   return drop;
 }
-/// The same on a box, four spacings high, that leaves half a radius to the walls.
+/// The same on a box, four spacings high, half a radius away from the walls.
 Drop on_a_box(Drop drop) {
   drop = on_the_floor(drop);
   drop.height = 4 * drop.spacing();
@@ -28,8 +28,8 @@ Drop on_a_box(Drop drop) {
   return drop;
 }
 
-/// Mean height over root mean square of the distance from the axis, of the drop and of a cap: neither asks
-/// how densely the drop is filled.
+/// Mean height over root mean square of the distance from the axis, of the drop and of a cap: both do not
+/// depend on the drop's density.
 double steepness(const Drop& drop, const State& state) {
   const double x = mean(state, [](const auto& p) { return place(p)[0]; });
   const double z = mean(state, [](const auto& p) { return place(p)[2]; });
@@ -59,7 +59,7 @@ double contact_angle(double steep) {
   return low;
 }
 
-/// The drop without what it threw off, which flies for good.
+/// The drop without droplets that it has thrown off.
 State within_reach(const Drop& drop, State state) {
   std::erase_if(state, [&](const auto& p) {
     const Vec3d middle = drop.middle(), x = place(p);
@@ -68,7 +68,7 @@ State within_reach(const Drop& drop, State state) {
   return state;
 }
 
-/// The work that the angle tells of, over what the scene lists; the angle is the mean of a last half period.
+/// The work computed from the contact angle, over the scene's; the angle is the mean of the last half period.
 double adhesion_back(const Drop& drop, double periods = 4, double most_thrown = 0.02) {
   const auto ball = in_ball(drop);
   const auto fluid = start_of(drop, [&](const Vec3d& x) { return x[1] > 0 && ball(x); });
@@ -99,10 +99,10 @@ double adhesion_back(const Drop& drop, double periods = 4, double most_thrown = 
 }
 
 constexpr double within = 0.15;
-/// Over sigma: angles of 120, 90, 78 and 53 degrees.
+/// Work over sigma: angles of 120, 90, 78 and 53 degrees.
 constexpr double blunt = 0.5, upright = 1, weak = 1.2, strong = 1.6;
 
-/// A work that the floor holds a drop with: on the CPU each test takes one of two, and the slow suite both.
+/// Works of drops that stay on the floor: on the CPU each test uses one of two, and the slow suite both.
 using Works = std::vector<double>;
 const Works both{weak, strong};
 
@@ -135,22 +135,22 @@ void a_drop_of_mixed_levels(Backend backend) {
   for (const double work : {weak, strong})
     EXPECT_NEAR(adhesion_back(on_the_floor(half_fine(work, backend)), 3), 1, within) << work;
 }
-/// The blunt drop never rests: it comes to its angle, goes on, and may leave the floor. Of thirty runs from
-/// starts that differ by 1e-5 of the spacing, with two sets of compiler flags, 0.00 to 1.00 of its work came
-/// back, of the upright drop's 0.88 to 1.00.
+/// The blunt drop never rests: it reaches its angle, overshoots, and may leave the floor. In thirty runs from
+/// starts that differ by 1e-5 of the spacing, with two sets of compiler flags, 0.00 to 1.00 of its work was
+/// recovered, and 0.88 to 1.00 of the upright drop's.
 void drops_that_the_floor_holds_less(Backend backend) {
   NEEDS_EFFECTS;
   EXPECT_NEAR(adhesion_back(on_the_floor({.work = upright, .backend = backend})), 1, 0.2);
   EXPECT_LT(adhesion_back(on_the_floor({.work = blunt, .backend = backend}), 4, 1), 1 + within);
 }
-/// A box is as good as the floor.
+/// On a box the result must be as good as on the floor.
 void drops_on_a_box(Backend backend, const Works& works) {
   NEEDS_EFFECTS;
   for (const double work : works)
     EXPECT_NEAR(adhesion_back(on_a_box({.work = work, .backend = backend})), 1, within) << work;
 }
 
-/// A drop on a ball of twice its radius, which it meets under 90 degrees at first.
+/// A drop on a ball of twice its radius, at first with an angle of 90 degrees.
 Drop on_a_ball(Drop drop) {
   constexpr double ratio = 2;
   drop.width = 10;
@@ -164,7 +164,7 @@ Drop on_a_ball(Drop drop) {
   return drop;
 }
 
-/// A sphere of radius a that meets a ball of radius 1 under an angle, less the ball: mean distance from the
+/// A sphere of radius a that meets a ball of radius 1 at an angle, without the ball: mean distance from the
 /// ball's middle along the axis, and root mean square of the distance from the axis.
 struct Lens {
   double along = 0, across = 0;
@@ -187,7 +187,7 @@ double angle_on_a_ball(const Lens& seen) {
   double low = 0.3, high = pi - 0.3;
   for (int i = 0; i < 40; ++i) {
     const double theta = (low + high) / 2;
-    double small = 0.1, large = 4;  // the sphere that is as wide
+    double small = 0.1, large = 4;  // search for the sphere of equal width
     for (int k = 0; k < 40; ++k) {
       const double a = (small + large) / 2;
       (lens_of(a, theta).across < seen.across ? small : large) = a;
@@ -214,7 +214,7 @@ Lens seen_of(const Drop& drop, const State& state) {
   return {along / ball.radius_m, std::sqrt(square) / ball.radius_m};
 }
 
-/// The work that the angle on a ball tells of, over what the scene lists.
+/// The work computed from the angle on a ball, over the scene's.
 double adhesion_to_a_ball(const Drop& drop) {
   const sim::Obstacle& ball = drop.obstacles.at(0);
   const auto inside = in_ball(drop);
@@ -250,7 +250,7 @@ void drops_on_a_box_of_any_level(Backend backend) {
   EXPECT_NEAR(adhesion_back(on_a_box(half_fine(strong, backend)), 3), 1, within);
   EXPECT_NEAR(adhesion_back(on_a_box({.beta = 0.67, .work = strong, .backend = backend})), 1, within);
 }
-/// The smaller the ball over the spacing, the more it holds a drop.
+/// The smaller the ball in spacings, the more it holds a drop.
 void a_drop_on_a_ball(Backend backend) {
   NEEDS_EFFECTS;
   EXPECT_NEAR(adhesion_to_a_ball(on_a_ball({.spacings = 6, .work = weak, .backend = backend})), 1, 0.3);

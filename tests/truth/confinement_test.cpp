@@ -1,4 +1,4 @@
-/// The effect vorticity measured back from what it adds to a Lamb-Oseen vortex: c omega(r) round its axis.
+/// The effect vorticity recovered from its gain on a Lamb-Oseen vortex: c omega(r) round its axis.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/common/needs_effects.hpp"
@@ -10,19 +10,18 @@ using namespace truth_test;
 using sim::EffectKind;
 using sim::EffectOption;
 
-/// Of the motion that is measured: the later it is, the larger the share of what was gained that the method's
-/// own viscosity has taken.
+/// Frames at which the gain is measured: the later, the more of it the method's own viscosity has removed.
 constexpr std::array frames{2, 6};
 using Gains = std::array<double, frames.size()>;
 
-/// A pool a third as deep as it is wide. Speeds go as the root of its size, so that pools of all sizes move
-/// alike.
+/// A pool a third as deep as it is wide. Speeds scale with the root of its size, so that pools of all sizes
+/// move alike.
 struct Pool {
-  int spacings = 21;                           ///< of the start's level, across the tank
-  int core = 5;                                ///< in the same
-  int level = 0;                               ///< of the start
-  MethodKind method = MethodKind::HiRes;       ///< that holds this level
-  std::optional<sim::TargetRegion> targets{};  ///< in widths, from the floor's middle
+  int spacings = 21;                           ///< across the tank, in the start's level
+  int core = 5;                                ///< core radius, in the same spacings
+  int level = 0;                               ///< level of the particles at the start
+  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  std::optional<sim::TargetRegion> targets{};  ///< in widths, relative to the floor's middle
   double beta = 1;
   Backend backend = Backend::Cpu;
 
@@ -33,14 +32,14 @@ struct Pool {
   Vortex vortex() const { return {width()}; }
   double scale() const { return std::sqrt(spacing() / finest()); }
   double given() const { return 0.25 * scale(); }
-  /// Of a vortex whose largest speed is 1 m/s at level 0.
+  /// Circulation of a vortex whose largest speed is 1 m/s at level 0.
   double circulation() const { return 10 * scale() * radius(); }
   Vec3d flow(const Vec3d& x) const {
     Vec3d v = vortex().at(x, radius() * radius());
     for (double& one : v) one *= circulation();
     return v;
   }
-  /// Its water at rest, with its levels; and in this flow.
+  /// The pool's water at rest, with its levels.
   State still() const;
   State turning() const {
     return moving(still(), [this](const Vec3d& x) { return flow(x); });
@@ -109,7 +108,7 @@ double spin(const Pool& pool, const State& state) {
   return along / norm;
 }
 
-/// Over what the scene lists, for each of `frames`.
+/// The recovered coefficient over the scene's, for each of `frames`.
 Gains confinement_back(const Pool& pool) {
   const State start = pool.turning();
   Gains gained[2];
@@ -117,7 +116,7 @@ Gains confinement_back(const Pool& pool) {
   double solved = 1;
   for (const bool on : {false, true}) {
     const auto fluid = run_of(pool, start, on ? pool.given() : 0, everything);
-    // Who rests is chosen by what the last frames were like.
+    // The choice of resting particles depends on the frames before.
     for (int k = 0; k < (pool.beta < 1 ? 30 : 0); ++k) fluid->step_frame();
     fluid->put(start);
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -167,7 +166,7 @@ double energy(const State& state) {
   });
 }
 
-/// The core stays narrower than without, and the water's energy below what it began with.
+/// The core must stay narrower than without the effect, and the energy below that at the start.
 void a_core_is_kept_longer(Backend backend) {
   NEEDS_EFFECTS;
   const Pool pool{.backend = backend};
@@ -187,7 +186,7 @@ void a_core_is_kept_longer(Backend backend) {
   EXPECT_LT(left[1], 1);
 }
 
-/// Ten times what a scene would list: the water's energy finds an end.
+/// With ten times a usual coefficient the energy must stay bounded.
 void energy_is_bounded(Backend backend) {
   NEEDS_EFFECTS;
   const Pool pool{.spacings = 15, .core = 4, .backend = backend};

@@ -12,7 +12,7 @@ struct Collapse {
   std::int64_t particles = 0;
 };
 
-/// Neighbours within the mean of the two supports, counted over cells of the widest.
+/// True for particles with at least five neighbours within the mean of the two supports.
 std::vector<bool> in_water(const State& state, double d) {
   const auto support = [&](const ParticleState& p) { return 2 * d * std::cbrt(mass(p)); };
   double widest = 0;
@@ -27,7 +27,7 @@ std::vector<bool> in_water(const State& state, double d) {
   for (const auto& p : state) cells[cell(p)].push_back(&p);
   std::vector<bool> out;
   for (const auto& p : state) {
-    int count = -1;  // itself
+    int count = -1;  // excludes the particle itself
     const Cell c = cell(p);
     for (int n = 0; n < 27; ++n) {
       const auto found = cells.find({c[0] + n % 3 - 1, c[1] + n / 3 % 3 - 1, c[2] + n / 9 - 1});
@@ -42,7 +42,7 @@ std::vector<bool> in_water(const State& state, double d) {
   return out;
 }
 
-/// 99.5th percentile, by mass, of x among particles with at least five neighbours, plus r.
+/// Front: 99.5th percentile, by mass, of x + r over particles in water.
 double front_of(const State& state, double d) {
   const auto wet = in_water(state, d);
   std::vector<std::pair<double, double>> edges;
@@ -94,7 +94,7 @@ Collapse collapse(const Run& run, const std::filesystem::path& path, std::int64_
   return out;
 }
 
-/// The file's numbers against a run's, in the file's own scales.
+/// Compares a run with the file, in the file's own scales.
 void compare(const TruthFile& file, const Run& run, const Collapse& dam, std::int64_t n_star) {
   const Axis x = file.time(), y = file.length();
   auto time = dam.time, value = file.quantity == "dam_front" ? dam.front : dam.height;
@@ -142,13 +142,13 @@ double depth_at(const State& state, double x, double d, double width) {
   return volume / (2 * d * width);
 }
 
-/// Ritter's shallow water: depth over the bed, without the tip, where friction rules.
+/// Ritter's shallow-water solution: depth over the bed, without the tip, where friction dominates.
 void dam_spreads(Run run, const TruthFile& file, int layers) {
   const auto &times = file.column("t_s"), &places = file.column("x_m"), &depths = file.column("h_m");
   const double deep = file.number("length_m"), end = *std::max_element(times.begin(), times.end());
   const double d = 0.8 / layers, height = layers * d, width = 6 * d;
   const double scale = height / deep,
-               pace = std::sqrt(scale);  // a run's metres and seconds for one of the file's
+               pace = std::sqrt(scale);  // the run's metres and seconds per unit of the file
   const double c = std::sqrt(gravity * height), ahead = c * end * pace;
   const double dam = d * std::ceil(1.1 * ahead / d);
   const State start = settled(run.backend, {dam, height, width}, d, 40);

@@ -6,7 +6,7 @@ namespace {
 
 using namespace truth_test;
 
-/// sqrt(h) falls in a line, by Cd sqrt(g / 2) A_hole / A_tank a second. Cd is fitted, as the hole is only
+/// sqrt(h) falls linearly, by Cd sqrt(g / 2) A_hole / A_tank a second. Cd is fitted, because the hole is only
 /// some spacings wide.
 void tank_drains(Run run, const TruthFile& file, int across) {
   const double width = 0.6, d = width / across, height = 2 * width, hole = width / 3;
@@ -19,7 +19,7 @@ void tank_drains(Run run, const TruthFile& file, int across) {
   while (left > 0.4 && fluid->frame() < 900) {
     fluid->step_frame();
     left = total_mass(fluid->read_state()) / static_cast<double>(start.size());
-    if (left > 0.95) continue;  // the jet begins
+    if (left > 0.95) continue;  // the jet is still starting
     time.push_back(fluid->frame() * scene.frame_dt_s);
     level.push_back(left);
     root.push_back(std::sqrt(left));

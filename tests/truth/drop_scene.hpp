@@ -1,5 +1,5 @@
 #pragma once
-/// Drops without gravity, for the tests of what holds a surface together.
+/// Drops without gravity, for the tests of surface tension and adhesion.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/truth/truth_helpers.hpp"
@@ -8,16 +8,16 @@ namespace truth_test {
 
 /// A ball or a part of it, in an open cube of a tank.
 struct Drop {
-  double spacings = 8;                         ///< of the start's level, in its radius
-  int level = 0;                               ///< of the start
-  MethodKind method = MethodKind::HiRes;       ///< that holds this level
-  std::optional<sim::TargetRegion> targets{};  ///< in radii, from the drop's middle
+  double spacings = 8;                         ///< particles of the start's level per radius
+  int level = 0;                               ///< level of the particles at the start
+  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  std::optional<sim::TargetRegion> targets{};  ///< in radii, relative to the drop's middle
   double beta = 1;
   double tension = 10;
-  double work = 0;        ///< of adhesion, over the tension; 0: none
-  double width = 4;       ///< of the tank, in radii
-  double damping = 2e-3;  ///< viscosity, of R^2 omega
-  /// Height of its middle; none: in the middle of the tank.
+  double work = 0;        ///< work of adhesion over the tension; 0: none
+  double width = 4;       ///< width of the tank, in radii
+  double damping = 2e-3;  ///< viscosity, in units of R^2 omega
+  /// Height of the drop's middle; nullopt: the middle of the tank.
   std::optional<double> height{};
   std::vector<sim::Obstacle> obstacles{};
   Backend backend = Backend::Cpu;
@@ -28,13 +28,14 @@ struct Drop {
   double radius() const { return spacings * spacing(); }
   double tank() const { return width * radius(); }
   Vec3d middle() const { return {tank() / 2, height.value_or(tank() / 2), tank() / 2}; }
-  /// Of l = 2: omega^2 = 8 sigma / (rho R^3).
+  /// Period of the mode l = 2: omega^2 = 8 sigma / (rho R^3).
   double period() const { return 2 * pi / std::sqrt(8 * tension / (rho * std::pow(radius(), 3))); }
-  /// A period: substeps of at most an eighth of sqrt(rho d^3 / sigma).
+  /// Frames in one period: substeps of at most an eighth of sqrt(rho d^3 / sigma).
   int frames() const { return static_cast<int>(std::ceil(2.22 * std::pow(spacings, 1.5) * 8)); }
 };
 
-/// From what lies `inside`, in metres from the drop's middle.
+/// A run that starts from the particles that are `inside`, a test of the position in metres from the drop's
+/// middle.
 inline std::unique_ptr<sim::Simulation> start_of(const Drop& drop,
                                                  const std::function<bool(const Vec3d&)>& inside,
                                                  sim::SimulationOptions options = {}) {
@@ -68,7 +69,7 @@ inline std::unique_ptr<sim::Simulation> start_of(const Drop& drop,
   rest_at(drop.beta, options);
   return sim::make_simulation(scene, options);
 }
-/// Who lies in a ball of the drop's radius.
+/// True for positions in a ball of the drop's radius.
 inline std::function<bool(const Vec3d&)> in_ball(const Drop& drop) {
   return [radius = drop.radius()](const Vec3d& x) { return std::hypot(x[0], x[1], x[2]) <= radius; };
 }

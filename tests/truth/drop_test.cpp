@@ -1,5 +1,5 @@
 /// Drops without gravity, as slabs between two smooth walls: one that stretches (Monaghan 1994), and one that
-/// a central force swings (Monaghan and Rafiee 2013).
+/// oscillates in a central force (Monaghan and Rafiee 2013).
 
 #include "tests/truth/truth_helpers.hpp"
 
@@ -26,7 +26,7 @@ struct Disc {
   }
 };
 
-/// Half axis of an ellipse of even density: twice the root of its second moment.
+/// Half axis of an ellipse of uniform density: twice the root of its second moment.
 double half_axis(const State& state, std::size_t axis) {
   const double middle = mean(state, [&](const auto& p) { return place(p)[axis]; });
   return 2 * std::sqrt(mean(state, [&](const auto& p) { return std::pow(place(p)[axis] - middle, 2); }));
@@ -36,7 +36,7 @@ void drop_stretches(Run run, const TruthFile& file, int spacings) {
   const auto& times = file.column("t_s");
   const auto& b = file.column("b_major");
   const double strain = file.column("A_strain").front();
-  Disc disc(spacings, 1);  // a run's second is as long as it takes to strain by 1
+  Disc disc(spacings, 1);  // one second of the run is the time to strain by 1
   disc.scene.frame_dt_s = 0.02;
   const auto fluid = start_from(run, disc.scene, Disc::d, disc.start, inviscid());
   const double unit = half_axis(disc.start, 1);
@@ -59,7 +59,7 @@ void drops_stretch(Backend backend, int spacings) {
   for (const auto& file : files)
     for (const auto method : methods) drop_stretches({backend, method}, file, spacings);
 }
-/// Height of a file's or a run's first peak at or after `from`.
+/// Largest value of a file or a run in [from, until].
 double peak_after(const std::vector<double>& t, const std::vector<double>& y, double from, double until) {
   double out = 0;
   for (std::size_t i = 0; i < t.size(); ++i)
@@ -67,7 +67,7 @@ double peak_after(const std::vector<double>& t, const std::vector<double>& y, do
   return out;
 }
 
-/// Time of the second crossing of 1 on the way up, after the one at the start.
+/// Time of the second upward crossing of 1, the first being the start.
 double period_of(const std::vector<double>& t, const std::vector<double>& y) {
   for (std::size_t i = 2; i < t.size(); ++i)
     if (y[i - 1] < 1 && y[i] >= 1) return t[i - 1] + (1 - y[i - 1]) / (y[i] - y[i - 1]) * (t[i] - t[i - 1]);
@@ -81,7 +81,7 @@ void drop_swings(Run run, const TruthFile& file, int spacings) {
   disc.scene.central_force = sim::CentralForce{1, {3 * disc.radius, 3 * disc.radius, 0}, {0, 0, 1}};
   const double period = period_of(times, longs);
   const auto fluid = start_from(run, disc.scene, Disc::d, disc.start, inviscid());
-  // Both half axes: jitter that spreads the drop is no swing.
+  // Uses the ratio of both half axes: jitter that spreads the drop does not change it.
   std::vector<double> time{0}, ratio{1}, ratio_ref;
   for (std::size_t i = 0; i < times.size(); ++i) ratio_ref.push_back(longs[i] / file.column("B")[i]);
   while (time.back() < 1.4 * period) {
@@ -91,7 +91,7 @@ void drop_swings(Run run, const TruthFile& file, int spacings) {
     ratio.push_back(half_axis(state, 0) / half_axis(state, 1));
   }
   const double measured = period_of(time, ratio);
-  // A and 1 / B are equal for an incompressible drop: the root of the ratio is the amplitude.
+  // A and 1 / B are equal for an incompressible drop, so the root of the ratio is the amplitude.
   const double peak = std::sqrt(peak_after(time, ratio, measured, 2 * period));
   const double swing = (peak - 1) / (std::sqrt(peak_after(times, ratio_ref, period, 2 * period)) - 1);
   std::printf(

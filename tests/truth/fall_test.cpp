@@ -7,7 +7,7 @@ namespace {
 
 using namespace truth_test;
 
-/// One particle from the file's first height. A run's error is that of symplectic Euler, g dt t / 2.
+/// One particle falls from the file's first height. The error must be that of symplectic Euler, g dt t / 2.
 void particle_falls(Run run, const TruthFile& file) {
   const auto& times = file.column("t");
   const auto& heights = file.column("z");
@@ -43,8 +43,8 @@ void particles_fall(Backend backend) {
 TEST(TruthFall, EqualsSymplecticEuler) { particles_fall(Backend::Cpu); }
 TEST(TruthFallGpu, EqualsSymplecticEuler) { particles_fall(Backend::Cuda); }
 
-/// A projectile after 0.8 s, at four frame steps: its distance from the parabola, and the order at which that
-/// falls with the step. Theory has symplectic Euler of order 1.
+/// A projectile after 0.8 s, with four frame steps: its distance from the parabola, and the order of that
+/// error in the step. In theory symplectic Euler has order 1.
 void projectile_is_of_first_order(Run run) {
   constexpr double end_s = 0.8, up = 4, along = 3;
   const auto scene = fluid_test::tank({10, 10, 10}, {});
@@ -76,7 +76,7 @@ TEST(TruthProjectileGpu, IsOfFirstOrderInTheStep) {
   for (const auto method : methods) projectile_is_of_first_order({Backend::Cuda, method});
 }
 
-/// Mean pressure on the floor and on bands of one wall, by their impulse, against rho g (H - z).
+/// Mean pressure on the floor and on bands of one wall, from impulses, against rho g (H - z).
 void column_rests(Run run, const TruthFile& file, int layers, const State& rest, double d) {
   const double height = layers * d, width = 10 * d, full = 1000 * gravity * height;
   constexpr int bands = 6, frames = 30;

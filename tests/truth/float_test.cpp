@@ -1,5 +1,5 @@
-/// What water does to a body that is free: one of half the water's density floats half sunk (Archimedes), one
-/// of twice its density sinks with the inertia of the water that goes along (Lamb, Hydrodynamics, 92).
+/// Free bodies in water: one of half the water's density floats half submerged (Archimedes), one of twice its
+/// density sinks with the added mass of the water (Lamb, Hydrodynamics, 92).
 
 #include "tests/truth/truth_helpers.hpp"
 
@@ -35,8 +35,8 @@ std::unique_ptr<sim::Simulation> pool_with(const Afloat& afloat, double density,
   return sim::make_simulation(scene, options);
 }
 
-/// Share of the sphere below the level of the water: twice the height of the centre of the water that is not
-/// beside it.
+/// Submerged share of the sphere. The water level is twice the height of the centre of the water away from
+/// the sphere.
 double sunk_share(const sim::Simulation& fluid) {
   const Vec3d at = fluid.read_obstacles().at(0).pose.centre_m;
   double sum = 0, all = 0;
@@ -90,14 +90,14 @@ TEST(Float, ASphereFloatsHalfSunkAtLevel3) { floats_half_sunk(coarsest); }
 TEST(Float, ASphereFloatsHalfSunkAtMixedLevels) { floats_half_sunk(both); }
 TEST(Float, ASphereFloatsHalfSunkWithTemporalAcceleration) { floats_half_sunk(with(finest, 0.67)); }
 
-/// (m - rho V) g = (m + rho V / 2) a; walls at 2 R from the middle add to the inertia.
+/// (m - rho V) g = (m + rho V / 2) a; walls at 2 R from the middle increase the inertia.
 void sinks_with_its_added_mass(const Afloat& afloat) {
   const auto fluid = pool_with(afloat, 2000, 0.65);
   constexpr int frames = 6;
   double time_s = 0;
   for (int frame = 0; frame < frames; ++frame) {
     fluid->step_frame();
-    // In the first substep it rests.
+    // The body rests in the first substep.
     if (frame == 0) time_s = frames / 60.0 - 1 / 60.0 / fluid->substeps().taken;
   }
   const double a = -fluid->read_obstacles().at(0).velocity_m_s[1] / time_s;

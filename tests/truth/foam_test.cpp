@@ -1,4 +1,4 @@
-/// The volume of foam, measured back: in water that turns as one, whose potential is known, and between
+/// The recovered volume of foam: in rigidly rotating water, whose potential is known, and compared between
 /// methods.
 
 #include "libsim/scene/effects.hpp"
@@ -26,9 +26,9 @@ struct Turning {
   Backend backend = Backend::Cpu;
 };
 
-/// Volume of the water, of each cell's by the share that its 26 neighbours hold of what they have room for,
-/// weighted by one over their distance's fourth power, and linear between the middles of cells with water,
-/// m3. d is the finest spacing; the tank has n cells of `edge` a side.
+/// Volume of the water, m3, each cell weighted by how full its 26 neighbours are, with weights one over
+/// distance^4, and interpolated linearly between the centres of cells with water. d is the finest spacing;
+/// the tank has n cells of `edge` a side.
 double between_water(const State& state, double d, double edge, int n) {
   std::vector<double> filled(static_cast<std::size_t>(n * n * n)), share(filled.size());
   const auto at = [n](int x, int y, int z) { return static_cast<std::size_t>((z * n + y) * n + x); };
@@ -68,11 +68,11 @@ double between_water(const State& state, double d, double edge, int n) {
   return out;
 }
 
-/// k over what the scene lists. A ball of water turns at Omega, held by the pull towards its axis; places at
-/// an angle a to the axis meet at Omega sin a over their distance: pi / 4 Omega in the mean, here a tenth of
-/// the full potential.
+/// The recovered rate k over the scene's. A ball of water rotates at Omega, held by the central force; points
+/// at an angle a to the axis approach at Omega sin a over their distance: pi / 4 Omega on average, here a
+/// tenth of the full potential.
 double rate_back(const Turning& turning) {
-  const double tilt = 1 / std::sqrt(3.0);  // along no row of the lattice
+  const double tilt = 1 / std::sqrt(3.0);  // not along a row of the lattice
   constexpr double d = 0.05, omega = 4, rate = 0.8, radius = 0.6, middle = 0.8;
   auto scene = fluid_test::tank({2 * middle, 2 * middle, 2 * middle}, {1.6, 1.6, 1.6});
   scene.gravity_m_s2 = 0;
@@ -102,7 +102,7 @@ double rate_back(const Turning& turning) {
   options.forced_targets = turning.targets;
   rest_at(turning.beta, options);
   const auto fluid = sim::make_simulation(scene, options);
-  // Fine and coarse have parted after a while.
+  // Fine and coarse water separate in the first frames.
   for (int k = 0; k < 20; ++k) fluid->step_frame();
   const auto before = fluid->report().foam.emitted;
   constexpr int samples = 3, frames_each = 10;
@@ -121,7 +121,7 @@ void rate_comes_back(const Turning& turning) {
   EXPECT_NEAR(back, 1, 0.15);
 }
 
-/// Round the axis, so that water does not change its level as it turns.
+/// Around the axis, so that rotating water keeps its level.
 const sim::TargetRegion core{{0.8, 0.8, 0.8}, 0.4, 0, 3};
 
 TEST(TruthFoam, Level0) {
@@ -149,8 +149,8 @@ TEST(TruthFoamGpu, RateComesBack) {
   rate_comes_back({.beta = 0.67, .backend = Backend::Cuda});
 }
 
-/// Volume of foam of SingleDam at n_* = 1k over two seconds, m3, with the numbers that foam usually has. Runs
-/// part by chance: the mean of two that differ by a hundredth in their steps.
+/// Volume of foam of SingleDam at n_* = 1k over two seconds, m3, with the usual coefficients of foam. Runs
+/// diverge by chance: the mean of two whose steps differ by one per cent.
 double dam_volume(MethodKind method, Backend backend) {
   double sum = 0;
   for (const double step : {0.995, 1.005}) {

@@ -1,4 +1,4 @@
-/// The effect friction measured back: how far plates of thick fluid slide on the floor.
+/// The effect friction recovered from the distance that plates of thick fluid slide on the floor.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/common/needs_effects.hpp"
@@ -10,18 +10,18 @@ using namespace truth_test;
 using sim::EffectKind;
 
 constexpr double d = 0.05;       // of level 0
-constexpr double height = 0.2;   // of the plate: four spacings of level 0, two of level 3
-constexpr double side = 1.2;     // of the plate
-constexpr double start_x = 1.6;  // of its middle, in a tank of 4.8 m
+constexpr double height = 0.2;   // height of the plate: four spacings of level 0, two of level 3
+constexpr double side = 1.2;     // side of the plate
+constexpr double start_x = 1.6;  // the plate's middle, in a tank of 4.8 m
 constexpr double speed = 2;
 constexpr double given = 1;  // c, m/s
 constexpr double viscosity = 2;
 constexpr int frames = 36;
 
 struct Plate {
-  int level = 0;                               ///< of the start
-  MethodKind method = MethodKind::HiRes;       ///< that holds this level
-  std::optional<sim::TargetRegion> targets{};  ///< in metres, from the plate's middle
+  int level = 0;                               ///< level of the particles at the start
+  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  std::optional<sim::TargetRegion> targets{};  ///< in metres, relative to the plate's middle
   double beta = 1;
   Backend backend = Backend::Cpu;
 };
@@ -52,8 +52,8 @@ std::unique_ptr<sim::Simulation> start_of(const Plate& plate) {
   return sim::make_simulation(scene, options);
 }
 
-/// Rate at which a plate of height H loses its speed, over c / H: the lowest root of k tan k = c H / nu, over
-/// k^2 nu / H^2.
+/// Rate at which a plate of this thickness H loses its speed: k^2 nu / H^2 with the lowest root of k tan k =
+/// c H / nu.
 double rate_of(double c, double thickness) {
   double low = 0, high = pi / 2;
   for (int i = 0; i < 50; ++i) {
@@ -63,7 +63,7 @@ double rate_of(double c, double thickness) {
   return low * low * viscosity / (thickness * thickness);
 }
 
-/// Volume over the face on the floor, of a plate that stays a rectangle.
+/// Thickness of a rectangular plate: volume over its face on the floor.
 double thickness_of(const State& state) {
   double face = 12;
   for (const std::size_t axis : {0u, 2u}) {
@@ -73,10 +73,10 @@ double thickness_of(const State& state) {
   return total_mass(state) / mass(ParticleState{}) * d * d * d / face;
 }
 
-/// c from how far the plate gets in all, as its way and its last speed tell: s = v / rate.
+/// c from the distance and the last speed of the plate: s = v / rate.
 double drag_back(const Plate& plate) {
   const auto fluid = start_of(plate);
-  for (int k = 0; k < 20; ++k) fluid->step_frame();  // levels come about
+  for (int k = 0; k < 20; ++k) fluid->step_frame();  // lets the levels form
   State state = fluid->read_state();
   const double thickness = thickness_of(state);
   state = moving(state, [](const Vec3d&) { return Vec3d{speed, 0, 0}; });

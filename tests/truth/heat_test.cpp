@@ -1,5 +1,5 @@
-/// Heat measured back: the diffusivity by the slab's closed form, the walls' temperature by another, the
-/// buoyancy by the acceleration of water that is warm in one half; and the total heat, which stays.
+/// Heat recovered from the motion: the diffusivity and the walls' temperature by closed forms of a slab, the
+/// buoyancy by the acceleration of water that is warm on one side.
 
 #include "libsim/scene/heat.hpp"
 #include "tests/common/needs_effects.hpp"
@@ -14,7 +14,7 @@ using sim::EffectOption;
 constexpr double d = 0.05;  // of level 0
 constexpr double within = 0.15;
 
-/// Water in a tank that it fills up to its surface.
+/// A tank filled with water, with a free surface.
 struct Pool {
   const char* name = "";
   MethodKind method = MethodKind::HiRes;
@@ -49,7 +49,7 @@ sim::Scene pool_scene(const Vec3d& size, const sim::Effect& effect) {
   scene.effects = {effect};
   return scene;
 }
-/// x < half of the pool at 310 K, the rest at 300 K.
+/// Sets the half x < middle to 310 K; the rest is at 300 K.
 void warm_left(sim::Scene& scene) { scene.warm = {{{-1, -1, -1}, {scene.fill_max_m[0] / 2, 100, 100}, 310}}; }
 
 std::unique_ptr<sim::Simulation> start_of(const Pool& pool, const sim::Scene& scene) {
@@ -63,7 +63,7 @@ std::unique_ptr<sim::Simulation> start_of(const Pool& pool, const sim::Scene& sc
   return sim::make_simulation(scene, options);
 }
 
-/// Places, masses in m_*, velocities and temperatures, K above the reference.
+/// Positions, masses in m_*, velocities and temperatures, K above the reference.
 struct Warm {
   Vec3d at, v;
   double mass, theta;
@@ -88,7 +88,7 @@ double mean_of(const std::vector<Warm>& state, const std::function<double(const 
   return sum / mass;
 }
 
-/// theta of the insulated slab of length 1 whose half x < 1/2 begins at 1, after the time D t / L^2.
+/// theta of an insulated slab of length 1 whose half x < 1/2 starts at 1, after the time D t / L^2.
 double slab(double x, double time) {
   double out = 0.5;
   for (int n = 1; n < 200; n += 2) {
@@ -98,7 +98,7 @@ double slab(double x, double time) {
   return out;
 }
 
-/// The part of cos(pi x / L) decays as exp(-D (pi / L)^2 t).
+/// The component cos(pi x / L) decays as exp(-D (pi / L)^2 t).
 void a_step_diffuses(const Pool& pool) {
   NEEDS_EFFECTS;
   const Vec3d size{32 * d, 12 * d, 12 * d};
@@ -124,11 +124,11 @@ void a_step_diffuses(const Pool& pool) {
   EXPECT_LT(off, 0.05) << pool.name;
 }
 
-/// Between side walls of 310 K the mean of a slab that begins at 300 K comes nearer by 8 / pi^2 sum 1 / n^2
-/// exp(-n^2 pi^2 D t / L^2), n odd; the floor is kept out of it by looking at the wave alone.
+/// Between side walls of 310 K the mean of a slab that starts at 300 K approaches them by 8 / pi^2 sum 1 /
+/// n^2 exp(-n^2 pi^2 D t / L^2), n odd.
 void walls_warm(const Pool& pool) {
   NEEDS_EFFECTS;
-  // The floor and four sides: theta = 10 - 10 X(x) Z(z) Y(y), with Y open above.
+  // Floor and four sides: theta = 10 - 10 X(x) Z(z) Y(y), with Y open above.
   const Vec3d size{16 * d, 12 * d, 16 * d};
   constexpr double given = 0.05;
   const auto scene = pool_scene(size, heat(given, 0, 310));
@@ -157,12 +157,12 @@ void walls_warm(const Pool& pool) {
   EXPECT_NEAR(report.heat.from_walls / report.heat.held, 1, 1e-5) << pool.name;
 }
 
-/// theta = T cos(k x), k = pi / L: the pressure that keeps the water together leaves the acceleration
-/// g beta T cos(k x) (1 - cosh(k y) + tanh(k H) sinh(k y)), whose mean over y is beta's measure. The surface,
-/// which goes up by a(H) t^2 / 2, draws back: to first order in k g t^2 that takes g (1 - 1 / cosh(k H)) / H
-/// of its height from the mean. What the last substep gave, and the pressure has not met, is in both looks.
-/// Merges push too: over 28 runs, ten frames and still water in place of the second run gave 0.84 to 1.07 at
-/// mixed levels. So twenty frames are taken, and half the difference of one run that is warm on the left and
+/// theta = T cos(k x), k = pi / L: with the pressure, the acceleration is g beta T cos(k x) (1 - cosh(k y) +
+/// tanh(k H) sinh(k y)); its mean over y measures beta. The surface rises by a(H) t^2 / 2 and pulls back: to
+/// first order in k g t^2 this reduces the mean by g (1 - 1 / cosh(k H)) / H of its height. The forces of the
+/// last substep, which the pressure has not balanced yet, are in both measurements.
+/// Merges push too: over 28 runs, ten frames and still water as the second run gave 0.84 to 1.07 at mixed
+/// levels. So the test takes twenty frames, and half the difference of one run that is warm on the left and
 /// one on the right: 0.88 to 0.94 over thirteen starts.
 void warm_water_rises(const Pool& pool) {
   NEEDS_EFFECTS;

@@ -1,4 +1,4 @@
-/// A dam strikes a wall: when, and what the wall feels after the stroke (Lobovsky et al. 2014).
+/// A dam strikes a wall: time of the impact and pressure afterwards (Lobovsky et al. 2014).
 
 #include "tests/truth/truth_helpers.hpp"
 
@@ -18,7 +18,7 @@ double first_above(const std::vector<double>& t, const std::vector<double>& y, d
   return 0;
 }
 
-/// The gauge is three spacings high and as wide as the wall, where the sensor was some millimetres.
+/// The gauge is three spacings high and as wide as the wall; the real sensor had some millimetres.
 void dam_strikes(Run run, const TruthFile& file, std::int64_t n_star) {
   const auto scene = sim::read_scene(scene_of(file));
   sim::SimulationOptions options;

@@ -1,5 +1,5 @@
 #pragma once
-/// A Lamb-Oseen vortex in a tank, and how wide its core is.
+/// A Lamb-Oseen vortex in a tank, and a fit of its core.
 
 #include "tests/truth/truth_helpers.hpp"
 
@@ -28,7 +28,7 @@ struct Vortex {
   }
 };
 
-/// c^2 of the vortex that the water within three first cores is nearest to, of any circulation.
+/// c^2 of the vortex, of any circulation, that best fits the water within three initial cores.
 inline double core_of(const State& state, const Vortex& vortex, double c0) {
   double best = 0, least = 1e300;
   for (double c2 = 0.5 * c0 * c0; c2 < 8 * c0 * c0; c2 *= 1.01) {

@@ -1,5 +1,5 @@
-/// Fluid as thick as honey in a tank under full gravity: a slope comes to level, and vortices decay. The
-/// lattice that its particles lie on would stop them.
+/// Fluid as thick as honey in a tank under full gravity: a slope levels out, and vortices decay, although the
+/// particles start on a lattice, which could lock them.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/common/needs_effects.hpp"
@@ -12,10 +12,10 @@ using sim::EffectKind;
 
 constexpr double d_fine = 0.05;  // of level 0
 
-/// Particles of one level in a tank whose walls let them slip.
+/// Particles of one level in a tank with slip walls.
 struct Tank {
-  int level = 0;                          ///< of the start
-  MethodKind method = MethodKind::HiRes;  ///< that holds this level
+  int level = 0;                          ///< level of the particles at the start
+  MethodKind method = MethodKind::HiRes;  ///< must be able to hold this level
   bool mixed = false;                     ///< half at level 0
   double beta = 1;
   Backend backend = Backend::Cpu;
@@ -39,12 +39,12 @@ std::unique_ptr<sim::Simulation> fill(const Tank& tank, const Vec3d& size, doubl
   return sim::make_simulation(scene, options);
 }
 
-/// What is left of a slope, in spacings: 3 d high over 32 d, in fluid of 8 d, after two seconds at level 0.
-/// At first a swing with the rate 3.2 /s: less than 0.01 d would be left.
+/// The remaining slope, in spacings, after two seconds at level 0: 3 d high over 32 d, in fluid 8 d deep. It
+/// swings at first with the rate 3.2 /s; less than 0.01 d should remain.
 double slope_left(const Tank& tank) {
   const double d = tank.spacing(), length = 32 * d, depth = 8 * d, height = 3 * d;
   const auto surface = [&](const Vec3d& x) { return depth + height * std::cos(pi * x[0] / length); };
-  const auto slope = [&](const State& state) {  // of a cosine, by the centre of mass
+  const auto slope = [&](const State& state) {  // of a cosine, from the centre of mass
     return (length / 2 - mean(state, [](auto& p) { return place(p)[0]; })) * pi * pi * depth /
            (2 * length * d);
   };
@@ -82,8 +82,8 @@ TEST(TruthLevellingGpu, ThickFluidComesToLevel) {
   EXPECT_NEAR(slope_left({.beta = 0.67, .backend = Backend::Cuda}), 0, flat);
 }
 
-/// How fast a cell of Taylor and Green's vortices decays in a third of a second, over what its viscosity of
-/// 0.1 m2/s says.
+/// Decay rate of a cell of Taylor-Green vortices over a third of a second, as a ratio to that of its
+/// viscosity of 0.1 m2/s.
 double cell_back(const Tank& tank, double speed) {
   const double d = d_fine, length = 16 * d, k = pi / length, nu = 0.1;
   const auto flow = [k](const Vec3d& x) {
@@ -117,7 +117,7 @@ double cell_back(const Tank& tank, double speed) {
   return back;
 }
 
-/// Not within 15 % at level 0. Without the loosening 1.83.
+/// Not within 15 % at level 0. Without the loosening it is 1.83.
 TEST(TruthLevelling, ACreepingVortexUnderGravityDecays) {
   NEEDS_EFFECTS;
   const double back = cell_back({}, 0.3);

@@ -1,4 +1,4 @@
-/// What water at rest does to a fixed sphere in it: rho g V upwards (Archimedes), whatever the particles.
+/// Force of water at rest on a fixed sphere: rho g V upwards (Archimedes), for any particles.
 
 #include "tests/truth/truth_helpers.hpp"
 
@@ -10,7 +10,7 @@ struct Sunk {
   MethodKind method = MethodKind::HiRes;
   std::int64_t n_star = 512;
   double radius = 0.25;
-  double height = 0.5;  ///< of its centre, m
+  double height = 0.5;  ///< height of its centre, m
   bool mixed = false;   ///< level 0 on one side, 3 on the other
   double beta = 1;
   Backend backend = Backend::Cpu;
@@ -52,7 +52,7 @@ Vec3d force_on(const Sunk& sunk) {
 
 void feels_its_displaced_water(const Sunk& sunk) {
   const Vec3d force = force_on(sunk);
-  // Particles that rest in turns push more: 1.01, 1.04 and 1.06 at level 3 with beta 1, 0.8 and 0.67.
+  // With temporal acceleration particles push more: 1.01, 1.04 and 1.06 at level 3 with beta 1, 0.8 and 0.67.
   EXPECT_NEAR(force[1], 1, sunk.beta < 1 ? 0.08 : 0.05);
   EXPECT_NEAR(force[0], 0, 0.05);
   EXPECT_NEAR(force[2], 0, 0.05);
@@ -73,7 +73,7 @@ TEST(SunkSphere, FeelsItsDisplacedWaterAtMixedLevels) { feels_its_displaced_wate
 TEST(SunkSphere, FeelsItsDisplacedWaterWithTemporalAcceleration) {
   feels_its_displaced_water(with(finest, 0.67, Backend::Cpu));
 }
-/// The level lies some 2 % low, which is 3 % of the half that is below it.
+/// The water level is some 2 % low, which is 3 % of the submerged half.
 void is_carried_by_its_half_below(Sunk sunk) {
   sunk.height = 1;
   const double share = force_on(sunk)[1] / 0.5;
@@ -84,7 +84,7 @@ TEST(SunkSphere, StandsOutOfTheWaterAtLevel0) { is_carried_by_its_half_below(fin
 TEST(SunkSphere, StandsOutOfTheWaterAtLevel3) { is_carried_by_its_half_below(coarsest); }
 TEST(SunkSphere, StandsOutOfTheWaterAtMixedLevels) { is_carried_by_its_half_below(both); }
 
-/// A box across the tank, on its floor, with water on one side.
+/// A box across the tank on the floor, with water on one side.
 void holds_the_water(MethodKind method, std::int64_t n_star, Backend backend = Backend::Cpu) {
   auto scene = fluid_test::tank({2, 1.5, 1}, {0.8, 1, 1}, 60);
   scene.v_ref_m_s = 3;
@@ -115,7 +115,7 @@ void holds_the_water(MethodKind method, std::int64_t n_star, Backend backend = B
       return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     });
   }
-  // rho g H^2 / 2 a metre.
+  // Theory: rho g H^2 / 2 per metre.
   const double given = 0.5 * 1000 * scene.gravity_m_s2 * (frames - settled) * scene.frame_dt_s;
   EXPECT_NEAR(thrust / given, 1, 0.15);
   EXPECT_NEAR(lift / given, 0, 0.15) << "its face is upright";

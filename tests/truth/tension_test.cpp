@@ -1,5 +1,5 @@
-/// Effects measured back from the motion: tension by the period of drops without gravity (Rayleigh 1879), air
-/// drag by the speed at which drops fall at last.
+/// Effects recovered from the motion: tension from the period of drops without gravity (Rayleigh 1879), air
+/// drag from the terminal speed of drops.
 
 #include "tests/common/needs_effects.hpp"
 #include "tests/truth/drop_scene.hpp"
@@ -17,14 +17,14 @@ std::array<double, 3> half_axes(const State& state) {
   }
   return out;
 }
-/// Logarithm of how much longer the drop is along y than in the mean.
+/// Logarithm of the stretch along y relative to the mean.
 double stretch(const State& state) {
   const auto a = half_axes(state);
   return std::log(a[1] / std::sqrt(a[0] * a[2])) * 2 / 3;
 }
 
-/// sigma from the frequency and the decay of the damped swing that fits best, over what the scene lists: a
-/// drop swings at sqrt(omega_0^2 - gamma^2).
+/// sigma over the scene's, from the frequency and decay of the best-fitting damped oscillation: a drop
+/// oscillates at sqrt(omega_0^2 - gamma^2).
 double tension_back(const Drop& drop, std::uint32_t seed = 1) {
   sim::SimulationOptions options;
   options.temporal.seed = seed;
@@ -85,8 +85,8 @@ void a_drop_of_mixed_levels(Backend backend) {
       tension_back({.level = 3, .method = MethodKind::Ours, .targets = half_fine(), .backend = backend}), 1,
       within);
 }
-/// Exponents of the period: 1.5 of the radius and -0.5 of sigma, which a sigma that is measured back alike at
-/// each gives: T ~ R^1.5 sigma^-0.5 sigma_back^-0.5.
+/// Exponents of the period: 1.5 for the radius and -0.5 for sigma. They follow if the recovered sigma is the
+/// same for each: T ~ R^1.5 sigma^-0.5 sigma_back^-0.5.
 void periods_follow_radius_and_tension(Backend backend) {
   NEEDS_EFFECTS;
   const double small = tension_back({.spacings = 8, .backend = backend});
@@ -96,8 +96,8 @@ void periods_follow_radius_and_tension(Backend backend) {
   EXPECT_NEAR(-0.5 - std::log(strong / small) / 2 / std::log(9.0), -0.5, 0.1);
 }
 
-/// The mean of four seeds of who rests. Over fourteen starts that differ by 1e-5 d the mean was 0.95, the
-/// standard deviation 0.04: a drop in a hundred would miss the 15 % by chance.
+/// The mean over four seeds of the choice of resting particles. Over fourteen starts that differ by 1e-5 d
+/// the mean was 0.95 and the standard deviation 0.04: one drop in a hundred would miss the 15 % by chance.
 void a_drop_that_rests_in_turns(Backend backend) {
   NEEDS_EFFECTS;
   double sum = 0;
@@ -109,12 +109,12 @@ void a_drop_that_rests_in_turns(Backend backend) {
 void a_cube_becomes_a_sphere(Backend backend) {
   NEEDS_EFFECTS;
   const Drop drop{.backend = backend};
-  const double half = drop.radius() * std::cbrt(pi / 6);  // of the sphere's volume
+  const double half = drop.radius() * std::cbrt(pi / 6);  // same volume as the sphere
   const auto fluid = start_of(drop, [&](const Vec3d& x) {
     return std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])}) < half;
   });
   const auto corner = [&] {
-    // How far the farthest of 99 % lies, over the radius of a ball of this volume.
+    // 99th percentile of the distance from the middle, over the radius of a ball of this volume.
     const State state = fluid->read_state();
     Vec3d middle{};
     for (std::size_t k = 0; k < 3; ++k) middle[k] = mean(state, [&](const auto& p) { return place(p)[k]; });
@@ -134,7 +134,7 @@ void a_cube_becomes_a_sphere(Backend backend) {
   EXPECT_LT(after, 1);
 }
 
-/// Lone drops of every level fall at g / k at last.
+/// Lone drops of every level reach the terminal speed g / k.
 void lone_drops_fall_at_their_terminal_speed(Backend backend, int level, double beta) {
   NEEDS_EFFECTS;
   constexpr double rate = 5;

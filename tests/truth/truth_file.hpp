@@ -1,6 +1,6 @@
 #pragma once
-/// Files of data/truth, or of the folder that VIP_TRUTH_DIR names: an experiment or a closed form as columns
-/// of numbers under a header that says what they are. docs/results.md has the format.
+/// Files in data/truth, or in the folder that VIP_TRUTH_DIR names: an experiment or a closed form as columns
+/// of numbers under a header that describes them. docs/results.md has the format.
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +18,9 @@
 
 namespace truth_test {
 
-inline constexpr double gravity = 9.81;  ///< m/s2, of every experiment
+inline constexpr double gravity = 9.81;  ///< m/s2, for every experiment
 
-/// A column, and what turns a run's dimensionless value into it.
+/// A column, and the factor from a run's dimensionless value to the column's.
 struct Axis {
   std::string column;
   double factor = 1;
@@ -31,7 +31,7 @@ struct TruthFile {
   std::string quantity;
   std::map<std::string, std::pair<std::string, int>> keys;  ///< value and line
   std::map<std::string, std::vector<double>> columns;
-  int header_line = 0;  ///< of the columns' names
+  int header_line = 0;  ///< line of the column names
 
   std::string name() const { return path.filename().string(); }
   [[noreturn]] void fail(int line, const std::string& problem, const std::string& mend) const {
@@ -51,7 +51,8 @@ struct TruthFile {
       fail(keys.at(key).second, key + " is '" + value + "', not a number above 0", "write a number");
     return out;
   }
-  /// The method's gate, "gate" unless the method has one of its own ("gate_ours"); none = report only.
+  /// The method's gate: "gate", or "gate_ours" for Ours if the file has it. Nullopt if the file says "none":
+  /// report only.
   std::optional<double> gate(const std::string& key = "gate", bool ours = false) const {
     const std::string mine = ours && has(key + "_ours") ? key + "_ours" : key;
     if (text(mine) == "none") return std::nullopt;
@@ -97,7 +98,7 @@ struct TruthFile {
   }
 };
 
-/// The quantities that tests measure; each is named by one test file.
+/// The quantities that tests measure; one test file covers each.
 inline const std::vector<std::string>& quantities() {
   static const std::vector<std::string> all{
       "column_at_rest", "dam_front",  "dam_height",       "dam_profile",   "draining",     "elliptical_drop",
@@ -105,8 +106,8 @@ inline const std::vector<std::string>& quantities() {
   return all;
 }
 
-/// base::Error at file:line: no quantity or one that is not known, a key that is not known or comes twice, a
-/// row that has other columns than the header or a cell that is no number.
+/// base::Error at file:line if the quantity is missing or unknown, a key is unknown or comes twice, a row's
+/// columns differ from the header's, or a cell is not a number.
 inline TruthFile parse_truth(const std::filesystem::path& path, const std::string& bytes) {
   static const std::vector<std::string> known{"quantity",
                                               "source",
@@ -176,13 +177,13 @@ inline TruthFile parse_truth(const std::filesystem::path& path, const std::strin
   return out;
 }
 
-/// data/truth, or what VIP_TRUTH_DIR names.
+/// data/truth, or the folder that VIP_TRUTH_DIR names.
 inline std::filesystem::path truth_folder() {
   const char* named = std::getenv("VIP_TRUTH_DIR");
   return named && *named ? std::filesystem::path(named) : base::resource("data/truth");
 }
 
-/// Its files *.csv by name. base::Error when there is no such folder.
+/// The *.csv files of the folder, sorted by name. base::Error if there are none.
 inline std::vector<std::filesystem::path> truth_paths() {
   std::vector<std::filesystem::path> out;
   std::error_code none;
@@ -199,7 +200,7 @@ inline TruthFile read_truth(const std::filesystem::path& path) {
   return parse_truth(path, base::read_file(path, 1 << 20));
 }
 
-/// The files of a quantity. Malformed ones are left to the test that reads them all.
+/// The files of a quantity. Skips malformed ones: another test reads them all.
 inline std::vector<TruthFile> truth_of(const std::string& quantity) {
   std::vector<TruthFile> out;
   for (const auto& path : truth_paths()) {

@@ -1,4 +1,4 @@
-/// The reader of data/truth: every file there, and what it says about files that are wrong.
+/// The reader of data/truth: it reads every file there, and reports errors in malformed ones.
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -45,7 +45,7 @@ TEST(TruthFiles, NameScalesAndGates) {
   EXPECT_EQ(file.gate("gate", true).value(), 0.1);
   EXPECT_EQ(file.column("H"), (std::vector<double>{1, 0.5}));
   EXPECT_FALSE(parse_truth("f.csv", with("gate: 0.05", "gate: none")).gate());
-  // Seconds and metres: the experiment's length scales them.
+  // Values are in seconds and metres; the experiment's length scales them.
   EXPECT_DOUBLE_EQ(parse_truth("f.csv", with(" sqrt(2 g / length)", "")).time().factor,
                    std::sqrt(0.5 / gravity));
   EXPECT_DOUBLE_EQ(parse_truth("f.csv", with(" / (2 length)", "")).length().factor, 0.5);

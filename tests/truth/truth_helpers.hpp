@@ -1,6 +1,6 @@
 #pragma once
-/// What the tests against experiments and closed forms share: runs from given particles, sums over their
-/// mass, fits. Lengths are metres, times seconds.
+/// Shared by the tests against experiments and closed forms: runs from given particles, sums over their mass,
+/// fits. Lengths are in metres, times in seconds.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using State = std::vector<ParticleState>;
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// Every test runs each of them.
+/// Every test runs each of these methods.
 inline constexpr std::array methods{MethodKind::HiRes, MethodKind::Ours};
 
 struct Run {
@@ -52,8 +52,8 @@ inline Vec3d velocity(const ParticleState& p) {
   return {static_cast<double>(p.vx_m_s), static_cast<double>(p.vy_m_s), static_cast<double>(p.vz_m_s)};
 }
 
-/// Particles of level 0 on the lattice of spacing d in the box [0, size], where `inside` says so, moving as
-/// `speed` says.
+/// Particles of level 0 on the lattice of spacing d in the box [0, size] where `inside` returns true, with
+/// velocity `speed`.
 inline State lattice(double d, const Vec3d& size, const std::function<bool(const Vec3d&)>& inside,
                      const std::function<Vec3d(const Vec3d&)>& speed) {
   State out;
@@ -73,7 +73,7 @@ inline State lattice(double d, const Vec3d& size, const std::function<bool(const
   return out;
 }
 
-/// The same particles moving as `speed` says.
+/// The same particles with velocity `speed`.
 inline State moving(State state, const std::function<Vec3d(const Vec3d&)>& speed) {
   for (auto& p : state) {
     const Vec3d v = speed(place(p));
@@ -84,7 +84,7 @@ inline State moving(State state, const std::function<Vec3d(const Vec3d&)>& speed
   return state;
 }
 
-/// Lets a run of a scene whose level 0 has spacing d begin with these particles, all of that level.
+/// Makes a run of a scene whose level 0 has spacing d start with these particles, all of level `level`.
 inline void begin_with(State start, int level, double d, sim::Scene& scene, sim::SimulationOptions& options) {
   for (auto& p : start) p.level = level;
   options.n_star = static_cast<std::int64_t>(start.size() << level) / 8 + 1;
@@ -92,7 +92,7 @@ inline void begin_with(State start, int level, double d, sim::Scene& scene, sim:
   options.start = std::move(start);
 }
 
-/// Lets all methods have temporal acceleration at this beta; at 1 none has.
+/// Turns on temporal acceleration at this beta for all methods; beta 1 turns nothing on.
 inline void rest_at(double beta, sim::SimulationOptions& options) {
   if (beta == 1) return;
   options.temporal.always = true;
@@ -124,8 +124,8 @@ inline State settled(Backend backend, const Vec3d& size, double d, int frames) {
   return sim::make_simulation(scene, options)->read_state();
 }
 
-/// Numbers of a run that a closed form without viscosity is held against: XSPH is left out, and four substeps
-/// a frame lose less than two.
+/// Options of a run for comparison with an inviscid closed form: no XSPH, and four substeps a frame because
+/// they dissipate less than two.
 inline sim::SimulationOptions inviscid() {
   sim::SimulationOptions out;
   out.viscosity_m2_s = 0;
@@ -133,7 +133,7 @@ inline sim::SimulationOptions inviscid() {
   return out;
 }
 
-/// "1234 particles of 4321": what is left of HiRes'.
+/// "1234 particles of 4321": the particles of the run, of those at the start.
 inline std::string share(const sim::Simulation& fluid, const State& start) {
   return std::to_string(fluid.particle_count()) + " particles of " + std::to_string(start.size());
 }
@@ -156,7 +156,7 @@ inline Line fit(const std::vector<double>& x, const std::vector<double>& y) {
   return {cxy / cxx, (sy - cxy / cxx * sx) / n, cxy * cxy / (cxx * cyy)};
 }
 
-/// ys at x, by lines between the points; the ends' beyond them.
+/// ys at x, by linear interpolation; beyond the ends, the value of the end.
 inline double interpolate(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
   const auto above = std::upper_bound(xs.begin(), xs.end(), x);
   if (above == xs.begin()) return ys.front();
@@ -189,7 +189,7 @@ inline Match best_match(const std::vector<double>& t, const std::vector<double>&
   return best;
 }
 
-/// Below the gate, where the file has one.
+/// Expects a value below the gate if the file has one.
 inline void expect_within(double value, const std::optional<double>& gate, const std::string& what) {
   if (gate) {
     EXPECT_LE(value, *gate) << what;
@@ -198,7 +198,7 @@ inline void expect_within(double value, const std::optional<double>& gate, const
   }
 }
 
-/// The scene beside its file, or among those of the project.
+/// The scene file beside the truth file, or else among the project's scenes.
 inline std::filesystem::path scene_of(const TruthFile& file) {
   const auto beside = file.path.parent_path() / file.text("scene");
   return std::filesystem::exists(beside) ? beside : base::resource("data/scenes/" + file.text("scene"));

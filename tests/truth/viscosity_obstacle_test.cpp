@@ -1,4 +1,4 @@
-/// The effect viscosity at obstacles that hold the fluid: the torque of a sphere that turns in it (Lamb,
+/// The effect viscosity at obstacles with no slip: the torque on a sphere that turns in the fluid (Lamb,
 /// Hydrodynamics, 334), without gravity.
 
 #include "libsim/scene/effects.hpp"
@@ -14,13 +14,13 @@ constexpr double d = 0.05;  // of level 0
 constexpr double rho = 1000;
 constexpr double nu = 0.3;
 
-/// A sphere in the middle of a cube of fluid, three radii from its faces: four walls and a floor that hold
-/// it, and a free surface. It turns about the upright.
+/// A sphere in the middle of a cube of fluid, three radii from its faces: four walls and a floor without
+/// slip, and a free surface. It turns about the vertical.
 struct Turning {
-  double spacings = 3;                         ///< of the start's level, in the sphere's radius
-  int level = 0;                               ///< of the start
-  MethodKind method = MethodKind::HiRes;       ///< that holds this level
-  std::optional<sim::TargetRegion> targets{};  ///< in radii, from the sphere's middle
+  double spacings = 3;                         ///< particles of the start's level per radius of the sphere
+  int level = 0;                               ///< level of the particles at the start
+  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  std::optional<sim::TargetRegion> targets{};  ///< in radii, relative to the sphere's middle
   double beta = 1;
   double stick = 1;
   Backend backend = Backend::Cpu;
@@ -29,12 +29,12 @@ struct Turning {
   double radius() const { return spacings * spacing(); }
   double side() const { return 6 * radius(); }
   double viscosity() const { return nu * std::sqrt(1 << level); }  // the same motion at every size
-  /// In which the slowest part of the start falls to 1 / e in a ball of three radii.
+  /// Time in which the slowest mode of the start falls to 1 / e in a ball of three radii.
   double decay_time() const { return 9 * radius() * radius() / (4.49 * 4.49 * viscosity()); }
-  /// A particle at the sphere moves by a spacing in six of them.
+  /// Slow enough that a particle at the sphere moves one spacing in six decay times.
   double rate() const { return spacing() / radius() / (6 * decay_time()); }
 };
-constexpr int frames = 12;  // in a decay time, of two substeps
+constexpr int frames = 12;  // per decay time, with two substeps each
 
 std::unique_ptr<sim::Simulation> start_of(const Turning& it) {
   const double a = it.side(), middle = a / 2;
@@ -69,8 +69,8 @@ std::unique_ptr<sim::Simulation> start_of(const Turning& it) {
   return sim::make_simulation(scene, options);
 }
 
-/// Torque that the fluid gives the sphere against its turn, mean of the fourth decay time, over that in fluid
-/// without end, 8 pi rho nu R^3 Omega.
+/// Torque of the fluid on the sphere against its rotation, mean over the fourth decay time, over that in
+/// unbounded fluid, 8 pi rho nu R^3 Omega.
 double torque_of(const Turning& it) {
   const auto fluid = start_of(it);
   double sum = 0;
@@ -89,8 +89,8 @@ double torque_of(const Turning& it) {
 }
 
 constexpr double within = 0.15;
-/// In a ball that holds the fluid at three radii the torque is 1 / (1 - 1 / 27) times that without walls, and
-/// in one that the cube's corners touch 1 / (1 - 1 / 140): walls between give what is between.
+/// Inside a no-slip ball of three radii the torque is 1 / (1 - 1 / 27) times that without walls, and inside
+/// one through the cube's corners 1 / (1 - 1 / 140); the cube is between the two.
 constexpr double torque = 1.02;
 
 void spheres_of_one_level(Backend backend) {

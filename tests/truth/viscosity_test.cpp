@@ -1,4 +1,4 @@
-/// The effect viscosity measured back from standing shear waves between walls, without gravity.
+/// The effect viscosity recovered from standing shear waves between walls, without gravity.
 
 #include "libsim/scene/effects.hpp"
 #include "tests/common/needs_effects.hpp"
@@ -11,16 +11,16 @@ using sim::EffectKind;
 
 constexpr double d = 0.05;  // of level 0
 constexpr int spacings = 12;
-constexpr int frames = 12;  // of two substeps, in which the wave falls to 1 / e
+constexpr int frames = 12;  // frames, with two substeps each, in which the wave falls to 1 / e
 
-/// An upright column, three widths high, between four walls. Its particles move along y: where the walls let
-/// it slip v = U cos(pi x / a), which decays at nu (pi / a)^2; where they hold it v = U sin(pi x / a)
-/// sin(pi z / a), at twice that.
+/// An upright column, three widths high, between four walls. Its particles move along y: with slip, v = U
+/// cos(pi x / a), which decays at nu (pi / a)^2; without slip, v = U sin(pi x / a) sin(pi z / a), which
+/// decays twice as fast.
 struct Wave {
   bool sticks = false;
-  int level = 0;                               ///< of the start
-  MethodKind method = MethodKind::HiRes;       ///< that holds this level
-  std::optional<sim::TargetRegion> targets{};  ///< in widths, from the column's middle
+  int level = 0;                               ///< level of the particles at the start
+  MethodKind method = MethodKind::HiRes;       ///< must be able to hold this level
+  std::optional<sim::TargetRegion> targets{};  ///< in widths, relative to the column's middle
   double beta = 1;
   Backend backend = Backend::Cpu;
 
@@ -61,11 +61,11 @@ std::unique_ptr<sim::Simulation> column_of(const Wave& wave) {
   return sim::make_simulation(scene, options);
 }
 
-/// nu by the decay of the wave in the column's middle third, over what the scene lists. At the start a
-/// particle moves by two spacings in a decay time.
+/// nu over the scene's, from the decay of the wave in the column's middle third. At the start a particle
+/// moves two spacings per decay time.
 double viscosity_back(const Wave& wave) {
   const auto fluid = column_of(wave);
-  for (int k = 0; k < 10; ++k) fluid->step_frame();  // levels come about
+  for (int k = 0; k < 10; ++k) fluid->step_frame();  // lets the levels form
   const double speed = 2 * wave.spacing() / wave.decay_time();
   fluid->put(moving(fluid->read_state(), [&](const Vec3d& x) { return Vec3d{0, speed * wave.shape(x), 0}; }));
   std::vector<double> t, logs;

@@ -1,5 +1,5 @@
-/// Upright vortices in a tank: what viscosity the method has of its own. A pool of g depth >= 2 U^2, since a
-/// unilateral constraint holds no negative pressure.
+/// Upright vortices in a tank: the method's own viscosity. The pool needs g depth >= 2 U^2, because a
+/// unilateral constraint cannot hold negative pressure.
 
 #include "tests/truth/lamb_oseen.hpp"
 
@@ -9,7 +9,7 @@ using namespace truth_test;
 
 constexpr double speed = 1;  ///< m/s, the largest at the start
 
-/// What the method adds to a viscosity nu, over d U. Measured: 0.10 to 0.23, at two substeps.
+/// The method's own viscosity in addition to nu, over d U. Measured: 0.10 to 0.23, at two substeps.
 constexpr double own_most = 0.35;
 
 void report_viscosity(const Run& run, const TruthFile& file, double nu, double measured, double d,
@@ -20,7 +20,7 @@ void report_viscosity(const Run& run, const TruthFile& file, double nu, double m
   EXPECT_GE(measured, 0.8 * nu) << file.name() << ", " << run.name();
 }
 
-/// Strength of `flow` in the water, 1 at the start.
+/// Amplitude of `flow` in the water, 1 at the start.
 double strength(const State& state, const std::function<Vec3d(const Vec3d&)>& flow) {
   double along = 0, norm = 0;
   for (const auto& p : state) {
@@ -31,7 +31,7 @@ double strength(const State& state, const std::function<Vec3d(const Vec3d&)>& fl
   return along / norm;
 }
 
-/// One cell of Taylor and Green's vortices between four walls: u = U sin kx cos kz, w = -U cos kx sin kz.
+/// One cell of Taylor-Green vortices between four walls: u = U sin kx cos kz, w = -U cos kx sin kz.
 void cell_decays(Run run, const TruthFile& file, int spacings, const State& rest, double length) {
   const double d = length / spacings, k = pi / length;
   const auto flow = [k](const Vec3d& x) {
@@ -45,7 +45,7 @@ void cell_decays(Run run, const TruthFile& file, int spacings, const State& rest
   for (const double asked : {0.0, file.number("viscosity")}) {
     sim::SimulationOptions options;
     options.viscosity_m2_s = asked * speed * 2 * length;
-    // XSPH takes at most half of a difference in a substep: 22 nu dt / h^2 <= 1 / 2.
+    // XSPH may remove at most half of a difference per substep: 22 nu dt / h^2 <= 1 / 2.
     options.substeps = std::max(
         2, static_cast<int>(std::ceil(44 * options.viscosity_m2_s * scene.frame_dt_s / (4 * d * d))));
     const auto fluid = start_from(run, scene, d, start, options);

@@ -6,9 +6,9 @@ namespace {
 
 using namespace truth_test;
 
-/// Period and damping of a swing about 0, sampled every dt.
+/// Period and damping of an oscillation about 0, sampled every dt.
 struct Swing {
-  double period = 0, damping = 0;  ///< damping: share of the amplitude that is lost in a period
+  double period = 0, damping = 0;  ///< damping: share of the amplitude that is lost per period
   std::size_t crossings = 0;
 };
 Swing swing_of(const std::vector<double>& s, double dt) {
@@ -29,7 +29,7 @@ Swing swing_of(const std::vector<double>& s, double dt) {
   return {2 * fit(index, crossing).slope, 1 - std::exp(2 * fit(order, peak).slope), crossing.size()};
 }
 
-/// Potential flow under half a wave between two walls, at the moment its surface is flat.
+/// Potential flow under half a wave between two walls, when its surface is flat.
 Vec3d flow(const Vec3d& x, double k, double depth, double steepness) {
   const double omega = std::sqrt(gravity * k * std::tanh(k * depth));
   const double u = steepness / k * omega / std::sinh(k * depth);
@@ -57,7 +57,7 @@ void wave_swings(Run run, const TruthFile& file, std::size_t row, double d, doub
                 file.name() + ", " + run.name());
 }
 
-/// The first `rows` of each file, in tanks so many spacings long.
+/// Runs the first `rows` of each file, in tanks of this many spacings.
 void waves_swing(Run run, int spacings, std::size_t rows) {
   constexpr double length = 2;
   const double d = length / spacings;
@@ -66,7 +66,8 @@ void waves_swing(Run run, int spacings, std::size_t rows) {
   for (const auto& file : files) {
     for (std::size_t row = 0; row < std::min(rows, file.column("kh").size()); ++row) {
       const double depth = d * std::round(file.column("kh")[row] * length / pi / d);
-      // A lattice of 130 layers that has settled for 40 frames still shoots up: its sway was twice the wave's.
+      // A lattice of 130 layers that has settled for only 40 frames still bounces: its sway was twice the
+      // wave's.
       const int frames = std::max(40, static_cast<int>(std::lround(1.25 * depth / d)));
       wave_swings(run, file, row, d, length, settled(run.backend, {length, depth, 6 * d}, d, frames));
     }

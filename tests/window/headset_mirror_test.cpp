@@ -1,4 +1,4 @@
-/// The experimenter's window on a headset, on a virtual screen.
+/// The experimenter's mirror window of a headset, on a virtual screen.
 #include "apps/common/window/headset_mirror.hpp"
 
 #include <array>
@@ -14,7 +14,7 @@
 #include "tests/apps/headset_runs.hpp"
 #include "tests/apps/study_test_support.hpp"
 
-// X last: its macros are everywhere. The second one takes the worst of them away.
+// X comes last because of its macros. The second header removes the worst of them.
 #include <X11/Xutil.h>
 
 #include "tests/headset/x_screen.hpp"
@@ -28,7 +28,7 @@ using ::testing::Not;
 using Colour = std::array<int, 3>;
 constexpr Colour black{0, 0, 0}, yellow{255, 255, 0}, red{255, 0, 0}, blue{0, 0, 255};
 
-/// Red to the left eye, blue to the right one.
+/// Red for the left eye, blue for the right one.
 class TwoColours final : public study::Stimulus {
  public:
   std::string description() const override { return "two colours"; }
@@ -52,7 +52,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
   static constexpr int side = MirrorPicture::side_px;
 
   HeadsetMirrorGl() {
-    glXMakeCurrent(screen_.binding().xDisplay, 0, nullptr);  // the headset's context comes
+    glXMakeCurrent(screen_.binding().xDisplay, 0, nullptr);  // the headset has its own context
     ::setenv("DISPLAY", screen_.name().c_str(), 1);
   }
   ~HeadsetMirrorGl() override {
@@ -60,7 +60,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     EXPECT_THAT(calls(), Not(HasSubstr("BREACH")));
   }
 
-  /// 20 Hz leave room for a machine that is busy otherwise.
+  /// 20 Hz, so that a busy machine does not disturb the test.
   HeadsetDisplay& start(const std::string& profile = "") {
     use_here("size=32x32;clock=real;rates=20;rate=20;" + profile);
     display_.emplace(SlotDrive::Thread, HeadsetChoice{.page_width_px = 64, .page_height_px = 64});
@@ -72,7 +72,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     display_.reset();
   }
 
-  /// A yellow page of 20 degrees, straight ahead of the head.
+  /// Shows a yellow page of 20 degrees straight ahead of the head.
   void show_page() {
     HeadsetDisplay& display = *display_;
     const sim::Offscreen& page = display.page();
@@ -92,7 +92,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     display_->present(display_->first_onset(clock.now_ns()), clock);
   }
 
-  /// A place in the mirror, parts of it from its left and its top.
+  /// Colour at a place in the mirror; x and y are fractions from its left and its top.
   Colour pixel(double x, double y) const {
     ::Display* const display = screen_.binding().xDisplay;
     const int at_x = static_cast<int>(x * side), at_y = static_cast<int>(y * side);
@@ -103,7 +103,7 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
     return {static_cast<int>(value >> 16 & 255), static_cast<int>(value >> 8 & 255),
             static_cast<int>(value & 255)};
   }
-  /// Slots go on until a place has this colour, or some time is over.
+  /// Runs slots until the place has this colour, or a time limit is over.
   Colour comes_to(const Colour& wanted, double x, double y) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     Colour found = pixel(x, y);
@@ -131,8 +131,8 @@ TEST_F(HeadsetMirrorGl, APageStandsWhereTheLeftEyeSeesIt) {
   open(false);
   show_page();
   EXPECT_EQ(comes_to(yellow, 0.5, 0.5), yellow);
-  // 20 of 60 degrees: tan 10 / tan 30 from the middle, and the left eye sees it by half the eyes' distance
-  // further right.
+  // 20 of 60 degrees: tan 10 / tan 30 from the middle; the left eye sees it half the distance between the
+  // eyes further right.
   const double half = 0.5 * 0.17633 / 0.57735, shift = 0.5 * 0.0315 / 2 / 0.57735;
   for (const double side_of : {-1.0, 1.0}) {
     EXPECT_EQ(pixel(0.5 + shift + side_of * (half - 0.006), 0.5), yellow) << side_of;
@@ -169,8 +169,9 @@ TEST_F(HeadsetMirrorGl, AnImageThatIsHeldStaysInTheWorldWhileTheHeadTurns) {
   while (display_->facts().last.index < 105) display_->turn();
   show_stimulus();
   EXPECT_EQ(comes_to(red, 0.5, 0.5), red);
-  EXPECT_EQ(pixel(0.815, 0.5), black);  // beside 30 degrees of picture
-  // The head has turned to the left by 20 degrees, and the picture's middle is tan 20 / tan 30 to the right.
+  EXPECT_EQ(pixel(0.815, 0.5), black);  // outside the picture's 30 degrees
+  // After a turn of the head by 20 degrees to the left, the picture's middle is tan 20 / tan 30 further
+  // right.
   EXPECT_EQ(comes_to(red, 0.815, 0.5), red);
   EXPECT_EQ(pixel(0.5, 0.5), black);
   close();
@@ -178,7 +179,7 @@ TEST_F(HeadsetMirrorGl, AnImageThatIsHeldStaysInTheWorldWhileTheHeadTurns) {
 
 TEST_F(HeadsetMirrorGl, SlotsAreMetWithTheMirrorAsWithout) {
   const auto starved = [&](bool mirrored) {
-    const int frames = count("frame "), before = count("starved");  // the log goes on
+    const int frames = count("frame "), before = count("starved");  // the log continues from earlier starts
     start("hash=1");
     if (mirrored) open(true);
     HeadsetClock clock(*display_);
@@ -213,7 +214,7 @@ TEST_F(HeadsetMirrorGl, WhoClosesItLooksOnNoMore) {
   XFree(children);
   XFlush(display);
   EXPECT_EQ(comes_to(black, 0.5, 0.5), black);
-  for (int i = 0; i < 5; ++i) display_->turn();  // the session goes on
+  for (int i = 0; i < 5; ++i) display_->turn();  // the session continues
   close();
 }
 
@@ -231,7 +232,7 @@ TEST_F(HeadsetMirrorGl, WithoutAScreenThereIsOneClearError) {
   close();
 }
 
-/// vip-study run itself, answered by the scripted ray.
+/// Runs vip-study run itself, answered by the scripted ray.
 class HeadsetMirrorE2e : public test::HeadsetRuns {
  protected:
   test::Ended session(const std::vector<std::string>& more, const std::string& profile = "") {

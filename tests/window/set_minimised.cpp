@@ -1,5 +1,5 @@
-/// What a window manager does when a window is minimised or brought back: it says so in the window's WM_STATE
-/// (ICCCM 4.1.3.1). For virtual screens, which have no window manager. usage: set-minimised TITLE yes|no
+/// Does what a window manager does when a window is minimised or restored: sets the window's WM_STATE (ICCCM
+/// 4.1.3.1). For virtual screens without a window manager. usage: set-minimised TITLE yes|no
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   const Atom wm_state = XInternAtom(display, "WM_STATE", False);
-  const long state[] = {wish == "yes" ? IconicState : NormalState, None};  // 32 bits travel as longs
+  const long state[] = {wish == "yes" ? IconicState : NormalState,
+                        None};  // 32-bit values are passed as longs
   XChangeProperty(display, window, wm_state, wm_state, 32, PropModeReplace,
                   reinterpret_cast<const unsigned char*>(state), 2);
   XCloseDisplay(display);

@@ -155,15 +155,15 @@ void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& option
 
 /// Chooses a setting; candidates are run again.
 void run_budget(const Job& job, const AccuracyOptions& options) {
-  BudgetWish wish{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
-                  job.scene.scene.tank_size_m[0]};
-  if (!options.of_method.empty()) wish.method = sim::parse_method(options.of_method);
-  if (!options.of_n_star.empty()) wish.n_star = sim::parse_n_star(options.of_n_star);
-  if (options.of_rate > 0) wish.frames_per_s = options.of_rate;
+  BudgetRequest request{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
+                        job.scene.scene.tank_size_m[0]};
+  if (!options.of_method.empty()) request.method = sim::parse_method(options.of_method);
+  if (!options.of_n_star.empty()) request.n_star = sim::parse_n_star(options.of_n_star);
+  if (options.of_rate > 0) request.frames_per_s = options.of_rate;
   SweepFile file(options.database, Open::Read);
   tell_missing(job, file);
   const auto choice = choose_setting(
-      file.cells(), job.origin, wish, [&](const SweepCell& cell) { return run(job, cell); },
+      file.cells(), job.origin, request, [&](const SweepCell& cell) { return run(job, cell); },
       [](const std::string& words) { std::printf("%s\n", words.c_str()); });
   base::write_file_atomically(options.out, format_setting_file(choice));
   std::printf("%s: %s\n", options.out.c_str(), describe(choice).c_str());

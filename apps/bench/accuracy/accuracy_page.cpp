@@ -95,7 +95,7 @@ std::string diagrams(const PriceList& prices) {
     out += subsection(std::string("Error of ") + sweep_error_words[static_cast<std::size_t>(error)],
                       picture ? figure(*picture, floor_of(prices, error))
                       : std::isnan(prices.floor[static_cast<std::size_t>(error)])
-                          ? paragraph("Not known: " + why_untold(prices) + ".")
+                          ? paragraph("Not known: " + why_no_price(prices) + ".")
                           : paragraph("No setting has an error above 0."));
   }
   return out + subsection("Pictures", parting(prices)) + subsection("Orders", orders(prices));

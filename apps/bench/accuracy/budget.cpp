@@ -48,17 +48,18 @@ std::vector<StoredCell> joined(std::vector<StoredCell> cells, const std::vector<
   return cells;
 }
 
-SettingFile file_of(const SettingResult& all, const std::vector<StoredCell>& fresh, const BudgetWish& wish) {
-  const auto e = static_cast<std::size_t>(wish.error);
+SettingFile file_of(const SettingResult& all, const std::vector<StoredCell>& fresh,
+                    const BudgetRequest& request) {
+  const auto e = static_cast<std::size_t>(request.error);
   const auto ms = frame_ms(fresh);
   const auto& origin = fresh.front().origin;
   SettingFile out{all.setting, {}};
   out.measured = {.machine = origin.machine,
                   .program = origin.program,
                   .scene_sha256 = origin.scene_sha256,
-                  .picture = wish.plan.size.empty() ? "none" : wish.plan.size,
-                  .seconds = wish.plan.seconds,
-                  .budget_ms = wish.budget_ms,
+                  .picture = request.plan.size.empty() ? "none" : request.plan.size,
+                  .seconds = request.plan.seconds,
+                  .budget_ms = request.budget_ms,
                   .ms_mean = 0,
                   .ms_p95 = quantile(ms, 0.95),
                   .error = sweep_error_columns[e],
@@ -71,27 +72,27 @@ SettingFile file_of(const SettingResult& all, const std::vector<StoredCell>& fre
   return out;
 }
 
-[[noreturn]] void refuse(const BudgetWish& wish, const std::string& who, double ms, const char* when) {
+[[noreturn]] void refuse(const BudgetRequest& request, const std::string& who, double ms, const char* when) {
   throw base::Error(
-      fmt::format("--budget {:.4g}ms", wish.budget_ms),
+      fmt::format("--budget {:.4g}ms", request.budget_ms),
       fmt::format("is met by no setting of the sweep{}. Nearest is {}: {:.2f} ms in 95 % of its frames, "
                   "{:.2f} more",
-                  when, who, ms, ms - wish.budget_ms),
+                  when, who, ms, ms - request.budget_ms),
       fmt::format("allow {:.2f}ms, or sweep smaller sizes (--n-star)", std::ceil(ms * 100) / 100));
 }
 
-bool wished(const SolverSetting& setting, const BudgetWish& wish) {
-  return (!wish.method || setting.method == *wish.method) &&
-         (!wish.n_star || setting[SolverKnob::Size] == static_cast<double>(*wish.n_star)) &&
-         (!wish.frames_per_s || setting[SolverKnob::Rate] == *wish.frames_per_s);
+bool requested(const SolverSetting& setting, const BudgetRequest& request) {
+  return (!request.method || setting.method == *request.method) &&
+         (!request.n_star || setting[SolverKnob::Size] == static_cast<double>(*request.n_star)) &&
+         (!request.frames_per_s || setting[SolverKnob::Rate] == *request.frames_per_s);
 }
 
-/// The settings that meet the wishes and have the error.
-std::vector<SettingResult> candidates(const PriceList& list, const BudgetWish& wish) {
-  const auto e = static_cast<std::size_t>(wish.error);
+/// The settings that meet the request and have the error.
+std::vector<SettingResult> candidates(const PriceList& list, const BudgetRequest& request) {
+  const auto e = static_cast<std::size_t>(request.error);
   std::vector<SettingResult> out;
   for (const auto& one : list.settings)
-    if (wished(one.setting, wish)) out.push_back(one);
+    if (requested(one.setting, request)) out.push_back(one);
   if (out.empty()) {
     throw base::Error("--of-method, --of-n-star, --of-rate", "match no setting of the sweep",
                       "give values that --csv lists, or sweep them (--n-star)");
@@ -99,7 +100,7 @@ std::vector<SettingResult> candidates(const PriceList& list, const BudgetWish& w
   std::erase_if(out, [&](const auto& one) { return std::isnan(one.errors[e].mean); });
   if (out.empty()) {
     throw base::Error("--error " + sweep_error_names()[e],
-                      "is not known for any setting: " + why_untold(list),
+                      "is not known for any setting: " + why_no_price(list),
                       "ask for another error, or sweep with --pictures 240x135");
   }
   return out;
@@ -150,29 +151,30 @@ std::vector<std::size_t> within_budget(const std::vector<SettingResult>& setting
 }
 
 SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
-                           const BudgetWish& wish, const std::function<StoredCell(const SweepCell&)>& run,
+                           const BudgetRequest& request,
+                           const std::function<StoredCell(const SweepCell&)>& run,
                            const std::function<void(const std::string&)>& said) {
-  const auto list = price_list(cells, wish.plan, origin, wish.tank_length_m);
-  const auto settings = candidates(list, wish);
-  const auto order = within_budget(settings, wish.budget_ms, wish.error);
+  const auto list = price_list(cells, request.plan, origin, request.tank_length_m);
+  const auto settings = candidates(list, request);
+  const auto order = within_budget(settings, request.budget_ms, request.error);
   if (order.empty()) {
     const SettingResult* nearest = nullptr;
     for (const auto& one : settings)
       if (one.ms_p95 > 0 && (!nearest || one.ms_p95 < nearest->ms_p95)) nearest = &one;
     if (!nearest) throw base::Error("the sweep", "has no timed setting", "run it with a longer --seconds");
-    refuse(wish, named(nearest->setting), nearest->ms_p95, "");
+    refuse(request, named(nearest->setting), nearest->ms_p95, "");
   }
   std::string nearest;
   double nearest_ms = 0;
   for (const std::size_t i : order) {
     const auto& setting = settings[i].setting;
-    const auto fresh = run_afresh(setting, cells, wish.plan, run);
+    const auto fresh = run_afresh(setting, cells, request.plan, run);
     const double p95 = quantile(frame_ms(fresh), 0.95);
-    if (p95 <= wish.budget_ms) {
-      const auto all = price_list(joined(cells, fresh), wish.plan, origin, wish.tank_length_m);
+    if (p95 <= request.budget_ms) {
+      const auto all = price_list(joined(cells, fresh), request.plan, origin, request.tank_length_m);
       const auto found = std::find_if(all.settings.begin(), all.settings.end(),
                                       [&](const auto& one) { return one.setting == setting; });
-      return file_of(*found, fresh, wish);
+      return file_of(*found, fresh, request);
     }
     said(fmt::format("{}: {:.2f} ms when measured anew, not kept", named(setting), p95));
     if (nearest.empty() || p95 < nearest_ms) {
@@ -180,7 +182,7 @@ SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrig
       nearest_ms = p95;
     }
   }
-  refuse(wish, nearest, nearest_ms, " when measured anew");
+  refuse(request, nearest, nearest_ms, " when measured anew");
 }
 
 }  // namespace apps

@@ -24,7 +24,7 @@ SweepError parse_sweep_error(const std::string& word);
 std::vector<std::size_t> within_budget(const std::vector<SettingResult>& settings, double budget_ms,
                                        SweepError error);
 
-struct BudgetWish {
+struct BudgetRequest {
   SweepPlan plan;
   double budget_ms = 0;
   SweepError error = SweepError::Centre;
@@ -40,7 +40,8 @@ struct BudgetWish {
 /// each setting that fails when tried. base::Error if none keeps the budget, with the nearest one and how
 /// much it misses.
 SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
-                           const BudgetWish& wish, const std::function<StoredCell(const SweepCell&)>& run,
+                           const BudgetRequest& request,
+                           const std::function<StoredCell(const SweepCell&)>& run,
                            const std::function<void(const std::string&)>& said);
 
 }  // namespace apps

@@ -82,11 +82,11 @@ void FrameLoop::stop() {
 
 void FrameLoop::make_session() {
   auto made = maker_->make(facts_.last.predicted_ns);
-  SessionFacts told = facts_of(*made);
+  SessionFacts reported = facts_of(*made);
   {
     const std::scoped_lock held(asking_, mutex_);
     session_ = std::move(made);
-    told_ = std::move(told);
+    reported_ = std::move(reported);
   }
   changed_.notify_all();
 }
@@ -194,7 +194,7 @@ void FrameLoop::black_out(study::CutCause cause) {
 HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   const HeadsetSlot& slot = record.slot;
   const RateMeter& meter = session_->meter();
-  HeadsetRate rate{facts_.rate.told_hz, meter.hz()};
+  HeadsetRate rate{facts_.rate.reported_hz, meter.hz()};
   // The rate that the runtime reports may be wrong before the measured rate has settled.
   if (rate.measured_hz && !facts_.rate.measured_hz) rate = session_->rate();
   HeadsetLayers out;
@@ -276,7 +276,7 @@ void FrameLoop::turn() {
 
 SessionFacts FrameLoop::session() const {
   const std::lock_guard held(mutex_);
-  return told_;
+  return reported_;
 }
 
 LoopFacts FrameLoop::facts() const {

@@ -154,7 +154,7 @@ class FrameLoop {
   bool running_ = false, stopping_ = false;
   bool doubted_ = false;       ///< times repeated or left their grid
   bool runtime_ends_ = false;  ///< no session can be made anew
-  SessionFacts told_;
+  SessionFacts reported_;
   std::vector<std::int64_t> moves_ns_;  ///< times at which the world's origin will move
   LoopFacts facts_;
   std::int64_t slots_ = 0;           ///< number of slots begun

@@ -67,9 +67,9 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
 
 /// The settled rate as schedules count it, if it meets the rules; none otherwise.
 std::optional<double> HeadsetDisplay::met_hz() const {
-  const auto [told_hz, measured_hz] = facts().rate;
+  const auto [reported_hz, measured_hz] = facts().rate;
   if (!measured_hz || (rules_.refresh_hz && !near_rate(*measured_hz, *rules_.refresh_hz))) return {};
-  return study::nominal_refresh(*measured_hz, told_hz.value_or(0));
+  return study::nominal_refresh(*measured_hz, reported_hz.value_or(0));
 }
 
 /// Accepts a new session once its rate is known, because trials are compiled for a rate.
@@ -128,7 +128,7 @@ std::int64_t HeadsetDisplay::lead_ns() const {
 }
 
 /// Processes the session's events.
-void HeadsetDisplay::heed() {
+void HeadsetDisplay::poll_requests() {
   using Kind = HeadsetEvent::Kind;
   for (const HeadsetEvent& event : loop_.take_events()) {
     const bool state = event.kind == Kind::State;
@@ -155,7 +155,7 @@ void HeadsetDisplay::heed() {
 
 void HeadsetDisplay::turn() {
   loop_.turn();
-  heed();
+  poll_requests();
 }
 
 void HeadsetDisplay::turn_until(std::int64_t deadline_ns) {
@@ -223,11 +223,11 @@ study::PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, study::Cl
     times.predicted_display_ns = loop_.show(*from, scheduled_ns).predicted_ns;
   } else {
     clock.wait_until(scheduled_ns);
-    heed();
+    poll_requests();
     if (!spoilt_) spoilt_ = new_session_ ? study::CutCause::SessionLost : study::CutCause::Pose;
     times.predicted_display_ns = scheduled_ns;
   }
-  heed();
+  poll_requests();
   return times;
 }
 
@@ -239,7 +239,7 @@ void HeadsetDisplay::hold(std::int64_t until_ns, study::Clock&) {
     const auto from = draw(at_ns);
     if (!from) return;
     loop_.show(*from, at_ns);
-    heed();
+    poll_requests();
   }
 }
 

@@ -80,7 +80,7 @@ class HeadsetDisplay final : public study::Display {
 
  private:
   std::int64_t lead_ns() const;
-  void heed();
+  void poll_requests();
   std::optional<double> met_hz() const;
   void settle_new_session();
   void share_records();

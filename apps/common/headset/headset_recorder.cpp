@@ -108,11 +108,11 @@ void HeadsetRecorder::drain() {
 
 void HeadsetRecorder::add_gaze(const HeadsetRecord& record) {
   study::GazeSample sample = gaze_of(record, origin_);
-  const bool told = sample.device_ns.has_value(), again = told && *sample.device_ns <= last_told_ns_;
+  const bool told = sample.device_ns.has_value(), again = told && *sample.device_ns <= last_reported_ns_;
   if (again && sample.valid) return;
   if (told && !again) {
-    last_told_ns_ = *sample.device_ns;
-    lag_ns_ = std::max(lag_ns_, record.slot.predicted_ns - last_told_ns_);
+    last_reported_ns_ = *sample.device_ns;
+    lag_ns_ = std::max(lag_ns_, record.slot.predicted_ns - last_reported_ns_);
   } else if (!sample.valid) {
     // Also if the runtime still reports the last sample's time: the eyes are lost.
     sample.device_ns.reset();
@@ -151,7 +151,7 @@ study::HeadsetFacts HeadsetRecorder::facts() const {
   out.eye_tracking = session.eye_gaze;
   out.hold = study::hold_name(display_.rules().hold);
   const HeadsetRate rate = display_.facts().rate;
-  out.refresh_told_hz = rate.told_hz;
+  out.refresh_told_hz = rate.reported_hz;
   out.refresh_measured_hz = rate.measured_hz;
   const EyeViews views = display_.facts().views;
   for (std::size_t eye = 0; eye < views.size(); ++eye) out.eyes[eye] = facts_of(views[eye]);

@@ -51,8 +51,8 @@ class HeadsetRecorder final : public study::GazeSource, public study::SlotSource
   std::vector<study::GazeSample> gaze_;
   std::vector<study::SlotRecord> slots_;
   std::optional<HeadsetRecord> newest_;
-  std::int64_t last_told_ns_ = 0, lag_ns_ = 0;  ///< last reported time; largest lag before its slot
-  std::int64_t last_ns_ = 0;                    ///< time of the last sample
+  std::int64_t last_reported_ns_ = 0, lag_ns_ = 0;  ///< last reported time; largest lag before its slot
+  std::int64_t last_ns_ = 0;                        ///< time of the last sample
 };
 
 /// The gaze sample of a slot, in the head's frame; not valid if the eyes, or the head's orientation, are not.

@@ -20,7 +20,7 @@ namespace {
 constexpr XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 constexpr const char* blend_name = "opaque";
 /// Relative difference below which a measured rate equals the rate of an event.
-constexpr double told_well = 0.04;
+constexpr double rate_tolerance = 0.04;
 
 HeadsetSystem read_opaque_system(const XrConnection& xr) {
   HeadsetSystem system = read_system(xr);
@@ -69,7 +69,7 @@ struct HeadsetSession::Parts {
   std::vector<PictureSize> sizes;                      ///< left, right and, if asked for, the page
   std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< in the same order
   RateMeter meter;
-  double told_hz = 0;                    ///< from the last event; 0: none came
+  double reported_hz = 0;                ///< from the last event; 0: none came
   std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event reported
   std::int64_t next_index = 0;
   WatchedThread watched;
@@ -170,7 +170,7 @@ void HeadsetSession::request_exit() { parts_->lifecycle.request_exit(); }
 std::vector<HeadsetEvent> HeadsetSession::poll() {
   std::vector<HeadsetEvent> events = parts_->lifecycle.poll();
   for (const HeadsetEvent& event : events) {
-    if (event.kind == HeadsetEvent::Kind::Refresh) parts_->told_hz = event.to_hz;
+    if (event.kind == HeadsetEvent::Kind::Refresh) parts_->reported_hz = event.to_hz;
     if (event.state == HeadsetState::Stopping) parts_->meter.interrupt();
   }
   if (parts_->measured) events.push_back(*parts_->measured);
@@ -184,7 +184,7 @@ HeadsetSlot HeadsetSession::wait() {
   HeadsetSlot slot{parts.next_index++, parts.clock.to_ns(frame.predictedDisplayTime),
                    frame.predictedDisplayPeriod, frame.shouldRender == XR_TRUE, frame.predictedDisplayTime};
   const auto change = parts.meter.add(slot.predicted_ns);
-  if (change && std::abs(change->to_hz - parts.told_hz) > told_well * change->to_hz) {
+  if (change && std::abs(change->to_hz - parts.reported_hz) > rate_tolerance * change->to_hz) {
     parts.measured = {.kind = HeadsetEvent::Kind::Refresh,
                       .from_hz = change->from_hz,
                       .to_hz = change->to_hz,
@@ -259,7 +259,7 @@ void HeadsetSession::end(const HeadsetSlot& slot, const HeadsetLayers& shown) {
   parts.session.call<PFN_xrEndFrame>("xrEndFrame", parts.session.get(), &info);
 }
 
-HeadsetRate HeadsetSession::rate() const { return {parts_->refresh.told_hz(), parts_->meter.hz()}; }
+HeadsetRate HeadsetSession::rate() const { return {parts_->refresh.reported_hz(), parts_->meter.hz()}; }
 const RateMeter& HeadsetSession::meter() const { return parts_->meter; }
 void HeadsetSession::request_rate(double hz) { parts_->refresh.request(hz); }
 

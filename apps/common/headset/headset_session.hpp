@@ -63,7 +63,7 @@ struct HeadsetNames {
 
 /// A display rate and its source.
 struct HeadsetRate {
-  std::optional<double> told_hz;      ///< reported by the runtime; only if it lists several rates
+  std::optional<double> reported_hz;  ///< reported by the runtime; only if it lists several rates
   std::optional<double> measured_hz;  ///< from settled steps between predicted times
 };
 

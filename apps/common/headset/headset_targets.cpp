@@ -119,9 +119,9 @@ std::optional<std::vector<study::TargetSample>> HeadsetTargets::look_once(
     display_.turn();
     for (const HeadsetRecord& record : display_.take_for_record()) {
       if (record.slot.predicted_ns < from_ns) continue;
-      const auto told_ns = record.input.gaze ? record.input.gaze->sampled_ns : std::nullopt;
-      if (told_ns && *told_ns <= last_ns) continue;  // the same sample again
-      last_ns = told_ns.value_or(last_ns);
+      const auto sampled_ns = record.input.gaze ? record.input.gaze->sampled_ns : std::nullopt;
+      if (sampled_ns && *sampled_ns <= last_ns) continue;  // the same sample again
+      last_ns = sampled_ns.value_or(last_ns);
       samples.push_back(sample_of(record, page.pose));
     }
   }

@@ -20,7 +20,7 @@ RefreshControl::RefreshControl(const SessionHandle& session) : session_(session)
   std::sort(rates_.begin(), rates_.end());
 }
 
-std::optional<double> RefreshControl::told_hz() const {
+std::optional<double> RefreshControl::reported_hz() const {
   if (rates_.size() < 2) return {};
   float rate = 0;
   session_.call<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB", session_.get(), &rate);

@@ -14,7 +14,7 @@ class RefreshControl {
   /// Hz, ascending; empty: not reported.
   const std::vector<double>& rates() const { return rates_; }
   /// The current rate. None unless several rates are listed: some runtimes that list one rate report another.
-  std::optional<double> told_hz() const;
+  std::optional<double> reported_hz() const;
   /// Asks for a listed rate; the display may take it later, or never. base::Error for a rate that is not
   /// listed.
   void request(double hz) const;

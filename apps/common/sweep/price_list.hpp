@@ -132,7 +132,7 @@ std::string in_words(const ObservedOrder& order);
 std::string parting_in_words(const PriceList& list);
 
 /// Why an error of pictures is NaN in all rows.
-std::string why_untold(const PriceList& list);
+std::string why_no_price(const PriceList& list);
 
 /// Tables for programs.
 TextTable setting_table(const PriceList& list);

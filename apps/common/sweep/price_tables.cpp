@@ -149,7 +149,7 @@ std::string parting_in_words(const PriceList& list) {
                      list.parting_s);
 }
 
-std::string why_untold(const PriceList& list) {
+std::string why_no_price(const PriceList& list) {
   if (!list.pictures()) return "the sweep kept no pictures";
   return "the reference has no large enough part of its kind before the pictures diverge";
 }
@@ -166,7 +166,7 @@ std::string to_markdown(const PriceList& list) {
     const auto error = static_cast<SweepError>(e);
     if (e >= water_error_count && !list.pictures()) break;
     if (std::isnan(list.floor[e])) {
-      out += fmt::format("{}: {}\n", sweep_error_columns[e], why_untold(list));
+      out += fmt::format("{}: {}\n", sweep_error_columns[e], why_no_price(list));
     } else {
       out += fmt::format("{}: the floor is {} %; the reference {}\n", sweep_error_columns[e],
                          shortest(list.floor[e]), convergence(list, error));

@@ -143,8 +143,8 @@ std::vector<Panel> hypothesis_panels(const Json& json) {
 
 Panel coefficient_panel(const Json& json, const std::string& name, const std::string& title, int decimals) {
   Panel out{title, {}, {}, 0, decimals};
-  const Json& wished = json.at("settings").at("precision_" + name);
-  if (wished.is_number()) out.marks.push_back(wished.get<double>());
+  const Json& precision = json.at("settings").at("precision_" + name);
+  if (precision.is_number()) out.marks.push_back(precision.get<double>());
   for (const char* figure : {"half_width", "half_width_wished", "sd"}) {
     Curve curve{figure, {}, {}};
     for (const auto& point : json.at("precision").at("curve")) {

@@ -138,11 +138,11 @@ std::string costs_section(const Field& root) {
     const bool pairs = std::string(task) == "task2";
     std::string part =
         (any(rows, says_something) ? costs_table(rows, title, pairs) : "") + notes(rows, title);
-    if (root["sweep"].there()) part += sweep_tables_of(root, rows, title, pairs);
+    if (root["sweep"].exists()) part += sweep_tables_of(root, rows, title, pairs);
     body += subsection(title, part);
   }
   if (body.empty()) return "";
-  if (!root["sweep"].there())
+  if (!root["sweep"].exists())
     body +=
         paragraph("A sweep file (<code>--sweep</code>) holds the errors of usual settings; none was given.");
   std::vector<std::string> left_out;

@@ -22,14 +22,14 @@ std::string choices_of(const Field& question) {
   for (const Field& answer : pooled["answers"].entries())
     names += (names.empty() ? "" : " or ") + words(answer);
   const std::string taken =
-      pooled.there() ? names + ": " + count(pooled["n"]) : typeset(svg::escaped(pooled.reason()));
+      pooled.exists() ? names + ": " + count(pooled["n"]) : typeset(svg::escaped(pooled.reason()));
   return out + (out.empty() ? "" : "; ") + taken;
 }
 
 std::string numbers_of(const Field& question) {
   if (!question["mean"].is_number()) return typeset(svg::escaped(question.reason()));
   return "<i>M</i> = " + fixed(question["mean"], 1) + ", <i>SD</i> = " + fixed(question["sd"], 1) +
-         (question["range"].there() ? ", range within " + interval(question["range"], 0) : "");
+         (question["range"].exists() ? ", range within " + interval(question["range"], 0) : "");
 }
 
 }  // namespace
@@ -174,7 +174,7 @@ std::string detectable_scores(const Field& task1) {
 
 std::string detectable_preference(const Field& task2) {
   const Field one = task2["detectable"];
-  if (!one.there()) return "";
+  if (!one.exists()) return "";
   if (!one["share"].is_number())
     return subsection("Smallest detectable preference",
                       paragraph("Not given: " + typeset(svg::escaped(one["share"].reason())) + "."));

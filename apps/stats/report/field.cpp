@@ -58,12 +58,12 @@ Field Field::operator[](std::size_t index) const {
   return {(*value_)[index], pointer, value_};
 }
 
-bool Field::there() const {
+bool Field::exists() const {
   return !value_->is_null() && !(value_->is_object() && value_->contains("refused"));
 }
 
 std::string Field::reason() const {
-  if (there()) return "";
+  if (exists()) return "";
   const auto text = [](const Json* json, const char* key) {
     if (json == nullptr || !json->is_object() || !json->contains(key) || !(*json)[key].is_string())
       return std::string();
@@ -176,7 +176,7 @@ std::string counts(const Field& object) {
 }
 
 std::string why_not(const Field& field) {
-  if (field.there()) return "";
+  if (field.exists()) return "";
   const std::string reason = field.reason();
   return "<p class=\"refused\">Not given: " +
          (reason.empty() ? "the results hold no such part" : typeset(svg::escaped(reason))) + ".</p>\n";

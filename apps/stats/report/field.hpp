@@ -23,7 +23,7 @@ class Field {
   const Json& json() const { return *value_; }
   const std::string& pointer() const { return pointer_; }
   /// True if the value is neither absent, null nor refused.
-  bool there() const;
+  bool exists() const;
   /// Why there is no value: its own "refused", its "..._reason" or the "reason" beside it; empty if none is
   /// given.
   std::string reason() const;

@@ -43,7 +43,7 @@ svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<st
 
 /// The share that a pair's test is about: of answers, or over people if they answered several times.
 inline Field tested_share(const Field& pair) {
-  return pair["by_person"].there() ? pair["by_person"]["share"] : pair["share"];
+  return pair["by_person"].exists() ? pair["by_person"]["share"] : pair["share"];
 }
 
 /// Task 2 as in the paper's Fig. 10: how often each of a pair was chosen, with the interval of the share.

@@ -58,7 +58,7 @@ namespace {
 std::string banners(const Field& root) {
   const Field study = root["study"];
   std::string out;
-  if (study["incomplete"].there())
+  if (study["incomplete"].exists())
     out += "<p class=\"warning\"><strong>Incomplete.</strong> " + words(study["incomplete"]) +
            ": the database lacks them, and so do these results.</p>\n";
   const auto test = parts_where(root, [](const Field& protocol) { return protocol["test_data"].yes(); });
@@ -84,7 +84,7 @@ std::string head_section(const Field& root) {
   return "<h1>Results of " + (study["database"].words().empty() ? "a study" : words(study["database"])) +
          "</h1>\n" +
          paragraph((names.empty() ? "" : "Parts: " + names + ". ") +
-                   (root["date_utc"].there() ? "Computed " + words(root["date_utc"]) + "." : "")) +
+                   (root["date_utc"].exists() ? "Computed " + words(root["date_utc"]) + "." : "")) +
          banners(root);
 }
 

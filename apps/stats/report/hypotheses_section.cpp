@@ -84,7 +84,7 @@ std::string families(const Field& hypothesis) {
 /// The paired tests, given beside those of the mixed model.
 std::string paired(const Field& hypothesis) {
   const Field beside = hypothesis["paired"];
-  if (!beside.there()) return "";
+  if (!beside.exists()) return "";
   return paragraph("By paired <i>t</i> tests, which the plan does not decide by: " + words(beside["status"]) +
                    ".") +
          tests_table(hypothesis, beside["tests"], "paired tests beside").html();
@@ -107,7 +107,7 @@ std::string one(const Field& hypothesis, bool registered) {
   std::string body = paragraph("<q>" + words(hypothesis["title"]) + "</q>");
   body += paragraph(badge(registered) + " Decision: <strong>" + words(hypothesis["status"]) + "</strong>. " +
                     words(hypothesis["status_text"]));
-  if (hypothesis["status_if_testable"].there() && hypothesis["status"].words() == "not testable")
+  if (hypothesis["status_if_testable"].exists() && hypothesis["status"].words() == "not testable")
     body += paragraph(
         "Were it testable, the tests below would read: " + words(hypothesis["status_if_testable"]) + ".");
   body += paragraph("Rule: " + words(hypothesis["rule"]) + " (tests in the family: " +
@@ -124,7 +124,7 @@ std::string one(const Field& hypothesis, bool registered) {
   std::vector<std::string> lines;
   for (const Field& test : hypothesis["tests"].entries()) lines.push_back(apa(test, preference));
   body += list(lines) + paired(hypothesis);
-  if (paper.there())
+  if (paper.exists())
     body += paragraph("The paper's own procedure on these data (" + words(paper["rule"]) +
                       "): " + words(paper["status"]) + ". " + words(paper["text"]) +
                       " Of its own data the paper said: " + words(paper["published"]) + ".");
@@ -197,9 +197,9 @@ std::string sensitivity_section(const Field& root) {
       decisions = typeset(svg::escaped(variant.reason()));
     overview.row({words(variant["label"]), words(variant["task"]), count(variant["participants"]),
                   count(variant["answers"]), decisions,
-                  !variant["changed"].there() ? ""
-                  : changed.empty()           ? "none"
-                                              : changed});
+                  !variant["changed"].exists() ? ""
+                  : changed.empty()            ? "none"
+                                               : changed});
   }
   return section(
       "sensitivity", "Sensitivity",

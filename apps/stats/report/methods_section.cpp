@@ -42,7 +42,7 @@ std::string protocols_text(const Field& study) {
       out += "Sessions of " + title + " with analysed answers to which the experimenter was not blind: " +
              counts(protocol["unblinded"]) + ". ";
     out += effects_text(protocol, title);
-    if (protocol["overlay"].there())
+    if (protocol["overlay"].exists())
       out += "Over the water of every stimulus of " + title + " " + words(protocol["overlay"]) +
              " was painted. ";
     if (!protocol["mixed_pictures"].members().empty())
@@ -58,7 +58,7 @@ std::string people_text(const Field& flow) {
   std::string out;
   for (const auto& [key, title] : all_parts) {
     const Field part = flow[key];
-    if (!part.there()) continue;
+    if (!part.exists()) continue;
     out += std::string(title) + " was begun in " + count(part["started"]) + " sessions, of which " +
            count(part["done"]) + " were completed; of " + count(part["participants"]) + " participants " +
            count(part["no_answer"]) + " gave no answer to analyse, " + count(part["excluded_participants"]) +
@@ -102,10 +102,10 @@ std::string rules_text(const Field& rules, const std::vector<std::string>& actin
 /// The exclusion rules that could have an effect, in words; parts with the same rules are combined.
 std::string exclusion_rules(const Field& root) {
   const Field rules = root["plan"]["exclusions"];
-  if (!rules.there()) return "";
+  if (!rules.exists()) return "";
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;  // rules, parts
   for (const auto& [key, title] : all_parts) {
-    if (!root["flow"][key].there()) continue;
+    if (!root["flow"][key].exists()) continue;
     std::vector<std::string> acting;
     for (const Field& protocol : root["study"]["protocols"].entries())
       if (protocol["task"].words() == key)
@@ -149,8 +149,8 @@ std::string tests_of_task1(const Field& root) {
 std::string tests_of_task2(const Field& pairs) {
   bool binomial = false, shares = false;
   for (const Field& pair : pairs.entries()) {
-    shares = shares || pair["by_person"].there();
-    binomial = binomial || (!pair["by_person"].there() && pair["test"].there());
+    shares = shares || pair["by_person"].exists();
+    binomial = binomial || (!pair["by_person"].exists() && pair["test"].exists());
   }
   if (!shares && !binomial) return "";
   if (!shares) return "Each pair of Task 2 was tested by an exact two-sided binomial test. ";
@@ -179,7 +179,7 @@ std::string margins_text(const Field& root) {
 }
 
 std::string task1_text(const Field& root) {
-  if (!root["task1"].there()) return "";
+  if (!root["task1"].exists()) return "";
   const Field plan = root["plan"];
   return "Answers of Task 1 were averaged over scenes within each participant, " + n_star_sign +
          " and method before any "
@@ -216,18 +216,18 @@ std::string hypotheses_text(const Field& root) {
 bool has_intervals(const Field& root) {
   const char* parts[] = {"pilot", "task1", "task2", "sickness"};
   return std::any_of(std::begin(parts), std::end(parts),
-                     [&](const char* part) { return root[part].there(); });
+                     [&](const char* part) { return root[part].exists(); });
 }
 
 }  // namespace
 
 std::string methods_section(const Field& root) {
   std::string tests = factors_text(root) + hypotheses_text(root), end;
-  if (root["task2"].there()) tests = tests_of_task2(root["task2"]["pairs"]) + tests;
+  if (root["task2"].exists()) tests = tests_of_task2(root["task2"]["pairs"]) + tests;
   if (root["plan"]["confidence"].is_number() && has_intervals(root))
     end = "Intervals hold " + percent(root["plan"]["confidence"]) +
           " unless another share stands beside them. ";
-  if (root["versions"].there())
+  if (root["versions"].exists())
     end += "The analysis was made with ViP-Lab " + words(root["versions"]["vip_lab"]) +
            " and the GNU Scientific Library " + words(root["versions"]["gsl"]) + ".";
   std::string body;

@@ -51,7 +51,7 @@ std::string comparisons(const Field& task1) {
   const auto all = [](const Field&) { return true; };
   by_score(table, task1, all, [&](const Field& c) {
     const Field m = c["mixed"];
-    if (!m.there()) {
+    if (!m.exists()) {
       table.refused(difference_name(c), "no test: " + typeset(svg::escaped(m.reason())));
       return;
     }
@@ -131,7 +131,7 @@ std::string tipping_points(const Field& root) {
     const auto pairs = root["task1"]["comparisons"].entries();
     if (pairs.empty()) return "";
     for (const Field& c : pairs)
-      if (!c["tipping"].there())
+      if (!c["tipping"].exists())
         return paragraph("No tipping points: " + typeset(svg::escaped(c["tipping"].reason())) + ".");
     return paragraph("No participant lacks an answer to a method: there are no tipping points.");
   }

@@ -82,7 +82,7 @@ std::string document_name(const Field& results) {
   const Field protocol = results["study"]["protocols"][0];
   std::string out = words(results["section"]) + ", " + words(protocol["title"]) + ", " +
                     words(protocol["name"]) + " " + words(protocol["version"]);
-  if (results["pilot"]["question"].there()) out += ", question " + words(results["pilot"]["question"]);
+  if (results["pilot"]["question"].exists()) out += ", question " + words(results["pilot"]["question"]);
   return out;
 }
 

@@ -29,7 +29,7 @@ std::string exclusions_table(const Field& root) {
 std::string untouched(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts) {
-    bool touched = !root["flow"][key].there();
+    bool touched = !root["flow"][key].exists();
     for (const Field& e : root["exclusions"].entries()) touched = touched || e["task"].words() == key;
     if (!touched) parts.push_back(title);
   }
@@ -51,7 +51,7 @@ bool any_unjudged(const Field& timing) {
 
 /// Every session of the database, by protocol, with the section that analyses it.
 std::string roster(const Field& roster) {
-  if (!roster.there()) return "";
+  if (!roster.exists()) return "";
   Table table("Everybody in the database", {"Protocol", "Version", "SHA-256", "Participants", "Sessions",
                                             "Simulated", "Test data", "Section"});
   for (const Field& one : roster["protocols"].entries()) {
@@ -207,7 +207,7 @@ std::string participants_section(const Field& root) {
   std::string body = roster(root["roster"]);
   for (const auto& [key, title] : all_parts) {
     const Field flow = root["flow"][key];
-    if (flow.there())
+    if (flow.exists())
       body += figure(flow_chart(flow, std::string("flow-") + key, title),
                      std::string("What became of those who began: ") + title +
                          ". Answers count whether or not their session was completed.");

@@ -102,7 +102,7 @@ std::string bands(const Field& pilot) {
 /// The test that the curve is an exponential, and the free curve beside it.
 std::string form(const Field& pilot) {
   const Field test = pilot["form"];
-  if (!test.there()) return "";
+  if (!test.exists()) return "";
   std::string out = paragraph("Form of the curve: " + words(test["text"]) + ".");
   if (!test["rejected"].yes()) return out;
   const std::string mu = typeset("mu"), delta = typeset("delta");
@@ -118,7 +118,7 @@ std::string form(const Field& pilot) {
 std::string raters(const Field& pilot) {
   std::string out;
   const Field all = pilot["raters"];
-  if (!all.there()) return out;
+  if (!all.exists()) return out;
   for (const auto& [name, part] : {std::pair{"Direction of the ratings", "reverse_coders"},
                                    {"Drift over the session", "drift"},
                                    {"Lapses to the lowest score", "lapses"}})
@@ -170,8 +170,8 @@ svg::Picture pilot_map(const Field& pilot) {
 std::string pilot_section(const Field& root) {
   const Field pilot = root["pilot"];
   if (pilot.json().is_null()) return "";
-  if (!pilot.there() || pilot["status"].words() != "ok") {
-    const std::string reason = pilot.there() ? pilot["reason"].words() : pilot.reason();
+  if (!pilot.exists() || pilot["status"].words() != "ok") {
+    const std::string reason = pilot.exists() ? pilot["reason"].words() : pilot.reason();
     return section("pilot", "Pilot: tolerance of frame rates",
                    "<p class=\"refused\">No fit: " + typeset(svg::escaped(reason)) + ".</p>\n");
   }
@@ -188,10 +188,10 @@ std::string pilot_section(const Field& root) {
                "Mean scores over the standard deviation and the mean of the frame rate, with contours and "
                "the fitted curve, as the paper's Fig.&nbsp;6.");
   body += estimates(pilot);
-  if (pilot["lack_of_fit"].there())
+  if (pilot["lack_of_fit"].exists())
     body += paragraph("Shape of the scores: " + words(pilot["lack_of_fit"]["text"]) + ".");
   body += raters(pilot) + form(pilot) + bands(pilot);
-  const Field resampling = pilot["bootstrap"].there() ? pilot["bootstrap"] : pilot["interval"];
+  const Field resampling = pilot["bootstrap"].exists() ? pilot["bootstrap"] : pilot["interval"];
   body += model_of(pilot);
   body += paragraph("Intervals: " + words(pilot["interval"]["method"]) +
                     " (bootstrap: " + count(resampling["resamples"]) + " resamples, seed " +

@@ -37,7 +37,7 @@ std::string bars(const Field& pair, double y, double stars_end) {
   std::string out =
       svg::rectangle({x_of(0), y}, {x_of(share), y + bar}, svg::attribute("fill", svg::colour::sky) + frame) +
       svg::rectangle({x_of(share), y}, {x_of(1), y + bar}, "fill=\"url(#preference-hatch)\"" + frame);
-  const Field ci = pair["by_person"].there() ? pair["by_person"]["ci"] : pair["wilson"];
+  const Field ci = pair["by_person"].exists() ? pair["by_person"]["ci"] : pair["wilson"];
   if (ci[0].is_number() && ci[1].is_number()) out += interval_line(ci[0].number(), ci[1].number(), middle);
   const std::string halo =
       "font-size=\"13\" stroke-width=\"4\" stroke-linejoin=\"round\" paint-order=\"stroke\" "

@@ -29,10 +29,10 @@ std::string bundle_text(const Field& bundle) {
 std::string everything_else(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts)
-    if (root[key].there()) parts.push_back(std::string("tables and tests of ") + title);
+    if (root[key].exists()) parts.push_back(std::string("tables and tests of ") + title);
   if (!root["descriptives"].entries().empty()) parts.push_back("answers by cell");
   if (!root["task1"]["ordinal"].entries().empty()) parts.push_back("ordinal models");
-  if (root["task2"]["bradley_terry"].there()) parts.push_back("the Bradley-Terry model");
+  if (root["task2"]["bradley_terry"].exists()) parts.push_back("the Bradley-Terry model");
   if (!root["sensitivity"].entries().empty()) parts.push_back("sensitivity");
   return enumerated(parts);
 }
@@ -45,8 +45,8 @@ bool preregistered(const Field& root, const std::string& task) {
 
 std::string preregistration_section(const Field& root) {
   const Field plan = root["plan"], bundle = root["preregistration"];
-  if (!plan.there() && !bundle.there()) return "";
-  std::string body = bundle.there()
+  if (!plan.exists() && !bundle.exists()) return "";
+  std::string body = bundle.exists()
                          ? bundle_text(bundle)
                          : paragraph(
                                "No preregistration was given: every analysis of this page is exploratory. "
@@ -56,8 +56,8 @@ std::string preregistration_section(const Field& root) {
   for (const auto& [key, title] : all_parts) {
     const std::string task = key;
     const auto hypotheses = root["hypotheses"].entries();
-    if (root[key].there() && std::any_of(hypotheses.begin(), hypotheses.end(),
-                                         [&](const Field& one) { return one["task"].words() == task; }))
+    if (root[key].exists() && std::any_of(hypotheses.begin(), hypotheses.end(),
+                                          [&](const Field& one) { return one["task"].words() == task; }))
       parts.push_back(badge(preregistered(root, key)) + " Hypotheses of " + title +
                       ": the tests of each family with their margins, corrections and exclusions.");
   }

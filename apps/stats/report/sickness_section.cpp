@@ -42,7 +42,7 @@ const std::vector<std::string> changed_columns{"<i>n</i>",        "<i>M</i> of c
                                                "Rank correlation"};
 
 std::string ssq(const Field& ssq) {
-  if (!ssq.there()) return "";
+  if (!ssq.exists()) return "";
   Table levels("SSQ scores before and after", with_columns({"Score"}, described_columns));
   Table changes("Changes of the SSQ scores, after less before", with_columns({"Score"}, changed_columns));
   const auto never = [&](const char* when) { return ssq[when].is_number() && ssq[when].number() == 0; };
@@ -72,7 +72,7 @@ std::string ssq(const Field& ssq) {
 }
 
 std::string fms(const Field& fms, const std::string& id) {
-  if (!fms.there()) return "";
+  if (!fms.exists()) return "";
   Table courses("FMS: mean and peak of each participant", with_columns({"Part"}, described_columns));
   const auto part = [&](const std::string& title, const Field& course) {
     courses.group(title);

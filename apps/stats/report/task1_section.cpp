@@ -90,15 +90,15 @@ std::string other_tests(const Field& task1, const Field& score) {
       by_n_star(std::move(table), task1, "comparisons", score["code"].words(), [](Table& t, const Field& c) {
         const Field w = c["wilcoxon"], welch = c["welch"], tost = c["tost"];
         const auto why = [](const Field& part, const std::string& shown) {
-          return part.there() ? shown : typeset(svg::escaped(part.reason()));
+          return part.exists() ? shown : typeset(svg::escaped(part.reason()));
         };
         t.row({score_pair(c), why(w, fixed(w["w"], 1)), p_bare(w["p"]), p_bare(w["p_holm"]),
                fixed(w["location"], 2) + " " + interval(w["ci"], 2) +
-                   (w["ci"].there() ? " (" + percent(w["ci_level"], 1) + ")" : ""),
+                   (w["ci"].exists() ? " (" + percent(w["ci_level"], 1) + ")" : ""),
                why(welch, fixed(welch["t"], 2) + " (" + fixed(welch["df"], 1) + ")"), p_bare(welch["p"]),
                why(tost, "\xC2\xB1" + fixed(tost["margin"], 2)),
-               tost.there() ? percent(tost["ci_confidence"]) + " " + interval(tost["ci"], 2)
-                            : interval(tost["ci"], 2),
+               tost.exists() ? percent(tost["ci_confidence"]) + " " + interval(tost["ci"], 2)
+                             : interval(tost["ci"], 2),
                p_bare(tost["p"]), yes_no(tost["equivalent"]), interval(c["bca"], 2),
                p_bare(c["normality"]["p"])});
       });
@@ -139,7 +139,7 @@ std::string omnibus(const Field& task1) {
     const Field f = o["friedman"], a = o["anova"];
     const std::string name = label_of(task1, o) + ", " + words(o["n_star"]);
     const auto why = [](const Field& part, const std::string& shown) {
-      return part.there() ? shown : typeset(svg::escaped(part.reason()));
+      return part.exists() ? shown : typeset(svg::escaped(part.reason()));
     };
     table.row({name, count(o["n"]), count(o["n_incomplete"]),
                why(f, fixed(f["chi2"], 2) + " (" + count(f["df"]) + ")"), p_bare(f["p"]),
@@ -147,7 +147,7 @@ std::string omnibus(const Field& task1) {
                why(a, fixed(a["f"], 2) + " (" + count(a["df1"]) + ", " + count(a["df2"]) + ")"),
                p_bare(a["p"]), fixed(a["epsilon_gg"], 2), p_bare(a["p_gg"]), fixed(a["epsilon_hf"], 2),
                p_bare(a["p_hf"]), fixed(a["partial_eta2"], 2), fixed(a["generalised_eta2"], 2)});
-    if (f.there() && a.there())
+    if (f.exists() && a.exists())
       lines.push_back(name + ": <i>F</i>(" + count(a["df1"]) + ", " + count(a["df2"]) +
                       ") = " + fixed(a["f"], 2) + ", <i>p</i><sub>GG</sub> " + p(a["p_gg"]) +
                       ", \xCE\xB5 = " + fixed(a["epsilon_gg"], 2) + ", generalised \xCE\xB7\xC2\xB2 = " +
@@ -164,7 +164,7 @@ std::string ordinal(const Field& task1) {
   bool penalised = false;
   for (const Field& model : task1["ordinal"].entries()) {
     const std::string name = words(model["question"]) + ", " + words(model["n_star"]);
-    if (!model["effects"].there()) {
+    if (!model["effects"].exists()) {
       const std::string reason = model.reason().empty() ? model["effects"].reason() : model.reason();
       table.refused(name, "not fitted: " + typeset(svg::escaped(reason)));
       continue;
@@ -174,7 +174,7 @@ std::string ordinal(const Field& task1) {
                         ", " + count(model["n"]) + " answers of " + count(model["participants"]) +
                         " participants (SD " + fixed(model["participant_sd"], 2) + "), log-likelihood " +
                         fixed(model["log_likelihood"], 1);
-    if (overall.there())
+    if (overall.exists())
       title += "; any effect: \xCF\x87\xC2\xB2(" + count(overall["df"]) + ") = " + fixed(overall["chi2"], 2) +
                ", <i>p</i> " + p(overall["p"]);
     if (!model["penalty"].words().empty()) {
@@ -269,7 +269,7 @@ std::string one_score(const Field& task1, const Field& score) {
 std::string task1_section(const Field& root) {
   const Field task1 = root["task1"];
   if (task1.json().is_null()) return "";
-  if (!task1.there()) return section("task1", "Task 1: realism and cybersickness", why_not(task1));
+  if (!task1.exists()) return section("task1", "Task 1: realism and cybersickness", why_not(task1));
   std::string body = paragraph(
       badge(false) + " " + count(task1["participants"]) + " participants, " + count(task1["reports"]) +
       " reports. All pairwise and omnibus tests of this section describe the data" +

@@ -13,8 +13,9 @@ std::string preferred_pair(const Field& pair) { return words(pair["a"]) + " over
 /// True if a pair has the binomial test's Wilson interval.
 bool has_wilson(const Field& pairs) {
   const auto all = pairs.entries();
-  return std::any_of(all.begin(), all.end(),
-                     [](const Field& pair) { return !pair["by_person"].there() && pair["wilson"].there(); });
+  return std::any_of(all.begin(), all.end(), [](const Field& pair) {
+    return !pair["by_person"].exists() && pair["wilson"].exists();
+  });
 }
 
 /// The names of the intervals on the bars.
@@ -37,8 +38,8 @@ std::string interval_names(const Field& pairs) {
 std::string test_names(const Field& pairs) {
   std::string out, binomial, shares;
   for (const Field& pair : pairs.entries()) {
-    if (!pair["test"].there()) continue;
-    (pair["by_person"].there() ? shares : binomial) = words(pair["test"]);
+    if (!pair["test"].exists()) continue;
+    (pair["by_person"].exists() ? shares : binomial) = words(pair["test"]);
   }
   return binomial + (binomial.empty() || shares.empty() ? "" : " or ") + shares;
 }
@@ -91,10 +92,10 @@ std::string pairs_table(const Field& pairs) {
     std::vector<std::string> cells{name,
                                    count(pair["k"]) + " of " + count(pair["n"]),
                                    percent(tested_share(pair)),
-                                   people.there()
+                                   people.exists()
                                        ? interval(people["ci"], 2) + " (" + words(people["ci_name"]) + ")"
                                        : interval(pair["clopper_pearson"], 2) + " (Clopper-Pearson)",
-                                   people.there() ? "" : interval(pair["wilson"], 2),
+                                   people.exists() ? "" : interval(pair["wilson"], 2),
                                    words(pair["test"]),
                                    p_bare(pair["p"]),
                                    words(pair["stars"]),
@@ -115,12 +116,12 @@ std::string preference_apa_lines(const Field& pairs) {
   for (const Field& pair : pairs.entries()) {
     if (!pair["p"].is_number()) continue;
     const Field people = pair["by_person"];
-    const Field ci = people.there() ? people["ci"] : pair["clopper_pearson"];
+    const Field ci = people.exists() ? people["ci"] : pair["clopper_pearson"];
     lines.push_back(preferred_pair(pair) + ": " + count(pair["k"]) + " of " + count(pair["n"]) +
-                    (people.there() ? " answers of " + count(people["participants"]) +
-                                          " people, mean share " + percent(people["share"]) + ", CI "
-                                    : " (" + percent(pair["share"]) + "), CI ") +
-                    interval(ci, 2) + (pair["test"].there() ? ", " + words(pair["test"]) : "") +
+                    (people.exists() ? " answers of " + count(people["participants"]) +
+                                           " people, mean share " + percent(people["share"]) + ", CI "
+                                     : " (" + percent(pair["share"]) + "), CI ") +
+                    interval(ci, 2) + (pair["test"].exists() ? ", " + words(pair["test"]) : "") +
                     ", <i>p</i> " + p(pair["p"]) + ", <i>p</i><sub>Holm</sub> " + p(pair["p_holm"]));
   }
   return list(lines);
@@ -128,7 +129,7 @@ std::string preference_apa_lines(const Field& pairs) {
 
 std::string interval_bias(const Field& bias) {
   if (bias.json().is_null()) return "";
-  if (!bias.there()) return subsection("Bias towards the first interval", why_not(bias));
+  if (!bias.exists()) return subsection("Bias towards the first interval", why_not(bias));
   std::string body =
       paragraph("The first of a pair was chosen in " + count(bias["first_chosen"]) + " of " +
                 count(bias["n"]) + " answers (" + percent(bias["share"]) + ", CI " +
@@ -138,7 +139,7 @@ std::string interval_bias(const Field& bias) {
   if (by["test"].words() == "exact sign test") {
     body += paragraph("Over participants: every share is " + fixed(by["mean_share"], 2) + ", " +
                       words(by["test"]) + ", <i>p</i> " + p(by["p"]) + ".");
-  } else if (by.there()) {
+  } else if (by.exists()) {
     body += paragraph("Over participants: mean share " + fixed(by["mean_share"], 2) + " " +
                       interval(by["ci"], 2) + ", <i>t</i>(" + fixed(by["df"], 0) +
                       ") = " + fixed(by["t"], 2) + ", <i>p</i> " + p(by["p"]) + ".");
@@ -150,7 +151,7 @@ std::string interval_bias(const Field& bias) {
 
 std::string bradley_terry(const Field& model) {
   if (model.json().is_null()) return "";
-  if (!model.there()) return subsection("Bradley-Terry model", why_not(model));
+  if (!model.exists()) return subsection("Bradley-Terry model", why_not(model));
   Table table("Abilities on the log-odds scale, with mean zero",
               {"Method", "Estimate", "<i>SE</i>", "CI", "Worth (sums to one)"});
   for (const Field& ability : model["abilities"].entries())
@@ -170,7 +171,8 @@ std::string bradley_terry(const Field& model) {
           : "Errors and intervals take all answers as independent: " + words(people["why_independent"]) +
                 ".");
   const auto test = [](const std::string& name, const Field& part) {
-    if (!part.there()) return part.reason().empty() ? "" : name + ": " + typeset(svg::escaped(part.reason()));
+    if (!part.exists())
+      return part.reason().empty() ? "" : name + ": " + typeset(svg::escaped(part.reason()));
     return name + ": \xCF\x87\xC2\xB2(" + count(part["df"]) + ") = " + fixed(part["chi2"], 2) +
            ", <i>p</i> " + p(part["p"]);
   };
@@ -179,11 +181,11 @@ std::string bradley_terry(const Field& model) {
                            test("Lack of fit over the pairs, if answers were independent", model["fit"])})
     if (!line.empty()) lines.push_back(line);
   const Field equal = people["equal"];
-  if (equal.there())
+  if (equal.exists())
     lines.push_back("All methods equal, over people: <i>F</i>(" + fixed(equal["df1"], 0) + ", " +
                     fixed(equal["df2"], 0) + ") = " + fixed(equal["f"], 2) + ", <i>p</i> " + p(equal["p"]));
   const Field order = model["order"];
-  if (order.there())
+  if (order.exists())
     lines.push_back("Effect of the order (log odds of the first interval): " + fixed(order["estimate"], 2) +
                     " " + interval(order["ci"], 2) + ", <i>SE</i> = " + fixed(order["se"], 2) +
                     ", <i>p</i> " + p(order["p"]));
@@ -192,7 +194,7 @@ std::string bradley_terry(const Field& model) {
 
 std::string triads(const Field& t) {
   if (t.json().is_null()) return "";
-  if (!t.there()) return subsection("Circular triads", why_not(t));
+  if (!t.exists()) return subsection("Circular triads", why_not(t));
   return subsection("Circular triads",
                     paragraph("Participants who judged every pair once: " + count(t["n"]) +
                               " (others: " + count(t["incomplete"]) + "). Mean number of circular triads " +
@@ -209,7 +211,7 @@ std::string preferences_by_scene(const Field& task2) {
 }
 
 std::string preference_retest(const Field& r) {
-  if (!r.there()) return "";
+  if (!r.exists()) return "";
   return subsection("Test and retest", paragraph("Of " + count(r["pairs"]) + " pairs shown again, " +
                                                  percent(r["same"]) + " were answered alike."));
 }
@@ -219,7 +221,7 @@ std::string preference_retest(const Field& r) {
 std::string task2_section(const Field& root) {
   const Field task2 = root["task2"];
   if (task2.json().is_null()) return "";
-  if (!task2.there()) return section("task2", "Task 2: preference", why_not(task2));
+  if (!task2.exists()) return section("task2", "Task 2: preference", why_not(task2));
   const Field pairs = task2["pairs"];
   std::vector<std::string> rules;
   for (const auto& [name, rule] : task2["rules"].members()) rules.push_back(words(rule));

@@ -39,15 +39,15 @@ struct Task {
   }
 };
 
-std::vector<Task> tasks_of(const study::Protocol& protocol, const ProtocolBakes& wish,
+std::vector<Task> tasks_of(const study::Protocol& protocol, const ProtocolBakes& request,
                            const std::vector<PlannedStimulus>& plan) {
   std::vector<Task> out;
   for (const PlannedStimulus& one : plan) {
     if (!one.live.empty()) continue;
-    BakeOrder order = order_of(protocol, one, wish.look);
-    order.pictures = wish.pictures;
+    BakeOrder order = order_of(protocol, one, request.look);
+    order.pictures = request.pictures;
     const sim::BakeHeader header = header_of(order);
-    out.push_back({std::move(order), header, wish.folder / one.file});
+    out.push_back({std::move(order), header, request.folder / one.file});
   }
   return out;
 }
@@ -62,8 +62,8 @@ void print_live(const std::vector<PlannedStimulus>& plan) {
 
 std::vector<std::string> all_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted) {
   std::vector<std::string> out = fluid_departures(found, wanted);
-  const auto add = [&](const std::string& had, const std::string& wish) {
-    if (had != wish) out.push_back(had + " instead of " + wish);
+  const auto add = [&](const std::string& had, const std::string& request) {
+    if (had != request) out.push_back(had + " instead of " + request);
   };
   for (const std::string& one : view_departures(found, wanted)) out.push_back(one);
   const auto kept = [](const auto& one) { return one.has_pictures() ? "pictures" : "particles alone"; };
@@ -178,13 +178,13 @@ std::uint64_t most_bytes(const sim::BakeHeader& header) {
           bytes_of_pixel * static_cast<std::uint64_t>(pixels));
 }
 
-void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& wish,
+void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& request,
                    const std::function<void()>& stop) {
   const std::vector<PlannedStimulus> plan = plan_bakes(protocol);
-  std::vector<Task> tasks = tasks_of(protocol, wish, plan);
+  std::vector<Task> tasks = tasks_of(protocol, request, plan);
   print_live(plan);
   if (tasks.empty())
-    throw base::Error(wish.file, "holds no stimulus that can be baked: " + plan.front().live,
+    throw base::Error(request.file, "holds no stimulus that can be baked: " + plan.front().live,
                       "run it without bakes; vip-study check says what each stimulus needs");
   std::optional<sim::GlContext> context;
   for (Task& task : tasks) {
@@ -194,10 +194,10 @@ void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& wish,
   }
   const std::size_t wanted = tasks.size();
   tasks = left_to_make(std::move(tasks), stop);
-  if (!tasks.empty()) check_room(tasks, wish.folder);
-  make_folder(wish.folder);
+  if (!tasks.empty()) check_room(tasks, request.folder);
+  make_folder(request.folder);
   make_all(tasks, stop);
-  std::printf("%s: all %zu bakes of %s are whole\n", wish.folder.c_str(), wanted, protocol.name.c_str());
+  std::printf("%s: all %zu bakes of %s are whole\n", request.folder.c_str(), wanted, protocol.name.c_str());
 }
 
 }  // namespace apps

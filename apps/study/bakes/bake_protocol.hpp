@@ -22,7 +22,7 @@ std::uint64_t most_bytes(const sim::BakeHeader& header);
 /// keeps, makes and leaves out. An existing bake is read completely and kept if it holds the wanted fluid and
 /// was made by this version and renderer. `stop` is called before each frame and may throw to end the work:
 /// complete bakes stay. base::Error: nothing can be baked, too little disk space, errors of write_bake().
-void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& wish,
+void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& request,
                    const std::function<void()>& stop);
 
 }  // namespace apps

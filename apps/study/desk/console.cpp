@@ -121,11 +121,11 @@ void Console::done(const study::UnitDone& unit) {
   if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // too late to cut the trial
 }
 
-study::Wish Console::wish() {
+study::Request Console::request() {
   const Guard guard(mutex_);
-  if (ended_) return study::Wish::EndSession;
+  if (ended_) return study::Request::EndSession;
   if (std::exchange(repeat_, false)) return study::CutCause::Experimenter;
-  return paused_ ? study::Wish::Pause : study::Wish::GoOn;
+  return paused_ ? study::Request::Pause : study::Request::GoOn;
 }
 
 bool Console::take_reopened() {

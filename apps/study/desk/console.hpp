@@ -30,14 +30,14 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Called on the session's thread: the begin of a session, then its hooks. wish() returns each cut only
+  /// Called on the session's thread: the begin of a session, then its hooks. request() returns each cut only
   /// once.
   void begin(const study::OpenSession& session);
   void begins(const study::OpenUnit& unit);
   void shown(const study::FrameRecord& frame);
   void done(const study::UnitDone& unit);
   void ends(const study::Ending& ending);
-  study::Wish wish();
+  study::Request request();
   /// The session pauses until key p: an alarm says why and what to do.
   void trouble(const study::Trouble& trouble);
   /// Adds an alarm for the rest of this session, such as a problem of the station.

@@ -57,12 +57,12 @@ PreflightLine judge_refresh(const std::optional<ScreenFacts>& screen) {
   if (screen->measured_hz == 0)
     return {Readiness::Warn, what,
             "swaps do not wait for the screen: switch on vertical synchronisation in the driver"};
-  if (screen->told_hz == 0)
+  if (screen->reported_hz == 0)
     return {Readiness::Unknown, what,
             fmt::format("measured {:.3f} Hz, the system reports none", screen->measured_hz)};
-  const bool same = std::abs(screen->measured_hz / screen->told_hz - 1) < 0.005;
+  const bool same = std::abs(screen->measured_hz / screen->reported_hz - 1) < 0.005;
   return {same ? Readiness::Ok : Readiness::Warn, what,
-          fmt::format("{}{:.4g} Hz, {}measured {:.3f} Hz", same ? "" : "reported ", screen->told_hz,
+          fmt::format("{}{:.4g} Hz, {}measured {:.3f} Hz", same ? "" : "reported ", screen->reported_hz,
                       same ? "" : "but ", screen->measured_hz)};
 }
 

@@ -11,7 +11,7 @@ namespace apps {
 
 /// Facts of the participant's window.
 struct ScreenFacts {
-  double told_hz = 0;      ///< reported by the system; 0: none
+  double reported_hz = 0;  ///< reported by the system; 0: none
   double measured_hz = 0;  ///< 0: swaps do not wait for the screen
   std::optional<bool> compositor;
   bool software_gl = false;

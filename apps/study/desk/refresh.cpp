@@ -26,7 +26,7 @@ double share_in_time(const std::vector<double>& steps_ns, double period_ns) {
 
 }  // namespace
 
-MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double told_hz) {
+MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double reported_hz) {
   MeasuredRefresh out;
   if (returns_ns.size() < fewest_swaps) {
     out.finding = "too few swaps to measure the refresh";
@@ -41,7 +41,7 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   if (median < shortest_ns || median > longest_ns || share_in_time(steps, median) < 0.9) {
     out.finding =
         fmt::format("swaps do not wait for the screen (median {:.3g} ms); the system reports {:.4g} Hz",
-                    1e-6 * median, told_hz);
+                    1e-6 * median, reported_hz);
     return out;
   }
   double periods = 0, total = 0;
@@ -52,10 +52,10 @@ MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double tol
   out.in_effect = true;
   out.period_ns = total / periods;
   const double measured_hz = 1e9 / out.period_ns;
-  out.nominal_hz = study::nominal_refresh(measured_hz, told_hz);
+  out.nominal_hz = study::nominal_refresh(measured_hz, reported_hz);
   out.beat_ns = beat_of(returns_ns.last(10), out.period_ns);
   out.finding = fmt::format("swaps wait for the screen: measured {:.4f} Hz, the system reports {:.4g} Hz",
-                            measured_hz, told_hz);
+                            measured_hz, reported_hz);
   return out;
 }
 

@@ -16,10 +16,10 @@ struct MeasuredRefresh {
   std::string finding;       ///< in words, for the record
 };
 
-/// Judges successive returns of a swap that waits until it is done. told_hz: rate reported by the system; 0:
-/// none. The nominal rate is study::nominal_refresh: 60 for 59.95. Irregular swaps (steps that are not
+/// Judges successive returns of a swap that waits until it is done. reported_hz: rate reported by the system;
+/// 0: none. The nominal rate is study::nominal_refresh: 60 for 59.95. Irregular swaps (steps that are not
 /// multiples of a period of 2 to 50 ms) are not in effect.
-MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double told_hz);
+MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double reported_hz);
 
 /// The beat of the last of some swaps: each returned at a beat or a little after it, never before.
 std::int64_t beat_of(std::span<const std::int64_t> returns_ns, double period_ns);

@@ -26,7 +26,7 @@ HeadsetPerson make_headset_person(HeadsetDisplay& display, const AnswerWays& way
   const std::shared_ptr<Pages> pages(both, &both->pages);
   HeadsetPerson person;
   person.participant = std::make_unique<PageParticipant>(pages, protocol.blocks.back().id, [] {});
-  person.wish = [pages](const std::function<study::Wish()>& others) { return pages->wish(others); };
+  person.request = [pages](const std::function<study::Request()>& others) { return pages->request(others); };
   person.idle = [both] { return both->surface.idle_s(); };
   person.listen = [both] { both->surface.listen(); };
   return person;

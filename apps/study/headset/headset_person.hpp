@@ -17,7 +17,8 @@ namespace apps {
 /// Each part keeps the pages alive.
 struct HeadsetPerson {
   std::unique_ptr<study::Participant> participant;
-  std::function<study::Wish(const std::function<study::Wish()>& others)> wish;  ///< see SessionHooks::wish
+  std::function<study::Request(const std::function<study::Request()>& others)>
+      request;                                  ///< see SessionHooks::request
   std::function<std::optional<double>()> idle;  ///< seconds since a hand or a key was used
   std::function<void()> listen;                 ///< makes the terminal's keys answer from now on
 };

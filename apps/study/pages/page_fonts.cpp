@@ -73,14 +73,14 @@ std::vector<FontFile> system_fonts(const std::u32string& characters, const std::
   if (!FcInit()) return {};
   CharSet missing(FcCharSetCreate());
   for (const char32_t c : characters) FcCharSetAddChar(missing.get(), c);
-  const Pattern wish(FcPatternCreate());
-  FcPatternAddString(wish.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans-serif"));
-  FcPatternAddString(wish.get(), FC_LANG, reinterpret_cast<const FcChar8*>(language.c_str()));
-  FcPatternAddCharSet(wish.get(), FC_CHARSET, missing.get());
-  FcConfigSubstitute(nullptr, wish.get(), FcMatchPattern);
-  FcDefaultSubstitute(wish.get());
+  const Pattern request(FcPatternCreate());
+  FcPatternAddString(request.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans-serif"));
+  FcPatternAddString(request.get(), FC_LANG, reinterpret_cast<const FcChar8*>(language.c_str()));
+  FcPatternAddCharSet(request.get(), FC_CHARSET, missing.get());
+  FcConfigSubstitute(nullptr, request.get(), FcMatchPattern);
+  FcDefaultSubstitute(request.get());
   FcResult result = FcResultNoMatch;
-  const FontSet sorted(FcFontSort(nullptr, wish.get(), FcFalse, nullptr, &result));
+  const FontSet sorted(FcFontSort(nullptr, request.get(), FcFalse, nullptr, &result));
   std::vector<FontFile> out;
   for (int i = 0; sorted && i < sorted->nfont && FcCharSetCount(missing.get()) > 0; ++i) {
     FcPattern* const font = sorted->fonts[i];

@@ -12,7 +12,7 @@ constexpr double poll_s = 0.03;
 
 /// Aborts the stop dialog when the session ends for another reason.
 struct Overruled {
-  study::Wish wish;
+  study::Request request;
 };
 
 /// Sets a flag during its lifetime.
@@ -89,7 +89,7 @@ std::vector<study::TimedAnswer> Pages::run_page(PageText text, std::span<const s
     if (const auto away = surface_.take_away()) state.leave_out(away->first, away->second);
     const std::int64_t begun_ns = now_ns();
     if (handle_events(state, view) && !over_) {
-      stop_wished_ = ask_to_stop(check);
+      stop_requested_ = ask_to_stop(check);
       check();
       state.leave_out(begun_ns, now_ns());
       surface_.take_away();
@@ -141,7 +141,7 @@ bool Pages::look_up(double wait_s, const study::Check& check) {
   surface_.poll(wait_s);
   check();
   if (!handle_events(none, nothing) || over_) return false;
-  stop_wished_ = ask_to_stop(check);
+  stop_requested_ = ask_to_stop(check);
   check();
   surface_.show_black();
   return true;
@@ -185,44 +185,44 @@ void Pages::show_words(const PauseWords& words, const std::function<bool()>& ove
 
 void Pages::set_over(bool over) {
   over_ = over;
-  stop_wished_ = false;
+  stop_requested_ = false;
   surface_.set_over(over);
 }
 
-study::Wish Pages::wait_while_unseen(const std::function<study::Wish()>& others) {
+study::Request Pages::wait_while_unseen(const std::function<study::Request()>& others) {
   do {  // at least once: a frame may be reported unseen before its cause
     surface_.poll(poll_s);
-    const study::Wish other = others ? others() : study::Wish::GoOn;
-    if (other == study::Wish::Stop || other == study::Wish::EndSession) return other;
+    const study::Request other = others ? others() : study::Request::GoOn;
+    if (other == study::Request::Stop || other == study::Request::EndSession) return other;
   } while (surface_.unseen());
   away_ = false;
   surface_.forget_input();
   surface_.show_black();
-  return study::Wish::GoOn;
+  return study::Request::GoOn;
 }
 
-study::Wish Pages::wish(const std::function<study::Wish()>& others) {
-  const study::Wish wish = others ? others() : study::Wish::GoOn;
-  if (stop_wished_ && wish != study::Wish::Stop) return study::Wish::EndSession;
-  if (in_page_ || wish != study::Wish::GoOn) return wish;
+study::Request Pages::request(const std::function<study::Request()>& others) {
+  const study::Request request = others ? others() : study::Request::GoOn;
+  if (stop_requested_ && request != study::Request::Stop) return study::Request::EndSession;
+  if (in_page_ || request != study::Request::GoOn) return request;
   if (away_) return wait_while_unseen(others);
   const auto unseen = surface_.take_unseen();
   away_ = unseen.has_value();
   if (unseen) return *unseen;  // the cut is stored first, then this waits for the surface
   const auto events = surface_.take_events();
   if (std::none_of(events.begin(), events.end(), [](const PageEvent& event) { return event.stop; }))
-    return wish;
+    return request;
   const auto check = [&others] {
-    const study::Wish other = others ? others() : study::Wish::GoOn;
-    if (other == study::Wish::Stop || other == study::Wish::EndSession) throw Overruled{other};
+    const study::Request other = others ? others() : study::Request::GoOn;
+    if (other == study::Request::Stop || other == study::Request::EndSession) throw Overruled{other};
   };
   try {
-    stop_wished_ = ask_to_stop(check);
+    stop_requested_ = ask_to_stop(check);
   } catch (const Overruled& overruled) {
-    return overruled.wish;
+    return overruled.request;
   }
   surface_.show_black();
-  if (stop_wished_) return study::Wish::EndSession;
+  if (stop_requested_) return study::Request::EndSession;
   return study::CutCause::Participant;
 }
 

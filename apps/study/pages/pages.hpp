@@ -20,7 +20,8 @@ class Pages {
  public:
   Pages(PageSurface& surface, const std::string& language, const study::Clock& clock);
 
-  /// Shows a page until it is confirmed. A request to stop opens the stop dialog; wish() reports its result.
+  /// Shows a page until it is confirmed. A request to stop opens the stop dialog; request() reports its
+  /// result.
   std::vector<study::TimedAnswer> run_page(PageText text, std::span<const study::Question> questions,
                                            double least_s, const study::Check& check);
   /// Asks for one of two; true if the first was chosen.
@@ -32,10 +33,10 @@ class Pages {
   /// The session is over (true) or another one begins (false). Once over, requests to stop are ignored.
   void set_over(bool over);
 
-  /// Polled by the session: returns the wish of `others`, or the end of the session if the participant chose
-  /// it. A request to stop during a stimulus opens the dialog here; then the session ends or the trial is
-  /// shown again. A trial is also shown again if its stimulus could not be seen, as soon as it can.
-  study::Wish wish(const std::function<study::Wish()>& others);
+  /// Polled by the session: returns the request of `others`, or the end of the session if the participant
+  /// chose it. A request to stop during a stimulus opens the dialog here; then the session ends or the trial
+  /// is shown again. A trial is also shown again if its stimulus could not be seen, as soon as it can.
+  study::Request request(const std::function<study::Request()>& others);
 
   const DeskWords& words() const { return words_; }
   std::int64_t now_ns() const { return clock_.now_ns(); }
@@ -52,16 +53,16 @@ class Pages {
   /// Waits a moment and processes input; true if the stop dialog was opened.
   bool look_up(double wait_s, const study::Check& check);
   std::string corner() const;
-  /// Waits until the surface can be seen or others wish the end.
-  study::Wish wait_while_unseen(const std::function<study::Wish()>& others);
+  /// Waits until the surface can be seen or others request the end.
+  study::Request wait_while_unseen(const std::function<study::Request()>& others);
 
   PageSurface& surface_;
   const DeskWords& words_;
   const study::Clock& clock_;
   bool in_page_ = false;  ///< a page is shown, which handles requests to stop
-  bool stop_wished_ = false;
+  bool stop_requested_ = false;
   bool over_ = false;  ///< see set_over()
-  bool away_ = false;  ///< the last wish was a cut because the surface was unseen; it may still be
+  bool away_ = false;  ///< the last request was a cut because the surface was unseen; it may still be
 };
 
 }  // namespace apps

@@ -55,7 +55,7 @@ void WindowDisplay::find_beat() {
 
 ScreenFacts WindowDisplay::facts() const {
   ScreenFacts facts;
-  facts.told_hz = monitor_.refresh_hz;
+  facts.reported_hz = monitor_.refresh_hz;
   facts.measured_hz = measured_hz();
   const Compositor compositor = find_compositor();
   if (compositor != Compositor::Unknown) facts.compositor = compositor == Compositor::Running;

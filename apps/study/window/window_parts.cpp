@@ -67,7 +67,7 @@ WindowParts make_window_parts(const RunOptions& options, const study::Protocol& 
   parts.poll = [window] { window->poll(0); };
   parts.idle = [window] { return window->window().idle_s(); };
   parts.open_mirror = [window](bool reveal) { window->open_mirror(reveal); };
-  parts.wish = [pages](const std::function<study::Wish()>& others) { return pages->wish(others); };
+  parts.request = [pages](const std::function<study::Request()>& others) { return pages->request(others); };
   return parts;
 }
 

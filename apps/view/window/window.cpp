@@ -181,14 +181,14 @@ void Viewer::follow_schedule() {
 /// Keeps the old effects if the new ones are refused.
 void Viewer::exchange_effects() {
   PreparedFluid& prepared = fluid_->prepared;
-  const auto wished = controls_.chosen.effects.value_or(prepared.scene.effects);
+  const auto chosen = controls_.chosen.effects.value_or(prepared.scene.effects);
   try {
-    if (wished != prepared.scene.effects) {
-      prepared.fluid->set_effects(wished);
-      prepared.scene.effects = wished;
+    if (chosen != prepared.scene.effects) {
+      prepared.fluid->set_effects(chosen);
+      prepared.scene.effects = chosen;
       fluid_->painter = OverlayPainter(prepared.scene, prepared.finest_spacing_m);
       std::printf("frame %d: %zu passes, with %s\n", figures_.frame, prepared.fluid->passes().size(),
-                  in_words(wished).c_str());
+                  in_words(chosen).c_str());
       std::fflush(stdout);
       figures_.said.clear();
     }

@@ -77,7 +77,7 @@ struct Adhesion {
     }
     if constexpr (Bodies::there) {
       for_bodies_within(bodies.solids, xyz(at), at.w, [&](int b, const Body& body, const Body::Near& near) {
-        v += bodies.hear(b, at, pulled_by(body, at, near, s, n));
+        v += bodies.visit(b, at, pulled_by(body, at, near, s, n));
       });
     }
     velocity[i] = with_w(v, 0);
@@ -137,7 +137,7 @@ struct PullingBodies {
   Solids solids;
   BodyListener to;
   /// Tension does not turn a body about an axis about which it is round: the tangential part has no moment.
-  SIM_FN Vec3 hear(int body, Vec4 at, Pulled change) const {
+  SIM_FN Vec3 visit(int body, Vec4 at, Pulled change) const {
     if (to.sums) {
       const float way = solids.dt * mass_units_of(at.w, to.finest_support);
       to.add(body, xyz(at), way * change.along);
@@ -173,7 +173,7 @@ void launch(FluidState& state, AdhesionColumns p, Bodies bodies) {
 }
 
 void run_adhesion(FluidState& state, AdhesionColumns p) {
-  if (!state.obstacles.there()) return launch(state, p, NoBodies{});
+  if (!state.obstacles.exists()) return launch(state, p, NoBodies{});
   launch(state, p, PullingBodies{state.solids(), state.effects_listener()});
 }
 

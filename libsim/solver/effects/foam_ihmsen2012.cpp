@@ -44,7 +44,7 @@ void foam(FluidState& state, FoamView p, const Bounds& bounds) {
 }
 
 void run_foam(FluidState& state, FoamView p) {
-  state.obstacles.there() ? foam(state, p, state.solids()) : foam(state, p, state.walls);
+  state.obstacles.exists() ? foam(state, p, state.solids()) : foam(state, p, state.walls);
 }
 
 }  // namespace

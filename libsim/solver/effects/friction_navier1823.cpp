@@ -88,7 +88,7 @@ void launch(FluidState& state, FrictionColumns p, Boundary boundary) {
 }
 
 void run_friction(FluidState& state, FrictionColumns p) {
-  if (!state.obstacles.there()) return launch(state, p, state.walls);
+  if (!state.obstacles.exists()) return launch(state, p, state.walls);
   const auto& free = state.obstacles.free;
   launch(state, p,
          BrakingBodies{state.solids(), free.size() > 0 ? free.data() : nullptr, state.effects_listener()});

@@ -154,7 +154,7 @@ struct TakeNext {
 };
 
 /// Records in the bodies' sums what the rows gained.
-struct HearGained {
+struct RecordGained {
   BodyRows rows;
   BodyListener to;
   float dt;

@@ -301,7 +301,7 @@ template <class Selection>
 void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
   const auto& k = state.parameters;
   const float stick = k.effects[EffectOption::ViscosityStick];
-  if (!state.obstacles.there() || stick == 0) return solve_for(state, p, select, NoBodies{});
+  if (!state.obstacles.exists() || stick == 0) return solve_for(state, p, select, NoBodies{});
   auto& o = state.obstacles;
   const BodyListener to = state.effects_listener();
   const bool solved = to.sums || o.free.size() > 0;
@@ -319,7 +319,7 @@ void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
   const StickingBodies bodies{
       .solids = state.solids(), .rows = rows, .rate = rate, .finest_support = state.finest_support};
   solve_for(state, p, select, bodies);
-  if (to.sums) for_each("hear bodies", rows.count, HearGained{rows, to, k.dt});
+  if (to.sums) for_each("record bodies", rows.count, RecordGained{rows, to, k.dt});
 }
 
 /// Under pressure particles of one size form a lattice, which carries shear until it yields: a fluid so

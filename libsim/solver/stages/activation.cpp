@@ -129,12 +129,12 @@ void run_activation(FluidState& state, ActivationColumns p) {
   if (state.all_active) return;
   measure(state, p);
   a.probability.resize(static_cast<std::size_t>(n));
-  state.obstacles.there() ? choose(state, p, state.solids()) : choose(state, p, state.walls);
+  state.obstacles.exists() ? choose(state, p, state.solids()) : choose(state, p, state.walls);
   if (!a.rules.inherit_change) return;
   const GridFrame near = a.near.frame();
   a.before.measure(p, p.active(),
                    {{Whose::Solved, near, p.start_cell()},
-                    {a.rules.pressed ? Whose::Resting : Whose::Nobody, near, p.start_cell()}});
+                    {a.rules.pressed ? Whose::Resting : Whose::Unused, near, p.start_cell()}});
 }
 
 }  // namespace

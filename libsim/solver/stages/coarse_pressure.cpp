@@ -174,7 +174,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
                              .block = grid.block,
                              .sums = coarse.sums.data(),
                              .unit_volume = mass_of(state.lightest_support, 1)});
-  if (state.obstacles.there()) {
+  if (state.obstacles.exists()) {
     coarse.volume.resize(coarse.sums.size());
     coarse.volume.zero();
     for_each("gather volume", p.size(),

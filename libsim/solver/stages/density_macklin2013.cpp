@@ -109,8 +109,8 @@ void launch(FluidState& state, DensityView p, const float* ease, Selection selec
 
 template <bool OneLevel, bool OthersYield, class Selection>
 void launch(FluidState& state, DensityView p, const float* ease, Selection select) {
-  state.obstacles.there() ? launch<OneLevel, OthersYield>(state, p, ease, select, state.solids())
-                          : launch<OneLevel, OthersYield>(state, p, ease, select, state.walls);
+  state.obstacles.exists() ? launch<OneLevel, OthersYield>(state, p, ease, select, state.solids())
+                           : launch<OneLevel, OthersYield>(state, p, ease, select, state.walls);
 }
 
 template <bool OthersYield, class Selection>

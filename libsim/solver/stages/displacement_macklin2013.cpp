@@ -131,8 +131,8 @@ void launch(FluidState& state, DisplacementView p, Selection select, Boundary bo
 template <bool OneLevel, bool Tensile, class Selection>
 void launch(FluidState& state, DisplacementView p, Selection select) {
   const auto& k = state.parameters;
-  state.obstacles.there() ? launch<OneLevel, Tensile>(state, p, select, state.solids())
-                          : launch<OneLevel, Tensile>(state, p, select, state.walls);
+  state.obstacles.exists() ? launch<OneLevel, Tensile>(state, p, select, state.solids())
+                           : launch<OneLevel, Tensile>(state, p, select, state.walls);
   p.swap<Column::Predicted, Column::PredictedNext>();
   clamp_and_listen(state, p, p.predicted_next(), times_taken(k, state.iteration), false);
 }

@@ -147,15 +147,15 @@ struct FluidState {
     return 0.5f * (supports.h[level] + supports.h[level + 1]);
   }
   /// True if position corrections by walls and obstacles are recorded.
-  bool listens() const { return !impulse.deaf() && (impulse.on() || obstacles.told()); }
-  BodyListener body_listener(float times) {
-    return {listens() && obstacles.told() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
+  bool recording() const { return !impulse.paused() && (impulse.on() || obstacles.recorded()); }
+  BodyListener body_record(float times) {
+    return {recording() && obstacles.recorded() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
             finest_support, times};
   }
   /// For effects, whose pushes are summed apart from the constraint's; records nothing if those sums are off.
   BodyListener effects_listener() {
-    return {obstacles.told() ? obstacles.sums.data() + obstacles.count() : nullptr, obstacles.bodies.data(),
-            finest_support, 1};
+    return {obstacles.recorded() ? obstacles.sums.data() + obstacles.count() : nullptr,
+            obstacles.bodies.data(), finest_support, 1};
   }
   /// For scenes with obstacles, while the coarse pressure's cells hold their sums.
   Waterline waterline() {

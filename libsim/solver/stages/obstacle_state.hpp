@@ -30,12 +30,12 @@ struct ObstacleState {
   int feelers = 0;                    ///< the largest number on one body
   Array<unsigned char> meeting_room;  ///< scratch memory
 
-  bool there() const { return bodies.size() > 0; }
+  bool exists() const { return bodies.size() > 0; }
   bool meet() const { return by_others.size() > 0; }
-  bool told() const { return sums.size() > 0; }
+  bool recorded() const { return sums.size() > 0; }
   int count() const { return static_cast<int>(bodies.size()); }
   void begin_frame() {
-    if (told()) sums.zero();
+    if (recorded()) sums.zero();
   }
 };
 

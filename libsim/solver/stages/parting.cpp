@@ -45,7 +45,7 @@ using Places = ColumnView<columns(Column::Predicted), columns(Column::Predicted,
 
 /// Resets the solver to the substep's beginning; VelocityNext stores the predicted positions.
 void go_back(FluidState& state, Places p) {
-  state.impulse.listen(false);
+  state.impulse.pause(true);
   p.copy<Column::VelocityNext, Column::Predicted>();
   p.copy<Column::Predicted, Column::Position>();
   p.copy<Column::PredictedNext, Column::Position>();
@@ -64,8 +64,8 @@ void follow(FluidState& state, Places p, Boundary boundary) {
 }
 
 void go_on(FluidState& state, Places p) {
-  state.impulse.listen(true);
-  state.obstacles.there() ? follow(state, p, state.solids()) : follow(state, p, state.walls);
+  state.impulse.pause(false);
+  state.obstacles.exists() ? follow(state, p, state.solids()) : follow(state, p, state.walls);
   clamp_and_listen(state, p, p.velocity_next(), 1, true);
 }
 

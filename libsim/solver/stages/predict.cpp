@@ -91,8 +91,8 @@ void launch(FluidState& state, PredictColumns p, Selection select, Forces forces
 
 template <class Selection, class Forces>
 void launch(FluidState& state, PredictColumns p, Selection select, Forces forces) {
-  state.obstacles.there() ? launch(state, p, select, forces, state.solids())
-                          : launch(state, p, select, forces, state.walls);
+  state.obstacles.exists() ? launch(state, p, select, forces, state.solids())
+                           : launch(state, p, select, forces, state.walls);
 }
 
 template <class Selection>

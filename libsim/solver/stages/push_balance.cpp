@@ -121,12 +121,12 @@ struct SumBodies {
   struct Given {
     int body = -1;
     MassWay push{};
-    BodySum heard{};
+    BodySum record{};
     std::uint64_t wet = 0;
   };
   SIM_FN void add(Given& given, Vec3 at, Vec3 push) const {
     given.push.add(1, push);
-    if (to.sums) to.add_to(given.heard, given.body, at, push);
+    if (to.sums) to.add_to(given.record, given.body, at, push);
   }
   template <class Team>
   SIM_FN void tell_together(const Given& mine, Team team) const {
@@ -134,7 +134,7 @@ struct SumBodies {
       return MassWay{team.sum(way.x), team.sum(way.y), team.sum(way.z)};
     };
     Given all{.body = mine.body, .push = sum(mine.push)};
-    if (to.sums) all.heard = {sum(mine.heard.push), sum(mine.heard.moment)};
+    if (to.sums) all.record = {sum(mine.record.push), sum(mine.record.moment)};
     all.wet = team.sum(mine.wet);
     if (team.rank() == 0) tell(all);
   }
@@ -142,7 +142,7 @@ struct SumBodies {
     if (given.body < 0) return;
     out->walls.add_at_once(given.push);
     if (given.wet > 0) atomic_add(&wet[given.body], given.wet);
-    if (to.sums) to.add_at_once(given.body, given.heard);
+    if (to.sums) to.add_at_once(given.body, given.record);
   }
   /// Areas of the faces next to an obstacle's solid cells, m2, along the direction out of them.
   SIM_FN Vec3 solid_sides(int x, int y, int z) const {
@@ -167,7 +167,7 @@ struct Balance {
   Boundary walls;
   Guards* guards;
   float wall_gap;
-  bool listens;
+  bool recording;
   SIM_FN void operator()(int i) const {
     const Vec4 from = predicted[i];
     const Vec4 to = next[i];
@@ -178,7 +178,7 @@ struct Balance {
     predicted[i] = with_w(x, to.w);
     // A particle that no projection moves needs the same position in both buffers. A recording pass first
     // needs its origin.
-    next[i] = listens ? from : predicted[i];
+    next[i] = recording ? from : predicted[i];
   }
 };
 
@@ -201,7 +201,7 @@ void sum_bodies(FluidState& state) {
   for_each_team("sum obstacles", grid.block.size(),
                 SumBodies{.slope = {coarse.frame, grid, state.walls},
                           .waterline = state.waterline(),
-                          .to = state.body_listener(1),
+                          .to = state.body_record(1),
                           .wet = state.obstacles.wet.data(),
                           .unit_volume = mass_of(state.finest_support, 1),
                           .out = coarse.balance.data()});
@@ -216,7 +216,7 @@ void balance(FluidState& state, ClampView p, Boundary boundary) {
                              .walls = boundary,
                              .guards = state.guard(),
                              .wall_gap = gap_of_kernels(state),
-                             .listens = state.listens()});
+                             .recording = state.recording()});
 }
 
 }  // namespace
@@ -234,10 +234,10 @@ void balance_push(FluidState& state, ClampView p) {
                           .n = p.size(),
                           .finest_support = state.finest_support,
                           .out = coarse.balance.data()});
-    state.obstacles.there() ? sum_walls(state, state.solids()) : sum_walls(state, state.walls);
+    state.obstacles.exists() ? sum_walls(state, state.solids()) : sum_walls(state, state.walls);
   }
-  if (state.obstacles.there() && (pressed || state.obstacles.free.size() > 0)) sum_bodies(state);
-  state.obstacles.there() ? balance(state, p, state.solids()) : balance(state, p, state.walls);
+  if (state.obstacles.exists() && (pressed || state.obstacles.free.size() > 0)) sum_bodies(state);
+  state.obstacles.exists() ? balance(state, p, state.solids()) : balance(state, p, state.walls);
   clamp_and_listen(state, p, p.predicted_next(), 1, true);
 }
 

@@ -108,7 +108,7 @@ BodyDrive body_drive(FluidState& state);
 float gap_of_kernels(const FluidState& state);
 using ClampView = ColumnView<ColumnSet{}, columns(Column::Predicted, Column::PredictedNext)>;
 /// Applies the clamp that kernels skipped; does nothing unless an account records. `from`: positions before
-/// the step. `times`: as in WallListener. `in_both`: also write PredictedNext.
+/// the step. `times`: as in WallRecord. `in_both`: also write PredictedNext.
 void clamp_and_listen(FluidState& state, ClampView particles, const Vec4* from, float times, bool in_both);
 /// Ends the coarse pressure's push from Predicted to PredictedNext: gives the water the walls' share, and
 /// stops it at the walls. Afterwards both hold the same positions.

@@ -105,10 +105,10 @@ void find_means(FluidState& state, VelocityGridColumns p) {
   const bool means = changes && a.rules.damping > 0;
   const GridFrame near = a.near.frame();
   a.after.measure(p, p.active(),
-                  {{changes ? Whose::Solved : Whose::Nobody, near, p.start_cell()},
-                   {pressed ? Whose::Resting : Whose::Nobody, near, p.start_cell()},
+                  {{changes ? Whose::Solved : Whose::Unused, near, p.start_cell()},
+                   {pressed ? Whose::Resting : Whose::Unused, near, p.start_cell()},
                    {state.all_active ? Whose::All : Whose::Solved, a.grid.frame()},
-                   {means ? Whose::Solved : Whose::Nobody, near}});
+                   {means ? Whose::Solved : Whose::Unused, near}});
   const int changing = changes ? grid_levels * near.cells() : 0;
   a.change.resize(static_cast<std::size_t>(changing));
   const bool tension = state.parameters.effects[EffectKind::Cohesion] > 0;
@@ -155,7 +155,7 @@ void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
 void run_velocity_grid(FluidState& state, VelocityGridColumns p) {
   find_means(state, p);
   if (!state.all_active)
-    state.obstacles.there() ? inherit(state, p, state.solids()) : inherit(state, p, state.walls);
+    state.obstacles.exists() ? inherit(state, p, state.solids()) : inherit(state, p, state.walls);
   state.activation.grid.update_energy(p);
   state.all_active = true;
 }

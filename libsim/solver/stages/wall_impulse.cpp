@@ -6,59 +6,59 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Listeners for corrections of a particle by walls and, in scenes with obstacles, by bodies.
-struct Listeners {
-  WallListener walls;
-  bool walls_listen;
+/// Records for corrections of a particle by walls and, in scenes with obstacles, by bodies.
+struct Records {
+  WallRecord walls;
+  bool walls_recorded;
   BodyListener bodies;
 };
-struct HeardBoth {
-  Listeners to;
+struct RecordBoth {
+  Records to;
   Vec4 particle;
   SIM_FN void operator()(int wall, float way) const {
-    if (to.walls_listen) HeardClamp{to.walls, particle}(wall, way);
+    if (to.walls_recorded) RecordClamp{to.walls, particle}(wall, way);
   }
   SIM_FN void body(int which, Vec3 at, Vec3 way) const {
     to.bodies.add(which, at, mass_units_of(particle.w, to.bodies.finest_support) * way);
   }
 };
-SIM_FN HeardClamp ear_of(const WallListener& to, Vec4 particle) { return {to, particle}; }
-SIM_FN HeardBoth ear_of(const Listeners& to, Vec4 particle) { return {to, particle}; }
+SIM_FN RecordClamp record_of(const WallRecord& to, Vec4 particle) { return {to, particle}; }
+SIM_FN RecordBoth record_of(const Records& to, Vec4 particle) { return {to, particle}; }
 
-Listeners listeners(FluidState& state, float times) {
-  return {state.impulse.listener(times), state.impulse.on(), state.body_listener(times)};
+Records records(FluidState& state, float times) {
+  return {state.impulse.record_to(times), state.impulse.on(), state.body_record(times)};
 }
 
 /// Repeats the hold-back of Predict in order to record it.
-template <class Boundary, class Hearer>
+template <class Boundary, class Recorder>
 struct HeldBack {
   const Vec4* position;
   const Vec4* velocity;
   Boundary walls;
-  Hearer to;
+  Recorder to;
   float dt, wall_gap;
   SIM_FN void operator()(int i) const {
     const Vec4 at = position[i];
     Vec3 x = xyz(at);
-    walls.hold_back(x, fused(x, dt, xyz(velocity[i])), wall_gap * at.w / 2, ear_of(to, at));
+    walls.hold_back(x, fused(x, dt, xyz(velocity[i])), wall_gap * at.w / 2, record_of(to, at));
   }
 };
 
 using MovingView = Reads<Column::Position, Column::Velocity>;
 
-template <class Boundary, class Hearer>
-void held_back(FluidState& state, MovingView p, Boundary boundary, Hearer to) {
-  for_each("hear held back", p.size(),
-           HeldBack<Boundary, Hearer>{.position = p.position(),
-                                      .velocity = p.velocity(),
-                                      .walls = boundary,
-                                      .to = to,
-                                      .dt = state.parameters.dt,
-                                      .wall_gap = state.parameters.wall_gap});
+template <class Boundary, class Recorder>
+void held_back(FluidState& state, MovingView p, Boundary boundary, Recorder to) {
+  for_each("record held back", p.size(),
+           HeldBack<Boundary, Recorder>{.position = p.position(),
+                                        .velocity = p.velocity(),
+                                        .walls = boundary,
+                                        .to = to,
+                                        .dt = state.parameters.dt,
+                                        .wall_gap = state.parameters.wall_gap});
 }
-void hear_held_back(FluidState& state, MovingView p) {
-  state.obstacles.there() ? held_back(state, p, state.solids(), listeners(state, 1))
-                          : held_back(state, p, state.walls, state.impulse.listener());
+void record_held_back(FluidState& state, MovingView p) {
+  state.obstacles.exists() ? held_back(state, p, state.solids(), records(state, 1))
+                           : held_back(state, p, state.walls, state.impulse.record_to());
 }
 
 /// Delta p_i = w_i lambda_i grad_i C_wall of the next displacement, wall by wall.
@@ -70,7 +70,7 @@ struct MissingDensity {
   const Vec4* predicted;
   const float* lambda;
   Boundary boundary;
-  WallListener to;
+  WallRecord to;
   float mass_unit;  ///< m_*, kg
   SIM_FN void operator()(int i) const {
     if (lambda[i] == 0) return;
@@ -108,22 +108,22 @@ using ConstraintView = Reads<Column::Predicted, Column::Lambda>;
 template <class Boundary>
 void missing_density(FluidState& state, ConstraintView p, Boundary boundary) {
   const auto& k = state.parameters;
-  for_each("hear missing density", p.size(),
+  for_each("record missing density", p.size(),
            MissingDensity<Boundary>{.predicted = p.predicted(),
                                     .lambda = p.lambda(),
                                     .boundary = boundary,
-                                    .to = state.impulse.listener(times_taken(k, state.iteration)),
+                                    .to = state.impulse.record_to(times_taken(k, state.iteration)),
                                     .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
-void hear_missing_density(FluidState& state, ConstraintView p) {
-  if (!state.obstacles.there()) return missing_density(state, p, state.walls);
+void record_missing_density(FluidState& state, ConstraintView p) {
+  if (!state.obstacles.exists()) return missing_density(state, p, state.walls);
   if (state.impulse.on()) missing_density(state, p, state.solids());
   const auto& k = state.parameters;
-  for_each("hear missing in obstacles", p.size(),
+  for_each("record missing in obstacles", p.size(),
            MissingInBodies{.predicted = p.predicted(),
                            .lambda = p.lambda(),
                            .solids = state.solids(),
-                           .to = state.body_listener(times_taken(k, state.iteration)),
+                           .to = state.body_record(times_taken(k, state.iteration)),
                            .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 
@@ -134,7 +134,7 @@ struct WallCells {
   PressureFrame frame;
   GridView grid;
   Boundary boundary;
-  WallListener to;
+  WallRecord to;
   float unit_volume;  ///< of m_*, m3
 
   SIM_FN void operator()(int i) const {
@@ -179,30 +179,30 @@ struct WallCells {
 template <class Boundary>
 void wall_cells(FluidState& state, Boundary boundary) {
   const GridView grid = state.coarse.multigrid.finest();
-  for_each("hear wall cells", grid.block.size(),
+  for_each("record wall cells", grid.block.size(),
            WallCells<Boundary>{.frame = state.coarse.frame,
                                .grid = grid,
                                .boundary = boundary,
-                               .to = state.impulse.listener(),
+                               .to = state.impulse.record_to(),
                                .unit_volume = mass_of(state.finest_support, 1)});
 }
-void hear_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
-  state.obstacles.there() ? wall_cells(state, state.solids()) : wall_cells(state, state.walls);
+void record_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+  state.obstacles.exists() ? wall_cells(state, state.solids()) : wall_cells(state, state.walls);
 }
 
-template <class Boundary, class Hearer>
+template <class Boundary, class Recorder>
 struct Clamp {
   Vec4* predicted;
   const Vec4* from;
   Vec4* next;  ///< nullptr if it must keep other positions
   Boundary walls;
-  Hearer to;
+  Recorder to;
   Guards* guards;
   float wall_gap;
   SIM_FN void operator()(int i) const {
     const Vec4 at = predicted[i];
     Vec3 x = xyz(at);
-    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, ear_of(to, at))) {
+    if (walls.project(x, xyz(from[i]), wall_gap * at.w / 2, record_of(to, at))) {
       atomic_add(&guards->wall_projected, std::uint64_t{1});
       predicted[i] = with_w(x, at.w);
     }
@@ -210,16 +210,16 @@ struct Clamp {
   }
 };
 
-template <class Boundary, class Hearer>
-void clamp(FluidState& state, ClampView p, const Vec4* from, bool in_both, Boundary boundary, Hearer to) {
-  for_each("clamp and hear", p.size(),
-           Clamp<Boundary, Hearer>{.predicted = p.predicted(),
-                                   .from = from,
-                                   .next = in_both ? p.predicted_next() : nullptr,
-                                   .walls = boundary,
-                                   .to = to,
-                                   .guards = state.guard(),
-                                   .wall_gap = state.parameters.wall_gap});
+template <class Boundary, class Recorder>
+void clamp(FluidState& state, ClampView p, const Vec4* from, bool in_both, Boundary boundary, Recorder to) {
+  for_each("clamp and record", p.size(),
+           Clamp<Boundary, Recorder>{.predicted = p.predicted(),
+                                     .from = from,
+                                     .next = in_both ? p.predicted_next() : nullptr,
+                                     .walls = boundary,
+                                     .to = to,
+                                     .guards = state.guard(),
+                                     .wall_gap = state.parameters.wall_gap});
 }
 
 Stage account(const char* name, Phase phase) {
@@ -230,13 +230,13 @@ Stage account(const char* name, Phase phase) {
 
 float gap_of_kernels(const FluidState& state) {
   constexpr float none = -1e30f;
-  return state.listens() ? none : state.parameters.wall_gap;
+  return state.recording() ? none : state.parameters.wall_gap;
 }
 
 void clamp_and_listen(FluidState& state, ClampView p, const Vec4* from, float times, bool in_both) {
-  if (!state.listens()) return;
-  state.obstacles.there() ? clamp(state, p, from, in_both, state.solids(), listeners(state, times))
-                          : clamp(state, p, from, in_both, state.walls, state.impulse.listener(times));
+  if (!state.recording()) return;
+  state.obstacles.exists() ? clamp(state, p, from, in_both, state.solids(), records(state, times))
+                           : clamp(state, p, from, in_both, state.walls, state.impulse.record_to(times));
 }
 
 float times_taken(const SolverParameters& k, int iteration) {
@@ -246,10 +246,10 @@ float times_taken(const SolverParameters& k, int iteration) {
   return out;
 }
 
-Stage held_at_walls_stage() { return stage_of<hear_held_back>(account("held at walls", Phase::Substep)); }
+Stage held_at_walls_stage() { return stage_of<record_held_back>(account("held at walls", Phase::Substep)); }
 
 Stage missing_density_stage() {
-  return stage_of<hear_missing_density>(account("walls' density", Phase::Iteration));
+  return stage_of<record_missing_density>(account("walls' density", Phase::Iteration));
 }
 
 Stage wall_cells_stage() {
@@ -257,7 +257,7 @@ Stage wall_cells_stage() {
   stage.called_for = [](const Demand& demand) -> std::string {
     return demand.parameters.coarse_cycles > 0 ? if_wall_impulse(demand) : "";
   };
-  return stage_of<hear_wall_cells>(stage);
+  return stage_of<record_wall_cells>(stage);
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -12,7 +12,7 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// A state whose grid knows the drops' own velocities, before the frame's choice.
+/// A state before the frame's choice; its grid holds the drops' own velocities.
 FluidState ready(const std::vector<Drop>& all, float beta) {
   auto state = state_of(all);
   auto& a = state.activation;
@@ -102,7 +102,7 @@ SIM_TEST(Activation, RestsAreNoLongerAndWorkNoShorterThanTheRulesAllow) {
 }
 
 SIM_TEST(Activation, KeepsTheFragileActive) {
-  // Slow drops far from the walls may rest; at a wall, fast, sparse, just made, or without a grid they may
+  // Slow drops far from the walls may rest; drops at a wall, fast, sparse, new or without a grid value may
   // not.
   auto all = drops(4000, 6);
   for (auto& drop : all) drop.v = {0.01f * drop.v.x, 0, 0};
@@ -121,7 +121,7 @@ SIM_TEST(Activation, KeepsTheFragileActive) {
   p.all().age.from_host(age);
   p.all().density.from_host(density);
   activation_stage().run(state);
-  velocity_grid_stage().run(state);  // notes who is sparse
+  velocity_grid_stage().run(state);  // marks sparse particles
   p.all().velocity.from_host(velocity);
   state.activation.beta = 0.02f;
   activation_stage().run(state);
@@ -140,11 +140,11 @@ SIM_TEST(Activation, UnknownPlacesAreSolved) {
   auto state = state_of(drops(1000, 6));
   state.activation.beta = 0.02f;
   state.activation.rules.keep_fragile_active = false;
-  activation_stage().run(state);  // the grid has never seen a particle
+  activation_stage().run(state);  // the grid is still empty
   for (const auto active : state.particles.all().active.to_host()) EXPECT_EQ(active, 1);
 }
 
-/// Everyone's velocity changes by `gain` in the solve; the resting ones must come to the same.
+/// Solved particles change their velocity by `gain`; resting ones must end with the same velocity.
 void inherits(bool change) {
   auto all = drops(20000, 9);
   for (auto& drop : all) drop.v = {1, 2, 3};
@@ -163,7 +163,8 @@ void inherits(bool change) {
   velocity_grid_stage().run(state);
   const auto after = p.all().velocity.to_host();
   const auto position = p.all().position.to_host();
-  // A frame of 3 substeps of 1/180 s whose change comes in equal parts: 2/3 of it counts for the way.
+  // A frame of 3 substeps of 1/180 s, with equal changes in each: 2/3 of the change counts for the
+  // displacement.
   const float way = 2.0f / 3 / 60;
   int resting = 0;
   for (std::size_t i = 0; i < after.size(); ++i) {

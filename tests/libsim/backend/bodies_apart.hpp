@@ -1,5 +1,5 @@
 #pragma once
-/// Bodies without water, as the stage that lets them meet has them.
+/// Bodies without water, set up as the stage for contacts between bodies expects them.
 
 #include <vector>
 
@@ -19,7 +19,7 @@ class BodiesApart {
     return {{0, length / 2, 0}, radius, at, {0, 0, 0, 1}, {}, {}};
   }
 
-  /// Of a mass over m_*; 0: not free.
+  /// `mass` is in units of m_*; 0: not free. Returns the body's index.
   int add(const Body& body, float mass, float friction = 0) {
     FreeBody free{};
     free.mass = mass;

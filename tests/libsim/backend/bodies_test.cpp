@@ -1,4 +1,4 @@
-/// Shapes of obstacles as kernels meet them: distances, normals, and shares of a kernel against brute force.
+/// Shapes of obstacles in kernels: distances, normals, and shares of a kernel against brute force.
 
 #include "libsim/particles/solids.hpp"
 
@@ -102,10 +102,10 @@ SIM_TEST(Bodies, NormalsAreGradientsOfTheDistance) {
 
 SIM_TEST(Bodies, HoldBackRidesWithAMovingBody) {
   Body body = box({0.5f, 5, 5});
-  body.centre = {1.1f, 0, 0};  // came from 1.0 in 0.1 s
+  body.centre = {1.1f, 0, 0};  // moved here from 1.0 in 0.1 s
   body.velocity = {1, 0, 0};
   Solids solids{.walls = {}, .bodies = &body, .count = 1, .dt = 0.1f};
-  Vec3 x{1.54f, 0, 0};  // 0.04 from the face as it was
+  Vec3 x{1.54f, 0, 0};  // 0.04 from the face at its old position
   EXPECT_TRUE(solids.hold_back(x, x, 0));
   EXPECT_NEAR(x.x, 1.61f, 1e-5f) << "a quarter of the distance stays";
   Vec3 ahead{1.7f, 0, 0};

@@ -1,4 +1,4 @@
-/// What a pass reaches of the particles' columns.
+/// The columns that each pass reads and writes.
 
 #include <concepts>
 #include <type_traits>
@@ -58,7 +58,7 @@ SIM_TEST(Columns, OfEachStageAreThoseOfItsView) {
   const Stage predict = predict_stage();
   EXPECT_EQ(predict.reads.bits, columns(Column::Position, Column::Velocity, Column::Id).bits);
   EXPECT_EQ(predict.writes.bits, columns(Column::Predicted, Column::Position, Column::Velocity).bits);
-  // What a pass may touch where others call for it costs no memory.
+  // Columns that a pass uses only if another pass needs them cost no memory.
   const Schedule hires = compile_schedule({});
   for (const Column column : {Column::Ease, Column::Active, Column::Target, Column::Saliency})
     EXPECT_FALSE(hires.columns.has(column)) << column_name(column);
@@ -77,7 +77,7 @@ SIM_TEST(Columns, SplitAndMergeByTheRuleOfTheirRow) {
                 columns(Column::Waiting, Column::Age, Column::Temperature, Column::Swirl).bits);
 }
 
-/// Three of one column: 0 is a copy of its parent, 1 and 2 are two that meet, or give each other halves of 0.
+/// Three values of one column: 0 is a copy of its parent; 1 and 2 merge, or each receive half of 0.
 std::vector<float> after(Descent rule, void (*change)(const RuledColumns<float>&)) {
   std::vector<float> values{8, 2, 6};
   RuledColumns<float> column{};
@@ -98,7 +98,7 @@ SIM_TEST(Columns, RulesAreWhatTheySay) {
   EXPECT_EQ(after(Descent::Sum, join)[1], 8);
   EXPECT_EQ(after(Descent::Max, join)[1], 6);
   EXPECT_EQ(after(Descent::Reset, join)[1], 0);
-  // Of masses 2, 1, 1: m times it, or its sum, stays.
+  // Masses are 2, 1, 1: sharing conserves sum m x (MassMean) or sum x (Sum).
   const auto share = [](const RuledColumns<float>& c) { c.share(0, 1, 2); };
   EXPECT_EQ(after(Descent::MassMean, share), (std::vector<float>{7, 5, 6}));
   EXPECT_EQ(after(Descent::Sum, share), (std::vector<float>{10, 6, 6}));

@@ -1,5 +1,5 @@
 #pragma once
-/// Drops at random over a small domain, for the parts of temporal acceleration.
+/// Random drops over a small domain, for the parts of temporal acceleration.
 
 #include <cmath>
 #include <random>

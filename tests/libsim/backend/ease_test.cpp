@@ -1,4 +1,4 @@
-/// Who eases the constraint, against brute force.
+/// The easing of the constraint near new particles, against brute force.
 
 #include <random>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr float h = 0.3f;
 
-/// Mixed levels in a box; one in forty was just made, one in three is not solved where `resting`.
+/// Mixed levels in a box; one in forty is new; if `resting`, one in three is not solved.
 FluidState crowd(int n, bool resting) {
   FluidState state;
   state.guards.resize(1);
@@ -80,7 +80,7 @@ void equals_brute_force(bool resting) {
 SIM_TEST(Ease, FollowsTheYoungestWithinTheSupport) { equals_brute_force(false); }
 SIM_TEST(Ease, LeavesOutWhoIsNotSolved) { equals_brute_force(true); }
 
-/// Two per cent of compression is an overlap that parts slowly, ten are an impact.
+/// Two per cent of compression is an overlap to part slowly; ten per cent is an impact.
 SIM_TEST(Ease, WhatIsPressedHasTheWholeConstraint) {
   const float ease[] = {0.1f, 0.1f, 0.1f, 0.1f, 0.7f, 1};
   const float density[] = {0.9f, 1.02f, 1.06f, 1.3f, 1.06f, 1.01f};

@@ -1,5 +1,5 @@
 #pragma once
-/// Small crowds for the tests of the effects' passes.
+/// Small sets of particles for the tests of the effects' passes.
 
 #include <cmath>
 #include <numeric>
@@ -12,7 +12,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// The passes of an effect; none where the program was built without.
+/// The passes of an effect; empty if the program was built without it.
 inline std::vector<Stage> passes_of(EffectKind kind) {
   std::vector<Stage> out;
   for (const Stage& stage : all_stages())
@@ -21,7 +21,7 @@ inline std::vector<Stage> passes_of(EffectKind kind) {
 }
 inline std::size_t index_of(EffectKind kind) { return static_cast<std::size_t>(kind); }
 
-/// Particles at rest with the true neighbours within hbar and beyond, and their densities.
+/// Particles at rest. Their neighbour lists reach to 1.1 hbar, a little beyond the true neighbours.
 inline FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   FluidState state;
   state.guards.resize(1);
@@ -48,14 +48,14 @@ inline FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   return state;
 }
 
-/// What one substep of an effect does to resting particles.
+/// The velocities after one substep of an effect on the particles.
 inline std::vector<Vec4> velocities_by(EffectKind kind, FluidState& state) {
   constrain_density(state, DensityView(state.particles));
   for (const Stage& stage : passes_of(kind)) stage.run(state);
   return state.particles.all().velocity.to_host();
 }
 
-/// Some are not solved; lists belong to slots then.
+/// Marks the particles with active = 0 as not solved; the neighbour lists then belong to slots.
 inline void let_rest(FluidState& state, const std::vector<std::uint8_t>& active) {
   std::vector<int> slots, others;
   for (int i = 0; i < state.particles.size(); ++i) {

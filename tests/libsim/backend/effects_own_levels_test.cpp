@@ -1,4 +1,4 @@
-/// Effects that leave coarse water out: who takes part, and what stays.
+/// Effects that leave out coarse water: which particles take part, and what is conserved.
 
 #include <array>
 #include <cstring>
@@ -8,15 +8,15 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// A ball of some levels that moves in all ways and is warm in places, and what an effect makes of it up to a
-/// level. One in three may rest.
+/// A ball of several levels with random velocities and temperatures, before and after one effect that acts up
+/// to the level `coarsest`. With `resting`, one in three particles is not solved.
 struct Crowd {
   EffectKind kind;
   int coarsest;
   bool resting = false;
-  int levels = 4;      ///< that it holds
-  bool walled = true;  ///< a warm wall stands beside it
-  bool whole = true;   ///< those that are too coarse are there
+  int levels = 4;      ///< number of levels in the ball
+  bool walled = true;  ///< adds a warm wall beside it
+  bool whole = true;   ///< includes the particles that are too coarse for the effect
 
   std::vector<Vec4> points = {}, before = {}, after = {};
   std::vector<int> level = {};
@@ -118,7 +118,7 @@ SIM_TEST(OwnLevels, WaterThatIsFineThroughoutHasTheSameBits) {
   }
 }
 
-/// Where a pair acts, both feel it.
+/// An effect on pairs acts on both particles of a pair.
 SIM_TEST(OwnLevels, MomentumAndHeatStayAtEveryLevel) {
   NEEDS_EFFECTS;
   for (const EffectKind kind : {EffectKind::Viscosity, EffectKind::Cohesion, EffectKind::Heat}) {
@@ -148,7 +148,7 @@ SIM_TEST(OwnLevels, MomentumAndHeatStayAtEveryLevel) {
   }
 }
 
-/// To what acts by pairs alone, water that it leaves out might as well be away.
+/// An effect on pairs gives the same result if the water that it leaves out is removed.
 SIM_TEST(OwnLevels, CoarserWaterHoldsNothingBack) {
   NEEDS_EFFECTS;
   for (const EffectKind kind : {EffectKind::Viscosity, EffectKind::Heat}) {

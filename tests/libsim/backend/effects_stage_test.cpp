@@ -1,4 +1,4 @@
-/// The effects' passes on small crowds and lattices; viscosity's in viscosity_stage_test.cpp.
+/// The effects' passes on small sets of particles and lattices; viscosity_stage_test.cpp tests viscosity.
 
 #include "tests/libsim/backend/effects_crowds.hpp"
 
@@ -28,7 +28,7 @@ SIM_TEST(Cohesion, KeepsMomentumWhereSomeRest) {
   const auto points = mixed_ball();
   auto state = state_of(points, false);
   state.parameters.effects.values[index_of(EffectKind::Cohesion)] = 50;
-  // The last ones rest, so that slots are particles.
+  // The last particles rest, so that slots equal particle indices.
   const std::size_t solved = points.size() - 40;
   std::vector<std::uint8_t> active(points.size(), 0);
   std::fill_n(active.begin(), solved, std::uint8_t{1});
@@ -92,10 +92,10 @@ SIM_TEST(Cohesion, APairOfTwiceTheSizeIsPulledAQuarterAsFast) {
   EXPECT_NEAR(speed[1] / speed[0], 0.25f, 1e-4f);
 }
 
-/// Adhesion of this work beside a tension, on particles before a wall at x = 0.
+/// Adhesion with this work and a tension, on particles before a wall at x = 0.
 struct BesideAWall {
   float tension, work;
-  float density = 1, normal = 0;  ///< of all; the latter along x
+  float density = 1, normal = 0;  ///< of all particles; the normal along x
 
   std::vector<Vec4> velocities(const std::vector<Vec4>& points, float& dt) const {
     auto state = state_of(points, true);
@@ -112,8 +112,8 @@ struct BesideAWall {
 
 SIM_TEST(Adhesion, TakingWaterOffAWallCostsItsShareOfTheWorkBeyondTension) {
   NEEDS_EFFECTS;
-  // Particles of spacing d in a column before the wall, lifted together: the work over the area d^2 is
-  // rho_0 int s a(s) ds, whatever d: 0.75 of W - sigma is the pull's.
+  // Particles of spacing d in a column before the wall, lifted together: the work over the area d^2 is rho_0
+  // int s a(s) ds for every d. The adhesion pull does 0.75 of W - sigma.
   const BesideAWall wall{.tension = 20, .work = 50};
   for (const float d : {0.05f, 0.1f}) {
     const float h = 2 * d;

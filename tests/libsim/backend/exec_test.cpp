@@ -102,7 +102,7 @@ SIM_TEST(Passes, EachIndexOfEachOnceInOneLaunch) {
   }
 }
 
-/// Adds 0 ... i % 50 by lanes and lists the odd ones of them in order.
+/// The team's lanes add 0 ... i % 50 and list the odd numbers in order.
 struct SumOdd {
   int* sums;
   int* last_place;
@@ -121,7 +121,7 @@ struct SumOdd {
       if (odd) own_place = place;
       found += all;
     }
-    // The last odd number, 2 place + 1, was some lane's.
+    // One lane holds the last odd number, 2 place + 1.
     const bool last = own_place >= 0 && own_place == found - 1;
     const int total = team.sum(sum);
     const int place = team.sum(last ? own_place : 0);
@@ -132,7 +132,7 @@ struct SumOdd {
 };
 
 SIM_TEST(ForEachTeam, SumsAndCountsForEverySizeOfTeam) {
-  // On a device these run with eight lanes, four, two and one.
+  // On a device these sizes run with eight lanes, four, two and one.
   for (const int n : {1, 1000, 100'003, 200'001, 700'003}) {
     Array<int> sums(static_cast<std::size_t>(n));
     Array<int> places(static_cast<std::size_t>(n));
@@ -157,7 +157,7 @@ struct Ranked {
   }
 };
 
-/// The least of the first i % 50 numbers, the place of the first that has it, and whether one is 4.
+/// The least of the first i % 50 numbers, the place of its first occurrence, and whether any number is 4.
 struct FindLeast {
   int* least;
   int* place;
@@ -197,7 +197,7 @@ SIM_TEST(ForEachTeam, FindsTheLeastAndTheFirstOfEqualsForEverySizeOfTeam) {
     for (int i = 0; i < n; ++i) {
       const auto at = static_cast<std::size_t>(i);
       const int count = i % 50;
-      // 0, 2, 4, 1, 3 and again.
+      // The numbers are 0, 2, 4, 1, 3, repeated.
       wrong +=
           leasts[at] != (count > 0 ? 0 : 5) || places[at] != (count > 0 ? 0 : -1) || anys[at] != (count > 2);
     }
@@ -210,7 +210,7 @@ struct Fill {
   int value;
   SIM_FN void operator()(int i) const { values[i] = value + i; }
 };
-/// Each step reads what other threads wrote in the one before; the middle ones are a warp's.
+/// Each step reads what other threads wrote in the step before; one warp runs the middle steps.
 struct Rotate {
   int* out;
   int n;
@@ -240,7 +240,7 @@ struct Rotate {
   };
 };
 
-/// Sums and the least of n values by all threads of a warp, each of which writes what it got.
+/// The sum and the least of n values by all threads of a warp; each thread writes its result.
 struct OfWarp {
   struct Value {
     int n;
@@ -300,7 +300,7 @@ SIM_TEST(InOneBlock, AllOfAWarpKnowTheSumAndTheLeast) {
 }
 
 SIM_TEST(InOneBlock, StepsWaitForEachOther) {
-  // The last one's room is more than any device has beside its threads.
+  // The last size needs more room than any device has in shared memory.
   Array<unsigned char> spare;
   for (const int n : {1, 700, 5000, 100'000}) {
     const auto size = static_cast<std::size_t>(n);

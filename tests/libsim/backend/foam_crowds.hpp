@@ -12,7 +12,8 @@ namespace sim::SIM_BACKEND::foam_crowds {
 
 using Speed = Vec3 (*)(Vec3);
 
-/// Water of these places and supports in a tank of 4 m, sorted by the grid, with a pool of `most`.
+/// Water at these positions with these supports (w) in a tank of 4 m, sorted into the grid, with a pool of
+/// `most` foam particles.
 struct Water {
   FluidState state;
   FoamRules rules;

@@ -1,4 +1,4 @@
-/// Foam and obstacles: what they hold, hide and carry.
+/// Foam and obstacles: collisions, surfaces and enclosed air beside obstacles, and births.
 
 #include "tests/libsim/backend/foam_crowds.hpp"
 
@@ -29,7 +29,7 @@ SIM_TEST(Foam, ObstaclesHoldWhatIsThrownAtThemAndTakeItAlong) {
   move();
   EXPECT_NEAR(water.state.foam.place.to_host()[0].x, 2.5f, 1e-6f);
   EXPECT_NEAR(water.state.foam.velocity.to_host()[0].x, -5, 1e-4f);
-  // One that has come over it.
+  // A foam particle that the body has moved over.
   put(water, {2, 2.3f, 2, 1}, {});
   move();
   EXPECT_NEAR(water.state.foam.place.to_host()[0].y, 2.5f, 1e-6f);
@@ -51,7 +51,7 @@ SIM_TEST(Foam, ObstaclesHideNoWater) {
   put(water, {2.5f, 2, 2, 1}, {});
   move_foam(water.state.foam, water.view(), water.state.grid, solids, water.rules);
   EXPECT_GT(water.state.foam.velocity.to_host()[0].w, FoamKinds::bubble);
-  // Nor is there a surface.
+  // The water has no surface at the obstacle either.
   const auto normal_beside = [&](const auto& bounds) {
     water.find_surface(bounds);
     const auto x = water.state.particles.all().position.to_host();

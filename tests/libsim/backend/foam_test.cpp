@@ -1,4 +1,4 @@
-/// Foam: where it comes from, how it moves, and its books. Kernels on small crowds against sums on the host.
+/// Foam: births, motion and counts. Kernels on small sets of particles against sums on the host.
 
 #include <cmath>
 
@@ -28,7 +28,7 @@ SIM_TEST(Foam, NormalsAreTheSumsOverAllPairs) {
   }
 }
 
-/// How water meets in the middle of a block of it, 1/s.
+/// Approach rate in the middle of a block of water, 1/s.
 float approach_in(Speed speed, float h) {
   Water water(cube(1, 3, h), true, speed);
   water.rules.energy = {-1, 1e-6f};
@@ -46,7 +46,7 @@ float approach_in(Speed speed, float h) {
 }
 
 SIM_TEST(Foam, WaterMeetsAsItsGradientSays) {
-  // The mean of |G e| - e G e over the sphere, by hand.
+  // The expected value is the mean of |G e| - e G e over the sphere.
   for (const float h : {0.2f, 0.4f}) {
     EXPECT_NEAR(approach_in([](Vec3 x) { return -3 * (x - Vec3{2, 2, 2}); }, h), 6, 0.3f) << "from all sides";
     EXPECT_NEAR(approach_in([](Vec3 x) { return 3 * (x - Vec3{2, 2, 2}); }, h), 0, 1e-3f) << "it parts";
@@ -57,7 +57,7 @@ SIM_TEST(Foam, WaterMeetsAsItsGradientSays) {
 }
 
 SIM_TEST(Foam, CellsThatTheFarWallsCutAreNoDrierThanOthers) {
-  // Water turns in a corner of the tank, and in its mirror image. The last cells have 3 / 7 of an edge.
+  // Water rotates in a corner of the tank, and in its mirror image. The last cells have 3 / 7 of an edge.
   const auto approach_in_the_corner = [](bool high) {
     auto points = cube(0, 1.5f, 0.1f);
     if (high) {
@@ -99,13 +99,13 @@ SIM_TEST(Foam, ParticlesThatShakeAmongEachOtherAreNoWaterThatMeets) {
     const auto odd = static_cast<int>(std::floor(10 * x.x + 0.25f) + std::floor(10 * x.y + 0.25f));
     return Vec3{odd % 2 ? 1.0f : -1.0f, 0, 0};
   };
-  // Neighbours meet at 2 m/s over 0.1 m.
+  // Neighbours approach at 2 m/s over 0.1 m.
   EXPECT_LT(approach_in(shaken, 0.2f), 0.1f);
 }
 
 SIM_TEST(Foam, AirIsShutInBetweenWater) {
-  // A sheet of two cells has a face, four edges and four corners of a cell's neighbours dry: 1, 1 / 4 and 1 /
-  // 9 each. A drop alone meets nobody.
+  // Around a cell in a sheet of two cells, a face, four edges and four corners are dry, with weights 1, 1 / 4
+  // and 1 / 9. A lone drop approaches no other water.
   const Speed turns = [](Vec3 x) { return Vec3{4 * x.z, 0, -4 * x.x}; };
   auto points = cube(1, 3, 0.2f);
   std::erase_if(points, [](const Vec4& x) { return x.y < 1.6f || x.y > 2.4f; });
@@ -123,7 +123,7 @@ SIM_TEST(Foam, AirIsShutInBetweenWater) {
   }
 }
 
-/// Volume of the births over rate, time and the water's volume.
+/// Volume of the births over rate, time step and the water's volume.
 double emitted_share(const std::vector<int>& births, const Water& water, double volume) {
   const double all = std::accumulate(births.begin(), births.end(), 0.0);
   return all * static_cast<double>(water.rules.volume / (water.rules.rate * water.rules.dt)) / volume;
@@ -155,7 +155,7 @@ SIM_TEST(Foam, SlowWaterAndWaterThatMovesAsOneMakeNone) {
 }
 
 SIM_TEST(Foam, CrestsAreConvexAndPushedOn) {
-  // A block's edges and corners in front of its motion, and none at its back or on its faces' middles.
+  // Foam forms at a block's leading edges and corners, not at its back or in the middle of its faces.
   Water water(cube(1, 2, 0.2f), true, [](Vec3) { return Vec3{5, 0, 0}; });
   water.rules.crest = {0.3f, 1e-6f};
   const auto births = water.births();

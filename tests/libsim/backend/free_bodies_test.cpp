@@ -1,4 +1,4 @@
-/// How free bodies turn, and how walls stop them.
+/// Rotation of free bodies, and their contact with walls.
 
 #include "libsim/particles/free_body.hpp"
 
@@ -18,7 +18,7 @@ Body brick() {
   out.turn = {0, 0, 0, 1};
   return out;
 }
-/// Of density 1 over m_*.
+/// A free body of density 1, in units of m_*.
 FreeBody made_of(const Body& body) {
   FreeBody out{};
   const Vec3 h = body.half;
@@ -31,7 +31,7 @@ float energy(const Body& body, const FreeBody& free) {
   return 0.5f * dot(free.spin, spin_of(free, body.turn, free.spin));
 }
 
-/// About its middle axis a brick tumbles: the momentum is kept as a number, the energy by the step.
+/// A brick tumbles about its middle axis: the momentum is stored, and the step conserves the energy.
 SIM_TEST(FreeBodies, ATumblingBrickKeepsItsEnergy) {
   Body body = brick();
   FreeBody free = made_of(body);
@@ -53,7 +53,7 @@ SIM_TEST(FreeBodies, TurnsAreRightHanded) {
   EXPECT_NEAR(turned(quarter, {1, 0, 0}).y, 1, 1e-6f);
 }
 
-/// A brick that falls on a corner: it comes as near as the floor and gets a turn, and no energy.
+/// A brick falls on a corner: it stops at the floor and gains a spin but no energy.
 SIM_TEST(FreeBodies, WallsStopABodyWithoutEnergy) {
   Walls walls{};
   walls.planes[walls.count++] = {{0, 1, 0}, 0};

@@ -7,7 +7,7 @@ namespace {
 
 constexpr float drag = 0.7f;
 
-/// The floor y = 0.
+/// Particles with velocity v over the floor y = 0.
 FluidState over_a_floor(const std::vector<Vec4>& points, Vec4 v) {
   auto state = state_of(points, true);
   state.walls.planes[state.walls.count++] = {{0, 1, 0}, 0};
@@ -32,7 +32,7 @@ SIM_TEST(Friction, SlowsWhatSlidesWithinASpacingOfAWallAtItsRate) {
 
 SIM_TEST(Friction, AnyLatticeFeelsTheSameStress) {
   NEEDS_EFFECTS;
-  // A column of a lattice: the momentum that it loses over d^2 is rho_0 c u dt.
+  // A column of a lattice loses the momentum rho_0 c u dt per area d^2.
   for (const float d : {0.05f, 0.1f}) {
     for (const float lowest : {0.1f, 0.5f, 0.9f}) {
       std::vector<Vec4> points;
@@ -71,7 +71,8 @@ Body body_of(Vec3 half, float radius) {
   return out;
 }
 
-/// Water without order round a body: the momentum that it loses over rho_0 c u dt and the faces along u.
+/// Random particles round a body: their lost momentum over rho_0 c u dt, which is the area of the faces along
+/// u.
 double face_of(const Body& body, float d, float reach) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> at(-reach, reach);
@@ -83,7 +84,7 @@ double face_of(const Body& body, float d, float reach) {
   FluidState state;
   state.particles.allocate(all_columns(), static_cast<int>(points.size()));
   state.particles.all().position.from_host(points);
-  // Along y, on a body that turns about nothing.
+  // Velocity along y; the body does not turn.
   state.particles.all().velocity.from_host(std::vector<Vec4>(points.size(), Vec4{0, 1, 0, 0}));
   state.obstacles.bodies.from_host({body});
   state.parameters.effects.values[index_of(EffectKind::Friction)] = 1e-3f;
@@ -91,7 +92,7 @@ double face_of(const Body& body, float d, float reach) {
   double lost = 0;
   for (const Vec4& v : state.particles.all().velocity.to_host()) lost += 1 - static_cast<double>(v.y);
   const double whole = 8 * std::pow(static_cast<double>(reach), 3);
-  // Points fill what the body leaves.
+  // The particles fill the space outside the body.
   double outside = 0;
   std::mt19937 again(6);
   constexpr int tries = 100'000;
@@ -102,7 +103,7 @@ double face_of(const Body& body, float d, float reach) {
 
 SIM_TEST(Friction, OfRoundObstaclesIsThatOfTheirFaces) {
   NEEDS_EFFECTS;
-  // Of a sphere the share along one direction is 1 - n_y^2, two thirds in the mean.
+  // A sphere's share along one direction is 1 - n_y^2, two thirds on average.
   const Body ball = body_of({0, 0, 0}, 0.3f);
   EXPECT_NEAR(face_of(ball, 0.1f, 0.5f) / (4 * 3.14159 * 0.09 * 2 / 3), 1, 0.03);
   const Body capsule = body_of({0, 0.2f, 0}, 0.2f);
@@ -129,7 +130,7 @@ SIM_TEST(Friction, WaterThatGoesWithAnObstacleFeelsNone) {
   EXPECT_EQ(v[1].z, 0) << "and not pushed";
 }
 
-/// What a ball is told is what the water lost, and a light one that is free gets no faster than the water.
+/// A ball receives the momentum that the water loses, and a light free ball gets no faster than the water.
 SIM_TEST(Friction, ABodyIsToldWhatTheWaterLoses) {
   NEEDS_EFFECTS;
   constexpr float d = 0.1f;

@@ -1,4 +1,4 @@
-/// Counts in bins, and the bin that holds a rank.
+/// Counts in bins, and the search for the bin that holds a rank.
 
 #include "libsim/exec/histogram.hpp"
 
@@ -22,7 +22,7 @@ struct Found {
   int bin, before, count;
 };
 
-/// The bin of a rank, counted from the run `from` on.
+/// The bin of a rank, counted from run `from` of bins on.
 struct FindRank {
   int from, rank;
   Found* out;
@@ -43,7 +43,7 @@ struct FindRank {
 SIM_TEST(Histogram, FindsTheBinOfEachRankAndIsEmptyAfterwards) {
   std::mt19937 random(1);
   std::vector<int> values;
-  // One bin holds a thousand, four of five hold none.
+  // One bin holds a thousand values; four bins of five are empty.
   for (int i = 0; i < 3000; ++i)
     values.push_back(i % 3 == 0 ? 700 : static_cast<int>(random() % bins) / 5 * 5);
   Array<int> device;

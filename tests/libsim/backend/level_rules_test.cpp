@@ -9,7 +9,7 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// Targets after grading of particles that have no neighbours, all of level 1 and N = 4.
+/// Targets after grading of particles without neighbours, all of level 1, with N = 4.
 std::vector<std::uint8_t> graded(const std::vector<float>& saliency, float dead_band) {
   FluidState state;
   state.guards.resize(1);

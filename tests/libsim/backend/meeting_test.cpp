@@ -1,4 +1,4 @@
-/// Bodies that meet, without water: what they give each other, how they rub, what they rest on.
+/// Contacts between bodies, without water: impulses, friction, and rest on each other.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ SIM_TEST(Meeting, BallsThatGrazeShareWhatLiesAlongTheirCentres) {
     two.push(0, {3, 0, 0});
     const Vec3 turning = two.angular_momentum();
     two.step(1000);
-    // At 30 degrees; each gets what makes their speeds along it the same.
+    // They hit at 30 degrees; the impulse makes their speeds along the normal equal.
     const Vec3 n{std::sqrt(0.75f), 0.5f, 0};
     const float along = 3 * n.x;
     const float kept = along / (1 + ratio);
@@ -91,7 +91,7 @@ SIM_TEST(Meeting, AHeavyBoxRestsOnALightOne) {
   }
 }
 
-/// Water between two bodies may push one away, and the floor stops it.
+/// Water between two bodies may push one away; the floor stops it.
 SIM_TEST(Meeting, ABoxThatIsPushedDownStillBearsAnother) {
   BodiesApart two;
   two.gravity = g;
@@ -163,7 +163,7 @@ SIM_TEST(Meeting, FrictionHoldsABoxOnARampUpToItsAngle) {
     Body brick = BodiesApart::box(ramp.centre + turned(ramp.turn, {0, 0.2f, 0}), {0.3f, 0.2f, 0.3f});
     brick.turn = ramp.turn;
     two.add(ramp, 0, 1);
-    two.add(brick, 1, mu * mu);  // of a pair the geometric mean counts
+    two.add(brick, 1, mu * mu);  // the pair uses the geometric mean
     two.step(90);
     const float slides = std::sin(slope) - mu * std::cos(slope);
     EXPECT_NEAR(length(two.velocity(1)), slides > 0 ? 0.5f * g * slides : 0.0f, 5e-3f) << mu;
@@ -173,7 +173,7 @@ SIM_TEST(Meeting, FrictionHoldsABoxOnARampUpToItsAngle) {
   }
 }
 
-/// No corner is near another body.
+/// No corner is near the other body.
 SIM_TEST(Meeting, EdgesMeetEdges) {
   const float quarter = 1.57079633f;
   for (const bool capsules : {true, false}) {
@@ -186,7 +186,7 @@ SIM_TEST(Meeting, EdgesMeetEdges) {
     Body upper = rod({0.13f, 0.6f, 0.02f}, 1);
     upper.turn = turned_by(upper.turn, {quarter, 0, 0});
     if (!capsules) {
-      // On edge.
+      // Turned so that edges meet.
       lower.turn = turned_by(lower.turn, {quarter / 2, 0, 0});
       upper.turn = turned_by(upper.turn, {0, 0, quarter / 2});
     }
@@ -249,7 +249,7 @@ SIM_TEST(Meeting, WhatTurnsPushesWithTheSpeedOfThePlace) {
 
 SIM_TEST(Meeting, ABallRestsInAWedge) {
   for (const float degrees : {2.0f, 5.0f, 20.0f}) {
-    const float angle = degrees * 1.57079633f / 90;  // of each side to the vertical
+    const float angle = degrees * 1.57079633f / 90;  // between each side and the vertical
     const Vec3 middle{0, 2, 0};
     BodiesApart three;
     three.gravity = g;
@@ -266,7 +266,7 @@ SIM_TEST(Meeting, ABallRestsInAWedge) {
   }
 }
 
-/// Nothing can be right then: walls win, and the body leaves as soon as it can.
+/// The constraints contradict each other: walls have priority, and the body leaves as soon as it can.
 SIM_TEST(Meeting, WhatIsPinnedStaysInTheTank) {
   for (const bool box : {true, false}) {
     BodiesApart two;

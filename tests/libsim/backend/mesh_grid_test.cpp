@@ -1,4 +1,4 @@
-/// Meshes as kernels meet them: distances between nodes, beyond the grid, and at walls.
+/// Meshes in kernels: distances between nodes and beyond the grid, and contacts with walls.
 
 #include "libsim/particles/mesh_grid.hpp"
 
@@ -59,7 +59,7 @@ SIM_TEST(MeshGrids, DistancesAreThoseOfTheShapeWithinHalfACell) {
   for (int k = 0; k < 5000; ++k) {
     const Vec3 p = place(k, 0.56f);
     EXPECT_NEAR(box_mesh.grid.near(p).distance, box(brick_half).distance(p), 0.02f);
-    if (length(p) < 0.08f) continue;  // the cusp in the middle
+    if (length(p) < 0.08f) continue;  // excludes the cusp in the middle
     EXPECT_NEAR(ball.grid.near(p).distance, length(p) - 0.5f, 0.02f);
     const Body::Near near = ball.grid.near(p);
     EXPECT_NEAR(length(near.normal), 1, 1e-5f);
@@ -78,7 +78,7 @@ SIM_TEST(MeshGrids, BeyondTheGridDistancesGoOn) {
     EXPECT_NEAR(near.distance / (length(p) - 0.5f), 1, 0.1f);
     EXPECT_GT(dot(near.normal, p) / length(p), 0.95f);
   }
-  // No step where the grid ends.
+  // The distance is continuous at the grid's border.
   const float end = ball.grid.low.x;
   for (const float y : {-0.3f, 0.0f, 0.2f}) {
     const float inside = ball.grid.near({end + 1e-5f, y, 0.1f}).distance;
@@ -86,7 +86,7 @@ SIM_TEST(MeshGrids, BeyondTheGridDistancesGoOn) {
   }
 }
 
-/// Solids take the mesh for the body, and other bodies beside it as they are.
+/// Solids uses the mesh's grid for a mesh, and the shape itself for other bodies.
 SIM_TEST(MeshGrids, SolidsAskTheGrid) {
   const OnHost ball(mesh_test::ball_text(0.5, 32), 0.04);
   Body bodies[2] = {box({0.5f, 0.5f, 0.5f}), box({0.5f, 0.5f, 0.5f})};
@@ -109,7 +109,7 @@ SIM_TEST(MeshGrids, SolidsAskTheGrid) {
   EXPECT_NEAR(x.x, -2.5f, 0.01f);
 }
 
-/// A brick of triangles meets walls as the box does.
+/// A brick of triangles touches walls at the same contacts as the box.
 SIM_TEST(MeshGrids, ContactsAreThoseOfTheBox) {
   const OnHost mesh(brick, 0.04);
   Walls walls{};

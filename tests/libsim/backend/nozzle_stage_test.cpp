@@ -31,7 +31,7 @@ struct Start {
   std::vector<int> id;
 };
 
-/// Many share a height exactly, so that ids decide.
+/// Many particles have exactly the same height, so that ids decide.
 Start pool(int n) {
   std::mt19937 random(4);
   std::uniform_real_distribution<float> at(0, tank);
@@ -79,7 +79,7 @@ std::vector<int> lowest(const Start& start, std::size_t count) {
   return out;
 }
 
-/// Ids of the particles that the pass has set in motion.
+/// Ids of the particles that the pass moved into the jet.
 std::vector<int> moved(const FluidState& state) {
   const auto velocity = state.particles.all().velocity.to_host();
   const auto id = state.particles.all().id.to_host();
@@ -154,7 +154,7 @@ SIM_TEST(NozzleStage, LayersPassTheMouthOnTimeAtTheNozzlesSpeed) {
   std::vector<int> of_layer(2);
   for (std::size_t i = 0; i < position.size(); ++i) {
     if (velocity[i].y == 0) continue;
-    // Free fall to the mouth.
+    // The particle falls freely from the mouth.
     const double speed = -static_cast<double>(velocity[i].y);
     const double lead = (16 - speed) / 9.81;
     EXPECT_NEAR(static_cast<double>(position[i].y) - speed * lead - 4.905 * lead * lead, 4.5, 1e-5);
@@ -170,7 +170,7 @@ SIM_TEST(NozzleStage, LayersPassTheMouthOnTimeAtTheNozzlesSpeed) {
 
 SIM_TEST(NozzleStage, WaitsWhenTheCornersHoldTooFew) {
   Start start = pool(20'000);
-  // Leave one layer's particles and a few more in the corners.
+  // Leaves only one layer's particles and a few more in the corners.
   int kept = 0;
   for (auto& p : start.position) {
     if (in_corner(p) && ++kept > 120) p.x = p.z = 5;
@@ -205,7 +205,8 @@ SIM_TEST(NozzleStage, RestsBetweenPulsesWithoutAnyMemory) {
   EXPECT_EQ(state.jets.columns.bytes(), 0u);
 }
 
-/// A pool of mixed levels whose particles want `target`, with room for eight times as many.
+/// A pool of mixed levels whose particles have the target level `target`, with capacity for eight times as
+/// many.
 FluidState mixed_pool(int n, int target, std::int64_t& mass) {
   Start start = pool(n);
   FluidState state;
@@ -219,7 +220,7 @@ FluidState mixed_pool(int n, int target, std::int64_t& mass) {
     start.position[i].w = state.supports.h[i % 4];
     mass += 1 << (i % 4);
   }
-  // Water round the mouth that says what is wanted.
+  // A particle near the mouth, where the pass reads the target.
   start.position[0] = {5, 4.4f, 5, state.supports.h[0]};
   p.all().position.from_host(start.position);
   p.all().id.from_host(start.id);
@@ -272,7 +273,8 @@ SIM_TEST(NozzleStage, PoursTheMedianTargetAndKeepsTheMassExactly) {
 }
 
 SIM_TEST(NozzleStage, WaitsWhenTheCapacityIsReached) {
-  // Corners full of the coarsest particles, layers of the finest, and room for none.
+  // The corners hold only the coarsest particles, the layers need the finest, and there is no capacity for
+  // the splits.
   Start start = pool(4'000);
   FluidState state = state_of(start);
   state.one_level = false;

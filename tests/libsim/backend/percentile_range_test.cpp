@@ -1,4 +1,4 @@
-/// The range between two percentiles that importance is normalised by.
+/// The range between two percentiles that normalises importance.
 
 #include <algorithm>
 #include <random>

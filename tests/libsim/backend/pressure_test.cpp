@@ -6,7 +6,7 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// A box of fluid from the low corner of a block of cells; elsewhere air.
+/// A box of fluid at the low corner of a block of cells; the rest is air.
 struct Pool {
   CellBlock block, water;
   std::vector<CellKind> kind;
@@ -25,7 +25,7 @@ struct Pool {
   }
   std::size_t at(int x, int y, int z) const { return static_cast<std::size_t>(block.index(x, y, z)); }
 
-  /// Sum of |source - A q| over cells that push, by the definition of the operator.
+  /// Sum of |source - A q| over cells where q or the residual is positive, by the definition of A.
   double residual(const std::vector<float>& q) const {
     const auto value = [&](int x, int y, int z, bool& solid) {
       solid = x < 0 || y < 0 || z < 0 || x >= block.nx || z >= block.nz;
@@ -81,8 +81,8 @@ SIM_TEST(Multigrid, ColumnOfWaterHasALinearPressure) {
 }
 
 SIM_TEST(Multigrid, WaterLeavesThroughAnOpenFloorAsMuchAsItIsOpen) {
-  // A source at one height of a column. Its water leaves into the air above and through the floor, over faces
-  // in a row: one a cell, and 1 / share at a floor that is open in part.
+  // A source at one height of a column. Its water leaves into the air above and through the floor, past faces
+  // in series: resistance one per cell, and 1 / share at a partly open floor.
   for (const int height : {1, 3, 8, 13}) {
     for (const float share : {0.0f, 0.5f, 1.0f}) {
       const int at = height / 2;
@@ -90,7 +90,7 @@ SIM_TEST(Multigrid, WaterLeavesThroughAnOpenFloorAsMuchAsItIsOpen) {
       for (int z = 0; z < 3; ++z) {
         for (int x = 0; x < 2; ++x) column.source[column.at(x, at, z)] = 1;
       }
-      // Along x a part of each cell, along z everything.
+      // Open along x in a part of each cell, along z everywhere.
       std::vector<OpenFace> floor;
       for (int x = 0; x < 2; ++x) {
         const auto low = static_cast<float>(x);
@@ -133,7 +133,7 @@ SIM_TEST(Multigrid, NeverPullsAndLeavesExpandedWaterAlone) {
 }
 
 SIM_TEST(Multigrid, AClosedBoxWithoutAirStaysFinite) {
-  // No air anywhere: the equation has no solution; a bounded answer is all that can be asked.
+  // Without air the equation has no solution; the answer must only be finite.
   Pool pool({6, 6, 6}, {6, 6, 6});
   std::fill(pool.source.begin(), pool.source.end(), 1e-3f);
   for (const float q : pool.solve(2)) EXPECT_TRUE(std::isfinite(q));
@@ -200,7 +200,7 @@ Column measure_column(FluidState& state, int side, int layers, float spacing) {
 }
 
 SIM_TEST(CoarsePressure, OnePassTakesTheCompressionOutOfATallColumn) {
-  // 5 % over 32 layers: four Jacobi projections would reach eight layers.
+  // 5 % over 32 layers: four Jacobi projections would reach only eight layers.
   constexpr int side = 16;
   constexpr int layers = 32;
   auto state = column_of(side, layers, 0.1f, 0.95f);
@@ -214,13 +214,12 @@ SIM_TEST(CoarsePressure, OnePassTakesTheCompressionOutOfATallColumn) {
 }
 
 SIM_TEST(CoarsePressure, MirroredWaterMovesAsInAMirrorForEveryWidthOfTheTank) {
-  // Water gathers before the walls across x and must go back. Cells have four spacings, which fit whole into
-  // the first width only: a wall must press as its mirror image does, however much of a cell it would cut
-  // off.
+  // Water is denser near the walls across x and must move back. Cells are four spacings wide, so only the
+  // first width holds a whole number of them: a wall must push like its mirror image even if it cuts a cell.
   constexpr int layers = 24;
   for (const int side : {16, 18, 19, 22}) {
     auto state = column_of(side, layers, 0.1f, 0.95f);
-    state.parameters.coarse_cycles = 20;  // the colours of a sweep are no mirror images
+    state.parameters.coarse_cycles = 20;  // the colours of a sweep are not symmetric
     auto points = state.particles.all().predicted.to_host();
     const float middle = 0.05f * static_cast<float>(side);
     for (auto& p : points) {
@@ -229,7 +228,7 @@ SIM_TEST(CoarsePressure, MirroredWaterMovesAsInAMirrorForEveryWidthOfTheTank) {
     }
     state.particles.all().predicted.from_host(points);
     neighbours_stage().run(state);
-    // What they are sorted by changes the order.
+    // The neighbour search has sorted the particles.
     const auto before = state.particles.all().predicted.to_host();
     const auto id = state.particles.all().id.to_host();
     coarse_pressure_stage().run(state);
@@ -251,7 +250,7 @@ SIM_TEST(CoarsePressure, MirroredWaterMovesAsInAMirrorForEveryWidthOfTheTank) {
 }
 
 SIM_TEST(CoarsePressure, LeavesWaterAtRestDensityNearlyAlone) {
-  // The lattice is 1 to 2 % too dense beside a wall, which is pushed out; nothing else may move.
+  // The lattice is 1 to 2 % too dense beside a wall, and the pass corrects that; nothing else may move.
   constexpr int side = 16;
   constexpr int layers = 32;
   auto state = column_of(side, layers, 0.1f, 1);

@@ -1,4 +1,4 @@
-/// Two stranded particles that meet through a coarser one.
+/// Two stranded particles that merge with the help of a coarser one.
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,8 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// Two of level 0 beside one of level 1 that has a half for each; the levels after the relays' pass. What is
-/// gone is 9.
+/// Two particles of level 0 beside one of level 1, which gives each of them a half of itself. Returns the
+/// levels after the relays' pass; 9 marks a removed particle.
 std::vector<int> levels_after(const Array<Body>& bodies) {
   const LevelSupports supports = level_supports(0.2);
   auto state = state_of(

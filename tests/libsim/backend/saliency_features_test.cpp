@@ -30,7 +30,7 @@ std::vector<SaliencyParts> parts_of(const std::vector<Vec4>& points, const Looks
   return parts.to_host();
 }
 
-/// Degrees by which the gaze has turned in each of these looks, a frame apart; a mark after each.
+/// Degrees by which the gaze has turned in each of these looks, one a frame; each look marks its gaze.
 std::vector<double> turns_of(const std::vector<Gaze>& gazes, const std::vector<View>& views) {
   SaliencyInput input;
   std::vector<double> out;
@@ -56,12 +56,12 @@ SIM_TEST(SaliencyGaze, TurnsWithTheEyeAndItsPlaceAndStaysInABlink) {
   EXPECT_NEAR(turned[1], 0, 1e-5);
   EXPECT_NEAR(turned[2], 3, 1e-5);
   EXPECT_NEAR(turned[4], 3, 1e-5) << "as far as an eye that turns by what a metre away is the shift";
-  // Held for 0.25 s, of frames of 0.1 s, it is where it was, whatever the head does.
+  // A lost gaze is held for 0.25 s (frames of 0.1 s), even if the head turns.
   turned = turns_of({aside, lost, lost, aside}, {view, view_of({0, 0, 0}, {1, 0, -1}, 64, 48)});
   EXPECT_EQ(turned[1], 0);
   EXPECT_EQ(turned[2], 0);
   EXPECT_NEAR(turned[3], 0, 1e-5);
-  // Lost for longer, it is the view's axis.
+  // If it is lost for longer, the view's axis replaces it.
   turned = turns_of({aside, lost, lost, lost, lost, aside}, {view});
   EXPECT_NEAR(turned[4], 0, 1e-5);
   EXPECT_NEAR(turned[5], 3, 1e-5);
@@ -78,7 +78,7 @@ SIM_TEST(Acuity, IsOneAtTheGazeAtTheImagePlaneAndHalfAtTwice) {
 }
 
 SIM_TEST(Acuity, DepthFactorIsTheRatioToTheImagePlane) {
-  // Eq. 4 with the intersection worked out, in doubles, against z / z_Pi of the kernel's camera.
+  // Eq. 4 with its intersection computed in doubles, against z / z_Pi of the kernel's camera.
   const View view = view_of({3, 2, 5}, {1, 0.5, -2}, 64, 48);
   const Mat4 pose = rigid_inverse(view.view);
   SaliencyInput input;
@@ -133,7 +133,7 @@ struct Desk {
   static constexpr double half_height_mm = 146.25, distance_mm = 600, degree = 0.017453292519943295;
   const double half_slope = std::tan(37.5 * degree);
 
-  /// Where the camera puts what is seen at this place of the picture, mm from its middle; 3 m deep.
+  /// Where the camera puts the point that appears at this place of the picture, mm from its middle; 3 m deep.
   Vec3 point(double x_mm, double y_mm) const {
     const double slope_by_mm = half_slope / half_height_mm;
     return {static_cast<float>(3 * x_mm * slope_by_mm), static_cast<float>(3 * y_mm * slope_by_mm), -3};
@@ -156,8 +156,8 @@ SIM_TEST(Acuity, EccentricityIsTheAngleAtTheEyeWhateverTheCameras) {
   for (const auto& [gx, gy, x, y] : places) {
     const Eye eye = desk.eye_that_looks_at(gx, gy, desk.scale());
     const double d = Desk::distance_mm, along = gx * x + gy * y + d * d;
-    const double expected =
-        std::acos(along / (std::hypot(gx, gy, d) * std::hypot(x, y, d)));  // of the places, at the eye
+    const double expected = std::acos(
+        along / (std::hypot(gx, gy, d) * std::hypot(x, y, d)));  // angle between the two places, at the eye
     EXPECT_NEAR(static_cast<double>(Acuity::eccentricity(eye, desk.point(x, y))), expected, 1e-4);
   }
 }
@@ -180,7 +180,7 @@ SIM_TEST(Acuity, TheBandAroundTheFoveaKeepsItsWidthInTheScene) {
   const Acuity acuity{AcuityFalloff::Hyperbolic, Acuity::radians(1), 1};
   for (const double scale : {1.0, desk.scale()}) {
     const Eye eye = desk.eye_that_looks_at(0, 0, scale);
-    const double rim_m = 3 * std::tan(Desk::degree) / scale;  // from the axis, 3 m deep
+    const double rim_m = 3 * std::tan(Desk::degree) / scale;  // radius of the fovea's rim, 3 m deep
     const Vec3 outside = {static_cast<float>(rim_m + 0.1), 0, -3};
     EXPECT_NEAR(acuity.gaze_saliency(eye, outside, 0.2f), 0.5f, 0.02f) << scale;
     EXPECT_EQ(acuity.gaze_saliency(eye, {static_cast<float>(rim_m + 0.3), 0, -3}, 0.2f), 0) << scale;
@@ -217,7 +217,7 @@ SIM_TEST(Manifold, IsZeroOnAPlaneAndWithoutFluid) {
   }
   for (const auto& part : parts_of(points, one_eye(view, &flat))) EXPECT_EQ(part.manifold, 0);
   for (const auto& part : parts_of(points, one_eye(view, &empty))) EXPECT_EQ(part.manifold, 0);
-  // Out of the picture, behind the eye, and with no picture at all.
+  // Out of the picture, behind the eye, and without a picture.
   for (const auto& part : parts_of({{50, 0, -3, 0.3f}, {0, 0, 3, 0.3f}}, one_eye(view, &flat)))
     EXPECT_EQ(part.manifold, 0);
   EXPECT_EQ(parts_of({{0, 0, -3, 0.3f}}, one_eye(view, nullptr))[0].manifold, 0);
@@ -278,7 +278,7 @@ SIM_TEST(Occlusion, AttenuationHasItsClosedForm) {
   EXPECT_NEAR(literal.at(10), 148.41f, 0.01f);
 }
 
-/// d_t of the particles as f_T tells it: f_T = 1 / e^(d_t / 2) for f_T gamma_t = 1.
+/// d_t of the particles, computed back from f_T: f_T = 1 / e^(d_t / 2) for f_T gamma_t = 1.
 std::vector<double> thicknesses(const std::vector<Vec4>& points, const View& view, const GBuffer& g) {
   std::vector<double> out;
   for (const auto& part : parts_of(points, one_eye(view, &g), 1)) {
@@ -372,7 +372,7 @@ SIM_TEST(Looks, ALostGazeStaysAndThenFollowsTheView) {
     looks.eyes[0].gaze.valid = frame < 2;
     input.look(looks);
     const Vec3 gaze = input.next_frame(0.1, 0.25).eye[0].gaze;
-    // Held for 0.1 and 0.2 s, then along the view.
+    // Held for 0.1 and 0.2 s, then the view's axis.
     EXPECT_NEAR(gaze.x, frame < 2 ? 0.70711f : 0, 1e-5f) << frame;
     EXPECT_NEAR(gaze.z, frame < 2 ? -0.70711f : -1, 1e-5f) << frame;
   }

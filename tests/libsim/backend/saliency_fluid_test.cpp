@@ -1,4 +1,4 @@
-/// Saliency as a whole (Eq. 1-9) on fluids that the solver made.
+/// The whole of saliency (Eq. 1-9) on fluids from the solver.
 
 #include <cstdio>
 #include <limits>
@@ -13,7 +13,7 @@ using namespace saliency_test;
 
 constexpr double d = 0.15;
 
-/// 8,192 particles; the block stands at x = 0 and, in a longer tank, breaks.
+/// 8,192 particles in a block at x = 0; in a longer tank it is a dam break.
 struct Choice {
   double tank_length, block_length, height;
   int settle_frames, frames;
@@ -58,7 +58,7 @@ State run(const Choice& choice) {
   return out;
 }
 
-/// Each state is made once.
+/// Computes each state once.
 const State& still_water() {
   static const State state = run(still);
   return state;
@@ -156,7 +156,7 @@ SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
   const auto first = next();
   for (const float value : first) ASSERT_TRUE(std::isfinite(value));
   const auto levels = seen.fluid.levels();
-  // The water stops, and the eye jumps.
+  // The water stops and the gaze jumps.
   particles.all().velocity.zero();
   seen.looks.eyes[0].gaze.direction[0] -= 20 * d;
   EXPECT_EQ(next(), first);
@@ -167,12 +167,12 @@ SIM_TEST(SaliencyOfFluids, FlowIsMeasuredInEverySecondFrameAndTheGazeInEach) {
     before += static_cast<double>(first[i]);
     after += static_cast<double>(third[i]);
   }
-  // What is left follows the density alone: at most two frames of a fifth are gone.
+  // What remains depends on the density alone: at most two frames of decay by a fifth.
   EXPECT_LT(after, 0.95 * before);
   EXPECT_GT(after, 0.63 * before);
 }
 
-/// From `from` on, wholly at twice that, and followed as the feature is.
+/// Swirl counts from the rate `from` on, fully at twice that, and decays like the feature.
 SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
   const auto unrest_with = [](SwirlSeen swirl, const std::vector<float>& rate, float before = 0.5f) {
     Seen seen = prepare(broken_dam(), before_dam);
@@ -198,13 +198,13 @@ SIM_TEST(SaliencyOfFluids, SwirlAddsItsShareToTheTemporalFeature) {
   const float share[] = {0, 0, 0.5f, 1, 1};
   for (std::size_t i = 0; i < unseen.size(); ++i)
     EXPECT_NEAR(seen[i] - unseen[i], 0.36f * 5 * share[i % 5], 1e-4f) << i;
-  // Both parts of the feature begin at the frame's own value.
+  // Both parts of the feature start with the frame's own value.
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   const auto begun = unrest_with({.from = 2, .weight = 5}, {0, 2, 3, 4, 1000}, unknown);
   const auto begun_unseen = unrest_with({}, {-1}, unknown);
   for (std::size_t i = 0; i < begun.size(); ++i)
     EXPECT_NEAR(begun[i] - begun_unseen[i], 5 * share[i % 5], 1e-4f) << i;
-  // Where everything counts, what does not turn still does not.
+  // With from = 0 every swirl counts, but zero swirl still adds nothing.
   const auto all = unrest_with({.from = 0, .weight = 1}, {0, 0.1f});
   EXPECT_EQ(all[0], unseen[0]);
   EXPECT_NEAR(all[1] - unseen[1], 0.36f, 1e-4f);
@@ -223,11 +223,11 @@ SIM_TEST(SaliencyOfFluids, LevelsDoNotDependOnTheUnitOfLength) {
   int changed = 0;
   for (std::size_t i = 0; i < levels.size(); ++i) changed += levels[i] != same[i];
   EXPECT_LE(changed, 0.01 * static_cast<double>(levels.size()));
-  // Every level is in use, or the test would mean nothing.
+  // The test is meaningful only if every level occurs.
   for (int level = 0; level < 4; ++level) EXPECT_GT(std::count(levels.begin(), levels.end(), level), 40);
 }
 
-/// Spearman's correlation of the levels by this reach with those by Eq. 6's own, 2 h.
+/// Spearman's correlation between the levels with this reach and those with Eq. 6's own reach, 2 h.
 double agreement(const char* name, const State& water, const Looking& from, GradientReach reach) {
   Seen near = prepare(water, from);
   near.fluid.saliency.readings.gradient = reach;
@@ -241,13 +241,13 @@ double agreement(const char* name, const State& water, const Looking& from, Grad
 }
 
 SIM_TEST(SaliencyOfFluids, SmoothedGradientsRankAsThoseWithinTwoSupports) {
-  // Plain gradients within h do not, which is why they are not the default.
+  // Plain gradients within h do not reach 0.95, so they are not the default.
   EXPECT_GE(agreement("dam break, smoothed", broken_dam(), before_dam, GradientReach::Smoothed), 0.95);
   EXPECT_LT(agreement("dam break, 1 h", broken_dam(), before_dam, GradientReach::OneSupport), 0.95);
   EXPECT_GE(agreement("still water, smoothed", still_water(), before_still, GradientReach::Smoothed), 0.95);
 }
 
-/// Runs a method that sees what it made, frame by frame.
+/// Runs a method with saliency from its own pictures, frame by frame.
 void watch(Simulation& fluid, const Looking& from, int frames) {
   const View view = view_of(from.eye, from.target, 480, 360);
   const Vec3d direction{from.target[0] - from.eye[0], from.target[1] - from.eye[1],
@@ -264,7 +264,7 @@ void watch(Simulation& fluid, const Looking& from, int frames) {
 }
 
 SIM_TEST(SaliencyOfFluids, StillWaterAsksForNoFineParticlesOutsideTheFovea) {
-  // In the loop: levels stir the water a little, and what they stir is more salient.
+  // In a closed loop, changes of level stir the water a little, and stirred water is more salient.
   const auto fluid = make(still, MethodKind::Ours);
   watch(*fluid, before_still, 90);
   SaliencyInput input;
@@ -292,7 +292,8 @@ SIM_TEST(SaliencyOfFluids, StillWaterAsksForNoFineParticlesOutsideTheFovea) {
       "still water after 90 frames: %zu of 8192 particles; of the interior mass %.3f asks for level 0, %.3f "
       "has it\n",
       places.size(), asked / mass, held / mass);
-  // The gate of 5 % is for water at rest (the test above); percentiles of what levels stir up stay larger.
+  // The gate of 5 % is for water at rest (the test above); the percentiles stay larger for water that level
+  // changes stir.
   EXPECT_LT(asked, 0.12 * mass);
   EXPECT_LT(places.size(), 5000u);
 }

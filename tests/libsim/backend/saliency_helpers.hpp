@@ -1,6 +1,6 @@
 #pragma once
-/// What the tests of saliency share: pictures in closed form or splatted on the host, and fluids at rest or
-/// in motion with their neighbours and densities.
+/// Shared by the tests of saliency: pictures in closed form or splatted on the host, and fluids at rest or in
+/// motion with their neighbours and densities.
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +67,7 @@ inline Surface ball(double centre_depth, double radius) {
 }
 
 /// Front of spheres of radius_scale x their radius, then a depth filter that stays within two layers, then
-/// normals by differences: what the renderer does, in plain words.
+/// normals by differences: a plain version of what the renderer does.
 inline GBuffer splat(const std::vector<Vec4>& points, const View& view, float radius_scale) {
   GBuffer g = picture_of(view, nothing());
   g.radius_scale = radius_scale;
@@ -138,7 +138,7 @@ inline GBuffer splat(const std::vector<Vec4>& points, const View& view, float ra
   return g;
 }
 
-/// A fluid with its neighbours and densities, ready to be judged.
+/// A fluid with its neighbours and densities, ready for saliency.
 struct Fluid {
   FluidState state;
   SaliencyState saliency;

@@ -1,4 +1,4 @@
-/// From F to s and levels, Eq. 6's gradients, and the whole of saliency on fluids.
+/// From F to s and levels, the gradients of Eq. 6, and the whole of saliency on fluids.
 
 #include <random>
 
@@ -73,7 +73,7 @@ SIM_TEST(SaliencyLevels, PercentilesAreExact) {
 }
 
 SIM_TEST(SaliencyLevels, PercentilesAreSharesOfTheWaterNotOfTheParticles) {
-  // One particle of level 3 is as much water as eight of level 0 at the same place.
+  // One particle of level 3 holds as much water as eight of level 0 at the same place.
   auto divided = spread(800, 23);
   std::sort(divided.begin(), divided.end());
   std::vector<float> whole;
@@ -121,7 +121,7 @@ SIM_TEST(SaliencyLevels, AnOutlierChangesAlmostNothing) {
     return changed;
   };
   EXPECT_LT(changed_by_outlier(Normalisation::Percentile), 40);
-  // The literal reading lets one particle flatten all others: by design, and why it is not the default.
+  // With MinMax (the literal reading) one outlier flattens all other values, so it is not the default.
   auto even = std::vector<float>();
   for (int i = 0; i < 4000; ++i) even.push_back(static_cast<float>(i));
   F = even;
@@ -180,7 +180,7 @@ SIM_TEST(GazeLevels, AreFinestInTheConeAndCoarsestBeyondItsBand) {
   }
   points.push_back({0, 0, 4, 0.3f});
   Fluid fluid = fluid_of(points, std::vector<Vec4>(points.size(), Vec4{0, 0, 0, 0}), {}, 0.3f);
-  // The sort has changed the order: judge by place.
+  // The sort has changed the order, so compare by place.
   fluid.saliency.input.look({{{{{0, 0, 0}, {0, 0, -1}, true}, view, nullptr}}});
   fluid.saliency.look_around(1.0 / 60);
   evaluate_gaze(fluid.saliency, fluid.view());
@@ -269,7 +269,7 @@ SIM_TEST(Gradients, OfALinearFlowAreItsRate) {
   std::vector<Vec4> velocity;
   for (const auto& p : points) velocity.push_back({0.4f * p.y, 0, 0, 0});
   Fluid fluid = fluid_of(points, velocity, {}, 0.3f);
-  // Columns were sorted together with the particles.
+  // The sort reordered the columns together with the particles.
   auto& p = fluid.state.particles;
   Array<float> uniform, out(points.size());
   uniform.from_host(std::vector<float>(points.size(), 1));

@@ -22,8 +22,8 @@ std::vector<std::string> names_of(const std::vector<Stage>& passes) {
   return out;
 }
 
-/// resting: one in three is not solved. own_levels: each effect leaves out water of its own; the crowd's
-/// levels go round.
+/// resting: one in three is not solved. own_levels: each effect leaves out different levels, and the
+/// particles cycle through the levels.
 FluidState warm_ball(bool one_level, bool resting, bool own_levels) {
   auto state = state_of(one_level ? cube(6, 0.1f) : mixed_ball(), one_level);
   std::vector<float> warmth;

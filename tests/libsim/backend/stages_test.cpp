@@ -29,7 +29,7 @@ FluidState resting(const std::vector<Vec4>& points) {
   return state;
 }
 
-/// A state with all pairs listed, whatever their supports.
+/// A state whose neighbour lists hold all pairs, at any distance.
 FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   FluidState state = resting(points);
   state.one_level = one_level;
@@ -43,7 +43,7 @@ FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   return state;
 }
 
-/// A state of one level with the grid's lists.
+/// A state of one level with neighbour lists from the grid.
 FluidState listed(const std::vector<Vec4>& points) {
   FluidState state = resting(points);
   state.lightest_support = points.empty() ? 1 : points[0].w;
@@ -113,7 +113,7 @@ SIM_TEST(Xsph, KeepsMomentumForMixedMasses) {
   EXPECT_LT(std::abs(momentum), 1e-6 * exchanged);
 }
 
-/// Share of a shear wave v_x = sin(k y) that is left in the middle of a lattice after `substeps` of dt.
+/// Fraction of a shear wave v_x = sin(k y) that remains in the middle of a lattice after `substeps` of dt.
 double shear_left(float h, float viscosity, float dt, int substeps) {
   constexpr int side = 18;
   const float spacing = h / 2;
@@ -146,7 +146,7 @@ double shear_left(float h, float viscosity, float dt, int substeps) {
 }
 
 SIM_TEST(Xsph, IsAKinematicViscosityAtEverySizeAndTimeStep) {
-  // exp(-nu k^2 t) with the same nu, whatever the support and however many substeps; k h = 2 pi 2 / 9.
+  // Decay exp(-nu k^2 t) with the same nu for every support and number of substeps; k h = 2 pi 2 / 9.
   const float h = 0.3f;
   const double k = 2 * 3.14159265 / (9 * static_cast<double>(h) / 2);
   const double t = 0.1, nu = 0.02;

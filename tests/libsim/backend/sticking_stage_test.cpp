@@ -1,4 +1,4 @@
-/// The effects viscosity and adhesion at obstacles, on small crowds.
+/// The effects viscosity and adhesion at obstacles, on small sets of particles.
 
 #include <array>
 #include <cstring>
@@ -16,7 +16,7 @@ Body body_of(Vec3 half, float radius) {
   out.turn = {0, 0, 0, 1};
   return out;
 }
-/// A ball of radius 0.3 m in the middle, which moves and turns.
+/// A ball of radius 0.3 m in the middle that moves and turns.
 Body ball() {
   Body out = body_of({0, 0, 0}, 0.3f);
   out.velocity = {1, 0, 2};
@@ -24,7 +24,7 @@ Body ball() {
   return out;
 }
 
-/// Particles of four sizes round it, each in some motion.
+/// Particles of four sizes round the ball.
 std::vector<Vec4> shell() {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> at(-0.6f, 0.6f);
@@ -59,7 +59,8 @@ FluidState honey_round(const std::vector<Vec4>& points, const std::vector<Body>&
   return state;
 }
 
-/// In m_*, and its spin about the ball's middle; `all`: the sum of the particles' own.
+/// Change of momentum, in m_*, and of angular momentum about the ball's middle; `all`: sum of the particles'
+/// magnitudes.
 struct Exchange {
   Vec3 momentum, spin;
   float all;
@@ -77,7 +78,8 @@ Exchange exchange_of(const std::vector<Vec4>& points, const std::vector<Vec4>& b
   return out;
 }
 
-/// Of coarse water that the effect leaves out nothing is told, and of the rest all, however few the steps.
+/// The body receives all momentum that the fluid loses, with any number of steps; coarse water that the
+/// effect leaves out gives none.
 SIM_TEST(Sticking, ABodyIsToldWhatTheFluidLoses) {
   NEEDS_EFFECTS;
   const auto points = shell();
@@ -129,11 +131,11 @@ SIM_TEST(Sticking, WhatGoesWithABodyIsLeftAlone) {
   for (std::size_t i = 0; i < v.size(); ++i) EXPECT_LT(length(xyz(after[i]) - xyz(v[i])), 1e-4f) << i;
 }
 
-/// A column of a lattice in a shear over a box: the momentum that it loses over d^2 is rho_0 nu times the
-/// shear, wherever its lowest particle lies.
+/// A column of a lattice in a shear flow over a box loses the momentum rho_0 nu times the shear per d^2,
+/// wherever its lowest particle lies.
 SIM_TEST(Sticking, AnyLatticeFeelsTheStressOfTheShear) {
   NEEDS_EFFECTS;
-  constexpr float shear = 3, viscosity = 1e-3f;  // little: the particles keep their speed
+  constexpr float shear = 3, viscosity = 1e-3f;  // low viscosity, so that the particles hardly slow down
   for (const float d : {0.05f, 0.1f}) {
     for (const float lowest : {0.11f, 0.5f, 0.99f}) {
       std::vector<Vec4> points, v;
@@ -161,7 +163,7 @@ SIM_TEST(Sticking, ObstaclesThatLetSlipLeaveTheSameBitsAsNone) {
   NEEDS_EFFECTS;
   const auto points = shell();
   auto with = honey_round(points, {ball()}, 0), without = honey_round(points, {}, 0);
-  // Densities know obstacles: only the passes count.
+  // Densities also depend on obstacles, so run only the passes.
   for (FluidState* state : {&with, &without})
     for (const Stage& stage : passes_of(EffectKind::Viscosity)) stage.run(*state);
   const auto a = with.particles.all().velocity.to_host(), b = without.particles.all().velocity.to_host();
@@ -194,8 +196,8 @@ FreeBody free_of(float units) {
   return out;
 }
 
-/// However light it is, however few the steps: what it is told is what the fluid lost, to rounding, and it
-/// comes to no more than the fluid's speed.
+/// However light the body and however few the steps: it receives the momentum that the fluid lost, up to
+/// rounding, and gets no faster than the fluid.
 SIM_TEST(Sticking, AFreeBodyAndTheFluidKeepTheirMomentumHoweverFewTheSteps) {
   NEEDS_EFFECTS;
   const auto points = shell();
@@ -222,8 +224,8 @@ SIM_TEST(Sticking, AFreeBodyAndTheFluidKeepTheirMomentumHoweverFewTheSteps) {
   }
 }
 
-/// One layer of thick honey at 1 m/s on a heavy box of 2 m x 1 m x 2 m: terms of 350 to 140,000 times
-/// the particle, of thousands of particles, fit into the sums.
+/// One layer of thick honey at 1 m/s on a heavy box of 2 m x 1 m x 2 m: terms of 350 to 140,000 times the
+/// particle's mass, for thousands of particles, fit into the sums.
 SIM_TEST(Sticking, AHeavyBodyUnderALayerOfThickHoneyComesToTheCommonSpeed) {
   NEEDS_EFFECTS;
   for (const auto& [d, viscosity] : {std::pair{0.02f, 5.0f}, {0.01f, 5.0f}, {0.01f, 500.0f}}) {
@@ -252,12 +254,12 @@ SIM_TEST(Sticking, AHeavyBodyUnderALayerOfThickHoneyComesToTheCommonSpeed) {
     float kept = 0;
     for (const Vec4& one : after) kept += one.x / units;
     EXPECT_LT(kept, 0.05f) << d << ", " << viscosity;
-    // 140,000 times a float's rounding is 0.8 %.
+    // 140,000 times the rounding of a float is 0.8 %.
     EXPECT_NEAR(gained * free.mass, (1 - kept) * units, 1e-2f * units) << d << ", " << viscosity;
   }
 }
 
-/// Adhesion of this work beside a tension.
+/// Adds adhesion with this work, and a tension.
 void add_adhesion(FluidState& state, float tension, float work) {
   state.parameters.effects.values[index_of(EffectKind::Cohesion)] = tension;
   state.parameters.effects.values[index_of(EffectKind::Adhesion)] = work;
@@ -294,8 +296,8 @@ SIM_TEST(Sticking, AdhesionOfABoxIsThatOfAWall) {
   }
 }
 
-/// Taking water off a ball costs the work per face of the ball, whatever the particles: of what lies up to s
-/// rho_0 a(s) ((R + s)^3 - R^3) / (3 R^2) ds. 0.75 of it is the pull's.
+/// Removing water from a ball costs the work per area of the ball for particles of any size: the integral
+/// over s of rho_0 a(s) ((R + s)^3 - R^3) / (3 R^2) ds. The adhesion pull does 0.75 of it.
 SIM_TEST(Sticking, TakingWaterOffABallCostsTheWorkPerItsFace) {
   NEEDS_EFFECTS;
   constexpr float radius = 0.3f, tension = 20, work = 50;
@@ -324,7 +326,7 @@ SIM_TEST(Sticking, TakingWaterOffABallCostsTheWorkPerItsFace) {
   }
 }
 
-/// Tension's part acts across the normal too where a surface is round, and turns no ball.
+/// At a round surface the tension's part also acts across the normal, but turns no ball.
 SIM_TEST(Sticking, AdhesionTurnsNoBall) {
   NEEDS_EFFECTS;
   auto state = state_of({{0.35f, 0, 0, 0.2f}}, true);

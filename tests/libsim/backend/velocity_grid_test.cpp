@@ -16,7 +16,7 @@ struct Momentum {
   std::array<double, 3> of{};
 };
 
-/// By level and cell: of the drops that `who` takes, in the cells that cell_of tells.
+/// Momentum by level and cell, of the drops that `who` selects, in the cells that `cell_of` returns.
 template <class Who, class CellOf>
 std::vector<Momentum> momentum_of(const std::vector<Drop>& all, std::size_t cells, Who who, CellOf cell_of) {
   std::vector<Momentum> out(4 * cells);
@@ -36,7 +36,7 @@ void expect_momentum(const MomentumSum* sums, const std::vector<Momentum>& expec
   ASSERT_NE(sums, nullptr);
   std::vector<MomentumSum> found(expected.size());
   copy_to_host(found.data(), sums, found.size() * sizeof(MomentumSum));
-  // A particle's momentum is cut to whole units of 2^-20 m/s.
+  // A particle's momentum is truncated to whole units of 2^-20 m/s.
   const auto near = [](std::uint64_t sum, double momentum, double mass) {
     EXPECT_NEAR(static_cast<double>(static_cast<std::int64_t>(sum)) / 1048576, momentum, mass / 1048576);
   };
@@ -51,7 +51,7 @@ void expect_momentum(const MomentumSum* sums, const std::vector<Momentum>& expec
 SIM_TEST(CellMomentum, HoldWhoseTheyAreByTheirOwnCells) {
   const auto all = drops(3000, 4);
   auto state = state_of(all);
-  // 0 rests, 1 is solved, 2 is solved apart.
+  // 0: resting, 1: solved, 2: solved apart.
   std::vector<std::uint8_t> active(all.size());
   std::vector<int> start(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -78,7 +78,7 @@ SIM_TEST(CellMomentum, HoldWhoseTheyAreByTheirOwnCells) {
   const auto of_fine = static_cast<std::size_t>(fine.cells());
   CellMomentum sums;
   const MovingView view(state.particles);
-  // Twice, in other places: nothing is left of the first time.
+  // Measures again with other selections: nothing of the first measurement may remain.
   sums.measure(view, p.active.data(),
                {{Whose::All, fine.frame()}, {}, {Whose::Resting, coarse.frame(), p.start_cell.data()}});
   expect_momentum(sums.of(0), momentum_of(all, of_fine, everyone, cell_in(fine)));
@@ -110,7 +110,7 @@ SIM_TEST(VelocityGrid, MeansEqualBruteForce) {
   ASSERT_EQ(block.nz, 4);
   update_velocity(grid, state);
   grid.update_energy(MovingView(state.particles));
-  grid.update_energy(MovingView(state.particles));  // nothing is left of the first time
+  grid.update_energy(MovingView(state.particles));  // clears the first sums
   const auto cells = static_cast<std::size_t>(grid.cells());
   std::vector<double> mass(4 * cells);
   std::vector<std::array<double, 3>> momentum(4 * cells);
@@ -158,7 +158,7 @@ SIM_TEST(VelocityGrid, SamplesALinearFieldExactlyAndClampsAtTheBorders) {
   EXPECT_NEAR(v.x, 0, 1e-6f);
   EXPECT_NEAR(v.y, 2, 1e-6f);
   EXPECT_NEAR(v.z, 0, 1e-6f);
-  // A corner without a value takes no part; none at all is told apart.
+  // A corner without a value is ignored; if all lack one, the result is value_unknown.
   for (auto& value : values) {
     if (value.x != 2) value.w = value_unknown;
   }

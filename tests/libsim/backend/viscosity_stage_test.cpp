@@ -1,4 +1,4 @@
-/// The passes of the effect viscosity on small crowds.
+/// The passes of the effect viscosity on small sets of particles.
 
 #include <array>
 #include <cstring>
@@ -8,7 +8,7 @@
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// A loose ball of particles of four sizes, each in some motion.
+/// A loose ball of particles of four sizes with random velocities.
 FluidState stirred(double nu, float steps) {
   auto state = state_of(mixed_ball(), false);
   state.finest_support = 0.25f;
@@ -23,7 +23,7 @@ FluidState stirred(double nu, float steps) {
   return state;
 }
 using Vec3d = std::array<double, 3>;
-/// Momentum and spin, and the sum of the particles' own.
+/// Momentum, angular momentum, and the sum of the particles' magnitudes.
 struct Motion {
   Vec3d momentum{}, spin{};
   double all = 0;
@@ -62,7 +62,7 @@ SIM_TEST(Viscosity, KeepsMomentumAndSpinForMixedMassesHoweverFewItsSteps) {
   }
 }
 
-/// Places of a crowd after the loosening.
+/// Positions after the loosening.
 std::vector<Vec4> loosened(FluidState& state, float gravity) {
   state.parameters.gravity = gravity;
   state.parameters.effects.values[index_of(EffectKind::Viscosity)] = 1;
@@ -94,7 +94,7 @@ SIM_TEST(Viscosity, LoosensWhatIsInsideUnderGravityByAShareOfASpacing) {
       squares += dot(step, step);
     }
     ASSERT_GE(inside, 343);
-    // Uniform along each axis: a mean square of a third, and no way that all go.
+    // Uniform along each axis: the mean square is a third per axis, and there is no common displacement.
     EXPECT_NEAR(squares / inside, most * most, 0.15f * most * most);
     EXPECT_LT(length(sum) / inside, 0.15f * most);
   }
@@ -121,7 +121,7 @@ SIM_TEST(Viscosity, LeavesAloneWhatTurnsAsAWhole) {
   for (std::size_t i = 0; i < v.size(); ++i) EXPECT_LT(length(xyz(after[i]) - xyz(v[i])), 1e-5f);
 }
 
-/// The new velocities again, from the equation and in double, beside a wall.
+/// Computes the new velocities again from the equation in double, beside a wall.
 SIM_TEST(Viscosity, SolvesItsEquation) {
   NEEDS_EFFECTS;
   constexpr double nu = 2;

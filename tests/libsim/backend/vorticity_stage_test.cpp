@@ -1,11 +1,11 @@
-/// The passes of vorticity confinement on lattices and crowds.
+/// The passes of vorticity confinement on lattices and small sets of particles.
 
 #include "tests/libsim/backend/effects_crowds.hpp"
 
 namespace sim::SIM_BACKEND {
 namespace {
 
-/// Strong enough to be seen in one substep; what turns at any rate is fed.
+/// Turns confinement on, strong enough to show in one substep, for rotation at any rate.
 void feed(FluidState& state, double from = 0, double most = 1e6) {
   auto& effects = state.parameters.effects;
   effects.values[index_of(EffectKind::Vorticity)] = 1;
@@ -13,7 +13,7 @@ void feed(FluidState& state, double from = 0, double most = 1e6) {
   effects.options[static_cast<std::size_t>(EffectOption::VorticityMost)] = most;
 }
 
-/// Everything turns about the upright axis through `middle`.
+/// Velocities of a rotation about the vertical axis through `middle`.
 std::vector<Vec4> turning(const std::vector<Vec4>& points, float rate, Vec3 middle) {
   std::vector<Vec4> v;
   for (const Vec4& p : points) v.push_back({rate * (p.z - middle.z), 0, -rate * (p.x - middle.x), 0});
@@ -59,7 +59,7 @@ SIM_TEST(Vorticity, WhatTurnsAsAWholeIsNotPushed) {
   EXPECT_LT(length(xyz(v[middle]) - xyz(before[middle])), 0.02f * 6 * state.parameters.dt);
 }
 
-/// The curl of mixed sizes is that of the flow too.
+/// The curl at mixed particle sizes is that of the flow too.
 SIM_TEST(Vorticity, ACrowdOfMixedSizesHasTheCurlOfItsFlow) {
   NEEDS_EFFECTS;
   const auto points = mixed_ball();
@@ -113,7 +113,7 @@ SIM_TEST(Vorticity, AVortexIsTurnedOnByItsOwnCurl) {
   }
 }
 
-/// The same vortex among velocities that scatter: its slopes are those of the mean curl.
+/// The same vortex with random velocities added: the slopes must follow the mean curl.
 SIM_TEST(Vorticity, AVortexInUnrestIsTurnedOnByItsOwnCurl) {
   NEEDS_EFFECTS;
   constexpr float d = 0.05f, core2 = 16 * d * d;
@@ -164,8 +164,8 @@ SIM_TEST(Vorticity, WhatTurnsTooSlowlyOrTooFastIsLeftAsItIs) {
   EXPECT_EQ(changed(0, 0.001), 0);
 }
 
-/// What saliency is shown: the mean curl, of the last substep; of those that are not solved the last one, and
-/// none of what is too coarse for the effect.
+/// The swirl that saliency reads: the mean curl of the last substep; particles that are not solved keep their
+/// last value, and particles too coarse for the effect get 0.
 SIM_TEST(Vorticity, ItsSwirlIsShownToSaliency) {
   NEEDS_EFFECTS;
   constexpr int side = 9;

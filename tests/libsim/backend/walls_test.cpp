@@ -37,7 +37,7 @@ SIM_TEST(Walls, HoldBackTouchesNothingFarFromWalls) {
   EXPECT_FALSE(walls.hold_back(x, {4, 3, 5}, 0.01f));
   EXPECT_EQ(x.x, 4);
   EXPECT_EQ(x.y, 3);
-  // What lies on the border stays there, what was put behind it comes back.
+  // A particle on the border stays; one behind it comes back.
   Vec3 resting{0.01f, 2, 0};
   EXPECT_TRUE(walls.hold_back(resting, {0, 2, 0}, 0.01f));
   EXPECT_NEAR(resting.x, 0.01f, 1e-6f);
@@ -46,7 +46,7 @@ SIM_TEST(Walls, HoldBackTouchesNothingFarFromWalls) {
   EXPECT_NEAR(lost.x, 0.01f, 1e-6f);
 }
 
-/// The corner with a hole in its upright wall: y from 1 to 2.
+/// The corner with a hole in its vertical wall: y from 1 to 2.
 Walls corner_with_hole() {
   Walls out = corner();
   out.openings[out.opening_count++] = {0, {-9, 1, -9}, {9, 2, 9}};
@@ -59,14 +59,15 @@ SIM_TEST(Walls, LetThroughWhatMeetsThePlaneBeforeAnOpening) {
   EXPECT_FALSE(walls.hold_back(level, {-3, 1.5f, 0}, 0.01f));
   EXPECT_EQ(level.x, -3);
   EXPECT_TRUE(walls.through(level));
-  // Its way leads through the hole and ends behind the wall, and the other way round.
+  // One path leads through the hole and ends behind the wall outside it; the other hits the wall and ends
+  // level with the hole.
   Vec3 rising{0.5f, 1.5f, 0};
   EXPECT_FALSE(walls.hold_back(rising, {-3, 4, 0}, 0.01f));
   EXPECT_EQ(rising.y, 4);
   Vec3 late{0.5f, 0.5f, 0};
   EXPECT_TRUE(walls.hold_back(late, {-0.5f, 1.4f, 0}, 0.01f));
   EXPECT_FALSE(walls.through(late));
-  // What is through meets the plane no more, but the other walls.
+  // A particle that is through ignores the plane, but not the other walls.
   Vec3 after{-1, 0.5f, 0};
   EXPECT_FALSE(walls.hold_back(after, {-2, 0.3f, 0}, 0.01f));
   EXPECT_TRUE(walls.hold_back(after, {-2, -0.3f, 0}, 0.01f));

@@ -94,7 +94,7 @@ TEST(BakeFile, EveryFrameAndPictureKeepsTheSolversAccount) {
   }
 }
 
-/// Kept as version 0.1.0 wrote it.
+/// The file was written by version 0.1.0.
 TEST(BakeFile, Format1IsReadAndMeasuredNothingButCounts) {
   const sim::BakeReader bake(base::resource("tests/libsim/bake/fixtures/format_1.bake"));
   ASSERT_TRUE(bake.header().has_pictures());
@@ -110,7 +110,7 @@ TEST(BakeFile, Format1IsReadAndMeasuredNothingButCounts) {
   }
 }
 
-/// Kept as the version before format 3 wrote it: Ours-TSp, three frames.
+/// The file was written by the version before format 3: Ours-TSp, three frames.
 TEST(BakeFile, Format2IsReadAndDoesNotSayHowItWasWatched) {
   const sim::BakeReader bake(base::resource("tests/libsim/bake/fixtures/format_2.bake"));
   EXPECT_EQ(bake.header().method, "Ours-TSp");
@@ -248,7 +248,7 @@ TEST(BakeFile, EveryFlippedBitIsFound) {
   bake_test::write(folder / "a.bake", 2, 16, 9);
   sim::Bytes bytes = bake_test::read_all(folder / "a.bake");
   for (std::size_t at = 0; at < bytes.size(); at += at % 97 ? 1 : 5) {
-    // The content hash in the footer names the content and guards nothing.
+    // The content hash in the footer identifies the content; no check covers its own bytes.
     const std::size_t from_end = bytes.size() - at;
     if (from_end <= 16 && from_end > 8) continue;
     bytes[at] ^= static_cast<std::uint8_t>(1U << at % 8);
@@ -342,7 +342,7 @@ TEST(BakeFile, PlaceThatCannotBeIsNamed) {
 
 TEST(BakeFile, FullDiskIsOneErrorAndLeavesNothing) {
   const Folder folder;
-  // In a child, because the limit on file sizes holds for the whole process.
+  // In a child process, because the limit on file sizes applies to the whole process.
   const pid_t child = fork();
   if (child == 0) {
     std::signal(SIGXFSZ, SIG_IGN);

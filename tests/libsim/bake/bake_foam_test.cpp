@@ -13,7 +13,7 @@ using bake_test::error_of;
 using bake_test::Folder;
 using ::testing::HasSubstr;
 
-/// Kept as the version before format 4 wrote it: SeaSpray, whose scene lists foam.
+/// The file was written by the version before format 4: SeaSpray, whose scene lists foam.
 TEST(BakeFoam, Format3IsReadAndKeepsNoFoam) {
   const sim::BakeReader bake(base::resource("tests/libsim/bake/fixtures/format_3.bake"));
   EXPECT_FALSE(bake.header().effects);
@@ -34,7 +34,7 @@ std::vector<sim::RenderParticle> foam_of(std::int64_t frame) {
   return out;
 }
 
-/// Frames 0, 1, ... with that many times six particles of foam; `pictures`: 8 px wide.
+/// Frame i has 6 i foam particles; `pictures`: adds pictures 8 px wide.
 void write_foam(const std::filesystem::path& path, std::int64_t frames, bool pictures) {
   auto header = bake_test::header(frames, pictures ? 8 : 0, pictures ? 4 : 0);
   header.max_foam = 1000;

@@ -1,4 +1,4 @@
-/// Temperatures in a bake file; what has none keeps its bytes.
+/// Temperatures in a bake file; bakes without temperatures keep their bytes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ sim::BakeHeader warm_header(std::int64_t frames, int width = 0, int height = 0) 
   return header;
 }
 
-/// By place, so that a particle's temperature can be told from another's: 8 K for each metre of height.
+/// Temperatures by height, 8 K per metre, so that each particle's can be recognised.
 std::vector<float> temperatures_of(const std::vector<sim::RenderParticle>& particles) {
   std::vector<float> out;
   for (const auto& p : particles) out.push_back(8 * p.y_m - 3);
@@ -85,7 +85,7 @@ TEST(BakeTemperature, OneFrameMayBeWithoutParticlesOrOfOneTemperature) {
   EXPECT_THAT(frame.temperature_k, IsEmpty());
 }
 
-/// Kept as the version before format 5 wrote it.
+/// The file was written by the version before format 5.
 TEST(BakeTemperature, WaterWithoutHeatKeepsFormat4BitForBit) {
   const Folder folder;
   bake_test::write_of_format_4(folder / "a.bake");
@@ -156,7 +156,7 @@ TEST(BakeTemperature, EveryFlippedBitIsFound) {
   };
   for (std::size_t at = 0; at < bytes.size(); at += 41) {
     const std::size_t from_end = bytes.size() - at;
-    if (from_end <= 16 && from_end > 8) continue;  // the content hash names the content and guards nothing
+    if (from_end <= 16 && from_end > 8) continue;  // no check covers the content hash's own bytes
     bytes[at] ^= static_cast<std::uint8_t>(1U << at % 8);
     ASSERT_THAT(read(), HasSubstr("flipped.bake")) << "byte " << at;
     bytes[at] ^= static_cast<std::uint8_t>(1U << at % 8);
@@ -164,7 +164,7 @@ TEST(BakeTemperature, EveryFlippedBitIsFound) {
   EXPECT_EQ(read(), "");
 }
 
-/// The same without the checksums that would find it first.
+/// The same without the checksums, which would find the damage first.
 TEST(BakeTemperature, ChunksOfAnotherSizeThanTheirCountsSayAreRefused) {
   const std::vector<sim::RenderParticle> two{{0, 0, 0, 0.05F}, {1, 0, 0, 0.05F}};
   const std::vector<float> radii{0.05F}, kelvin{1, 2};

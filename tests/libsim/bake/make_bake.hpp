@@ -60,7 +60,7 @@ inline std::vector<sim::RenderParticle> particles(std::int64_t frame, int nx = 1
   return out;
 }
 
-/// Three frames in turn: one that nothing is known of, one whose tau was given, one with everything.
+/// Three kinds of frames in turn: without any account, with a given tau, and with everything.
 inline sim::FrameAccount account(std::int64_t frame) {
   sim::FrameAccount out;
   if (frame % 3 == 0) return out;

@@ -31,7 +31,7 @@ TEST(Camera, PutsTheTargetOnTheAxis) {
   EXPECT_NEAR(target[0], 0, 1e-5);
   EXPECT_NEAR(target[1], 0, 1e-5);
   EXPECT_NEAR(target[2], -std::hypot(0.4, 8.9), 1e-5);
-  // Up stays up, right stays right.
+  // Up is up in the picture, right is right.
   EXPECT_GT(transform(view, {12.8, 4, 6.4})[1], 0);
   EXPECT_GT(transform(view, {13.8, 2.8, 6.4})[0], 0);
 }
@@ -40,7 +40,7 @@ TEST(Camera, PixelRaysInvertTheProjection) {
   const auto view = sim::make_view(dam_camera(), 641, 359);
   const auto rays = sim::pixel_rays(view);
   for (const auto& [x, y] : {std::pair{0.5, 0.5}, {640.5, 358.5}, {100.5, 300.5}}) {
-    // A point on the ray at 7 m depth must project to the pixel it came from.
+    // A point on the ray at 7 m depth must project to the ray's pixel.
     const sim::Vec3d eye{7 * (x * rays.scale_x + rays.offset_x), 7 * (y * rays.scale_y + rays.offset_y), -7};
     const auto clip = transform(view.projection, eye);
     EXPECT_NEAR((clip[0] / clip[3] + 1) * 641 / 2, x, 1e-3);

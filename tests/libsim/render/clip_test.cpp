@@ -60,7 +60,7 @@ Span within(const std::array<double, 3>& start, const std::array<double, 3>& at_
 /// The fixture's tank, open above.
 constexpr double low[3] = {0, 0, 0}, high[3] = {8, 1e6, 8};
 
-/// Nearest depth of all spheres between the walls, in doubles and by world coordinates.
+/// Nearest depth of all spheres between the walls, in doubles and in world coordinates.
 double front(const std::vector<RenderParticle>& particles, double scale, const std::array<double, 3>& start,
              const std::array<double, 3>& at_one) {
   const Span tank = within(start, at_one, low, high);
@@ -121,7 +121,7 @@ TEST_F(ClipGl, DepthIsThatOfTheSpheresCutByTheWalls) {
       const double least = front(particles, 1.5 + 1e-5, start, at_one);
       const double most = front(particles, 1.5 - 1e-5, start, at_one);
       fluid += std::isfinite(least);
-      // Outlines and grazing walls are where the two differ.
+      // The two bounds differ at outlines and at walls seen at a grazing angle.
       if (depth > least - 1e-3 && (depth < most + 1e-3 || std::isinf(most))) continue;
       if (std::isinf(depth) && std::isinf(most)) continue;
       if (++wrong <= 8) {

@@ -1,4 +1,4 @@
-/// Light on the floor: shadows and caustics, which only scenes that list them have.
+/// Light on the floor: shadows and caustics, drawn only for scenes that list them.
 
 #include <numbers>
 #include <numeric>
@@ -27,16 +27,16 @@ std::array<double, 3> refracted(const std::array<double, 3>& normal) {
   for (std::size_t k = 0; k < 3; ++k) out[k] = -ratio * sun[k] + along * normal[k];
   return out;
 }
-/// Metres aside for a metre up along sunlight: in air, and in water below a flat surface.
+/// Horizontal shift per metre of height along sunlight: in air, and in water below a flat surface.
 constexpr Place leans{sun[0] / sun[1], sun[2] / sun[1]};
 Place leans_in_water() {
   const auto d = refracted({0, 1, 0});
   return {d[0] / d[1], d[2] / d[1]};
 }
-/// What a flat surface reflects of sunlight.
+/// Fraction of sunlight that a flat surface reflects.
 double reflected() { return 0.02 + 0.98 * std::pow(1 - sun[1], 5); }
 
-/// Columns of particles on a lattice that fills the tank up to a height of each place.
+/// Columns of particles on a lattice that fill the tank up to `height(x, z)`.
 template <class Height>
 std::vector<RenderParticle> water(const sim::Scene& scene, double radius, Height height) {
   std::vector<RenderParticle> out;
@@ -60,7 +60,7 @@ Place place_of(const sim::FloorMap& map, std::size_t cell) {
           (static_cast<double>(cell / width) + 0.5) * static_cast<double>(map.cell_m)};
 }
 
-/// Middle and area of what is dark on a floor, m and m2.
+/// Centre and area of the shadow on a floor, m and m2.
 struct Dark {
   Place middle{};
   double area_m2 = 0;
@@ -102,7 +102,7 @@ class FloorLightGl : public render_test::RenderGl {
     return sim::make_view(camera, 96, 80);
   }
 
-  /// Draws twice, so that what the first draw left would be seen.
+  /// Draws twice, so that leftovers of the first draw would show.
   sim::FloorMap drawn(const sim::Scene& scene, const std::vector<RenderParticle>& particles,
                       std::vector<sim::View> views = {onto_the_floor()}, int floor_cells = 512) {
     sim::RenderOptions options;
@@ -146,7 +146,7 @@ TEST_F(FloorLightGl, HasPassesOnlyWhereTheSceneListsThem) {
     EXPECT_EQ(map.open.empty(), effect.kind != PictureEffectKind::Shadows);
     EXPECT_EQ(map.gathered.empty(), effect.kind != PictureEffectKind::Caustics);
   }
-  // What is said of the passes is what runs.
+  // passes_in_words names the passes that run.
   const auto all = sim::passes_in_words(tank({shadows, caustics}));
   drawn(tank({shadows, caustics}), pool);
   for (const auto& pass : passes) EXPECT_NE(all.find(pass), std::string::npos) << pass;
@@ -178,7 +178,7 @@ TEST_F(FloorLightGl, BelowFlatWaterLightIsEven) {
 }
 
 TEST_F(FloorLightGl, WavesMoveLightAndKeepIt) {
-  // Crossing waves that many rays meet behind.
+  // Crossing waves, behind which many rays meet.
   const auto height = [](double x, double z) {
     return 1.2 + 0.05 * std::sin(4.1 * x + 1.7 * z) + 0.05 * std::cos(2.3 * x - 4.4 * z) +
            0.04 * std::sin(5 * z);
@@ -189,7 +189,8 @@ TEST_F(FloorLightGl, WavesMoveLightAndKeepIt) {
   EXPECT_LT(*std::min_element(map.gathered.begin(), map.gathered.end()), 0.7);
 }
 
-/// Waves along `along`, a unit vector, and how a crest and a trough change the light between close rays.
+/// Waves along the unit vector `along`, and how a crest and a trough change the distance of neighbouring
+/// rays.
 struct Waves {
   Place along;
   double depth, height, number_per_m;
@@ -197,7 +198,7 @@ struct Waves {
   double phase(double s) const { return number_per_m * s; }
   double at(double s) const { return depth + height * std::cos(phase(s)); }
   double rise(double s) const { return -height * number_per_m * std::sin(phase(s)); }
-  /// Where a ray that goes in at s meets the floor, and where it would through air alone.
+  /// Where a ray that enters at s meets the floor, and where it would through air alone.
   std::array<double, 2> ends(double s) const {
     const double length = std::hypot(1.0, rise(s));
     const auto d = refracted({-rise(s) * along[0] / length, 1 / length, -rise(s) * along[1] / length});
@@ -219,7 +220,7 @@ TEST_F(FloorLightGl, CrestsFocusAsSnellsLawSays) {
       const auto map = drawn(tank({caustics}), water(tank({}), 0.04, [&](double x, double z) {
                                return waves.at((x - 2) * direction[0] + (z - 2) * direction[1]);
                              }));
-      // Light of the crest and of the trough in the tank's middle, along their lines.
+      // Light below the crest and the trough in the tank's middle, along their lines.
       const auto light_at = [&](double s) {
         double sum = 0, cells = 0;
         for (std::size_t k = 0; k < map.gathered.size(); ++k) {
@@ -235,7 +236,7 @@ TEST_F(FloorLightGl, CrestsFocusAsSnellsLawSays) {
       const double crest = light_at(0), trough = light_at(half);
       EXPECT_GT(crest, 1.2);
       EXPECT_LT(trough, 0.9);
-      // Both differ from 1 by depth over focal length, on either side.
+      // 1 / light differs from 1 by depth over focal length, with opposite signs.
       const double expected = waves.widening(half) - waves.widening(0);
       EXPECT_NEAR(1 / trough - 1 / crest, expected, 0.15 * expected) << depth << " " << direction[0];
     }
@@ -249,7 +250,7 @@ TEST_F(FloorLightGl, AnObstaclesShadowLiesWhereTheSunPutsIt) {
   EXPECT_NEAR(dry.middle[0], 2.2 - leans[0], 0.01);
   EXPECT_NEAR(dry.middle[1], 2.4 - leans[1], 0.01);
   EXPECT_NEAR(dry.area_m2, disc / sun[1], 0.02 * disc);
-  // Below 2 m of water the sun stands higher.
+  // Refraction makes sunlight steeper below 2 m of water.
   const auto wet = dark_of(drawn(scene, flat_water(scene, 2)));
   EXPECT_NEAR(wet.middle[0], 2.2 - leans_in_water()[0], 0.02);
   EXPECT_NEAR(wet.middle[1], 2.4 - leans_in_water()[1], 0.02);
@@ -273,7 +274,7 @@ TEST_F(FloorLightGl, WhatStandsOnTheFloorHasNoGapToItsShadow) {
   box.start.centre_m = {2, 0.25, 2};
   scene.obstacles = {box};
   const auto map = drawn(scene, {});
-  // Below the box and towards the sun's other side; a cell of penumbra is left out at the borders.
+  // Dark below the box, lit on the sun's side; the borders may have one cell of penumbra.
   for (std::size_t k = 0; k < map.open.size(); ++k) {
     const auto [x, z] = place_of(map, k);
     if (x > 1.77 && x < 2.23 && z > 1.77 && z < 2.23) {
@@ -326,7 +327,7 @@ TEST_F(FloorLightGl, ThePictureShowsIt) {
   drawn(with_ball(tank({shadows}), 2, 0.4), {});
   EXPECT_LT(level(view, middle), bright - 60);
   EXPECT_EQ(level(view, {3.3, 1}), beside);
-  // Half the strength takes away half the light.
+  // Half the strength removes half the light.
   const int dark = level(view, middle);
   drawn(with_ball(tank({{PictureEffectKind::Shadows, 0.5}}), 2, 0.4), {});
   EXPECT_GT(level(view, middle), dark + 20);

@@ -1,4 +1,4 @@
-/// Foam in pictures: a pass that only scenes with foam have, before the water, on it and below it.
+/// Foam in pictures: a pass that only scenes with foam have, for foam before the water, on it and below it.
 
 #include <numeric>
 
@@ -43,7 +43,7 @@ class FoamGl : public render_test::RenderGl {
     diffuse.upload(foam);
     const auto view = view_along_z(64, 64);
     const sim::Offscreen target(64, 64);
-    // The second picture must not know of the first.
+    // The second picture must not depend on the first.
     for (int k = 0; k < 2; ++k) renderer.draw(buffer, {&view, 1}, target.framebuffer(), &diffuse);
     last_passes = passes(renderer);
     last_seen = renderer.read_gbuffer();
@@ -86,7 +86,7 @@ TEST_F(FoamGl, HasAPassOnlyWhereTheSceneListsIt) {
   EXPECT_EQ(last_passes, without) << "nobody is drawn by no pass";
   EXPECT_EQ(empty.rgba, bare.rgba) << "and the composite with foam is the composite";
   drawn(sea(1), {spray});
-  // What is said of the passes is what runs.
+  // passes_in_words names the passes that run.
   for (const auto& pass : last_passes)
     EXPECT_NE(sim::passes_in_words(sea(1)).find(pass), std::string::npos) << pass;
   EXPECT_NE(sim::passes_in_words(sea(0)).find("not called for"), std::string::npos);
@@ -123,7 +123,7 @@ TEST_F(FoamGl, IsRoughForSaliencyAsFarAsItCovers) {
   // Bubbles deep below the surface leave it smooth.
   drawn(sea(1), {{0, 0, -4, 0.6F}});
   EXPECT_NEAR(roughness(), bare, 1e-6);
-  // What covers little changes little.
+  // Foam that covers little changes little.
   const std::vector<RenderParticle> one{{0.1F, 0.1F, -1, 0.006F}};
   drawn(sea(1), one);
   EXPECT_LT(roughness(), bare + 0.1 * covered);
@@ -137,7 +137,7 @@ TEST_F(FoamGl, WhoeverHasNoRadiusOrPlaceIsNobody) {
 }
 
 TEST_F(FoamGl, FarFoamFadesInsteadOfGrowing) {
-  // A tenth of the size at the same place is a hundredth of the light, however small on the screen.
+  // A tenth of the size at the same place gives a hundredth of the light, even below a pixel.
   const auto bare = drawn(sea(1), {});
   const auto light = [&](float radius) {
     const auto picture = drawn(sea(1), {{0.01F, 0.01F, -1, radius}});

@@ -1,4 +1,4 @@
-/// Obstacles that are meshes, as both eyes see them: what the shapes that they copy look like.
+/// Obstacles that are meshes must look like the shapes that they copy, in both eyes.
 #include "libsim/scene/mesh.hpp"
 
 #include <cstdlib>
@@ -11,7 +11,7 @@ namespace {
 
 class MeshObstaclesGl : public render_test::RenderGl {
  protected:
-  /// A ball and a turned box on its way to and fro, with their shadows.
+  /// A ball and a turned box that swings, with their shadows.
   static sim::Scene scene_of(bool meshes) {
     sim::Scene scene = room();
     scene.picture_effects = {{sim::PictureEffectKind::Shadows, 1}};
@@ -48,7 +48,7 @@ class MeshObstaclesGl : public render_test::RenderGl {
     out.floor_cells = 128;
     return out;
   }
-  /// Two eyes beside each other.
+  /// Two eyes side by side.
   static sim::Image both_eyes(sim::FluidRenderer& renderer,
                               const std::vector<sim::RenderParticle>& particles) {
     renderer.place_obstacles(0.25);

@@ -62,7 +62,7 @@ TEST_F(PictureGl, FilterKeepsAStepThatIsWiderThanItsRange) {
   const auto g = render(particles, view_along_z(160, 120), open_options());
   for (std::size_t p = 0; p < g.depth.size(); ++p) {
     if (!std::isfinite(g.depth[p])) continue;
-    // Never between the two sheets.
+    // No depth lies between the two sheets.
     const double z = g.filtered_depth[p];
     EXPECT_TRUE((z > 3.9 && z < 4.1) || (z > 5.9 && z < 6.1)) << z;
   }
@@ -128,7 +128,7 @@ double streaks(const sim::GBuffer& g) {
 TEST_F(PictureGl, TwoRoundsOfTheFilterLeaveFewerStreaksBelowACrest) {
   auto once = open_options();
   once.filter_rounds = 1;
-  once.filter_sigma_r = std::sqrt(2.0F) * open_options().filter_sigma_r;  // smooths as much
+  once.filter_sigma_r = std::sqrt(2.0F) * open_options().filter_sigma_r;  // the same smoothing in one round
   const double by_one = streaks(render(crest(), view_along_z(320, 240), once));
   const double by_two = streaks(render(crest(), view_along_z(320, 240), open_options()));
   EXPECT_LT(by_two, 0.87 * by_one) << by_one;  // measured: 0.77

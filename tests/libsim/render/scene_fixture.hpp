@@ -1,6 +1,6 @@
 #pragma once
-/// What the renderer's tests share: a context, a camera at the origin that looks along -z, and a brute-force
-/// splat on the processor.
+/// Shared by the renderer's tests: a context, a camera at the origin that looks along -z, and a brute-force
+/// splat on the CPU.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ inline std::optional<Chord> chord(const sim::RenderParticle& p, double radius, d
   return Chord{entry, leave, (leave - entry) * std::sqrt(dd), distance};
 }
 
-/// Rounding moves an outline by about a millionth of a radius; a hundred times that is left open.
+/// Rounding moves an outline by about a millionth of a radius; this tolerance is a hundred times larger.
 constexpr double rim_px = 1e-3;
 
 inline std::optional<Chord> chord_at(const sim::RenderParticle& p, const sim::View& view, std::size_t pixel) {
@@ -83,7 +83,7 @@ inline Reference splat(const std::vector<sim::RenderParticle>& particles, const 
   return reference;
 }
 
-/// The defaults, for particles in the open: the camera of these tests stands in a corner of the tank.
+/// The defaults, but for particles in the open: the camera of these tests is in a corner of the tank.
 inline sim::RenderOptions open_options() {
   sim::RenderOptions options;
   options.clip_to_tank = false;
@@ -114,7 +114,7 @@ class RenderGl : public ::testing::Test {
     return scene;
   }
 
-  /// Draws once and keeps the picture.
+  /// Draws once and returns the picture.
   sim::GBuffer render(const std::vector<sim::RenderParticle>& particles, const sim::View& view,
                       const sim::RenderOptions& options = exact_options()) {
     sim::FluidRenderer renderer(room(), options);

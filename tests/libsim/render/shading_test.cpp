@@ -98,9 +98,9 @@ TEST_F(ShadingGl, WaterIsTheSameWhereverTilesLie) {
   const auto view = onto_the_tank(333, 217);
   const auto whole = draw(renderer, pool(), view);
   const auto part = draw(renderer, pool(), part_of(view, 53, 31, 211, 149));
-  // The filter reaches beyond the part's borders.
+  // Leaves out the filter's reach beyond the part's borders.
   const auto most = differences(whole, part, 53, 31, 40);
-  // Rays are rounded otherwise, which moves outlines: 23 pixels, by 5 levels at most. Outlines cut at tiles:
+  // Rays are rounded differently, which moves outlines: 23 pixels by at most 5 levels. If tiles cut outlines:
   // 64 and 13.
   EXPECT_LE(std::count_if(most.begin(), most.end(), [](int levels) { return levels > 1; }), 40);
   EXPECT_LE(*std::max_element(most.begin(), most.end()), 9);

@@ -1,5 +1,5 @@
-/// The last frame's picture on its way to saliency: through the host, and on the device where CUDA shares
-/// memory with GL (suites that end in Gpu). Both must give the same values.
+/// The last frame's picture for saliency: through the host, and on the device where CUDA shares memory with
+/// GL (suites that end in Gpu). Both must give the same values.
 
 #include <epoxy/gl.h>
 
@@ -54,7 +54,7 @@ class SharedPicture : public ::testing::Test {
     return {{{{dam().view.eye_m, {0, -0.6, -4}, true}, view, seen, shared, fluid->frame()}}};
   }
 
-  /// What saliency makes of the last picture, either way.
+  /// Saliency from the last picture must be equal through both paths.
   void expect_same_values() {
     sim::GBuffer seen;
     renderer->read_picture(seen);
@@ -177,7 +177,7 @@ TEST_F(SharedPictureGpu, PicturesMayChangeSizeAndRenderer) {
     fluid->step_frame();
     draw(width, height);
     expect_same_values();
-    // GL gives the names of its buffers to those of the next renderer.
+    // GL reuses the names of its buffers for the next renderer.
     renderer = std::make_unique<sim::FluidRenderer>(dam());
   }
 }

@@ -39,7 +39,7 @@ class SplatGl : public render_test::RenderGl {
     const double depth = reference.depth[p], tolerance = 1e-4 * depth;
     if (std::isinf(depth)) return g.depth[p] == inf && g.front[p] == sim::GBuffer::no_particle;
     if (!(std::abs(g.depth[p] - depth) <= tolerance) || g.front[p] >= particles.size()) return false;
-    // Where two fronts cross within the tolerance, rounding decides which of them is named.
+    // Where two fronts cross within the tolerance, rounding decides which particle is named.
     const auto named = render_test::chord_at(particles[g.front[p]], g.view, p);
     return named && named->entry - depth <= tolerance;
   }
@@ -135,7 +135,7 @@ TEST_F(SplatGl, LargeFootprintsMatchBruteForce) {
 }
 
 TEST_F(SplatGl, LargeFootprintsMatchBruteForceHoweverTheyAreSplit) {
-  // The driver's kind chooses the split unless it is given.
+  // The kind of driver sets the default split.
   auto options = exact_options();
   const auto particles = cloud(25, 0.4F, 1.2F, 2);
   for (const int thread_px : {1, 16, 64, 400}) {
@@ -266,7 +266,7 @@ TEST_F(SplatGl, WhatIsRememberedOfTheLastPictureNeverShows) {
     sim::FluidRenderer renderer(room(), options);
     sim::ParticleBuffer buffer;
     const sim::Offscreen target(48, 36);
-    // The third picture has the same number of particles in other places and another order.
+    // The third picture has as many particles, in other places and another order.
     for (const auto& particles : {body(1, 0), body(1, 0), body(2, 0.9F)}) {
       buffer.upload(particles);
       renderer.draw(buffer, {&view, 1}, target.framebuffer());

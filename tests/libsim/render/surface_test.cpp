@@ -63,7 +63,7 @@ struct Roughness {
   double depth_r;     ///< standard deviation from the exact surface, particle radii
 };
 
-/// Of pixels, one after another.
+/// Accumulates the deviations of pixels.
 class Deviations {
  public:
   void add(double cosine, double off_r) {
@@ -83,7 +83,7 @@ class Deviations {
   int pixels_ = 0;
 };
 
-/// Of a pool, in the picture's middle.
+/// Roughness of a pool in the picture's middle.
 Roughness roughness(const sim::GBuffer& g, double radius) {
   Deviations out;
   for (int y = 80; y < 160; ++y) {
@@ -131,7 +131,7 @@ double share_above(const std::vector<double>& values, double limit) {
 
 class SurfaceGl : public render_test::RenderGl {};
 
-// Smoothing by what lies within four radii of depth alone leaves 23 degrees at 4 and 1.6 to 3.8 at 10.
+// A filter over a depth range of four radii leaves 23 degrees at 4 and 1.6 to 3.8 at 10.
 TEST_F(SurfaceGl, StillWaterOfEveryLevelIsFlatHoweverItIsSeen) {
   for (int level = 0; level < 4; ++level) {
     const float r = finest_m * std::cbrt(static_cast<float>(1 << (3 - level)));
@@ -157,7 +157,7 @@ TEST_F(SurfaceGl, ABallStaysRound) {
       const float* n = &g.normal[3 * p];
       out.add((n[0] * at[0] + n[1] * at[1] + n[2] * z) / away, away / r);
     }
-    // By depth alone: 1.92 and 2.26 degrees. Measured: 1.94 and 2.01.
+    // Filter by depth alone: 1.92 and 2.26 degrees. Measured: 1.94 and 2.01.
     EXPECT_LT(out.result().normal_deg, 2.12) << r;
     EXPECT_LT(out.result().depth_r, 0.066) << r;
   }
@@ -176,12 +176,12 @@ TEST_F(SurfaceGl, ADropBeforeWaterStaysADrop) {
     const auto of_water = shifts(g, render(water, view, open_options()), r, 0, water.size());
     EXPECT_GT(of_drop.size(), 1000u);
     EXPECT_LT(*std::max_element(of_drop.begin(), of_drop.end()), 0.1) << above_deg;  // measured: 0.06
-    // No halo: hardly any of the water around it knows of it.
+    // No halo: the drop changes hardly any of the water around it.
     EXPECT_LT(share_above(of_water, 1), 0.01) << above_deg << ": " << share_above(of_water, 1);
   }
 }
 
-// The edge between them is uneven: rows along it meet one sheet before and the other behind.
+// The edge between the sheets is uneven: rows along it have one sheet in front and the other behind.
 TEST_F(SurfaceGl, SheetsOfWaterAtTwoHeightsStayApart) {
   const float r = 0.1F;
   for (const float apart_r : {8.0F, 12.0F}) {
@@ -199,7 +199,7 @@ TEST_F(SurfaceGl, SheetsOfWaterAtTwoHeightsStayApart) {
       const auto of_low = shifts(g, render(low, view, open_options()), r, 0, low.size());
       for (const auto* of : {&of_high, &of_low}) {
         EXPECT_LT(share_above(*of, half_way), 1e-3) << apart_r << ", " << above_deg;  // measured: 2e-5
-        // A rim of half a radius is pulled. Measured: 0.8 % of the upper sheet.
+        // A rim of half a radius is displaced. Measured: 0.8 % of the upper sheet.
         EXPECT_LT(share_above(*of, 0.25 * half_way), 0.012) << apart_r << ", " << above_deg;
       }
     }
@@ -221,7 +221,7 @@ TEST_F(SurfaceGl, BothEyesSeeOneSurface) {
     Deviations out;
     for (int y = 80; y < 160; ++y) {
       for (int x = 80; x < 240; ++x) {
-        // The two eyes' pixels differ by their distance over the depth.
+        // The two eyes' pixels differ by the distance of the eyes over the depth.
         const double depth = by_left.filtered_depth[static_cast<std::size_t>(320 * y + x)];
         const int beside = x - static_cast<int>(std::lround(0.064 / (depth * rays.scale_x)));
         out.add(1, (height(by_left, x, y) - height(by_right, beside, y)) / r);
@@ -244,7 +244,7 @@ double turn_deg(const sim::GBuffer& a, const sim::GBuffer& b) {
   return out.result().normal_deg;
 }
 
-// By depth alone: 12.6 degrees at 6 and 1.4 at 10, where samples come and go at the range's end.
+// Filter by depth alone: 12.6 degrees at 6 and 1.4 at 10, where samples enter and leave the depth range.
 TEST_F(SurfaceGl, WaterThatHardlyMovesDoesNotFlicker) {
   const float r = 2 * finest_m;
   auto water = pool(r), later = water;

@@ -16,8 +16,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 struct Listed {
-  std::vector<int> id;              // by place
-  std::vector<Vec4> position;       // by place
+  std::vector<int> id;              // by slot
+  std::vector<Vec4> position;       // by slot
   std::vector<std::set<int>> sets;  // by id
   std::uint64_t dropped = 0;
   int cells = 0;
@@ -26,7 +26,7 @@ struct Listed {
 
 constexpr float finest = 0.3f;
 
-/// The level of a support radius among those of `finest`.
+/// The level of a support radius if level 0 has the support `finest`.
 std::uint8_t level_of(float h) {
   return static_cast<std::uint8_t>(std::lround(3 * std::log2(static_cast<double>(h) / finest)));
 }
@@ -53,7 +53,7 @@ const std::vector<Domain> domains{{{-4, -4, -4}, {4, 4, 4}},
                                   {{500, 500, 500}, {530, 530, 530}},
                                   {{-3e9f, -3e9f, -3e9f}, {3e9f, 3e9f, 3e9f}}};
 
-/// Lists as one level, or as mixed levels of `finest`.
+/// Neighbour lists for one level, or for mixed levels of `finest`.
 Listed list(const std::vector<Vec4>& points, const Domain& domain, bool reversed = false,
             bool mixed = false) {
   std::vector<Vec4> at = points;
@@ -137,7 +137,7 @@ SIM_TEST(S14NeighbourList, EqualsBruteForceOnRandomPoints) {
     expect_brute_force(random_points(size < 0.5f ? 200 : 1500, size, 0.3f, 7));
 }
 
-/// Gives each point one of `levels`, by turns.
+/// Assigns `levels` to the points in turn.
 std::vector<Vec4> mixed_points(std::vector<Vec4> points, const std::vector<int>& levels) {
   const auto supports = level_supports(static_cast<double>(finest));
   for (std::size_t i = 0; i < points.size(); ++i) points[i].w = supports.h[levels[i % levels.size()]];
@@ -172,7 +172,7 @@ SIM_TEST(S14MixedNeighbourList, EqualsBruteForceInOneCellAndFarApart) {
       points.push_back({far, far > 0 ? far : 0.1f * static_cast<float>(i), -far, finest});
   }
   expect_brute_force(mixed_points(points, {0, 1, 2, 3}), true);
-  // Fine and coarse beyond their grids.
+  // Fine and coarse points beyond their grids.
   expect_brute_force(mixed_points({{1.0e6f, 0, 0, 0}, {1.0e6f, 0.2f, 0, 0}, {1.0e6f, 0.4f, 0, 0}}, {3, 0}),
                      true);
 }
@@ -201,7 +201,7 @@ SIM_TEST(S14NeighbourList, EqualsBruteForceOnCellPlanes) {
 
 SIM_TEST(S14NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
   expect_brute_force(random_points(300, 0.05f, 0.3f, 3));
-  // Beyond every tank.
+  // Points beyond every tank.
   std::vector<Vec4> points;
   for (const float far : {-1e9f, -6e5f, 0.0f, 6e5f, 1e9f}) {
     for (int i = 0; i < 5; ++i) points.push_back({far, 0.1f * static_cast<float>(i), -far, 0.3f});
@@ -210,13 +210,13 @@ SIM_TEST(S14NeighbourList, EqualsBruteForceInOneCellAndFarApart) {
 }
 
 #ifndef SIM_CUDA
-/// libsim/neighbors/candidates.hpp keeps what a thread gathered last. Two simulations' lists are built by
-/// turns in one thread, and places change within their cells between builds: the windows are the same, and
-/// nobody in them is.
+/// libsim/neighbors/candidates.hpp caches a thread's last candidates. One thread builds lists of two
+/// simulations in turn, and particles move within their cells between builds: the cached windows are the
+/// same, but the particles in them are not.
 SIM_TEST(S14NeighbourList, OfTwoSimulationsInOneThreadAreTheirOwn) {
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
-  // All are in the middle cell of 27, which is a little wider than the margin.
+  // All points are in the middle cell of 27, which is a little wider than the margin.
   const Domain tank{{0, 0, 0}, {1, 1, 1}};
   const float edge = NeighbourList::margin * finest;
   const auto points_of = [&](unsigned seed) {
@@ -256,7 +256,7 @@ SIM_TEST(S14NeighbourList, OfTwoSimulationsInOneThreadAreTheirOwn) {
 }
 #endif
 
-/// The first build of a list, whose room nothing has grown yet.
+/// The first build of a list, before any growth.
 struct FirstBuild {
   Particles particles;
   Grid grid;
@@ -271,7 +271,7 @@ struct FirstBuild {
 };
 
 SIM_TEST(S14NeighbourList, PutsListsWithoutRoomInTheStore) {
-  // The first build of a list has room for some 55 neighbours; nothing grows in between.
+  // The first build has room for some 55 neighbours, and the list does not grow in between.
   std::vector<Vec4> points = random_points(400, 0.05f, 0.3f, 3);
   const std::vector<Vec4> few = random_points(40, 0.05f, 0.3f, 4);
   for (const Vec4& p : few) points.push_back({p.x + 7, p.y, p.z, p.w});
@@ -288,7 +288,7 @@ SIM_TEST(S14NeighbourList, PutsListsWithoutRoomInTheStore) {
 }
 
 SIM_TEST(S14NeighbourList, CountsWhatFindsNoRoomInTheStoreEither) {
-  // 1,500 coincident points ask for 2.2 million entries; the store begins with 1 million.
+  // 1,500 coincident points need 2.2 million entries; the store starts with 1 million.
   const std::vector<Vec4> points(1500, Vec4{1, 1, 1, 0.3f});
   FirstBuild first(points);
   std::size_t listed = 0;
@@ -319,7 +319,7 @@ SIM_TEST(S14Grid, HasFewCellsInAnyTank) {
   }
 }
 
-/// What all water has left holds none; foam looks there (libsim/foam/water_round.hpp).
+/// After all water has left, the grid has no cells; foam reads it (libsim/foam/water_round.hpp).
 SIM_TEST(S14Grid, IsEmptyAfterTheLastParticleLeft) {
   for (const bool one_level : {true, false}) {
     Particles particles = particles_at(random_points(100, 1, finest, 5));
@@ -339,7 +339,7 @@ SIM_TEST(S14Grid, IsEmptyAfterTheLastParticleLeft) {
   }
 }
 
-/// Ids may not be shared, but no place is lost where they are.
+/// Shared ids are not allowed, but even then no particle is lost.
 SIM_TEST(S14Grid, KeepsEveryoneWhereIdsAreShared) {
   std::vector<Vec4> points = random_points(200, 0.1f, finest, 5);
   Particles particles = particles_at(points);

@@ -1,4 +1,4 @@
-/// Which known word was meant.
+/// Suggestions of the known word that is nearest to an unknown one.
 
 #include "stats/base/nearest.hpp"
 

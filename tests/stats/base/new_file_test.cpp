@@ -1,4 +1,4 @@
-/// Files that take their place at once, and nothing else's.
+/// Files that appear complete at their place in one step and replace nothing but files.
 
 #include "stats/base/new_file.hpp"
 
@@ -86,7 +86,7 @@ TEST(NewFile, ForItsOwnerAloneWhateverTheUmaskAndWhateverStoodThere) {
   ::umask(before);
 }
 
-// Renamed over a device, the file would be the end of it.
+// A rename onto a device would replace the device by the file.
 TEST(NewFile, ReplacesNothingButFiles) {
   const test::TemporaryFolder folder;
   fs::create_directory(folder / "folder");
@@ -124,7 +124,7 @@ TEST(NewFile, LeavesNothingBehindWhenItIsNotPutInPlace) {
   fs::create_directory(folder / "a");
   std::ofstream(folder / "a/b") << "c";
   EXPECT_THROW(write_file_atomically(folder / "a", "text"),
-               Error);  // a rename over a folder that holds a file
+               Error);  // renames over a folder that is not empty
   EXPECT_EQ(entries(folder.path()), 1u);
 }
 

@@ -1,4 +1,5 @@
-/// What check_toml_text refuses, where it says so, and that it agrees with toml++ on all else.
+/// Texts that check_toml_text refuses, the places in its errors, and its agreement with toml++ on all other
+/// texts.
 
 #include "stats/base/toml_text.hpp"
 
@@ -88,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refused{"a = \xc3\xa9", "1:5", "outside ASCII"},
                     Refused{"a =\xc2\xa0"
                             "1",
-                            "1:4", "outside ASCII"},  // a space that does not break
+                            "1:4", "outside ASCII"},  // a no-break space
                     Refused{"[\xce\xb1]", "1:2", "outside ASCII"},
                     Refused{"a = \"\"\"x\"\"\"\xc3\xa9", "1:12", "outside ASCII"},
                     Refused{"a = '''x'''''\xc3\xa9", "1:14", "outside ASCII"},
@@ -114,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Nuls, TomlText,
                                          Refused{"a = \"\"\"\n\\\\\\u0000\"\"\"", "2:3", "NUL"},
                                          Refused{"\"\\u0000\" = 1", "1:2", "NUL"}));
 
-/// No parameters, since those are made at every start of the program: these texts are long.
+/// Not parameters of a test: those are made at every start of the program, and these texts are long.
 TEST(TomlTextDepth, IsBoundedInKeysHeadersListsAndTables) {
   const std::vector<Refused> texts{
       {"a" + repeated(".a", 300000) + " = 1", "1:130", "nested more than 64 levels"},
@@ -206,8 +207,8 @@ TEST(TomlTextAgrees, WithTheParserOnEveryFileThatShips) {
   EXPECT_GE(files, 10);
 }
 
-/// Sound documents with pieces of grammar put in anywhere: what toml++ takes is not refused, and what is let
-/// through ends in toml++'s verdict (under the sanitizers: without undefined behaviour).
+/// Sound documents with random pieces of grammar inserted: texts that toml++ accepts are not refused, and
+/// toml++ gives a verdict on all others that pass (under the sanitizers: without undefined behaviour).
 TEST(TomlTextAgrees, WithTheParserOnBrokenDocuments) {
   const std::vector<std::string> sound{
       "[a.b]\nc.d = [1.5, {e = \"f\"}]\n[[g]]\nh = '''i\nj'''\n",
@@ -248,7 +249,7 @@ TEST(TomlTextAgrees, WithTheParserOnBrokenDocuments) {
   for (int i = 0; i < 30000; ++i) {
     std::string text = sound[random() % sound.size()];
     for (auto edits = 1 + random() % 3; edits > 0; --edits) {
-      // Between characters, so that the text stays UTF-8.
+      // Inserts between characters, so that the text stays UTF-8.
       std::size_t at = random() % (text.size() + 1);
       while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) ++at;
       text.insert(at, pieces[random() % pieces.size()]);
@@ -261,7 +262,7 @@ TEST(TomlTextAgrees, WithTheParserOnBrokenDocuments) {
     ++refused;
     const auto foreign = [](char c) { return static_cast<unsigned char>(c) >= 0x80; };
     if (error.find("outside ASCII") != std::string::npos) continue;
-    // What came between \r and \n, or a quote behind a number.
+    // Something between \r and \n, or a quote behind a number.
     EXPECT_THAT(error, AnyOf(HasSubstr("control character"), HasSubstr(" behind a "))) << text;
     if (std::none_of(text.begin(), text.end(), foreign)) {
       EXPECT_FALSE(parses(text)) << text;

@@ -24,7 +24,7 @@ const std::map<std::string, Adjustment> methods{{"bonferroni", Adjustment::Bonfe
                                                 {"BH", Adjustment::BenjaminiHochberg},
                                                 {"fdr", Adjustment::BenjaminiHochberg},
                                                 {"none", Adjustment::None}};
-/// Other packs hold them; the project has no such adjustment.
+/// Adjustments in the oracle's packs that the project does not implement.
 const std::set<std::string> absent{"hochberg", "hommel", "BY"};
 
 TEST(Adjust, AgreesWithTheReferenceAnswers) {
@@ -50,7 +50,7 @@ TEST(Adjust, AgreesWithTheReferenceAnswers) {
   }
 }
 
-/// Holm by closed testing: the largest Bonferroni p of all subsets with the hypothesis in.
+/// Holm by closed testing: the largest Bonferroni p of all subsets that contain the hypothesis.
 double closed(const Values& p, std::size_t index) {
   double worst = 0;
   for (unsigned subset = 1; subset < 1u << p.size(); ++subset) {

@@ -20,7 +20,7 @@ using oracle::number;
 using stats::Alternative;
 using stats::binomial_test;
 
-/// p-values keep their digits however small they are.
+/// Compares p-values relative to their size, however small they are.
 constexpr double p_scale = 1e-290;
 
 Alternative side(const std::string& name) {
@@ -81,7 +81,7 @@ TEST(Binomial, AgreesWithTheReferenceAnswers) {
   }
 }
 
-/// Choose(n, k) p^k q^(n-k) with nothing clever about it.
+/// Choose(n, k) p^k q^(n-k), computed directly.
 double mass(int k, int n, double p) {
   double out = 1;
   for (int i = 0; i < k; ++i) out *= p * (n - i) / (i + 1);
@@ -160,7 +160,7 @@ TEST(Binomial, SuccessAndFailureMaySwap) {
 }
 
 TEST(Binomial, NeverRejectsATrueNullTooOften) {
-  // Exact, so no draws are needed: the distribution of p under the null is known.
+  // Exact without simulation: the distribution of p under the null is known.
   for (const int n : {1, 2, 10, 26, 60}) {
     for (const double p0 : {0.5, 0.2}) {
       for (const double alpha : {0.01, 0.05, 0.2}) {
@@ -173,7 +173,7 @@ TEST(Binomial, NeverRejectsATrueNullTooOften) {
 }
 
 TEST(Binomial, PIsUniformOnceItsStepsAreFilledWithDraws) {
-  // P(X > k) + U P(X = k) is exactly uniform; a wrong tail or mass is not.
+  // P(X > k) + U P(X = k) is exactly uniform, but not with a wrong tail or mass.
   uniformity::Draws draws(11);
   std::vector<double> values;
   for (int i = 0; i < 4000; ++i) {
@@ -198,7 +198,7 @@ TEST(Binomial, RefusesWhatIsNoCount) {
 }
 
 TEST(Binomial, HoldsForAMillionTrialsAndMore) {
-  // Normal approximation with continuity correction: good to 1e-4 here.
+  // Normal approximation with continuity correction, accurate to 1e-4 here.
   const double n = 1e8, k = n / 2 + 9'000, z = (9'000 - 0.5) / std::sqrt(n / 4);
   EXPECT_NEAR(binomial_test(k, n)->p / std::erfc(z / std::sqrt(2.0)), 1, 1e-4);
   const auto ci = binomial_test(k, n)->clopper_pearson;

@@ -56,7 +56,7 @@ void expect_strict(const json& c, const std::optional<stats::BcaInterval>& stric
   expect_pair(c, "bca_bootci", strict->ci_normal);
 }
 
-/// With draws of our own: within 4 % of the interval's width (the pack's README).
+/// The library's own resamples agree to within 4 % of the interval's width (the pack's README).
 void expect_many_resamples(const json& c, const Values& x, const stats::Statistic& of, double confidence) {
   const auto got = bootstrap_interval(x, of, {.resamples = 50'000, .seed = 2, .confidence = confidence});
   ASSERT_TRUE(got) << got.reason();
@@ -73,7 +73,7 @@ void expect_many_resamples(const json& c, const Values& x, const stats::Statisti
   if (want.contains("se")) {
     EXPECT_NEAR(got->se / want.at("se").get<double>(), 1, 0.04) << c.at("id");
   }
-  // Ties count half there; the standard error of z0 is 0.006.
+  // The reference counts ties half; the standard error of z0 is 0.006.
   if (want.contains("z0")) {
     EXPECT_NEAR(got->bca.z0, want.at("z0").get<double>(), 0.04) << c.at("id");
   }
@@ -109,7 +109,7 @@ TEST(BootstrapInterval, AgreesWithTheReferenceAnswers) {
   }
 }
 
-/// Skewed to the right, mean 1.
+/// Skewed to the right, with mean 1.
 Values exponential(int n, uniformity::Draws& draws) {
   Values out;
   for (int i = 0; i < n; ++i) out.push_back(-std::log(draws.uniform()));
@@ -147,8 +147,8 @@ TEST(BootstrapInterval, ShiftScaleAndReflectionCarryThrough) {
 }
 
 TEST(BootstrapInterval, BcaFollowsAMonotoneTransformation) {
-  // What BCa is made for: the interval of log(mean) is the log of the interval of the mean, for one set of
-  // resamples, up to the acceleration, which the jackknife estimates on another scale.
+  // The defining property of BCa: with the same resamples, the interval of log(mean) is the log of the
+  // interval of the mean, up to the acceleration, which the jackknife estimates on another scale.
   uniformity::Draws draws(3);
   const Values x = exponential(40, draws);
   const auto plain = bootstrap_interval(x, stats::mean_statistic(), {.resamples = 4000});
@@ -200,7 +200,8 @@ TEST(BootstrapInterval, MissingValuesAreDroppedAndCounted) {
   EXPECT_EQ(got->bca.ci, bootstrap_interval(Values{1, 2, 4, 3, 6, 5}, stats::mean_statistic())->bca.ci);
 }
 
-// No bootstrap interval leaves the range of the values, which holds the centre with chance 1 - 2^(1 - n).
+// A bootstrap interval lies within the range of the values, which holds the centre with probability 1 - 2^(1
+// - n).
 TEST(BootstrapInterval, TooFewValuesForTheLevelAreRefusedInWords) {
   const Values x{1, 4, 2, 7, 3, 9};
   for (std::size_t n = 2; n <= 5; ++n) {

@@ -98,7 +98,7 @@ TEST(Describe, FollowsShiftScaleAndOrder) {
   }
 }
 
-// The fence is 2/3 + 1.5 * 2/3 = 5/3. Computed in doubles it comes out just below.
+// The fence is 2/3 + 1.5 * 2/3 = 5/3. In doubles it comes out slightly too small.
 TEST(BoxPlot, AValueOnTheFenceIsWithin) {
   const auto box = stats::box_plot(Values{0, 0, 1.0 / 3, 2.0 / 3, 5.0 / 3});
   ASSERT_TRUE(box);

@@ -18,7 +18,7 @@ void expect_relative(double got, double want, double rtol, const char* what) {
 TEST(Student, ClosedFormsOfSmallDegreesOfFreedom) {
   for (const double t : {1e-8, 0.3, 1.0, 2.5, 40.0, 1e6}) {
     expect_relative(student_upper(t, 1), std::atan2(1, t) / std::numbers::pi, 1e-14, "Cauchy");
-    // (1 - t / sqrt(2 + t^2)) / 2 without the difference.
+    // (1 - t / sqrt(2 + t^2)) / 2, rewritten without cancellation.
     const double root = std::sqrt(2 + t * t);
     expect_relative(student_upper(t, 2), 1 / (root * (root + t)), 1e-14, "df 2");
     expect_relative(student_lower(-t, 2), student_upper(t, 2), 0, "mirror");

@@ -41,7 +41,7 @@ void expect_case(const base::Json& c, const Result<EquivalenceTest>& got) {
 TEST(EquivalenceTest, Oracle) {
   for (const auto& c : oracle::cases("tost")) {
     const auto op = c.at("op").get<std::string>();
-    // Other packs hold them; the project has only the paired test.
+    // Operations of other packs: the project has only the paired test.
     if (op == "tost.one" || op == "tost.indep" || op == "tost.welch") continue;
     ASSERT_EQ(op, "tost.paired") << c.at("id");
     const auto& input = c.at("input");
@@ -90,7 +90,7 @@ TEST(EquivalenceTest, FollowsOrderShiftAndScale) {
 }
 
 TEST(EquivalenceTest, AtTheMarginTheErrorRateIsAlpha) {
-  // One-sided p at the margin is uniform; the other test hardly ever decides with margins this wide.
+  // The one-sided p at the margin is uniform; with margins this wide the other test hardly ever decides.
   constexpr std::size_t sets = 3000;
   std::mt19937_64 random(17);
   std::vector<double> p;

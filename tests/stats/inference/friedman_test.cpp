@@ -23,7 +23,7 @@ using stats::repeated_anova;
 using Values = std::vector<double>;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-/// p-values keep their digits however small they are.
+/// Compares p-values relative to their size, however small they are.
 constexpr double p_scale = 1e-290;
 
 struct Table {
@@ -102,7 +102,7 @@ TEST(RepeatedMeasures, AgreeWithTheReferenceAnswers) {
   }
 }
 
-/// Ratings of n participants who use the scale differently, rounded to whole points (ties) when coarse.
+/// Ratings of n participants who use the scale differently; if coarse, rounded to whole points (ties).
 Values ratings(int n, int k, std::uint64_t seed, bool coarse) {
   uniformity::Draws draws(seed);
   Values out;
@@ -233,7 +233,7 @@ TEST(RepeatedMeasures, PIsUniformUnderTheNull) {
   }
   EXPECT_LT(uniformity::distance(anova), uniformity::critical);
   EXPECT_LT(uniformity::distance(corrected), uniformity::critical);
-  // Ranks make steps of p, far smaller than what 2,000 studies can tell.
+  // Ranks give p in steps, too small to detect with 2,000 studies.
   EXPECT_LT(uniformity::distance(ranks), uniformity::critical);
 }
 

@@ -72,7 +72,7 @@ TEST(Nist, Univariate) {
   }
 }
 
-/// x, x^2 ... x^degree; empty when a power is not a whole number that a double holds exactly.
+/// x, x^2 ... x^degree; empty if a power is not an integer that a double holds exactly.
 std::vector<Values> powers(const Values& x, std::size_t degree) {
   std::vector<Values> out{x};
   while (out.size() < degree) {
@@ -95,9 +95,9 @@ TEST(Nist, Linear) {
     data.erase(data.begin());
     const auto& parameters = set.at("params");
     const bool intercept = parameters.contains("B0");
-    // One predictor with more coefficients than a line has is a polynomial.
+    // One predictor with more than two coefficients is a polynomial.
     if (intercept && data.size() == 1 && parameters.size() > 2) data = powers(data[0], parameters.size() - 1);
-    // Other packs hold polynomials whose powers would be rounded: fit_linear cannot know those digits.
+    // Skips polynomials whose powers would be rounded: fit_linear cannot reach their certified digits.
     if (data.empty()) continue;
     const auto got = stats::fit_linear(data, y, intercept);
     ASSERT_TRUE(got) << name << ": " << got.reason();

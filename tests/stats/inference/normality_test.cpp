@@ -75,7 +75,8 @@ TEST(ShapiroWilk, NormalScoresAreNormal) {
 }
 
 TEST(ShapiroWilk, PValuesAreUniformUnderTheNull) {
-  // The approximation is not exact: its own error, below 0.01 in the distribution function, is allowed for.
+  // The approximation has an error of its own, below 0.01 in the distribution function, which the bound
+  // allows.
   constexpr std::size_t sets = 4000;
   std::mt19937_64 random(6);
   for (const std::size_t n : {7u, 26u}) {

@@ -64,12 +64,12 @@ TEST(Power, AgreesWithTheReferenceAnswers) {
       expect_t_power(c);
     else if (op == "power.binom")
       expect_binomial_power(c);
-    else if (op != "power.t.n")  // other packs hold it; the project does not solve for n
+    else if (op != "power.t.n")  // an operation of other packs: the project does not solve for n
       ADD_FAILURE() << c.at("id") << ": nobody tests " << op;
   }
 }
 
-// The figures for the paper's 26 participants.
+// Figures for the paper's 26 participants.
 TEST(PaperNumbers, PowerOfTwentySixParticipants) {
   EXPECT_NEAR(stats::binomial_power(26, 0.70)->power, 0.46, 0.005);
   EXPECT_EQ(*stats::binomial_power(26, 0.70)->k_critical_upper, 19);

@@ -19,7 +19,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Two items: alpha is 4 times their covariance over the variance of their sum.
 TEST(CronbachAlpha, OfTwoItemsByHand) {
-  // Items 1 2 3 and 2 2 5: variances 1 and 3, covariance 3/2, of the sums 3 4 8: 7.
+  // Items 1 2 3 and 2 2 5: variances 1 and 3, covariance 3/2; their sums 3 4 8: variance 7.
   const auto got = cronbach_alpha(Values{1, 2, 2, 2, 3, 5}, 2);
   ASSERT_TRUE(got);
   EXPECT_NEAR(got->alpha, 4 * 1.5 / 7, 1e-14);

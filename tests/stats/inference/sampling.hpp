@@ -28,7 +28,7 @@ inline double uniform_distance(std::vector<double> p) {
   return largest;
 }
 
-/// The distance that n uniform numbers pass with probability 0.001 (Kolmogorov's limit law; Stephens 1974).
+/// The distance that n uniform numbers exceed with probability 0.001 (Kolmogorov's limit law; Stephens 1974).
 inline double critical_distance(std::size_t n) {
   const double root = std::sqrt(static_cast<double>(n));
   return 1.9495 / (root + 0.12 + 0.11 / root);

@@ -1,4 +1,4 @@
-/// The signed-rank test of differences with ties and zeros, held to every sign and every sample.
+/// The signed-rank test of differences with ties and zeros, against all signs and all samples.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 using stats::signed_rank;
 using Values = std::vector<double>;
 
-/// Sizes of the groups of equal |d|, in ascending order: bit i of `pattern` parts values i and i + 1.
+/// Ascending |d| with ties: bit i of `pattern` separates values i and i + 1.
 Values tied_magnitudes(int n, std::size_t pattern) {
   Values out;
   double value = 1;
@@ -47,7 +47,7 @@ struct AllSigns {
     for (const int sum : sums) ++at_most[static_cast<std::size_t>(sum)];
     for (std::size_t i = 1; i < at_most.size(); ++i) at_most[i] += at_most[i - 1];
   }
-  /// Shares of the signs whose sum is no larger, and no smaller, than that of one of them.
+  /// Shares of the signs whose sum is at most, and at least, the sum of `signs`.
   double lower(std::size_t signs) const { return share(at_most[place(signs)]); }
   double upper(std::size_t signs) const {
     const auto at = place(signs);
@@ -77,7 +77,7 @@ std::vector<std::size_t> one_of_each_sum(const AllSigns& all) {
   return out;
 }
 
-/// Every sum of positive ranks that n differences with these ties can have, with 0 to 3 zeros in turn.
+/// Tests every sum of positive ranks that n differences with these ties can have, with 0 to 3 zeros in turn.
 void expect_exact(int n, std::size_t pattern) {
   constexpr std::size_t most_zeros = 3;
   const auto magnitudes = tied_magnitudes(n, pattern);
@@ -105,7 +105,7 @@ void expect_exact(int n, std::size_t pattern) {
   }
 }
 
-/// All 2^(n - 1) ways in which n magnitudes tie.
+/// Tests all 2^(n - 1) patterns of ties of n magnitudes.
 void expect_exact_whatever_the_ties(int n) {
   for (std::size_t pattern = 0; pattern < (std::size_t{1} << (n - 1)); ++pattern) expect_exact(n, pattern);
 }
@@ -130,7 +130,7 @@ double orders(const std::vector<int>& counts) {
   return std::exp(log + std::lgamma(n + 1));
 }
 
-// Every sample of -2, -1, 0, 1, 2 with symmetric chances: ties and zeros in nearly all of them.
+// Every sample of -2, -1, 0, 1, 2 with symmetric probabilities: nearly all have ties and zeros.
 TEST(SignedRankTies, TheIntervalHoldsTheCentreOfTiedValuesAtLeastAsOftenAsItsLevelSays) {
   for (const auto& chances : {std::vector{0.1, 0.2, 0.4, 0.2, 0.1}, std::vector{0.3, 0.2, 0.0, 0.2, 0.3},
                               std::vector{0.05, 0.05, 0.8, 0.05, 0.05}}) {

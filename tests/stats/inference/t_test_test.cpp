@@ -167,7 +167,7 @@ TEST(TTest, MissingSidesDropPairs) {
 }
 
 TEST(TTest, TinyDifferencesOnAHugeOffset) {
-  // Differences of 2^-12 at 2^40: exact doubles whose means are not.
+  // Differences of 2^-12 at 2^40: exact in doubles, but their means are not.
   Values x, y;
   for (const double v : {3.0, 5.0, 4.0, 8.0, 6.0, 9.0}) x.push_back(0x1p40 + v * 0x1p-12);
   for (const double v : {1.0, 4.0, 4.0, 5.0, 7.0, 2.0}) y.push_back(0x1p40 + v * 0x1p-12);
@@ -180,7 +180,7 @@ TEST(TTest, TinyDifferencesOnAHugeOffset) {
   EXPECT_DOUBLE_EQ(far->estimate, near->estimate * 0x1p-12);
 }
 
-/// Every test of two samples with one signature.
+/// Every test of two samples, with the same signature.
 struct NamedTest {
   const char* name;
   TTest (*run)(const Values&, const Values&, const TTestOptions&);
@@ -237,7 +237,7 @@ TEST(TTestProperties, PValuesAreUniformUnderTheNull) {
         const auto x = sampling::normal(random, 9, 3), y = sampling::normal(random, 9, 3);
         p.push_back(test.run(x, y, {.alternative = side, .effect_intervals = false}).p);
       }
-      // Welch's approximation is off by less than the distance seen here.
+      // The error of Welch's approximation is smaller than the detectable distance.
       EXPECT_LT(sampling::uniform_distance(p), sampling::critical_distance(sets)) << test.name;
     }
   }

@@ -12,7 +12,8 @@ using stats::Alternative;
 using stats::unanimous;
 using Values = std::vector<double>;
 
-/// The permutation test by hand: all signs of n equal values, sums at least as far as the one seen.
+/// The permutation test by enumeration: share of all signs of n equal values with sums at least as extreme as
+/// the observed one.
 double by_enumeration(double value, int n, Alternative side) {
   const double seen = value * n;
   int as_far = 0;
@@ -51,7 +52,7 @@ TEST(Unanimous, OnlyWhereAllAgreeAndNobodyIsAlone) {
   EXPECT_FALSE(unanimous(Values{1}));
   EXPECT_FALSE(unanimous(Values{1, nan}));
   EXPECT_EQ(unanimous(Values{1, nan, 1})->n, 2u);
-  // Means of thirds: equal as fractions, not as doubles.
+  // Means of thirds: equal as fractions, but not as doubles.
   const std::vector<stats::ExactMean> x{{3, 3}, {4, 3}}, y{{2, 3}, {6, 6}};
   const auto exact = stats::exact_differences(x, y);
   EXPECT_EQ(unanimous(*exact)->value, 1 / 3.0);

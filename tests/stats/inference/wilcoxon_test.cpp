@@ -36,7 +36,8 @@ void expect_signed(const base::Json& c, const SignedRank& got) {
   expect_field(c, "p_exact_greater", got.p_exact_greater);
   expect_field(c, "p_normal_cc", got.p_normal);
   expect_field(c, "p_normal_nocc", got.p_normal_uncorrected);
-  // R's wilcox.test is exact below 50 values without ties and zeros, else normal.
+  // R's wilcox.test is exact below 50 values without ties and zeros; otherwise it uses the normal
+  // distribution.
   const bool plain = got.n < 50 && !got.has_ties && got.n_nonzero == got.n;
   expect_field(c, "R_default_p", plain ? got.p() : got.p_normal);
   expect_field(c, "hodges_lehmann", got.hodges_lehmann);
@@ -82,7 +83,8 @@ void expect_signed(const base::Json& c, const SignedRank& got) {
 TEST(Wilcoxon, Oracle) {
   for (const auto& c : oracle::cases("wilcoxon")) {
     const auto op = c.at("op").get<std::string>();
-    if (op == "mannwhitney") continue;  // other packs hold it; the project has no test of two groups' ranks
+    if (op == "mannwhitney")
+      continue;  // an operation of other packs: the project has no rank test of two groups
     ASSERT_EQ(op, "wilcoxon.signed") << c.at("id");
     const auto got = signed_rank(oracle::numbers(c.at("input").at("d")));
     if (oracle::is_undefined(c)) {
@@ -94,7 +96,7 @@ TEST(Wilcoxon, Oracle) {
   }
 }
 
-/// Tails by going through all 2^n signs.
+/// Tail probabilities by enumerating all 2^n signs.
 std::array<double, 2> enumerated(const Values& d) {
   const auto n = d.size();
   const auto own = signed_rank(d);
@@ -162,7 +164,7 @@ TEST(SignedRank, IntervalHoldsTheMedianAsOftenAsItSays) {
   EXPECT_NEAR(covered / static_cast<double>(sets), 0.952, 0.015) << "2 P(W <= 25) = 0.0479 at n = 15";
 }
 
-/// P(W <= w) by going through all signs of the ranks 1 to n.
+/// P(W <= w) by enumerating all signs of the ranks 1 to n.
 double lower_tail(int n, int w) {
   int as_low = 0;
   for (int signs = 0; signs < 1 << n; ++signs) {
@@ -177,7 +179,7 @@ TEST(SignedRank, TheIntervalSaysItsExactLevel) {
   std::mt19937_64 random(3);
   for (int n = 2; n <= 14; ++n) {
     const auto got = signed_rank(sampling::normal(random, static_cast<std::size_t>(n), 0));
-    // The widest interval that the level asks for, or all there is.
+    // The narrowest interval that reaches the level, or else the widest there is.
     int cut = 0;
     while (1 - 2 * lower_tail(n, cut + 1) >= 0.95) ++cut;
     EXPECT_NEAR(got->hodges_lehmann_level, 1 - 2 * lower_tail(n, cut), 1e-15) << n;
@@ -186,7 +188,7 @@ TEST(SignedRank, TheIntervalSaysItsExactLevel) {
   EXPECT_EQ(signed_rank(Values{1, 2, 4, 7, 11})->hodges_lehmann_level, 0.9375);
 }
 
-// 5 values: the range of them all, which holds the centre less often than 95 %.
+// With 5 values the interval is their whole range, which holds the centre less often than 95 %.
 TEST(SignedRank, FewValuesHoldTheCentreAsOftenAsTheirLevelSays) {
   constexpr int sets = 4000;
   std::mt19937_64 random(11);
@@ -200,7 +202,7 @@ TEST(SignedRank, FewValuesHoldTheCentreAsOftenAsTheirLevelSays) {
   EXPECT_NEAR(covered / static_cast<double>(sets), level, 3 * std::sqrt(level * (1 - level) / sets));
 }
 
-/// p-values of a discrete statistic, spread over their steps (Lewis 1973): uniform under the null.
+/// p-value of a discrete statistic, spread randomly over its step (Lewis 1973): uniform under the null.
 double spread(double at_least, double at_most, std::mt19937_64& random) {
   const double step = at_least + at_most - 1;
   return at_most - step * std::uniform_real_distribution<double>()(random);

@@ -24,7 +24,7 @@ using stats::Predictor;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Columns by name; what is no number is missing.
+/// Columns by name; cells that are not numbers are missing.
 std::map<std::string, std::vector<double>> read_columns(const std::string& name) {
   std::ifstream in(oracle::folder() / name);
   EXPECT_TRUE(in) << name;
@@ -48,7 +48,7 @@ std::map<std::string, std::vector<double>> read_columns(const std::string& name)
   return columns;
 }
 
-/// What every fit reports, in the words of the oracle.
+/// The values that every fit reports, named as in the oracle.
 struct Reported {
   stats::OrdinalFit fit;
   double sd = nan;
@@ -74,10 +74,10 @@ stats::Result<Reported> fit_model(const std::string& model, const json& input) {
                   fit_cumulative_link_mixed(ratings, {}, people, link, points)->log_likelihood};
 }
 
-/// Tolerances of the oracle's README: clm 1e-5 or the case's own when that is tighter, clmm estimates 1e-3.
-/// What the reference does asks for three more:
+/// Tolerances of the oracle's README: clm 1e-5 or the case's own if that is tighter, clmm estimates 1e-3.
+/// Properties of the reference need three more:
 /// - its optimiser stops early, so that an estimate near zero is compared to 2e-4 standard errors;
-/// - a spread that is zero but for that is compared absolutely;
+/// - a spread that would be zero but for that is compared absolutely;
 /// - its Laplace log-likelihoods are off by up to 1.3e-4, because they use the curvature of the last but one
 ///   Newton step (TheReferencesLaplaceUsesAStaleCurvature proves it), and so are the ratios of two.
 struct Tolerance {
@@ -156,8 +156,8 @@ TEST(CumulativeLink, AgreesWithTheReferenceAnswers) {
   }
 }
 
-/// sum log P - u^2 / 2 of one participant with its slope and curvature, from the logistic distribution
-/// written out and differences: independent of the library.
+/// sum log P - u^2 / 2 of one participant with its slope and curvature, from the explicit logistic
+/// distribution and finite differences: independent of the library.
 struct Person {
   std::vector<double> lower, upper;  ///< thresholds less the fixed location
 
@@ -180,7 +180,7 @@ struct Person {
   }
 };
 
-/// Laplace's approximation after `steps` Newton steps from 0, with the curvature at the end or, stale, of
+/// Laplace's approximation after `steps` Newton steps from 0, with the curvature at the end or, if stale, at
 /// the place before the last step.
 double laplace(const std::vector<Person>& people, double sd, int steps, bool stale) {
   double sum = 0;
@@ -218,8 +218,8 @@ std::vector<Person> people_of(const json& input, const json& at) {
   return out;
 }
 
-// Why tolerance_of is loose for Laplace. At the reference's own estimates its log-likelihood comes out to
-// 1e-6 with a curvature one Newton step behind, and not with the right one.
+// The reason for the loose tolerance for Laplace: at the reference's own estimates, its log-likelihood is
+// reproduced to 1e-6 with a curvature one Newton step behind, but not with the right one.
 TEST(CumulativeLink, TheReferencesLaplaceUsesAStaleCurvature) {
   for (const auto& item : oracle::cases("ordinal")) {
     if (item.at("expect").at("status") != "ok" || !item["expect"].contains("clmm_logit_laplace")) continue;
@@ -235,7 +235,7 @@ TEST(CumulativeLink, TheReferencesLaplaceUsesAStaleCurvature) {
   }
 }
 
-// The closed form without predictors: thresholds are quantiles of the cumulative shares.
+// Closed form without predictors: thresholds are quantiles of the cumulative shares.
 TEST(CumulativeLink, WithoutPredictorsReturnsTheShares) {
   const std::vector<double> ratings{1, 1, 2, 2, 2, 4, 4, 7, 7, 7};
   const auto fit = fit_cumulative_link(ratings, {}, Link::Logit);
@@ -305,7 +305,7 @@ TEST(CumulativeLink, OrderShiftAndScaleFollowThrough) {
     EXPECT_NEAR(two->sd_participant, one->sd_participant, 1e-6);
     EXPECT_NEAR(two->log_likelihood, one->log_likelihood, 1e-8);
     EXPECT_EQ(two->levels.front(), 10 * one->levels.front() + 3);
-    // The scale turned round: thresholds and beta change sign.
+    // With the scale reversed, thresholds and beta change sign.
     std::vector<double> negative;
     for (const double r : other.ratings) negative.push_back(-r);
     const auto turned =
@@ -315,7 +315,7 @@ TEST(CumulativeLink, OrderShiftAndScaleFollowThrough) {
   }
 }
 
-// More nodes approach the integral itself; Laplace stays a little off.
+// More nodes converge to the integral; Laplace has a small error.
 TEST(CumulativeLink, QuadratureConverges) {
   const auto m = made();
   const std::vector<Predictor> x{{"x", m.x}};
@@ -366,7 +366,7 @@ TEST(CumulativeLink, RefusesWithANamedReason) {
                  two);
   expect_refused("infinite", {1, 2, 3, 4, 5, 4},
                  {{"x", {1, 2, 3, 4, 5, std::numeric_limits<double>::infinity()}}}, two);
-  // Complete separation, one group wholly at the end (quasi-separation), and a step without overlap.
+  // Complete separation, one group entirely at the end (quasi-separation), and a step without overlap.
   expect_refused("separation", {1, 1, 1, 2, 2, 2}, {{"x", {0, 0, 0, 1, 1, 1}}}, two);
   expect_refused("separation", {1, 3, 2, 3, 3, 3}, {{"x", {0, 0, 0, 1, 1, 1}}}, two);
   expect_refused("by x", {1, 1, 2, 2, 3, 3}, {{"x", {0, 0, 1, 1, 2, 2}}, {"z", {0, 1, 0, 1, 0, 1}}}, two);
@@ -380,7 +380,7 @@ TEST(CumulativeLink, RefusesSpreadsThatAreNone) {
                 .reason()
                 .find("one rating from each"),
             std::string::npos);
-  // Everyone always gives a score of their own.
+  // Each person always gives the same score, different from the others'.
   std::vector<double> own;
   std::vector<int> people;
   for (int i = 0; i < 60; ++i) {

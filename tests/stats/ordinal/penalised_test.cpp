@@ -1,5 +1,5 @@
-/// Cumulative-link mixed models of separated ratings: the penalised fit against brute force, and over
-/// simulated studies of six people.
+/// Cumulative-link mixed models of separated ratings: the penalised fit against brute force, and in simulated
+/// studies of six people.
 
 #include <gtest/gtest.h>
 
@@ -34,13 +34,13 @@ struct Study {
   }
 };
 
-/// Effects in logits; that of the first method is 0. People differ with a standard deviation of 1.
+/// Effects in logits; the first method's is 0. The standard deviation of people is 1.
 struct Truth {
   const char* words;
   std::vector<double> thresholds, effects;
 };
 
-/// Most answers are 0, as those about sickness are, and tie.
+/// Most answers are 0, as for sickness, and tied.
 const Truth no_effect{"mostly zero, no effect", {1.5, 3, 4.5}, {0, 0, 0, 0, 0}};
 const Truth one_worse{"mostly zero, effects", {1.5, 3, 4.5}, {0, 2, 1, 0, 0}};
 const Truth rare{"rarely not zero, effects", {2.5, 4, 5.5}, {0, 2, 1, 0, 0}};
@@ -64,7 +64,7 @@ Study simulate(const Truth& truth, int people, std::mt19937_64& random) {
   return out;
 }
 
-/// The first simulated study whose ratings are separated, or are not.
+/// The first simulated study whose ratings are separated if `separated`, else not.
 Study first_study(const Truth& truth, bool separated) {
   std::mt19937_64 random(1);
   for (;;) {
@@ -74,8 +74,8 @@ Study first_study(const Truth& truth, bool separated) {
   }
 }
 
-/// The log-likelihood by the trapezoidal rule over each person's effect, from the logistic distribution
-/// written out, plus the log of exp(b / 2) / (1 + exp(b)) over its value at b = 0, summed over the effects.
+/// The log-likelihood by the trapezoidal rule over each person's effect, from the explicit logistic
+/// distribution, plus the log of exp(b / 2) / (1 + exp(b)) over its value at b = 0, summed over the effects.
 double penalised_log_likelihood(const Study& study, const MixedOrdinalFit& at) {
   const auto F = [](double x) { return 1 / (1 + std::exp(-x)); };
   constexpr double step = 0.02, end = 9;
@@ -150,7 +150,7 @@ TEST(PenalisedOrdinal, SaysWhyAndIsOfLogOdds) {
 struct Tally {
   int studies = 0, separated = 0, refused = 0;
   std::vector<double> error = std::vector<double>(methods - 1), square = error, held = error;
-  double largest = 0;  ///< of all effects and their standard errors
+  double largest = 0;  ///< largest of all effects and their standard errors
 
   double bias(std::size_t k) const { return error[k] / fitted(); }
   double root_mean_square(std::size_t k) const { return std::sqrt(square[k] / fitted()); }

@@ -22,9 +22,9 @@ using stats::BradleyTerryMethod;
 using stats::Connection;
 using Values = std::vector<double>;
 
-/// p-values keep their digits however small they are.
+/// Compares p-values relative to their size, however small they are.
 constexpr double p_scale = 1e-290;
-/// The pack's README: brglm2 stops there.
+/// Precision of brglm2, from the pack's README.
 constexpr double firth_rtol = 1e-5;
 
 struct Table {
@@ -107,7 +107,7 @@ TEST(BradleyTerry, AgreesWithTheReferenceAnswers) {
     }
     ASSERT_TRUE(reduced) << c.at("id") << ": " << reduced.reason();
     expect_list(c, "firth_lambda_ref1", reduced->lambda_ref1, 1, firth_rtol);
-    // Automatic takes the first of the two that is finite.
+    // The default uses the first of the two estimates that is finite.
     const auto chosen = bradley_terry(wins, items);
     EXPECT_EQ(chosen->bias_reduced, !likely) << c.at("id");
     EXPECT_EQ(chosen->lambda_ref1, (likely ? *likely : *reduced).lambda_ref1) << c.at("id");
@@ -217,7 +217,7 @@ TEST(Connection, NamesWhoKeepsTheStrengthsFromBeingFinite) {
   const auto of = [](const Values& wins, int items) { return stats::connection(wins, items); };
   EXPECT_EQ(of({0, 1, 1, 0}, 2).connection, Connection::Strong);
   EXPECT_EQ(of({0, 1, 1, 0}, 2).reason, "");
-  // A circle of three, each beaten by one other.
+  // A cycle of three, each beaten by one other.
   EXPECT_EQ(of({0, 1, 0, 0, 0, 1, 1, 0, 0}, 3).connection, Connection::Strong);
   const auto winner = of({0, 5, 5, 0, 0, 2, 0, 3, 0}, 3);
   EXPECT_EQ(winner.connection, Connection::Separated);

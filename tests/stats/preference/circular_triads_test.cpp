@@ -119,7 +119,7 @@ TEST(GroupTriads, SumOfAllParticipants) {
   EXPECT_EQ(got->participants, 26);
   EXPECT_EQ(got->triads, triads);
   EXPECT_EQ(got->expected, 65);
-  // One participant alone has the p of the participant.
+  // For a group of one participant, p is the participant's.
   const auto one = stats::group_triads(std::vector(people.begin(), people.begin() + 1));
   EXPECT_NEAR(one->p, people[0].p, 1e-15);
   EXPECT_NE(stats::group_triads({}).reason(), "");

@@ -14,8 +14,8 @@ namespace {
 using stats::Comparison;
 using stats::order_bias;
 
-/// Task 2: n people judge every pair once, in random order and random intervals; the first interval pulls by
-/// `pull` logits, and by `drift` more with each place past the middle of the session.
+/// Task 2: n people judge every pair once, in random order and with random intervals; `pull` logits favour
+/// the first interval, plus `drift` for each place past the middle of the session.
 std::vector<Comparison> session(int n, const std::vector<double>& lambda, double pull, double drift,
                                 uniformity::Draws& draws) {
   std::vector<Comparison> out;
@@ -40,7 +40,7 @@ std::vector<Comparison> session(int n, const std::vector<double>& lambda, double
 const std::vector<double> strengths{-0.6, -0.3, 0.1, 0.3, 0.5};
 
 TEST(OrderBias, TwoItemsHaveAClosedForm) {
-  // Shown first and chosen: 15 of 20 and 12 of 20. logit = +-lambda + pull, so the pull is the mean logit.
+  // Chosen when shown first: 15 of 20 and 12 of 20. logit = +-lambda + pull, so the pull is the mean logit.
   std::vector<Comparison> trials;
   for (int i = 0; i < 20; ++i) {
     trials.push_back({0, 1, i < 15, 1});
@@ -110,10 +110,10 @@ TEST(OrderBias, SwappingTheIntervalsTurnsTheSign) {
 TEST(OrderBias, RefusesWhatHasNoAnswer) {
   EXPECT_NE(order_bias({}, 5).reason(), "");
   EXPECT_NE(order_bias(std::vector<Comparison>{{0, 1, true, 1}}, 3).reason(), "") << "item 3 was never shown";
-  // Item 1 always came first: its strength and the pull are one number.
+  // Item 1 always comes first, so its strength and the pull cannot be separated.
   const std::vector<Comparison> one_order{{0, 1, true, 1}, {0, 1, false, 2}, {0, 1, true, 3}};
   EXPECT_NE(order_bias(one_order, 2).reason(), "");
-  // The first interval always won.
+  // The first interval always wins.
   const std::vector<Comparison> always{{0, 1, true, 1}, {1, 0, true, 2}, {0, 1, true, 3}, {1, 0, true, 4}};
   EXPECT_NE(order_bias(always, 2).reason().find("separated"), std::string::npos);
   EXPECT_THROW(order_bias(std::vector<Comparison>{{0, 2, true, 1}}, 2), std::invalid_argument);

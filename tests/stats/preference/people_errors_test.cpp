@@ -1,5 +1,5 @@
-/// Errors over people of the preference models against R (tests/stats/r/bradley_terry_people.R), and their
-/// coverage.
+/// Standard errors over people of the preference models, against R (tests/stats/r/bradley_terry_people.R),
+/// and their coverage.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,7 @@ namespace {
 using json = base::Json;
 using stats::Comparison;
 
-/// glm stops at a relative change of the deviance of 1e-14, which leaves a coefficient this far from the
-/// root.
+/// glm stops at a relative change of the deviance of 1e-14, which leaves this error in a coefficient.
 constexpr double glm_error = 1e-9;
 
 std::vector<Comparison> trials_of(const json& item) {
@@ -70,11 +69,11 @@ TEST(PeopleErrors, AreThoseOfTheSandwichInR) {
   EXPECT_EQ(pairs, 29);
 }
 
-/// Everyone judges all pairs of three items once, by tastes about (0, 0, 0).
+/// Everyone judges all pairs of three items in three scenes, with a taste of their own around (0, 0, 0).
 std::vector<Comparison> people_with_tastes(int people, double taste, uniformity::Draws& draws) {
   std::vector<Comparison> out;
   for (int person = 0; person < people; ++person) {
-    // Sums of twelve uniforms are normal enough for a taste.
+    // Sums of twelve uniforms are close enough to normal.
     double own[3] = {};
     for (double& one : own) {
       for (int i = 0; i < 12; ++i) one += draws.uniform();
@@ -95,7 +94,7 @@ TEST(PeopleErrors, CoverWhatTheySayWherePeopleHaveTastes) {
   for (int study = 0; study < studies; ++study) {
     const auto model = stats::bradley_terry(people_with_tastes(20, 1.5, draws), 3);
     ASSERT_TRUE(model) << model.reason();
-    const auto& pair = model->pairs[0];  // equal over the population
+    const auto& pair = model->pairs[0];  // equal in the population
     covered += pair.ci[0] <= 0 && 0 <= pair.ci[1];
     independent += std::abs(pair.difference) <= 1.96 * pair.se_independent;
   }
@@ -111,7 +110,7 @@ TEST(PeopleErrors, StepBackWithAReasonWherePeopleDoNotBearThem) {
   if (!few->bias_reduced) {
     EXPECT_EQ(few->why_independent, "2 people are too few for errors over people of 2 coefficients");
   }
-  // Everyone goes round in the same circle: nobody differs, and the sandwich would be of width zero.
+  // Everyone has the same cycle: people do not differ, so the sandwich errors would be zero.
   std::vector<Comparison> circle;
   for (int person = 0; person < 8; ++person)
     for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {2, 0}}) circle.push_back({a, b, true, 1, person});
@@ -120,7 +119,7 @@ TEST(PeopleErrors, StepBackWithAReasonWherePeopleDoNotBearThem) {
   EXPECT_NE(alike->why_independent.find("alike"), std::string::npos) << alike->why_independent;
   EXPECT_GT(alike->pairs[0].se, 0.3);
   EXPECT_EQ(alike->pairs[0].se, alike->pairs[0].se_independent);
-  // An item that always wins: Firth's estimate keeps the errors that it has.
+  // With an item that always wins, Firth's estimate keeps its own errors.
   std::vector<Comparison> always;
   for (int person = 0; person < 8; ++person)
     for (const auto& [a, b, won] : {std::tuple{0, 1, true}, {0, 2, true}, {1, 2, person % 2 == 0}})

@@ -1,6 +1,6 @@
-/// 1,000 simulated pilots on the actual protocol (16 participants, 21 settings, one rating each) under
-/// several truths: how often do the intervals hold a and b, and which estimate scatters least? The figures
-/// printed stand in docs/statistics.md.
+/// 1,000 simulated pilots of the actual protocol (16 participants, 21 settings, one rating each) under
+/// several truths: coverage of the intervals of a and b, and scatter of the estimates. docs/statistics.md has
+/// the printed figures.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using simulated::Truth;
 
 constexpr int participants = 16;
 
-/// What an estimator made of one pilot.
+/// An estimator's result for one pilot.
 struct One {
   bool fitted = false;
   double a = 0, b = 0;
@@ -80,7 +80,7 @@ std::vector<Pilot> simulate_all(const Truth& truth, int pilots, int resamples, b
   return out;
 }
 
-/// Over the pilots that an estimator could fit.
+/// Statistics over the pilots that an estimator could fit.
 struct Summary {
   int fitted = 0;
   double mean_a = 0, sd_a = 0, mean_b = 0, sd_b = 0, holds_a = 0, holds_b = 0;
@@ -150,13 +150,13 @@ TEST_P(PtpeCoverageSlow, OrdinalEstimateBesideTheOthers) {
   print("direct", direct);
   print("ordinal", ordinal);
   EXPECT_GE(ordinal.fitted, 0.98 * pilots);
-  // 95 % of 150 has a standard deviation of 1.8 %.
+  // 95 % of 150 pilots has a standard deviation of 1.8 %.
   EXPECT_GE(ordinal.holds_a, 0.86);
   EXPECT_GE(ordinal.holds_b, 0.86);
   EXPECT_LT(ordinal.sd_b, 1.3 * direct.sd_b);
 }
 
-// The paper's, and five that spread over the grid; at a = 31, b = 0.035 the curve leaves it at delta = 14.
+// The paper's truth, and five others over the grid; at a = 31, b = 0.035 the curve leaves it at delta = 14.
 INSTANTIATE_TEST_SUITE_P(Truths, PtpeCoverageSlow,
                          testing::Values(Truth{23.68, 0.02}, Truth{20, 0.03}, Truth{28, 0.01},
                                          Truth{35, 0.015}, Truth{27, 0.028}, Truth{31, 0.035}));

@@ -16,7 +16,7 @@ namespace {
 
 using stats::PilotObservation;
 
-/// Scores of the model itself, with a part of their own for each participant and noise.
+/// Scores of the model itself, with an effect of each participant and noise.
 std::vector<PilotObservation> surface(const stats::DirectFit& truth, int participants, double person_sd,
                                       double noise, std::uint64_t seed = 1) {
   std::mt19937_64 engine(seed);
@@ -124,7 +124,7 @@ TEST(DirectFit, OrderOfRowsAndUnitsOfTheFrameRateFollowThrough) {
 }
 
 TEST(DirectFit, ChoosesTheLineOnWhichScoresRise) {
-  // k + q u changes sign at u = -k/q: the level is met there too, where scores fall.
+  // k + q u changes sign at u = -k/q: the scores also cross the level there, but fall.
   const auto truth = model(30, 0.01, 1, 0, 1.2);
   const auto fit = stats::DirectModel(surface(truth, 2, 0, 0), 4).fit();
   ASSERT_TRUE(fit) << fit.reason();
@@ -222,8 +222,8 @@ TEST(Curve, JackknifeOfAMeanIsItsStandardError) {
   EXPECT_THROW(stats::jackknife_covariance(x, std::vector<double>{1}), std::invalid_argument);
 }
 
-// 600 pilots of a surface that is straight: the test's p are uniform (Kolmogorov-Smirnov, 1 % point), and a
-// bent one is found out.
+// 600 pilots of a straight surface: the test's p are uniform (Kolmogorov-Smirnov, 1 % point). For a bent
+// surface the test finds the bend.
 TEST(LackOfFit, HoldsItsLevelAndFindsABend) {
   constexpr int studies = 600;
   std::vector<double> p;
@@ -245,8 +245,8 @@ TEST(LackOfFit, HoldsItsLevelAndFindsABend) {
   EXPECT_GT(found, 0.9 * studies);
 }
 
-// Scores rounded to the scale, 400 pilots each: an even rise is taken for uneven at the test's level, the
-// parametric observer's scores, which level off in log mu, nearly always.
+// Scores rounded to the scale, 400 pilots each: an even rise is rejected at the test's level; the parametric
+// observer's scores, which level off in log mu, nearly always.
 TEST(LackOfFit, AsksForAnEvenRiseOfTheScoresAlsoWhenTheyAreRounded) {
   constexpr int studies = 400;
   int even = 0, observer = 0;
@@ -264,8 +264,8 @@ TEST(LackOfFit, AsksForAnEvenRiseOfTheScoresAlsoWhenTheyAreRounded) {
   EXPECT_GT(observer, 0.95 * studies);
 }
 
-// Where scores level off towards the top of the scale, a quadratic that follows them misses the level: with
-// all settings a comes out at 16.6 here.
+// Scores level off towards the top of the scale. A quadratic that follows them misses the level: with all
+// settings a would be 16.6 here.
 TEST(DirectFit, WhatLiesFarAboveTheCurveDoesNotBendIt) {
   constexpr int pilots = 20;
   double mean = 0;

@@ -16,7 +16,7 @@ namespace {
 using json = base::Json;
 using stats::fit_exponential;
 
-/// The answer in the words of the oracle.
+/// The answer with the names of the oracle.
 json answer(const stats::ExponentialFit& fit, const json& expect) {
   json got{{"a", fit.a}, {"b", fit.b}, {"rss", fit.rss}, {"df", fit.df()}};
   if (fit.r2) got["r2"] = *fit.r2;
@@ -42,8 +42,8 @@ void expect_number(const json& got, const json& expected, double rtol, double sc
   EXPECT_NEAR(got.get<double>(), expected.get<double>(), oracle::bound(expected, rtol, scale)) << where;
 }
 
-/// Ends of a profile are exact roots, to 1e-6, but for a of x_offset, where the pack still has R's spline: at
-/// our end the least sum of squares meets its limit to 2e-13, at theirs to 1e-3.
+/// Profile ends are exact roots, to 1e-6, except a of x_offset, where the pack still has R's spline: at this
+/// library's end the least sum of squares meets its limit to 2e-13, at R's to 1e-3.
 void expect_profile(const json& got, const json& expected, const std::string& key, const std::string& where) {
   if (expected[0].is_null() && expected[1].is_null()) return;
   ASSERT_TRUE(got.contains(key)) << where;
@@ -170,7 +170,7 @@ TEST(ExponentialFit, ShiftOfXAndScaleOfYFollowThroughTheParameters) {
 TEST(ExponentialFit, RefusesWhatHasNoAnswer) {
   const double inf = std::numeric_limits<double>::infinity();
   using Values = std::vector<double>;
-  // Only the last value differs from zero: ever steeper curves fit ever better.
+  // Only the last value is not zero, so ever steeper curves fit ever better.
   EXPECT_NE(fit_exponential(Values{0, 1, 2, 3}, Values{0, 0, 0, 10}).reason(), "");
   EXPECT_NE(fit_exponential(Values{0, 1}, Values{-1, 1}).reason(), "");
   EXPECT_NE(fit_exponential(Values{0, 1, 2}, Values{0, 0, 0}).reason(), "");

@@ -1,6 +1,6 @@
 /// How often the test of the form rejects exponentials and finds other curves, how many files are written,
-/// and where the bands hold: simulated pilots of the paper's 21 settings. The tables printed stand in
-/// docs/statistics.md. VIP_PILOTS sets their number.
+/// and the coverage of the bands: simulated pilots of the paper's 21 settings. docs/statistics.md has the
+/// printed tables. VIP_PILOTS sets the number of pilots.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ double share(const std::vector<char>& all) {
   return static_cast<double>(std::count(all.begin(), all.end(), 1)) / static_cast<double>(all.size());
 }
 
-/// A share may miss its bound by this many Monte-Carlo standard errors.
+/// Three Monte-Carlo standard errors, by which a share may miss its bound.
 double slack(double share, std::size_t n) {
   return 3 * std::sqrt(share * (1 - share) / static_cast<double>(n));
 }
@@ -40,7 +40,7 @@ struct Sizes {
   double rejected = 0, written = 0, written_before = 0;
 };
 
-/// written: by all rules; written_before: by those without the form.
+/// written: by all rules; written_before: by all rules except that of the form.
 Sizes sizes_of(const Population& population, int people) {
   std::vector<char> rejected(pilots()), written(pilots()), before(pilots());
 #pragma omp parallel for schedule(dynamic)
@@ -89,9 +89,9 @@ TEST(FormRecoverySlow, SizePowerAndFiles) {
 
 using Held = std::array<bool, 5>;  // by surfaces::deviations
 
-/// Of one pilot: which bands hold the true curve.
+/// For one pilot: which bands hold the true curve.
 struct Bands {
-  bool given = false;  ///< a file is written by the rules of the curve: form, reach, width and band
+  bool given = false;  ///< the rules of the curve allow a file: form, reach, width and band
   Held direct{}, solver{};
 };
 

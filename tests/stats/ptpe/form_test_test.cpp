@@ -1,4 +1,4 @@
-/// Whether mu(delta) is an exponential: the bend beside it, its interval and what the test can find.
+/// Test whether mu(delta) is an exponential: the bend, its interval, and the detectable bend.
 #include "stats/ptpe/form_test.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ stats::DirectEstimate estimate(const surfaces::Population& population, int peopl
   return stats::estimate_direct(table.observations(stats::PilotMean::Harmonic), 4, {0});
 }
 
-/// Answers without rounding on a quadratic surface about a curve of the family, and people who differ.
+/// Unrounded scores of a quadratic surface about a curve of the family, with differences between people.
 std::vector<stats::PilotObservation> on_the_family(double c, int people) {
   std::vector<stats::PilotObservation> out;
   for (int p = 0; p < people; ++p) {
@@ -62,7 +62,7 @@ TEST(FormTest, PAndIntervalAgree) {
     EXPECT_EQ(test.rejected(), test.ci[0] > 0 || test.ci[1] < 0);
     EXPECT_NEAR(test.t, test.c / test.se, 1e-12);
     EXPECT_EQ(test.df, 11);
-    // A true bend of the size called detectable is found with the power promised.
+    // A true bend of size `detectable` is found with the promised power.
     const double d = test.detectable / test.se / std::sqrt(12.0);
     EXPECT_NEAR(*stats::t_power(12, d, stats::form_level, stats::Design::OneSample), stats::form_power, 1e-6);
   }
@@ -82,7 +82,7 @@ TEST(FormTest, RejectsACurveThatLevelsOffAndAHingeAndKeepsAnExponential) {
   EXPECT_FALSE(exponential.form->rejected());
 }
 
-// Where the exponential is false, the free curve's band holds what the exponential's does not.
+// If the curve is not exponential, the free curve's band holds the truth where the exponential's does not.
 TEST(FormTest, TheFreeCurveHoldsASaturatingThreshold) {
   int free = 0, exponential = 0;
   const auto truth = surfaces::saturating;

@@ -16,7 +16,7 @@ namespace {
 using stats::OrdinalPilotFit;
 using stats::PilotMean;
 
-/// Mean score over the population at u = 0.
+/// The population's mean score at u = 0.
 double mean_on_the_curve(const OrdinalPilotFit& fit) {
   const double s = std::sqrt(1 + fit.sd_participant * fit.sd_participant);
   double mean = fit.levels[0];
@@ -89,7 +89,7 @@ TEST(OrdinalPilot, JackknifeHoldsTheEstimate) {
   EXPECT_GT(estimate.jackknife->b_ci[1], estimate.fit->curve.b);
 }
 
-// The ends of the scale may be stretched: thresholds follow and the curve stays, while the level moves along.
+// A linear change of the scale moves the thresholds and the level, but not the curve.
 TEST(OrdinalPilot, TurningTheScaleRoundIsRefusedAndShiftingItIsNot) {
   auto ratings = simulated::pilot({24, 0.02}, 8, 3);
   const auto fit = stats::fit_ordinal_pilot(ratings, PilotMean::Harmonic, 4);

@@ -1,4 +1,4 @@
-/// What of a pilot must not steer a solver is doubted by its name, and what rises is not.
+/// Doubts that keep a pilot from steering a solver: each has its code, and rising scores raise none.
 #include "stats/ptpe/pilot_doubts.hpp"
 
 #include <gmock/gmock.h>
@@ -33,7 +33,7 @@ Codes doubts_of(const std::vector<stats::PilotRating>& ratings, int resamples = 
   return codes;
 }
 
-/// The scores of a pilot changed by what was shown.
+/// A pilot with its scores changed by `score`.
 std::vector<stats::PilotRating> changed(const std::function<double(const stats::PilotRating&)>& score) {
   auto ratings = simulated::pilot({}, 16, 3);
   for (auto& rating : ratings) rating.score = std::clamp(std::round(score(rating)), 1.0, 7.0);
@@ -48,7 +48,7 @@ TEST(PilotDoubts, ReversedRatingsNeitherRiseNorStay) {
   EXPECT_THAT(codes, Contains("falls"));
 }
 
-// Their ends are alike, and between them they fall: no slope would tell.
+// Both ends are equal and the middle is lower, so a slope could not detect it.
 TEST(PilotDoubts, UShapedRatingsFall) {
   const auto codes =
       doubts_of(changed([](const auto& r) { return 2 + std::abs(r.mu - 30) / 5 + 0.3 * r.score; }));
@@ -91,7 +91,7 @@ TEST(PilotDoubts, EstimatorsWithNothingInCommonAreNamed) {
   EXPECT_THAT(doubts[0].text, ::testing::HasSubstr("[40, 45] by the contour one"));
 }
 
-// Where labs will be, at most one good pilot in twenty is refused.
+// For truths that labs may meet, at most one good pilot in twenty is refused.
 TEST(PilotDoubtsSlow, RefuseFewGoodPilots) {
   constexpr int pilots = 200;
   for (const double a : {18.0, 24.0, 30.0}) {

@@ -1,5 +1,5 @@
-/// What fit-ptpe makes of whole pilots, as R computes it (tests/stats/r/pilot_form.R): the direct estimate,
-/// the band of the solver's file, the form of the curve, slopes within people and drift.
+/// Results of fit-ptpe for whole pilots against R (tests/stats/r/pilot_form.R): the direct estimate, the band
+/// of the solver's file, the form of the curve, slopes within people and drift.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ std::vector<stats::PilotRating> ratings_of(const std::vector<double>& rows) {
   return out;
 }
 
-/// `relative`: where R's nls stops.
+/// `relative`: the precision of R's nls.
 void expect_interval(const std::array<double, 2>& got, double low, double high, double relative) {
   EXPECT_NEAR(got[0], low, relative * std::abs(low) + 2e-8);
   EXPECT_NEAR(got[1], high, relative * std::abs(high) + 2e-8);

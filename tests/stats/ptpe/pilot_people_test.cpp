@@ -1,4 +1,5 @@
-/// Reverse coders, drift over the session and lapses: found where they are, and what the plan's rules mend.
+/// Reverse coders, drift over the session and lapses: their detection, and the corrections by the plan's
+/// rules.
 #include "stats/ptpe/pilot_people.hpp"
 
 #include <gmock/gmock.h>
@@ -21,12 +22,12 @@ using ::testing::HasSubstr;
 
 struct Raters {
   int people = 16;
-  int reversed = 0;   ///< the first ones answer 8 - score
+  int reversed = 0;   ///< this many people, the first ones, answer 8 - score
   double drift = 0;   ///< points from the first to the last trial
-  double lapses = 0;  ///< share of answers that are the lowest whatever was shown
+  double lapses = 0;  ///< share of answers that are the lowest score whatever was shown
 };
 
-/// The parametric observer's pilot, every person's settings in an order of their own.
+/// The parametric observer's pilot, with the settings in a different order for each person.
 std::vector<stats::PilotRating> pilot(const Raters& raters, std::uint64_t seed) {
   const simulated::Truth truth;
   std::mt19937_64 engine(seed);
@@ -64,7 +65,7 @@ TEST(PilotPeople, OrdinaryRatersAreLeftAlone) {
   EXPECT_FALSE(people.lapses->found());
 }
 
-// y = 3 x + noise about two columns, worked out by least squares in the closed form.
+// Least squares in closed form.
 TEST(PilotPeople, ASlopeIsOfOnePersonWithinStandardDeviations) {
   std::vector<stats::PilotRating> ratings;
   const std::vector<std::array<double, 3>> given{{10, 0, 1}, {20, 0, 3}, {40, 0, 4},
@@ -129,7 +130,7 @@ TEST(PilotPeople, WithoutAScatterTheReasonOfNoLapsesIsTheTrueOne) {
     for (int p = 0; p < 3; ++p)
       for (const double mu : {10.0, 20.0, 40.0})
         ratings.push_back({p, mu, 0, mu, mu, 0, mu < 15 ? low : mu > 30 ? high : middle, 0});
-    ratings[0].score += high > low ? 1 : 0;  // the answers to this setting differ
+    ratings[0].score += high > low ? 1 : 0;  // two different answers to this setting
     return stats::pilot_people(ratings, 0.95).lapses.reason();
   };
   EXPECT_EQ(reason(0, 1, 10), "no expected score lies in the middle half of the scores given");
@@ -144,8 +145,9 @@ TEST(PilotPeople, WithoutPositionsThereIsNoDrift) {
 }
 
 struct Found {
-  double reversed = 0, false_alarms = 0, drift = 0, lapses = 0;  ///< reversed: all of them, and no other
-  double bias = 0, bias_mended = 0;                              ///< of a, frames/s
+  double reversed = 0, false_alarms = 0, drift = 0,
+         lapses = 0;                 ///< reversed: exactly the reversed people were found
+  double bias = 0, bias_mended = 0;  ///< bias of a, frames/s
 };
 
 Found found_in(const Raters& raters, int pilots) {

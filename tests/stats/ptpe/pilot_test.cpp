@@ -21,7 +21,7 @@ using stats::ContourPoint;
 using stats::PilotRating;
 using stats::ScoreGrid;
 
-/// participant,fps_mean,fps_sd,rating with realised = nominal.
+/// Reads participant,fps_mean,fps_sd,rating; realised = nominal.
 std::vector<PilotRating> read_csv(const std::string& name) {
   std::ifstream in(oracle::folder() / name);
   std::vector<PilotRating> ratings;
@@ -76,7 +76,7 @@ void expect_fit(const stats::Result<stats::ExponentialFit>& got, const json& exp
   EXPECT_NEAR(std::sqrt(got->covariance->bb), expected["se"][1], oracle::bound(expected["se"][1], rtol, 1));
 }
 
-/// Predictors log mu and delta, as the straight form has them.
+/// Predictors of the straight form: log mu and delta.
 std::vector<stats::Predictor> predictors(const std::vector<PilotRating>& ratings) {
   std::vector<stats::Predictor> out{{"log(fps_mean)", {}}, {"fps_sd", {}}};
   for (const auto& r : ratings) {
@@ -101,7 +101,7 @@ void expect_straight(const json& item, const std::vector<PilotRating>& ratings) 
   oracle::expect_field(item, "ols_level4_b", fit->curve.b);
 }
 
-/// README: thresholds and coefficients to 1e-5.
+/// Tolerance of the README for thresholds and coefficients: 1e-5.
 void expect_cumulative_link(const json& item, const std::vector<PilotRating>& ratings) {
   if (!oracle::asks(item.at("expect"), "clm_probit")) return;
   const auto& expect = item["expect"]["clm_probit"];
@@ -240,7 +240,7 @@ TEST(Pilot, LeavesCellsWithoutRatingsOut) {
   std::erase_if(ratings, [](const PilotRating& r) { return r.mu == 20 && r.delta == 10; });
   const auto grid = stats::PilotTable(ratings).grid(stats::PilotMean::Harmonic);
   const auto contour = stats::column_crossings(grid, 4, stats::contour_lines(grid));
-  // The contour runs below row 30 until delta = 11.2: lines 6 to 11 lose it.
+  // The contour is below row 30 until delta = 11.2, so lines 6 to 11 lose it.
   for (const auto& point : contour.points) EXPECT_TRUE(point.delta <= 5 || point.delta >= 12) << point.delta;
   EXPECT_EQ(contour.crossed, 15);
 }
@@ -298,7 +298,7 @@ TEST(Pilot, RefusesAnIntervalOverTooFewParticipants) {
 }
 
 TEST(Pilot, RefusesAnIntervalWhenManyResamplesHaveNoContour) {
-  // One participant of five brings the contour; without them every score is above the level.
+  // One participant of five causes the contour; without them every score is above the level.
   std::vector<PilotRating> ratings = plane(24, 0.02);
   for (auto& r : ratings) r.score = r.mu < 25 ? -40 : 6;
   for (int p = 2; p < 6; ++p) {

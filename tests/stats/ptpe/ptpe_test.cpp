@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Rows of the paper's Table 2 as words.
+/// Rows of the paper's Table 2 as text.
 std::vector<std::vector<std::string>> table2() {
   std::istringstream in(base::read_file(base::resource("data/paper/table2_performance.csv"), 1 << 20));
   std::vector<std::vector<std::string>> rows;

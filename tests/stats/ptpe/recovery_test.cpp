@@ -1,5 +1,5 @@
-/// Which estimate finds the population mean's contour: simulated pilots over a grid of truths, among them
-/// surfaces outside every estimator's family. The table printed stands in docs/statistics.md.
+/// Recovery of the population mean's contour by each estimate: simulated pilots over a grid of truths,
+/// including surfaces outside every estimator's family. docs/statistics.md has the printed table.
 
 #include <gtest/gtest.h>
 
@@ -23,12 +23,12 @@ using surfaces::Population;
 using surfaces::Truth;
 
 constexpr std::array names{"solver", "direct", "contour",
-                           "ordinal"};  // the solver's: direct, spanned interval
-constexpr double widest = 0.35;         // as vip-stats fit-ptpe --max-width
+                           "ordinal"};  // solver: the direct estimate with the spanned interval
+constexpr double widest = 0.35;         // the default of vip-stats fit-ptpe --max-width
 
-/// What one estimator made of one pilot.
+/// An estimator's result for one pilot.
 struct One {
-  bool given = false;  ///< an interval and no doubt, so that a file would be written
+  bool given = false;  ///< it has an interval and no doubts, so that a file would be written
   double a = 0, b = 0;
   bool holds_a = false, holds_b = false;
 };
@@ -100,7 +100,7 @@ Row summary(const std::vector<All>& all, std::size_t estimator, const Truth& tru
 struct Kind {
   Population population;
   int participants;
-  bool near = false;  ///< a lab may meet it: few refusals
+  bool near = false;  ///< realistic for a lab, so few pilots may be refused
 };
 
 void recover(const Kind& kind, int pilots) {
@@ -113,13 +113,13 @@ void recover(const Kind& kind, int pilots) {
   for (std::size_t e = 0; e < names.size(); ++e) {
     const Row row = summary(all, e, truth);
     const bool few = row.given < 20;
-    if (e != 1) std::printf(" | %.2f", row.refused);  // the direct one's is the solver's
+    if (e != 1) std::printf(" | %.2f", row.refused);  // the direct estimate has the solver's share
     if (e != 1 && few) std::printf(" | ");
     if (e != 1 && !few)
       std::printf(" | %+.2f, %+.4f (%.2f, %.4f)", row.bias_a, row.bias_b, row.error_a, row.error_b);
     few ? std::printf(" | ") : std::printf(" | %.2f, %.2f", row.holds_a, row.holds_b);
     if (e > 0 || few) continue;
-    // Of what feeds the solver, less two and a half Monte-Carlo standard errors.
+    // Bounds for the solver's estimate, less two and a half Monte-Carlo standard errors.
     const double error = 2.5 * std::sqrt(0.08 * 0.92 / row.given);
     EXPECT_GE(row.holds_a, 0.92 - error) << population.name << ", " << kind.participants;
     EXPECT_GE(row.holds_b, 0.92 - error) << population.name << ", " << kind.participants;

@@ -26,7 +26,7 @@ double standard_errors_off(const stats::CurveSpread& curve, double delta, double
   return std::log(point.mu / truth) / (std::log(point.pointwise[1] / point.mu) / t);
 }
 
-// Scores of this observer level off where the curve is steepest; the direct estimate follows them.
+// This observer's scores level off where the curve is steepest, which biases the direct estimate.
 TEST(ScaleEndFit, IsNotDrawnOffByTheEndsOfTheScale) {
   constexpr int pilots = 60;
   constexpr double delta = 20;

@@ -1,4 +1,4 @@
-/// The intervals that go to the solver with a and b.
+/// The intervals that the solver receives with a and b.
 
 #include "stats/ptpe/solver_interval.hpp"
 

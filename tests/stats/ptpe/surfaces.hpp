@@ -1,5 +1,6 @@
 #pragma once
-/// Populations that rate pilots in ways that no estimator assumes, and their mean's contour by brute force.
+/// Simulated populations whose ratings violate every estimator's assumptions, and their mean's contour by
+/// brute force.
 
 #include <algorithm>
 #include <array>
@@ -26,7 +27,7 @@ struct Population {
   /// Score before noise and rounding.
   std::function<double(double mu, double delta, const Person&)> latent;
   double noise = 1;
-  double lapses = 0;  ///< share of answers that are any of the seven
+  double lapses = 0;  ///< share of answers drawn uniformly from the seven
 };
 
 inline double exponential(double a, double b, double delta) { return a * std::exp(b * delta); }
@@ -52,7 +53,7 @@ inline Population logarithmic(double a, double b) {
           }};
 }
 
-/// Thresholds that are no exponential: one that levels off, one that begins to grow at 10, a straight line.
+/// Thresholds that are not exponential: one that levels off, one that begins to grow at 10, a straight line.
 inline const Threshold saturating = [](double delta) { return 24 + 14 * (1 - std::exp(-delta / 5)); };
 inline const Threshold hinged = [](double delta) { return 24 + 1.2 * std::max(0.0, delta - 10); };
 inline const Threshold linear = [](double delta) { return 24 + 0.6 * delta; };
@@ -112,7 +113,7 @@ inline std::vector<stats::PilotRating> pilot(const Population& population, int p
   return ratings;
 }
 
-/// Mean score of the population at one setting: over people of a Halton sequence, exact over their noise.
+/// Mean score of the population at one setting: a Halton sequence over people, exact over their noise.
 inline double mean_score(const Population& population, double mu, double delta) {
   constexpr int people = 512;
   const auto radical_inverse = [](int i, int base) {
@@ -122,7 +123,7 @@ inline double mean_score(const Population& population, double mu, double delta) 
   };
   double sum = 0;
   for (int i = 0; i < people; ++i) {
-    // In pairs of opposites, so that what is symmetric stays so.
+    // Pairs of opposite normals, so that symmetric populations stay symmetric.
     const double sign = i % 2 == 0 ? 1 : -1;
     Person z;
     for (std::size_t k = 0; k < z.size(); ++k)
@@ -135,7 +136,7 @@ inline double mean_score(const Population& population, double mu, double delta) 
   return sum / people;
 }
 
-/// Where the population's mean score is the level.
+/// The threshold at which the population's mean score is the level.
 inline double mean_threshold(const Population& population, double delta) {
   return stats::find_root([&](double at) { return mean_score(population, at, delta) - level; }, 2, 200);
 }

@@ -38,7 +38,7 @@ using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), col
 template <class Then>
 void with_surface_normals(FluidState& state, NormalView p, Then then) {
   const float widest = state.widest_support(EffectOption::CohesionCoarsest);
-  if (state.obstacles.there()) {
+  if (state.obstacles.exists()) {
     then(SurfaceNormals<Solids>{.walls = state.solids(), .normal = p.normal(), .widest = widest});
   } else {
     then(SurfaceNormals<Walls>{.walls = state.walls, .normal = p.normal(), .widest = widest});
