@@ -34,7 +34,7 @@ study::Protocol read_again(const study::OpenRun& run, const std::string& place) 
     const std::string reason = error.what();
     throw base::Error(place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
                       "finish it with the version of vip-study that wrote it; if this version upgraded it, "
-                      "use the copy '.bak' beside it; status, export and vip-stats can read it");
+                      "use the copy '.bak' beside it; it can still be read, by status, export and vip-stats");
   }
 }
 

@@ -164,7 +164,7 @@ void Connection::fail(int code, const std::string& message, int system_error) co
     case SQLITE_INTERRUPT:
     case SQLITE_AUTH:
     case SQLITE_TOOBIG:
-      throw error("holds something that vip-study never writes: " + message,
+      throw error("holds something that is not of vip-study: " + message,
                   "do not use it; ask whoever made it");
     case SQLITE_NOTADB:
       throw error("is not a database of vip-study", "name the file that vip-study run wrote");

@@ -24,8 +24,8 @@ struct ShareTest {
   double share = 0.5;          ///< mean of the shares
   std::array<double, 2> ci{};  ///< Student's t of the shares, within 0 to 1; Clopper-Pearson if all always
                                ///< chose alike; [0, 1] if the shares are equal otherwise
-  std::string ci_name;  ///< which interval it is, for display
-  double p = 1;         ///< exact
+  std::string ci_name;         ///< which interval it is, for display
+  double p = 1;                ///< exact
 };
 
 /// The exact permutation test that flips the sign of each person's share minus one half. It equals the exact

@@ -113,7 +113,8 @@ TEST(PowerEffects, WhatTheWorldsDoNotKnowIsRefused) {
   EXPECT_EQ(error_of(request), "");
   request.worlds = {"paper"};
   EXPECT_THAT(error_of(request),
-              AllOf(HasSubstr("--world paper: knows no effects"), HasSubstr("effect or null")));
+              AllOf(HasSubstr("--world paper: cannot simulate effects, which protocol foam varies"),
+                    HasSubstr("effect or null")));
   request.worlds = {"effect"};
   request.effect.reset();
   EXPECT_THAT(error_of(request), HasSubstr("--world effect: no effect was given"));

@@ -179,9 +179,9 @@ std::vector<std::string> view_departures(const sim::BakeHeader& found, const sim
   out.add("picture", size_words({a.width_px, a.height_px}), size_words({b.width_px, b.height_px}));
   if (std::abs(a.camera_angle_deg - b.camera_angle_deg) > same_angle_deg)
     out.add("camera angle", degrees(a.camera_angle_deg), degrees(b.camera_angle_deg));
-  const double seen = a.visual_angle_deg.value_or(0), wanted = b.visual_angle_deg.value_or(0);
-  if (std::abs(seen - wanted) > same_angle_deg)
-    out.add("angle of the eye's view", degrees(seen), degrees(wanted));
+  const double seen_deg = a.visual_angle_deg.value_or(0), wanted_deg = b.visual_angle_deg.value_or(0);
+  if (std::abs(seen_deg - wanted_deg) > same_angle_deg)
+    out.add("angle of the eye's view", degrees(seen_deg), degrees(wanted_deg));
   return out.take();
 }
 
