@@ -97,9 +97,10 @@ class Stills {
       add(p, method, taken, reference, g);
       if (g == 0) columns.push_back(taken[0].sheet);
     };
-    run(Method::FovFluid, coarsened(states, by_gaze));
-    run(Method::Ours, starts);
-    run(Method::OursTsp, starts);
+    for (const auto& traits : sim::all_methods()) {
+      if (traits.target == sim::TargetSource::Gaze) run(traits.kind, coarsened(states, by_gaze));
+      if (traits.target == sim::TargetSource::Saliency) run(traits.kind, starts);
+    }
   }
 
   sim::EyeLook look_at(const sim::Vec3d& gaze_m, const sim::GBuffer& seen) const {
@@ -264,7 +265,10 @@ ScoreBlock empty_block(const CellScene& scene, const CellSize& size, sim::Preset
 std::size_t still_runs(const CellScene& scene, const Table1Options& options, std::size_t presets) {
   const auto gazes = static_cast<std::size_t>(options.gazes);
   const auto repeats = static_cast<std::size_t>(options.repeats);
-  return checkpoint_frames(scene, options).size() * (1 + 2 * repeats + presets * gazes * 3 * repeats);
+  const auto& methods = sim::all_methods();
+  const auto adaptive = static_cast<std::size_t>(std::count_if(
+      methods.begin(), methods.end(), [](const sim::MethodTraits& traits) { return traits.adaptive(); }));
+  return checkpoint_frames(scene, options).size() * (1 + 2 * repeats + presets * gazes * adaptive * repeats);
 }
 
 StillResult run_stills(const CellScene& scene, const CellSize& size, const Table1Options& options,

@@ -1,15 +1,26 @@
 #include <array>
 #include <sstream>
+#include <utility>
 
 #include "libsim/simulation.hpp"
 
 namespace sim {
 
+namespace {
+
+struct AnyNumber {
+  template <typename T>
+  operator T() const;
+};
+/// True if SolverNumbers has at least as many members as there are indices.
+template <std::size_t... I>
+constexpr bool as_many_members(std::index_sequence<I...>) {
+  return requires { SolverNumbers{(static_cast<void>(I), AnyNumber{})...}; };
+}
+
+}  // namespace
+
 std::span<const SolverNumber> solver_numbers() {
-  // A number that is added to SolverNumbers does not compile here until it is named, and listed below.
-  [[maybe_unused]] const auto [iterations, substeps, most_substeps, frame_dt_s, relaxation, tensile,
-                               viscosity_m2_s, momentum, courant, coarse_cycles, coarse_edge] =
-      SolverNumbers{};
   static constexpr std::array<SolverNumber, 11> all{{
       {"iterations", "Projections a substep; 0 = the scene's", 0, LiveNumbers::most_iterations,
        &SolverNumbers::iterations},
@@ -30,6 +41,9 @@ std::span<const SolverNumber> solver_numbers() {
       {"coarse-cycles", "V-cycles of the coarse pressure; 0 = none", 0, 16, &SolverNumbers::coarse_cycles},
       {"coarse-edge", "Edge of the coarse pressure's cells, in h", 0.5, 8, &SolverNumbers::coarse_edge},
   }};
+  static_assert(as_many_members(std::make_index_sequence<all.size()>{}) &&
+                    !as_many_members(std::make_index_sequence<all.size() + 1>{}),
+                "each member of SolverNumbers has one row");
   return all;
 }
 

@@ -48,10 +48,15 @@ constexpr const char* showing_sql =
     "(SELECT tau_fps FROM solving v WHERE v.presentation_id = presentation.presentation_id) "
     "FROM presentation WHERE trial_id = ? AND attempt = ? AND interval = ? AND state = 'played'";
 
-constexpr const char* answers_sql =
-    "SELECT q.code, r.score, r.response_time_s FROM judgement j JOIN question q USING (question_id) "
-    "LEFT JOIN response r USING (response_id) "
-    "WHERE j.unit_id = ? AND q.kind IN ('scale', 'choice', 'number') AND q.personal = 0 ORDER BY j.place";
+std::string answers_sql() {
+  std::string scored;
+  for (const AnswerKindTraits& traits : answer_kinds())
+    if (traits.scored) scored += (scored.empty() ? "'" : ", '") + std::string(traits.word) + "'";
+  return "SELECT q.code, r.score, r.response_time_s FROM judgement j JOIN question q USING (question_id) "
+         "LEFT JOIN response r USING (response_id) "
+         "WHERE j.unit_id = ? AND q.kind IN (" +
+         scored + ") AND q.personal = 0 ORDER BY j.place";
+}
 
 constexpr const char* catches_sql =
     "SELECT q.code, r.score FROM unit u JOIN ask k ON k.block = u.block AND k.protocol_id = ?2 "
@@ -76,7 +81,7 @@ class Reader {
         session_(database, task_sessions_sql),
         trial_(database, trials_sql),
         showing_(database, showing_sql),
-        answer_(database, answers_sql),
+        answer_(database, answers_sql()),
         catch_(database, catches_sql) {}
 
   std::vector<TaskSession> sessions() {

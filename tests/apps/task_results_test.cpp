@@ -53,8 +53,8 @@ std::set<std::string> names_to_compare(const Json& json) {
   std::set<std::string> all, out;
   names_of(json, "", all);
   for (const auto& name : all) {
-    for (const std::string part :
-         {".study", ".flow", ".task1", ".task2", ".hypotheses", ".sensitivity", ".plan", ".versions"}) {
+    for (const std::string part : {".study", ".flow", ".task1", ".task2", ".hypotheses", ".sensitivity",
+                                   ".plan", ".versions", ".descriptives"}) {
       if (name.starts_with(part)) out.insert(name);
     }
   }

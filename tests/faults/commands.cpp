@@ -1,5 +1,6 @@
 #include "tests/faults/commands.hpp"
 
+#include "libstudy/store/database.hpp"
 #include "libstudy/store/export_bids.hpp"
 #include "libstudy/store/export_csv.hpp"
 #include "libstudy/store/export_psych_ds.hpp"
@@ -183,7 +184,7 @@ std::vector<Command> make_commands() {
   salvage.stations = {"made"};
   salvage.gone = {{"made", {ben}}};
   salvage.is_read = false;
-  for (int schema = 1; schema <= 6; ++schema)
+  for (int schema = 1; schema < static_cast<int>(study::read_schema_steps().size()); ++schema)
     if (fs::exists(base::resource("tests/libstudy/fixtures/study_v" + std::to_string(schema) + ".db")))
       all.push_back(upgrade_from(schema));
   return all;

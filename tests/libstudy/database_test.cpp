@@ -339,8 +339,20 @@ TEST(Database, ARefusalOfEarlierSchemasIsToldFromRulingOut) {
       << "views still read it";
 }
 
+TEST(Database, EveryKindOfAnswerMayBeStored) {
+  const auto database = make_temporary_database("made", read_schema_steps());
+  const std::string table =
+      database->text("SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = 'question'");
+  for (const AnswerKindTraits& traits : answer_kinds())
+    EXPECT_THAT(table, HasSubstr("'" + std::string(traits.word) + "'")) << "the CHECK of kind lacks it";
+}
+
 TEST(Database, EveryReleasedSchemaIsStillOpened) {
   const test::TemporaryFolder folder;
+  for (std::size_t schema = 1; schema < read_schema_steps().size(); ++schema)
+    EXPECT_TRUE(fs::exists(fs::path(VIP_TEST_DIR) / "libstudy" / "fixtures" /
+                           ("study_v" + std::to_string(schema) + ".db")))
+        << "keep a database of schema " << schema;
   for (const auto& entry : fs::directory_iterator(fs::path(VIP_TEST_DIR) / "libstudy" / "fixtures")) {
     if (entry.path().extension() != ".db") continue;
     SCOPED_TRACE(entry.path());

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
 
 #include "apps/bench/log_axis.hpp"
 
@@ -29,6 +31,8 @@ constexpr std::array<Look, 5> looks{{{sim::MethodKind::LoRes, svg::colour::orang
                                      {sim::MethodKind::FovFluid, svg::colour::purple},
                                      {sim::MethodKind::Ours, svg::colour::green},
                                      {sim::MethodKind::OursTsp, svg::colour::vermilion}}};
+static_assert(looks.size() == std::tuple_size_v<std::remove_cvref_t<decltype(sim::all_methods())>>,
+              "a method without a row is not drawn");
 
 std::string polygon(svg::Point at, const std::vector<svg::Point>& corners, const std::string& attributes) {
   std::string moves;
