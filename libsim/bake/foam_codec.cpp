@@ -22,7 +22,7 @@ std::array<bake::Axis, fields> ranges_of(const std::vector<RenderParticle>& foam
     for (std::size_t k = 0; k < fields; ++k) {
       if (!std::isfinite(values[k]) || (k == 3 && values[k] <= 0))
         throw base::Error(place, "a foam particle has no finite position or no radius above 0",
-                          "the simulation has failed; use more substeps");
+                          "the simulation has failed; raise time.min_substeps in the scene file");
       out[k].min = i == 0 ? values[k] : std::min(out[k].min, values[k]);
       out[k].max = i == 0 ? values[k] : std::max(out[k].max, values[k]);
     }

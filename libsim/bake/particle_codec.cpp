@@ -24,7 +24,7 @@ Box bounding_box(const std::vector<RenderParticle>& particles, const std::string
       const float x = coordinate(particle, axis);
       if (!std::isfinite(x)) {
         throw base::Error(place, "a particle's position is not finite",
-                          "the simulation has failed; use more substeps");
+                          "the simulation has failed; raise time.min_substeps in the scene file");
       }
       box[axis].min = first ? x : std::min(box[axis].min, x);
       box[axis].max = first ? x : std::max(box[axis].max, x);
@@ -79,7 +79,7 @@ Axis temperature_range(const std::vector<float>& temperature_k, const std::strin
     const float one = temperature_k[i];
     if (!std::isfinite(one)) {
       throw base::Error(place, "a particle's temperature is not finite",
-                        "the simulation has failed; use more substeps");
+                        "the simulation has failed; raise time.min_substeps in the scene file");
     }
     range.min = i == 0 ? one : std::min(range.min, one);
     range.max = i == 0 ? one : std::max(range.max, one);
@@ -88,7 +88,7 @@ Axis temperature_range(const std::vector<float>& temperature_k, const std::strin
   throw base::Error(place,
                     fmt::format("temperatures span {:.4g} K, which 16 bit resolve to {:.3g} K only",
                                 double(range.max) - double(range.min), bake::error_of(range)),
-                    "the simulation has failed; use more substeps");
+                    "the simulation has failed; raise time.min_substeps in the scene file");
 }
 
 }  // namespace

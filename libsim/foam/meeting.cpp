@@ -77,7 +77,7 @@ struct Meet {
     return all;
   }
 
-  /// Sides of a cell, in edges.
+  /// Side lengths of a cell as shares of the grid's edge: 1, or less where a high wall cuts the cell.
   SIM_FN Vec3 sides(int x, int y, int z) const {
     const CellBlock& block = grid.block;
     return {x == block.nx - 1 ? last.x : 1, y == block.ny - 1 ? last.y : 1, z == block.nz - 1 ? last.z : 1};

@@ -12,7 +12,7 @@ struct MeetingCells {
   static constexpr int most_cells = 1 << 20;
 
   GridFrame grid{};
-  Vec3 last{1, 1, 1};  ///< sides of the cells that the high walls cut, in edges
+  Vec3 last{1, 1, 1};  ///< side lengths of the cells that the high walls cut, as shares of the grid's edge
   float full = 1;      ///< mass of water that fills a cell, m_*
   CellMomentum sums;
   /// x: closing speed of water divided by its distance, 1/s; w: value_measured, or value_unknown without

@@ -108,12 +108,12 @@ int substeps_needed(const Scene& scene, const SimulationOptions& options) {
   if (steps <= usual) return usual;
   if (options.substeps == 0 && steps <= most_computed) return static_cast<int>(steps);
   std::ostringstream problem, mend;
-  problem << "is stable with substeps of at most " << longest.seconds << " s, " << steps << " a frame; ";
+  problem << "needs substeps of at most " << longest.seconds << " s, that is " << steps << " a frame; ";
   if (options.substeps > 0) {
-    problem << options.substeps << " are too few";
+    problem << options.substeps << " were asked for";
     mend << "take " << steps << " or more, or let the run choose";
   } else {
-    problem << "at most " << most_computed << " are computed";
+    problem << "the solver computes at most " << most_computed;
     mend << "lower " << traits_of(longest.of).key
          << ", raise frames_per_s, or use a smaller n_* (--n-star, or n_star in a protocol)";
   }

@@ -54,7 +54,7 @@ Mat4 look_at(const Vec3d& eye_m, const Vec3d& target_m) {
 Mat4 perspective(double vertical_fov_deg, double aspect, double near_m, double far_m) {
   if (!(vertical_fov_deg > 0 && vertical_fov_deg < 180 && aspect > 0 && near_m > 0 && far_m > near_m)) {
     throw base::Error("camera", "no perspective: field of view, aspect or depth range is out of range",
-                      "use 0 < field of view < 180 degrees and 0 < near < far");
+                      "use 0 < field of view < 180 degrees, aspect > 0 and 0 < near < far");
   }
   const double scale = 1 / std::tan(vertical_fov_deg * std::numbers::pi / 360);
   Mat4 m{};

@@ -10,7 +10,7 @@
 
 namespace study {
 
-/// A longer gap of the eye tracker invalidates a showing, ns.
+/// The trial is cut and shown again if the tracker's samples show no eyes for longer than this, ns.
 inline constexpr std::int64_t longest_gaze_gap_ns = 100'000'000;
 
 /// A change of the distance between the eyes.

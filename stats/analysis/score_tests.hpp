@@ -1,6 +1,6 @@
 #pragma once
-/// The tests of H1 to H3. Each tests one difference between two methods at one n_*, by a paired t test or by
-/// the mixed model.
+/// The tests of H1 to H3. Each compares two methods at one size n_* of the water, by a paired t test (an
+/// exact sign test if all differences are equal) or by the mixed model.
 
 #include <optional>
 #include <string>

@@ -180,7 +180,7 @@ TEST(Effects, TheirExplicitLimitRaisesTheSubstepsAndSaysSo) {
   options.substeps = static_cast<int>(std::ceil(scene.frame_dt_s / longest.seconds)) - 1;
   EXPECT_THAT([&] { sim::make_simulation(scene, options); },
               testing::ThrowsMessage<base::Error>(
-                  AllOf(HasSubstr("effect cohesion"), HasSubstr("are too few"),
+                  AllOf(HasSubstr("effect cohesion"), HasSubstr("were asked for"),
                         HasSubstr("take " + std::to_string(options.substeps + 1) + " or more"))));
   ++options.substeps;
   EXPECT_NO_THROW(sim::make_simulation(scene, options));

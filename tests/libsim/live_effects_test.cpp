@@ -262,7 +262,7 @@ TEST(LiveEffects, WhatIsRefusedChangesNothing) {
   const auto refused = [&](std::vector<sim::Effect> effects, const std::string& why) {
     EXPECT_THAT([&] { fluid->set_effects(effects); }, testing::ThrowsMessage<base::Error>(HasSubstr(why)));
   };
-  refused({{EffectKind::Cohesion, 10'000}}, "4 are too few");
+  refused({{EffectKind::Cohesion, 10'000}}, "4 were asked for");
   refused({{EffectKind::Adhesion, 1}}, "needs cohesion");
   refused({{EffectKind::Cohesion, -1}}, "out of range");
   refused({{EffectKind::AirDrag, 1}, {EffectKind::AirDrag, 1}}, "listed twice");

@@ -12,7 +12,7 @@ namespace apps {
 
 namespace {
 
-/// From worst to best, as H1 and H4 to H6 claim.
+/// From worst to best: as H1 and H4 to H6 claim, with LoRes, which they do not name, put first.
 constexpr std::array<const char*, 5> methods_by_rank{"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"};
 
 /// Index in methods_by_rank, or -1.

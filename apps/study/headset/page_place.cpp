@@ -9,7 +9,8 @@ namespace apps {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-// Limits beyond which a page would be hard to find.
+// A page follows once the head points farther away from it, or its distance differs more from
+// page_distance_m.
 constexpr double farthest_deg = 50, farthest_m = 0.8;
 
 const double width_m = 2 * page_distance_m * std::tan(0.5 * page_width_deg * degree);

@@ -48,7 +48,7 @@ inline FluidState state_of(const std::vector<Vec4>& points, bool one_level) {
   return state;
 }
 
-/// The velocities after one substep of an effect on the particles.
+/// The velocities after the density constraint and then only this effect's passes have run once.
 inline std::vector<Vec4> velocities_by(EffectKind kind, FluidState& state) {
   constrain_density(state, DensityView(state.particles));
   for (const Stage& stage : passes_of(kind)) stage.run(state);

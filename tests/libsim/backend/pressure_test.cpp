@@ -250,7 +250,8 @@ SIM_TEST(CoarsePressure, MirroredWaterMovesAsInAMirrorForEveryWidthOfTheTank) {
 }
 
 SIM_TEST(CoarsePressure, LeavesWaterAtRestDensityNearlyAlone) {
-  // The lattice is 1 to 2 % too dense beside a wall, and the pass corrects that; nothing else may move.
+  // Beside a wall the lattice is 1 to 2 % too dense, which the pass corrects: the mean height may change a
+  // little.
   constexpr int side = 16;
   constexpr int layers = 32;
   auto state = column_of(side, layers, 0.1f, 1);

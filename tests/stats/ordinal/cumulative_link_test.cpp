@@ -156,8 +156,8 @@ TEST(CumulativeLink, AgreesWithTheReferenceAnswers) {
   }
 }
 
-/// sum log P - u^2 / 2 of one participant with its slope and curvature, from the explicit logistic
-/// distribution and finite differences: independent of the library.
+/// sum log P - u^2 / 2 of one participant's answers (u: standard normal), its slope and minus its second
+/// derivative, by finite differences of the explicit logistic distribution: independent of the library.
 struct Person {
   std::vector<double> lower, upper;  ///< thresholds less the fixed location
 
