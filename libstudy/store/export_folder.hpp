@@ -62,9 +62,9 @@ struct ExportSource {
 /// registered in the database before it is made.
 class ExportDraft {
  public:
-  /// base::Error, with nothing made, unless the target is absent, an empty folder or an unchanged earlier
-  /// export of that kind, or if the database cannot be written (RegisteredExport). The error names the added
-  /// or changed file.
+  /// base::Error, with nothing made, if the target is anything but absent, an empty folder or an unchanged
+  /// earlier export of that kind (the error names the added or changed file), or if the database cannot be
+  /// written (RegisteredExport).
   ExportDraft(const ExportSource& source, const std::filesystem::path& target);
   ~ExportDraft();
   ExportDraft(const ExportDraft&) = delete;

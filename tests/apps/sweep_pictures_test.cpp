@@ -1,4 +1,4 @@
-/// Errors of pictures in a sweep, orders and tau.
+/// A sweep's picture errors against the reference, its orders of convergence, and tau of its frame times.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

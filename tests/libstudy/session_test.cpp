@@ -224,8 +224,8 @@ TEST(Session, NativeTimingOnAClockThatStandsStillIsAnError) {
   EXPECT_THROW(one.run(), base::Error);
 }
 
-/// A frame's row holds the facts that the fluid reports, for every kind of timing; the session adds none of
-/// its own.
+/// A frame's row holds the facts that the fluid reports; the session adds none of its own. Here under timing
+/// "table2".
 TEST(Session, FramesHoldWhatTheFluidSaysAndNothingElse) {
   class Accounting final : public Stimulus {
    public:

@@ -26,7 +26,7 @@ struct HeadsetChoice {
   std::int64_t earliest_ns = 0;
 };
 
-/// One refresh of the display, with its picture.
+/// One frame of the headset's runtime, for one picture. The content is HeadsetLayers.
 struct HeadsetSlot {
   std::int64_t index = 0;         ///< from 0
   std::int64_t predicted_ns = 0;  ///< when its picture is to be seen, on the session's clock

@@ -10,8 +10,8 @@
 
 namespace apps {
 
-/// The formats that can take a picture, best first: 8-bit sRGB, then linear formats fine enough for all 256
-/// levels, then the others. Depth formats are left out.
+/// The known formats that can take a picture, best first: 8-bit sRGB, then linear ones fine enough for all
+/// 256 levels, then coarser ones. Depth and unknown formats are left out.
 std::vector<std::int64_t> picture_formats(const std::vector<std::int64_t>& offered);
 /// True if each of the 256 levels of an sRGB picture arrives within one level.
 bool keeps_levels(std::int64_t format);

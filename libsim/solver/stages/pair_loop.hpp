@@ -45,7 +45,7 @@ struct PairLoop {
     typename Second::Self second;
   };
 
-  /// Adds particle j; see SIM_LANES.
+  /// Adds particle j; a function of its own, so that the loop vectorises (SIM_LANES).
   SIM_FN void add(int j, const Self& me, float& a0, float& a1, float& a2, float& a3, float& b0, float& b1,
                   float& b2, float& b3) const {
     const Vec4 other = position[j];
