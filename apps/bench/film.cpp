@@ -60,7 +60,7 @@ Mask beyond(Mask mask) {
   return mask;
 }
 
-/// One start of all methods, and their sums over frames.
+/// Runs all methods from one start in lockstep, and sums their metrics over frames.
 class Film {
  public:
   Film(const CellScene& scene, const CellSize& size, const Table1Options& options, const ScoreBlock& block,

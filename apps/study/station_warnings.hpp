@@ -10,8 +10,8 @@
 
 namespace apps {
 
-/// The problem of the clock: `now` is before the day `built`, before `newest` (the latest time in the
-/// database; empty: none) or more than a year after it. Empty: none.
+/// Describes what is wrong with the clock: `now` is before the day `built`, before `newest` (the latest time
+/// in the database; empty: none) or more than a year after it. Empty: none.
 std::string clock_problem(const std::string& now, const std::string& newest, const std::string& built);
 
 /// Prints clock_problem() and place_problems() on stderr and returns them; the experimenter may go on. Call

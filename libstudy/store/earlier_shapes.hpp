@@ -1,5 +1,5 @@
 #pragma once
-/// Part of salvage(): rows of an earlier schema, read from the pages of a damaged database.
+/// Reads rows of an earlier schema from the pages of a damaged database, for salvage().
 
 #include <optional>
 #include <vector>

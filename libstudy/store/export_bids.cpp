@@ -27,8 +27,6 @@ using sqlite::Statement;
 
 namespace {
 
-constexpr const char* description_file = "dataset_description.json";
-
 constexpr const char* events_sql =
     "SELECT p.start_ns, p.end_ns, u.kind, t.position, p.attempt, p.interval, p.state, c.scene, c.method, "
     "c.n_star, c.mean_fps, c.sd_fps, p.frames, p.mean_fps, p.mean_arithmetic_fps, p.sd_fps, p.longest_ms, "

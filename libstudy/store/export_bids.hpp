@@ -20,6 +20,9 @@ namespace study {
 /// the mouse. A public export: it holds only shared_sessions(). Errors and folder as export_csv().
 PublicExport export_bids(const StudyFile& study, const std::filesystem::path& folder, bool gaze = false);
 
+/// File of the self-description of a public data set, in BIDS and in Psych-DS.
+inline constexpr const char* description_file = "dataset_description.json";
+
 /// The self-description of a public data set.
 struct AboutDataSet {
   std::string name;       ///< the study's protocols: "comfort 1.0, task1 1.1"

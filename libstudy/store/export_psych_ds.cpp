@@ -23,8 +23,6 @@ using sqlite::Connection;
 
 namespace {
 
-constexpr const char* psych_ds_description_file = "dataset_description.json";
-
 constexpr std::array page_columns{
     RatingColumn{"participant", "session", "session", "participant"},
     RatingColumn{"visit", "session", "session", "visit"},
@@ -52,7 +50,7 @@ std::string pages_sql(std::int64_t session) {
 bool is_psych_ds_export(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_directory(folder / "data", ignored)) return false;
-  const fs::path description = folder / psych_ds_description_file;
+  const fs::path description = folder / description_file;
   if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 24)
     return false;
   const auto json = base::parse_json(base::read_file(description, 1u << 24));
@@ -60,7 +58,7 @@ bool is_psych_ds_export(const fs::path& folder) {
 }
 
 bool is_psych_ds_name(const std::string& name) {
-  return name == psych_ds_description_file || name == "README.md" || name.starts_with("data/study-") ||
+  return name == description_file || name == "README.md" || name.starts_with("data/study-") ||
          name.starts_with("materials/setting_");
 }
 
@@ -104,7 +102,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
                   {"creator", "vip-study"},
                   {"version", base::version()},
                   {"variableMeasured", variables(database, scored)}};
-  write_file(draft, psych_ds_description_file, json.dump(2) + "\n");
+  write_file(draft, description_file, json.dump(2) + "\n");
   write_file(
       draft, "README.md",
       "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "

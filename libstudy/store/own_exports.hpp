@@ -31,7 +31,7 @@ std::string new_export_id();
 
 /// The register's file; empty if there is no state folder.
 std::filesystem::path own_exports_file();
-/// Why exports cannot be registered here; none if they can.
+/// The reason that this computer cannot register exports; none if it can.
 std::optional<std::string> why_not_registered();
 
 /// The exports registered at a path of this computer, newest last. Unreadable lines are ignored. base::Error:

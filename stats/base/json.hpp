@@ -1,6 +1,6 @@
 #pragma once
-/// A JSON value. nlohmann's library parses and prints it, but only json.cpp includes it: its templates took
-/// half of the compile time of files that build a table of results.
+/// A JSON value. nlohmann's library parses and prints it, but only json_text.cpp includes it: its templates
+/// took half of the compile time of files that build a table of results.
 ///
 ///     base::Json fit = {{"a", 24.5}, {"b", 0.021}, {"people", 16}};
 ///     fit["scenes"] = base::Json::array({"SingleDam"});

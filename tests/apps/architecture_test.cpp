@@ -79,7 +79,7 @@ const std::vector<Rule> rules{
     {{"toml"}, {"stats/base/toml_parser.hpp"}},
     {{"stats/base/toml_parser", "stats/base/toml_state"}, {"stats/base/toml.cpp", "stats/base/toml_state"}},
     {{"gsl/"}, {"stats/"}},
-    {{"nlohmann/"}, {"stats/base/json.cpp"}},
+    {{"nlohmann/"}, {"stats/base/json_text.cpp"}},
     {{"CLI/"}, {"apps/"}},
     {{"GLFW/", "backends/imgui_impl_glfw"},
      {"apps/common/window/", "apps/view/window/", "apps/study/window/"}},

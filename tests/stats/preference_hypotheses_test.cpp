@@ -109,7 +109,7 @@ TEST(PreferenceHypotheses, OneSidedWhereThePlanSaysSo) {
   EXPECT_EQ(earlier.status, HypothesisStatus::NotSupported) << "2 x .038 after Holm";
 }
 
-// Berger 1982: a claim that needs all of its tests has an error of at most alpha without correction.
+// A claim that needs all of its tests to succeed errs with at most alpha, uncorrected (Berger 1982).
 TEST(PreferenceHypotheses, AClaimThatNeedsAllItsTestsIsNotCorrected) {
   const auto h5 = preferences(13, 19, 19, 13, 13)[1];  // p = .029 twice
   EXPECT_EQ(h5.status, HypothesisStatus::Supported) << h5.status_text;

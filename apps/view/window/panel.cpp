@@ -64,7 +64,7 @@ void draw_figures(const Figures& f) {
                    static_cast<float>(top), {0, 56});
 }
 
-/// Wrapped, so that the panel does not widen.
+/// Draws the lines, wrapped so that long ones do not widen the panel.
 void draw_price(const std::vector<std::string>& lines) {
   ImGui::PushTextWrapPos(price_width_px);
   for (const auto& line : lines) ImGui::TextWrapped("%s", line.c_str());

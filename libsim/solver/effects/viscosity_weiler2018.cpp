@@ -353,7 +353,7 @@ struct Loosen {
     return 2 * uniform_of(random_bits(static_cast<std::uint32_t>(id[i]), moment, axis)) - 1;
   }
   static constexpr float fine = 1048576;  ///< 1/m: closer positions count as one
-  /// Share of rho_0: particles of lower density belong to the surface, which is left unchanged.
+  /// As a share of rho_0. Particles of lower density are at the surface and keep their velocity.
   static constexpr float inside = 0.95f;
 };
 

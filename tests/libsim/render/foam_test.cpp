@@ -1,4 +1,4 @@
-/// Foam in pictures: a pass that only scenes with foam have, for foam before the water, on it and below it.
+/// Pictures of foam in front of the water, on it and below it. Only scenes with foam have its pass.
 
 #include <numeric>
 
