@@ -5,18 +5,18 @@
 #include <memory>
 #include <numeric>
 
-#include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
-#include "apps/bench/effects_cost.hpp"
-#include "apps/bench/effects_levels_run.hpp"
-#include "apps/bench/timed_run.hpp"
-#include "apps/common/finite_water.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
-#include "apps/common/timing.hpp"
+#include "libsim/measure/cells.hpp"
+#include "libsim/measure/effects_cost.hpp"
+#include "libsim/measure/effects_levels_run.hpp"
+#include "libsim/measure/timed_run.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
+#include "stats/base/timing.hpp"
 
 namespace apps {
 
@@ -28,7 +28,7 @@ struct EffectsOptions {
   std::string csv, markdown, svg;
   int frames = 60, warm_up = 5, substeps = 0;
   bool levels = false;
-  PictureSize size{640, 480};
+  base::PictureSize size{640, 480};
 };
 
 sim::SimulationOptions choice_of(const EffectsOptions& options) {
@@ -43,14 +43,14 @@ sim::SimulationOptions choice_of(const EffectsOptions& options) {
 
 /// A variant's fluid. All exist at once, so that their frames are timed in turn.
 struct Running {
-  EffectCost cost;
+  measure::EffectCost cost;
   std::unique_ptr<sim::Simulation> fluid;
 };
 
-Running start(const EffectVariant& variant, const sim::SimulationOptions& choice, int warm_up) {
+Running start(const measure::EffectVariant& variant, const sim::SimulationOptions& choice, int warm_up) {
   Running out{.cost = {.name = variant.name}, .fluid = nullptr};
   const auto before = sim::device_bytes_taken(choice.backend);
-  out.fluid = make_settled(variant.scene, choice);
+  out.fluid = measure::make_settled(variant.scene, choice);
   for (int frame = 0; frame < warm_up; ++frame) out.fluid->step_frame();
   out.fluid->synchronize();
   if (const auto after = sim::device_bytes_taken(choice.backend))
@@ -61,10 +61,10 @@ Running start(const EffectVariant& variant, const sim::SimulationOptions& choice
 
 void time_frame(Running& running, int frames) {
   sim::Simulation& fluid = *running.fluid;
-  const double begin = milliseconds_now();
+  const double begin = base::milliseconds_now();
   fluid.step_frame();
   fluid.synchronize();
-  const double ms = milliseconds_now() - begin;
+  const double ms = base::milliseconds_now() - begin;
   fluid.frame_time(ms);
   running.cost.ms_frame += ms / frames;
   running.cost.particles += static_cast<double>(fluid.particle_count()) / frames;
@@ -86,20 +86,21 @@ void count_launches(Running& running) {
   running.fluid->profile_launches(false);
 }
 
-std::vector<EffectCost> costs_of(const sim::Scene& scene, const EffectsOptions& options,
-                                 const sim::SimulationOptions& choice) {
-  const auto variants = variants_of(scene);
+std::vector<measure::EffectCost> costs_of(const sim::Scene& scene, const EffectsOptions& options,
+                                          const sim::SimulationOptions& choice) {
+  const auto variants = measure::variants_of(scene);
   std::vector<Running> all;
-  for (const EffectVariant& variant : variants) all.push_back(start(variant, choice, options.warm_up));
-  Progress progress("frames", static_cast<std::size_t>(options.frames));
+  for (const measure::EffectVariant& variant : variants)
+    all.push_back(start(variant, choice, options.warm_up));
+  base::Progress progress("frames", static_cast<std::size_t>(options.frames));
   for (int frame = 0; frame < options.frames; ++frame) {
     for (Running& running : all) time_frame(running, options.frames);
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
   const auto bare = all.front().fluid->read_state();
-  std::vector<EffectCost> costs;
+  std::vector<measure::EffectCost> costs;
   for (Running& running : all) {
-    check_finite(*running.fluid, scene.name + ", effects: " + running.cost.name);
+    sim::check_finite(*running.fluid, scene.name + ", effects: " + running.cost.name);
     running.cost.same_state = same(bare, running.fluid->read_state());
     count_launches(running);
     costs.push_back(running.cost);
@@ -109,12 +110,12 @@ std::vector<EffectCost> costs_of(const sim::Scene& scene, const EffectsOptions& 
 
 /// Writes the results to every requested output.
 template <class Costs>
-void tell(const EffectsOptions& options, const EffectsRun& run, const Costs& costs) {
-  const TextTable table = to_table(run, costs);
-  std::printf("%s", to_markdown(table).c_str());
-  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(table));
-  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(table));
-  if (!options.svg.empty()) base::write_file_atomically(options.svg, to_svg(run, costs));
+void tell(const EffectsOptions& options, const measure::EffectsRun& run, const Costs& costs) {
+  const figures::TextTable table = measure::to_table(run, costs);
+  std::printf("%s", figures::to_markdown(table).c_str());
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, figures::to_csv(table));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, figures::to_markdown(table));
+  if (!options.svg.empty()) base::write_file_atomically(options.svg, measure::to_svg(run, costs));
 }
 
 void run_effects(const EffectsOptions& options) {
@@ -123,15 +124,15 @@ void run_effects(const EffectsOptions& options) {
   sim::SimulationOptions choice = choice_of(options);
   // The same in every variant, so that an effect does not pay for shorter substeps.
   choice.substeps = sim::least_substeps(scene, choice);
-  const EffectsRun run{scene.name,
-                       sim::method_name(choice.method),
-                       sim::backend_name(choice.backend),
-                       options.n_star,
-                       options.frames,
-                       choice.substeps};
+  const measure::EffectsRun run{scene.name,
+                                sim::method_name(choice.method),
+                                sim::backend_name(choice.backend),
+                                options.n_star,
+                                options.frames,
+                                choice.substeps};
   if (!options.levels) return tell(options, run, costs_of(scene, options, choice));
-  const LevelRuns runs{choice, options.warm_up, options.frames, options.size};
-  tell(options, run, run_levels(level_variants_of(scene), runs));
+  const measure::LevelRuns runs{choice, options.warm_up, options.frames, options.size};
+  tell(options, run, measure::run_levels(measure::level_variants_of(scene), runs));
 }
 
 constexpr const char* columns_help =

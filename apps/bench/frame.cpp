@@ -5,22 +5,22 @@
 #include <optional>
 
 #include "apps/bench/account_json.hpp"
-#include "apps/bench/cells.hpp"
-#include "apps/bench/effect_books.hpp"
 #include "apps/bench/frame.hpp"
-#include "apps/bench/launch_table.hpp"
-#include "apps/bench/render_timer.hpp"
-#include "apps/bench/timed_run.hpp"
-#include "apps/common/finite_water.hpp"
-#include "apps/common/fluid_stimulus.hpp"
-#include "apps/common/program.hpp"
-#include "apps/common/timing.hpp"
 #include "libsim/exec/bandwidth.hpp"
+#include "libsim/measure/cells.hpp"
+#include "libsim/measure/effect_books.hpp"
+#include "libsim/measure/launch_table.hpp"
+#include "libsim/measure/render_timer.hpp"
+#include "libsim/measure/timed_run.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libsim/simulation.hpp"
+#include "libstudy/stimulus/fluid_stimulus.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
+#include "stats/base/progress.hpp"
+#include "stats/base/timing.hpp"
 
 namespace apps {
 
@@ -33,7 +33,7 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   out.backend = sim::choose_backend(options.backend);
   out.temporal.fixed_tau = sim::parse_tau(options.tau);
   if (!options.rate.empty()) out.temporal.fixed_rate = sim::parse_frame_rate(options.rate);
-  return make_settled(scene, std::move(out));
+  return measure::make_settled(scene, std::move(out));
 }
 
 /// Support radius (4 r) of the first particle over the rest spacing.
@@ -45,12 +45,12 @@ double h_over_d(const sim::Simulation& fluid) {
 
 /// Draws pictures besides the solver, or says why not.
 struct Pictures {
-  std::unique_ptr<RenderTimer> timer;
+  std::unique_ptr<measure::RenderTimer> timer;
   std::string left_out;
 };
 
 Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
-  const PictureSize size = options.size;
+  const base::PictureSize size = options.size;
   if (options.no_render) return {nullptr, "--no-render"};
   std::optional<sim::GlContext> context;
   try {
@@ -59,7 +59,7 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
     if (options.look) throw;
     return {nullptr, error.what()};
   }
-  return {std::make_unique<RenderTimer>(std::move(*context), scene, size, options.views), ""};
+  return {std::make_unique<measure::RenderTimer>(std::move(*context), scene, size, options.views), ""};
 }
 
 /// The accounts of all frames, with mean number of particles and mean fraction solved.
@@ -67,7 +67,7 @@ struct Accounts {
   base::Json all = base::Json::array();
   double solved = 0, particles = 0;
   void add(const sim::Simulation& fluid, double frame_dt_s) {
-    const auto facts = to_facts(fluid.frame() * frame_dt_s, fluid.account());
+    const auto facts = study::to_facts(fluid.frame() * frame_dt_s, fluid.account());
     all.push_back(account_json(fluid.frame(), facts));
     const double share = facts.tolerance ? facts.tolerance->active_fraction : 1;
     const auto frames = static_cast<double>(all.size());
@@ -77,7 +77,7 @@ struct Accounts {
 };
 
 /// Measures a state without counting its launches among the frames' launches.
-void measure_apart(sim::Simulation& fluid, Accuracy& accuracy, LaunchSums* launches) {
+void measure_apart(sim::Simulation& fluid, measure::Accuracy& accuracy, measure::LaunchSums* launches) {
   if (launches) {
     launches->add(fluid.launch_times());
     fluid.profile_launches(false);
@@ -91,14 +91,14 @@ struct Passes {
   base::Json launches = base::Json::array();
   base::Json bandwidth_gb_s;
 };
-Passes passes_of(sim::Simulation& fluid, const FrameOptions& options, LaunchSums& launches,
-                 const PassWater& water) {
+Passes passes_of(sim::Simulation& fluid, const FrameOptions& options, measure::LaunchSums& launches,
+                 const measure::PassWater& water) {
   if (!options.passes) return {};
   launches.add(fluid.launch_times());
   fluid.profile_launches(false);
   // Measured after the frames, so that data that the copies leave in caches do not affect them.
   const double gb_s = sim::copy_bandwidth_gb_s(sim::choose_backend(options.backend));
-  return {launches_json(launches.all(), options.frames, water, gb_s), gb_s};
+  return {measure::launches_json(launches.all(), options.frames, water, gb_s), gb_s};
 }
 
 }  // namespace
@@ -113,20 +113,21 @@ base::Json run_frames(const FrameOptions& options) {
 
   fluid->profile_launches(options.passes);
   std::vector<double> solve_ms, frame_ms;
-  Accuracy accuracy;
+  measure::Accuracy accuracy;
   Accounts accounts;
-  LaunchSums launches;
-  Progress progress("frames", static_cast<std::size_t>(options.frames));
-  const int stride = options.measure_every > 0 ? options.measure_every
-                                               : tenth_of(options.frames, sim::parse_method(options.method),
-                                                          options.fluid.readings);
-  Substeps substeps;
+  measure::LaunchSums launches;
+  base::Progress progress("frames", static_cast<std::size_t>(options.frames));
+  const int stride =
+      options.measure_every > 0
+          ? options.measure_every
+          : measure::tenth_of(options.frames, sim::parse_method(options.method), options.fluid.readings);
+  measure::Substeps substeps;
   for (int frame = 0; frame < options.frames; ++frame) {
-    const double start = milliseconds_now();
+    const double start = base::milliseconds_now();
     if (options.look) pictures.timer->look(*fluid);
     fluid->step_frame();
     fluid->synchronize();
-    solve_ms.push_back(milliseconds_now() - start);
+    solve_ms.push_back(base::milliseconds_now() - start);
     substeps.add(fluid->substeps());
     if (pictures.timer) {
       const auto times = pictures.timer->draw(*fluid);
@@ -139,7 +140,7 @@ base::Json run_frames(const FrameOptions& options) {
   }
   const Passes passes =
       passes_of(*fluid, options, launches, {accounts.particles, accounts.solved, accuracy.listed_mean});
-  check_finite(*fluid, options.scene);
+  sim::check_finite(*fluid, options.scene);
   if (!options.save_state.empty()) fluid->save_state(options.save_state);
   const auto report = fluid->report();
   const double mean =
@@ -156,9 +157,9 @@ base::Json run_frames(const FrameOptions& options) {
       {"frames", options.frames},
       {"particles", fluid->particle_count()},
       {"solve_ms_mean", mean},
-      {"solve_ms_median", quantile(solve_ms, 0.5)},
-      {"solve_ms_p95", quantile(solve_ms, 0.95)},
-      {"solve_ms_p99", quantile(solve_ms, 0.99)},
+      {"solve_ms_median", base::quantile(solve_ms, 0.5)},
+      {"solve_ms_p95", base::quantile(solve_ms, 0.95)},
+      {"solve_ms_p99", base::quantile(solve_ms, 0.99)},
       {"h_over_d", h_over_d(*fluid)},
       {"neighbours_mean", accuracy.neighbours_mean},
       {"listed_mean", accuracy.listed_mean},
@@ -183,7 +184,7 @@ base::Json run_frames(const FrameOptions& options) {
         {"neighbours_dropped", report.guards.neighbours_dropped},
         {"wall_projected", report.guards.wall_projected},
         {"nozzle_waited", report.guards.nozzle_waited}}},
-      {"effects", effect_books(scene, report)},
+      {"effects", measure::effect_books(scene, report)},
       {"divergence", divergence_json(fluid->divergence())},
       {"accounts", accounts.all},
       {"launches", passes.launches},
@@ -191,9 +192,9 @@ base::Json run_frames(const FrameOptions& options) {
       {"schedule", fluid->explain()}};
   if (pictures.timer) {
     result.update(pictures.timer->figures());
-    result["frame_ms_median"] = quantile(frame_ms, 0.5);
-    result["frame_ms_p95"] = quantile(frame_ms, 0.95);
-    result["frame_ms_p99"] = quantile(frame_ms, 0.99);
+    result["frame_ms_median"] = base::quantile(frame_ms, 0.5);
+    result["frame_ms_p95"] = base::quantile(frame_ms, 0.95);
+    result["frame_ms_p99"] = base::quantile(frame_ms, 0.99);
   } else {
     result["render_left_out"] = pictures.left_out;
   }

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "apps/common/picture_size.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/json.hpp"
+#include "stats/base/picture_size.hpp"
 
 namespace apps {
 
@@ -28,7 +28,7 @@ struct FrameOptions {
   bool passes = false;
   bool look = false;
   bool peers = false;
-  PictureSize size{1280, 720};
+  base::PictureSize size{1280, 720};
   int views = 1;
 };
 

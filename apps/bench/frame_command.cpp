@@ -8,19 +8,20 @@
 #include <type_traits>
 #include <variant>
 
-#include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
-#include "apps/bench/effect_books.hpp"
 #include "apps/bench/frame.hpp"
-#include "apps/bench/launch_table.hpp"
-#include "apps/bench/peers.hpp"
-#include "apps/bench/render_timer.hpp"
+#include "apps/bench/table_options.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/setting_file.hpp"
+#include "libsim/measure/cells.hpp"
+#include "libsim/measure/effect_books.hpp"
+#include "libsim/measure/launch_table.hpp"
+#include "libsim/measure/peers.hpp"
+#include "libsim/measure/render_timer.hpp"
 #include "libsim/scene/scene.hpp"
-#include "libstudy/session/machine.hpp"
+#include "libsim/setting/setting_file.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
+#include "stats/base/machine.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -66,7 +67,7 @@ void print_frame(const base::Json& result) {
   if (result.contains("render_left_out")) {
     std::printf("  render       left out: %s\n", result["render_left_out"].get<std::string>().c_str());
   } else {
-    print_render_figures(result);
+    measure::print_render_figures(result);
     std::printf(
         "  frame        %8.3f ms (median), %.3f p95, %.3f p99: solve, transfer and render one after "
         "another\n",
@@ -86,12 +87,13 @@ void print_frame(const base::Json& result) {
               temporal["tau_fps"].is_null() ? "unknown" : temporal["tau_fps"].dump().c_str(),
               temporal["tau_given"].get<std::string>().c_str(), temporal["beta"].get<double>(),
               100 * temporal["solved_share_mean"].get<double>());
-  std::printf("%s", in_words(result["effects"]).c_str());
+  std::printf("%s", measure::in_words(result["effects"]).c_str());
   std::printf("  guards       %s\n", result["guards"].dump().c_str());
   if (const auto& first = result["divergence"]; !first.is_null())
     std::printf("  divergence   %s\n", first["in_words"].get<std::string>().c_str());
   if (!result["bandwidth_gb_s"].is_null())
-    std::printf("%s", launch_lines(result["launches"], result["bandwidth_gb_s"].get<double>()).c_str());
+    std::printf("%s",
+                measure::launch_lines(result["launches"], result["bandwidth_gb_s"].get<double>()).c_str());
 }
 
 // The conditions under which the rows of data/peers.csv were measured.
@@ -113,7 +115,7 @@ void refuse_beside_peers(const CLI::App& command) {
 
 /// Runs the peers' setting instead of the options' own.
 base::Json run_peers(FrameOptions options) {
-  const auto peers = read_peers(base::find_input("data/peers.csv"));
+  const auto peers = measure::read_peers(base::find_input("data/peers.csv"));
   options.scene = peers_scene;
   options.method = peers_method;
   options.n_star = peers_n_star;
@@ -122,12 +124,13 @@ base::Json run_peers(FrameOptions options) {
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   base::Json result = run_frames(options);
   // The program does not know the name of a GPU.
-  const std::string machine = result["backend"] == "cpu" ? study::describe_machine() : "";
-  const OurRow ours = our_row(result, peers_dt_s, scene.solver_iterations, machine);
+  const std::string machine = result["backend"] == "cpu" ? base::describe_machine() : "";
+  const measure::OurRow ours = measure::our_row(result, peers_dt_s, scene.solver_iterations, machine);
   print_frame(result);
-  std::printf("\n%s\n%s\n", to_markdown(peers_table(peers, ours)).c_str(), peers_note(peers, ours).c_str());
+  std::printf("\n%s\n%s\n", figures::to_markdown(measure::peers_table(peers, ours)).c_str(),
+              measure::peers_note(peers, ours).c_str());
   result["machine"] = machine.empty() ? base::Json() : base::Json(machine);
-  result["peers"] = to_json(peers);
+  result["peers"] = measure::to_json(peers);
   return result;
 }
 
@@ -144,11 +147,12 @@ void refuse_beside_setting(const CLI::App& command) {
 }
 
 void take_setting(FrameOptions& options) {
-  const SettingFile file = read_setting_file(options.setting);
+  const sim::SettingFile file = sim::read_setting_file(options.setting);
   const auto scene = sim::read_scene(base::find_input(options.scene));
-  std::printf("%s\n", describe(file).c_str());
-  if (const auto note = other_scene(file, scene.sha256); !note.empty()) std::printf("%s\n", note.c_str());
-  options.fluid = to_options(file.setting, sim::Backend::Cpu, 1);
+  std::printf("%s\n", sim::describe(file).c_str());
+  if (const auto note = sim::other_scene(file, scene.sha256); !note.empty())
+    std::printf("%s\n", note.c_str());
+  options.fluid = sim::to_options(file.setting, sim::Backend::Cpu, 1);
   options.method = sim::method_name(options.fluid.method);
   options.n_star = std::to_string(options.fluid.n_star);
   if (const auto tau = options.fluid.temporal.fixed_tau) options.tau = "fixed:" + base::shortest(*tau);

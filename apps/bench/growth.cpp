@@ -7,14 +7,14 @@
 #include <numeric>
 
 #include "apps/bench/commands.hpp"
-#include "apps/bench/growth_table.hpp"
-#include "apps/bench/timed_run.hpp"
-#include "apps/common/finite_water.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
-#include "apps/common/timing.hpp"
+#include "libsim/measure/growth_table.hpp"
+#include "libsim/measure/timed_run.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
+#include "stats/base/timing.hpp"
 
 namespace apps {
 
@@ -29,28 +29,28 @@ struct GrowthOptions {
   int warm_up = 5;
 };
 
-GrowthRow run_size(const sim::Scene& scene, const CellSize& size, const GrowthOptions& options,
-                   Progress& progress, std::size_t& done) {
+measure::GrowthRow run_size(const sim::Scene& scene, const measure::CellSize& size,
+                            const GrowthOptions& options, base::Progress& progress, std::size_t& done) {
   sim::SimulationOptions choice;
   choice.method = sim::parse_method(options.method);
   choice.n_star = size.n_star;
   choice.backend = sim::choose_backend(options.backend);
   choice.temporal.fixed_tau = sim::parse_tau(options.tau);
   const auto taken_before = sim::device_bytes_taken(choice.backend);
-  const auto fluid = make_settled(scene, choice);
+  const auto fluid = measure::make_settled(scene, choice);
   for (int frame = 0; frame < options.warm_up; ++frame) fluid->step_frame();
   fluid->synchronize();
 
   std::vector<double> frame_ms, substep_ms;
-  Substeps substeps;
-  Accuracy accuracy;
-  GrowthRow out{.n_star = size.word};
-  const int stride = tenth_of(options.frames, choice.method, choice.readings);
+  measure::Substeps substeps;
+  measure::Accuracy accuracy;
+  measure::GrowthRow out{.n_star = size.word};
+  const int stride = measure::tenth_of(options.frames, choice.method, choice.readings);
   for (int frame = 0; frame < options.frames; ++frame) {
-    const double start = milliseconds_now();
+    const double start = base::milliseconds_now();
     fluid->step_frame();
     fluid->synchronize();
-    frame_ms.push_back(milliseconds_now() - start);
+    frame_ms.push_back(base::milliseconds_now() - start);
     fluid->frame_time(frame_ms.back());
     substeps.add(fluid->substeps());
     substep_ms.push_back(frame_ms.back() / fluid->substeps().taken);
@@ -58,11 +58,11 @@ GrowthRow run_size(const sim::Scene& scene, const CellSize& size, const GrowthOp
     if (frame % stride == stride - 1) accuracy.add(fluid->report());
     progress.update(++done);
   }
-  check_finite(*fluid, scene.name + ", n_* " + size.word);
+  sim::check_finite(*fluid, scene.name + ", n_* " + size.word);
   const double all_ms = std::accumulate(frame_ms.begin(), frame_ms.end(), 0.0);
   out.substeps_mean = substeps.mean(options.frames);
   out.ms_substep_mean = all_ms / substeps.taken;
-  out.ms_substep_p99 = quantile(substep_ms, 0.99);
+  out.ms_substep_p99 = base::quantile(substep_ms, 0.99);
   out.ms_frame_mean = all_ms / options.frames;
   out.density_error_mean = accuracy.error_mean;
   const auto particles = static_cast<double>(fluid->particle_count());
@@ -73,8 +73,8 @@ GrowthRow run_size(const sim::Scene& scene, const CellSize& size, const GrowthOp
 }
 
 /// Checks the sizes before the work, not after it.
-void check_sizes(const std::string& words, const std::vector<CellSize>& sizes) {
-  const auto other = [&](const CellSize& size) { return size.n_star != sizes.front().n_star; };
+void check_sizes(const std::string& words, const std::vector<measure::CellSize>& sizes) {
+  const auto other = [&](const measure::CellSize& size) { return size.n_star != sizes.front().n_star; };
   if (std::any_of(sizes.begin(), sizes.end(), other)) return;
   throw base::Error("--n-star " + words, "names one size; an exponent needs two",
                     "write two or more, such as 4k,8k,16k");
@@ -83,20 +83,20 @@ void check_sizes(const std::string& words, const std::vector<CellSize>& sizes) {
 void run_growth(const GrowthOptions& options) {
   check_apart("", {{"--csv", options.csv}, {"--svg", options.svg}});
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
-  const auto sizes = sizes_of(options.n_star);
+  const auto sizes = measure::sizes_of(options.n_star);
   check_sizes(options.n_star, sizes);
-  Progress progress("frames", sizes.size() * static_cast<std::size_t>(options.frames));
+  base::Progress progress("frames", sizes.size() * static_cast<std::size_t>(options.frames));
   std::size_t done = 0;
-  std::vector<GrowthRow> rows;
+  std::vector<measure::GrowthRow> rows;
   for (const auto& size : sizes) rows.push_back(run_size(scene, size, options, progress, done));
-  const Growth growth = growth_of(rows);
-  const GrowthRun run{scene.name, sim::method_name(sim::parse_method(options.method)),
-                      sim::backend_name(sim::choose_backend(options.backend)), options.frames};
-  const TextTable table = to_table(run, rows, growth);
-  std::printf("%s\nms a substep over particles: %s\n", to_markdown(table).c_str(),
-              in_words(growth, rows.size()).c_str());
-  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(table));
-  if (!options.svg.empty()) base::write_file_atomically(options.svg, to_svg(run, rows, growth));
+  const measure::Growth growth = measure::growth_of(rows);
+  const measure::GrowthRun run{scene.name, sim::method_name(sim::parse_method(options.method)),
+                               sim::backend_name(sim::choose_backend(options.backend)), options.frames};
+  const figures::TextTable table = measure::to_table(run, rows, growth);
+  std::printf("%s\nms a substep over particles: %s\n", figures::to_markdown(table).c_str(),
+              measure::in_words(growth, rows.size()).c_str());
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, figures::to_csv(table));
+  if (!options.svg.empty()) base::write_file_atomically(options.svg, measure::to_svg(run, rows, growth));
 }
 
 constexpr const char* columns_help =

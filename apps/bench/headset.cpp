@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "apps/bench/commands.hpp"
-#include "apps/bench/pass_table.hpp"
-#include "apps/common/fluid_stimulus.hpp"
-#include "apps/common/headset/headset_session.hpp"
-#include "apps/common/headset/system.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
-#include "apps/common/timing.hpp"
+#include "libsim/measure/pass_table.hpp"
 #include "libsim/simulation.hpp"
+#include "libstudy/headset/headset_session.hpp"
+#include "libstudy/headset/system.hpp"
+#include "libstudy/stimulus/fluid_stimulus.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
+#include "stats/base/timing.hpp"
 
 namespace apps {
 
@@ -29,7 +29,7 @@ namespace {
 constexpr std::chrono::seconds most_idle{30};
 
 struct HeadsetBenchOptions {
-  StimulusChoice fluid;
+  study::StimulusChoice fluid;
   std::string scene = "data/scenes/single_dam.toml";
   std::string json;
   int frames = 300, warm_up = 30;
@@ -39,19 +39,20 @@ struct HeadsetBenchOptions {
 /// Milliseconds of each frame; every stage ends when the device is idle.
 struct Stages {
   std::vector<double> step, draw, hand_over, whole;
-  PassTable passes = {};
+  measure::PassTable passes = {};
 };
 
 /// Steps and draws a live fluid for both eyes in every slot, one stage after another.
 class HeadsetBench {
  public:
-  explicit HeadsetBench(const HeadsetBenchOptions& options) : gl_(make_headset_context()), session_(gl_) {
-    const PictureSize size = session_.picture_size();
+  explicit HeadsetBench(const HeadsetBenchOptions& options)
+      : gl_(study::make_headset_context()), session_(gl_) {
+    const base::PictureSize size = session_.picture_size();
     picture_ = std::make_unique<sim::Offscreen>(size.width, size.height);
-    StimulusChoice choice = options.fluid;
+    study::StimulusChoice choice = options.fluid;
     choice.scene = base::find_input(options.scene);
     choice.render.time_passes = options.passes;
-    fluid_ = make_live_fluid(choice);
+    fluid_ = study::make_live_fluid(choice);
     fluid_->start(0);
     const auto since = std::chrono::steady_clock::now();
     while (!session_.running()) {
@@ -71,7 +72,7 @@ class HeadsetBench {
   }
 
   base::Json facts() const {
-    const HeadsetRate rate = session_.rate();
+    const study::HeadsetRate rate = session_.rate();
     return {{"headset", session_.description()}, {"refresh_hz", rate.measured_hz},
             {"fluid", fluid_->description()},    {"particles", fluid_->simulation().particle_count()},
             {"drawn_by", sim::gl_description()}, {"dropped_slots", session_.meter().dropped()}};
@@ -79,22 +80,22 @@ class HeadsetBench {
 
  private:
   void one_frame(Stages* stages) {
-    const HeadsetSlot slot = session_.wait();
+    const study::HeadsetSlot slot = session_.wait();
     session_.begin(slot);
-    const double begun = milliseconds_now();
+    const double begun = base::milliseconds_now();
     fluid_->prepare(++step_);
     fluid_->simulation().synchronize();
-    const double stepped = milliseconds_now();
-    const EyeViews views = session_.views(slot);
-    const std::array<study::EyeView, 2> eyes{study_view(views[0], 0),
-                                             study_view(views[1], views[0].width_px)};
-    if (can_be_shown(views))
+    const double stepped = base::milliseconds_now();
+    const study::EyeViews views = session_.views(slot);
+    const std::array<study::EyeView, 2> eyes{study::study_view(views[0], 0),
+                                             study::study_view(views[1], views[0].width_px)};
+    if (study::can_be_shown(views))
       fluid_->draw({picture_->framebuffer(), picture_->width(), picture_->height(), eyes});
     glFinish();
-    const double drawn = milliseconds_now();
+    const double drawn = base::milliseconds_now();
     session_.end(slot, {.picture = picture_.get(), .views = views});
     glFinish();
-    const double over = milliseconds_now();
+    const double over = base::milliseconds_now();
     if (!stages) return;
     stages->step.push_back(stepped - begun);
     stages->draw.push_back(drawn - stepped);
@@ -104,15 +105,15 @@ class HeadsetBench {
   }
 
   sim::GlContext gl_;
-  HeadsetSession session_;
+  study::HeadsetSession session_;
   std::unique_ptr<sim::Offscreen> picture_;
-  std::unique_ptr<LiveFluid> fluid_;
+  std::unique_ptr<study::LiveFluid> fluid_;
   std::int64_t step_ = 0;
 };
 
 base::Json figures_of(const std::vector<double>& ms) {
   const double mean = std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size());
-  return {{"mean_ms", mean}, {"p95_ms", quantile(ms, 0.95)}, {"p99_ms", quantile(ms, 0.99)}};
+  return {{"mean_ms", mean}, {"p95_ms", base::quantile(ms, 0.95)}, {"p99_ms", base::quantile(ms, 0.99)}};
 }
 
 void print_stage(const char* name, const base::Json& figures) {
@@ -140,7 +141,7 @@ void run_headset(const HeadsetBenchOptions& options) {
     print_stage(stage, result["stages"][stage]);
   if (options.passes) {
     fmt::print("  passes of both eyes, medians\n");
-    print_passes(result["passes"]);
+    measure::print_passes(result["passes"]);
   }
   if (!result["refresh_hz"].is_null())
     fmt::print("  period     {:8.3f} at {:.2f} Hz\n", 1e3 / result["refresh_hz"].get<double>(),

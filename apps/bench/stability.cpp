@@ -8,13 +8,13 @@
 #include <sstream>
 
 #include "apps/bench/commands.hpp"
-#include "apps/bench/stability_map.hpp"
-#include "apps/bench/timed_run.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
 #include "libsim/cases/hard_case.hpp"
+#include "libsim/measure/stability_map.hpp"
+#include "libsim/measure/timed_run.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
 
 namespace apps {
 
@@ -36,9 +36,9 @@ struct StabilityOptions {
 struct Job {
   const HardCase* hard_case;
   Setting setting;
-  std::vector<MapCell> cells = {};
+  std::vector<measure::MapCell> cells = {};
 };
-constexpr std::size_t steps_of_a_job = 1 + std::size(all_knobs);
+constexpr std::size_t steps_of_a_job = 1 + std::size(measure::all_knobs);
 
 std::vector<std::string> words_of(const std::string& words) {
   std::vector<std::string> out;
@@ -95,10 +95,10 @@ std::string failure(const HardCase& hard_case, const Setting& setting) {
   }
 }
 
-void turn(const Job& job, const StabilityOptions& options, MapCell& cell) {
+void turn(const Job& job, const StabilityOptions& options, measure::MapCell& cell) {
   const HardCase& one = *job.hard_case;
-  if (cell.knob == Knob::Iterations) {
-    const auto limit = fewest(
+  if (cell.knob == measure::Knob::Iterations) {
+    const auto limit = measure::fewest(
         [&](int count) {
           Setting setting = job.setting;
           setting.iterations = count;
@@ -110,10 +110,10 @@ void turn(const Job& job, const StabilityOptions& options, MapCell& cell) {
     cell.failed = limit.failed;
     return;
   }
-  const auto limit = largest_factor(
+  const auto limit = measure::largest_factor(
       [&](double factor) {
         Setting setting = job.setting;
-        (cell.knob == Knob::FrameStep ? setting.frame_dt_s : setting.scale) = factor * cell.usual;
+        (cell.knob == measure::Knob::FrameStep ? setting.frame_dt_s : setting.scale) = factor * cell.usual;
         return failure(one, setting);
       },
       options.most, options.resolution);
@@ -128,18 +128,20 @@ void measure(Job& job, const StabilityOptions& options, const std::function<void
   // A failure of the back end throws here as an error.
   const std::string at_its_own = failure(run(one, job.setting));
   step();
-  for (const Knob knob : all_knobs) {
-    MapCell cell{.case_id = one.id,
-                 .title = one.title,
-                 .method = sim::method_name(job.setting.method),
-                 .knob = knob,
-                 .of = knob == Knob::FrameStep    ? "s"
-                       : knob == Knob::Iterations ? "projections a substep"
-                                                  : std::string("times ") + one.scaled,
-                 .failed = at_its_own};
-    cell.usual = knob == Knob::FrameStep ? one.frame_dt_s : knob == Knob::Iterations ? one.iterations : 1;
+  for (const measure::Knob knob : measure::all_knobs) {
+    measure::MapCell cell{.case_id = one.id,
+                          .title = one.title,
+                          .method = sim::method_name(job.setting.method),
+                          .knob = knob,
+                          .of = knob == measure::Knob::FrameStep    ? "s"
+                                : knob == measure::Knob::Iterations ? "projections a substep"
+                                                                    : std::string("times ") + one.scaled,
+                          .failed = at_its_own};
+    cell.usual = knob == measure::Knob::FrameStep    ? one.frame_dt_s
+                 : knob == measure::Knob::Iterations ? one.iterations
+                                                     : 1;
     cell.limit = cell.usual;
-    cell.reach = Reach::UsualFails;
+    cell.reach = measure::Reach::UsualFails;
     if (at_its_own.empty()) turn(job, options, cell);
     job.cells.push_back(cell);
     step();
@@ -148,7 +150,7 @@ void measure(Job& job, const StabilityOptions& options, const std::function<void
 
 /// On the CPU, cases run in parallel, one thread each: results do not depend on the number of threads.
 void measure_all(std::vector<Job>& jobs, const StabilityOptions& options, sim::Backend backend) {
-  Progress progress("cases", jobs.size() * steps_of_a_job);
+  base::Progress progress("cases", jobs.size() * steps_of_a_job);
   std::size_t done = 0;
   std::exception_ptr broken;
   const auto count = static_cast<std::ptrdiff_t>(jobs.size());
@@ -181,19 +183,19 @@ std::vector<std::string> in_words(const std::vector<sim::Effect>& effects) {
   std::vector<std::string> out;
   for (const auto& effect : effects) {
     const auto& traits = sim::traits_of(effect.kind);
-    out.push_back(std::string(traits.word) + " " + traits.key + " = " + shortest(effect.coefficient) +
-                  sim::options_in_words(effect));
+    out.push_back(std::string(traits.word) + " " + traits.key + " = " +
+                  figures::shortest(effect.coefficient) + sim::options_in_words(effect));
   }
   return out;
 }
 
-StabilityMap map_of(const StabilityOptions& options) {
+measure::StabilityMap map_of(const StabilityOptions& options) {
   const auto backend = sim::choose_backend(options.backend);
   const auto effects = effects_of(options.effects);
-  StabilityMap out;
+  measure::StabilityMap out;
   out.most = options.most;
   out.resolution = options.resolution;
-  out.circumstances = processor() + "; back end " + sim::backend_name(backend) + "; " +
+  out.circumstances = measure::processor() + "; back end " + sim::backend_name(backend) + "; " +
                       (options.full ? "full size" : "small size") + "; seed 1 of temporal acceleration";
   out.effects = in_words(effects);
   const auto methods = methods_of(options.methods);
@@ -218,15 +220,16 @@ StabilityMap map_of(const StabilityOptions& options) {
 void run_stability(StabilityOptions options) {
   if (options.quick) options.most = options.resolution = 2;
   if (options.resolution > options.most) {
-    throw base::Error("--resolution " + shortest(options.resolution), "is coarser than all that is tried",
-                      "use at most --most, which is " + shortest(options.most));
+    throw base::Error("--resolution " + figures::shortest(options.resolution),
+                      "is coarser than all that is tried",
+                      "use at most --most, which is " + figures::shortest(options.most));
   }
   check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});
-  const StabilityMap map = map_of(options);
-  std::printf("%s", to_markdown(map).c_str());
-  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(to_table(map)));
-  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(map));
-  if (!options.svg.empty()) base::write_file_atomically(options.svg, to_svg(map));
+  const measure::StabilityMap map = map_of(options);
+  std::printf("%s", measure::to_markdown(map).c_str());
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, figures::to_csv(measure::to_table(map)));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, measure::to_markdown(map));
+  if (!options.svg.empty()) base::write_file_atomically(options.svg, measure::to_svg(map));
 }
 
 }  // namespace

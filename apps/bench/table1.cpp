@@ -7,23 +7,24 @@
 #include <filesystem>
 #include <optional>
 
-#include "apps/bench/cell_scores.hpp"
-#include "apps/bench/checkpoint_source.hpp"
 #include "apps/bench/commands.hpp"
-#include "apps/bench/film.hpp"
-#include "apps/bench/stills.hpp"
+#include "apps/bench/table_options.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
+#include "libsim/measure/cell_scores.hpp"
+#include "libsim/measure/checkpoint_source.hpp"
+#include "libsim/measure/film.hpp"
+#include "libsim/measure/stills.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
 
 namespace apps {
 
 namespace {
 
 /// Options as typed.
-struct Table1Words : Table1Options {
+struct Table1Words : measure::Table1Options {
   std::string checkpoints_word = "all";
 };
 
@@ -37,7 +38,7 @@ int checkpoints_of(const std::string& word) {
   return count;
 }
 
-std::string started(const std::vector<StartQuality>& starts, const std::string& what) {
+std::string started(const std::vector<measure::StartQuality>& starts, const std::string& what) {
   std::string out = "starts of " + what + " (most projections, largest compression, mean n / (8 n_*)):";
   for (const auto& start : starts) {
     out += fmt::format(" {} {}, {:.2f} %, {:.3f};", sim::method_name(start.method), start.worst.projections,
@@ -48,15 +49,17 @@ std::string started(const std::vector<StartQuality>& starts, const std::string& 
 }
 
 struct Table1 {
-  std::vector<ScoreBlock> blocks;
+  std::vector<measure::ScoreBlock> blocks;
   std::string notes;
-  std::string then_path;                ///< file of an earlier run; empty = none
-  std::optional<CellScores> then = {};  ///< scores of its pictures
+  std::string then_path;                         ///< file of an earlier run; empty = none
+  std::optional<measure::CellScores> then = {};  ///< scores of its pictures
 
   std::string text() const {
-    const std::string change =
-        then ? "now - " + then_path + ":\n\n" + to_markdown(change_rows(blocks, *then)) + "\n" : "";
-    return to_markdown(score_table(blocks)) + "\n" + to_markdown(paired_rows(blocks)) + "\n" + change + notes;
+    const std::string change = then ? "now - " + then_path + ":\n\n" +
+                                          figures::to_markdown(measure::change_rows(blocks, *then)) + "\n"
+                                    : "";
+    return figures::to_markdown(measure::score_table(blocks)) + "\n" +
+           figures::to_markdown(measure::paired_rows(blocks)) + "\n" + change + notes;
   }
 };
 
@@ -65,21 +68,23 @@ std::filesystem::path beside(const std::filesystem::path& csv, const std::string
   return csv.parent_path() / (csv.stem().string() + "_" + word + csv.extension().string());
 }
 
-void write_outputs(const Table1Options& options, const Table1& table) {
+void write_outputs(const measure::Table1Options& options, const Table1& table) {
   if (!options.csv.empty()) {
-    base::write_file_atomically(options.csv, to_csv(score_rows(table.blocks)));
-    base::write_file_atomically(beside(options.csv, "paired"), to_csv(paired_rows(table.blocks)));
+    base::write_file_atomically(options.csv, figures::to_csv(measure::score_rows(table.blocks)));
+    base::write_file_atomically(beside(options.csv, "paired"),
+                                figures::to_csv(measure::paired_rows(table.blocks)));
     if (table.then) {
-      const TextTable change = change_rows(table.blocks, *table.then);
-      base::write_file_atomically(beside(options.csv, "change"), to_csv(change));
+      const figures::TextTable change = measure::change_rows(table.blocks, *table.then);
+      base::write_file_atomically(beside(options.csv, "change"), figures::to_csv(change));
     }
   }
-  if (!options.cells.empty()) base::write_file_atomically(options.cells, to_csv(cell_rows(table.blocks)));
+  if (!options.cells.empty())
+    base::write_file_atomically(options.cells, figures::to_csv(measure::cell_rows(table.blocks)));
   if (!options.markdown.empty()) base::write_file_atomically(options.markdown, table.text());
   if (options.svg_folder.empty()) return;
-  make_folder(options.svg_folder);
-  for (const auto& metric : all_metrics()) {
-    const std::string chart = score_chart(table.blocks, metric);
+  base::make_folder(options.svg_folder);
+  for (const auto& metric : measure::all_metrics()) {
+    const std::string chart = measure::score_chart(table.blocks, metric);
     const auto path =
         std::filesystem::path(options.svg_folder) / ("table1_" + std::string(metric.name) + ".svg");
     if (!chart.empty()) base::write_file_atomically(path, chart);
@@ -88,25 +93,28 @@ void write_outputs(const Table1Options& options, const Table1& table) {
 
 /// The scenes and sizes, checked against the options before the first run.
 struct Plan {
-  std::vector<CellScene> scenes;
-  std::vector<CellSize> sizes;
+  std::vector<sim::CellScene> scenes;
+  std::vector<measure::CellSize> sizes;
   std::vector<sim::Preset> presets;
-  std::vector<ScoreBlock> blocks;  ///< without values
+  std::vector<measure::ScoreBlock> blocks;  ///< without values
   std::size_t runs = 0;
 };
 
-Plan plan_of(const Table1Options& options) {
-  Plan out{scenes_of(options.scene), sizes_of(options.n_star), presets_of(options.preset), {}};
+Plan plan_of(const measure::Table1Options& options) {
+  Plan out{sim::scenes_of(options.scene),
+           measure::sizes_of(options.n_star),
+           measure::presets_of(options.preset),
+           {}};
   for (const auto& scene : out.scenes) {
-    gaze_points(scene.scene, 0, options.gazes);
+    measure::gaze_points(scene.scene, 0, options.gazes);
     for (const auto& size : out.sizes) {
-      run_options(options, scene, size, out.presets.front(), sim::MethodKind::OursTsp);
-      const auto starts = stored_digests(scene, size, options);
+      measure::run_options(options, scene, size, out.presets.front(), sim::MethodKind::OursTsp);
+      const auto starts = measure::stored_digests(scene, size, options);
       for (const auto preset : out.presets) {
-        out.blocks.push_back(empty_block(scene, size, preset, options));
+        out.blocks.push_back(measure::empty_block(scene, size, preset, options));
         out.blocks.back().starts = starts;
       }
-      out.runs += still_runs(scene, options, out.presets.size());
+      out.runs += measure::still_runs(scene, options, out.presets.size());
     }
   }
   return out;
@@ -114,7 +122,7 @@ Plan plan_of(const Table1Options& options) {
 
 /// Writes the files after each scene and size, and before its film, so that an interrupted run leaves its
 /// results.
-void run_table1(const Table1Options& options) {
+void run_table1(const measure::Table1Options& options) {
   check_apart("", {{"--csv", options.csv},
                    {"--markdown", options.markdown},
                    {"--cells", options.cells},
@@ -122,26 +130,26 @@ void run_table1(const Table1Options& options) {
   const Plan plan = plan_of(options);
   Table1 table{.blocks = {}, .notes = {}, .then_path = options.paired_with};
   if (!options.paired_with.empty()) {
-    table.then = read_cells(options.paired_with);
-    check_paired(plan.blocks, *table.then, options.paired_with);
+    table.then = measure::read_cells(options.paired_with);
+    measure::check_paired(plan.blocks, *table.then, options.paired_with);
   }
   auto context = sim::GlContext::make_headless();
-  if (!options.pictures.empty()) make_folder(options.pictures);
-  if (!options.checkpoints_to.empty()) make_folder(options.checkpoints_to);
-  SheetWriter sheets;
-  Progress progress("still runs", plan.runs);
+  if (!options.pictures.empty()) base::make_folder(options.pictures);
+  if (!options.checkpoints_to.empty()) base::make_folder(options.checkpoints_to);
+  measure::SheetWriter sheets;
+  base::Progress progress("still runs", plan.runs);
   std::size_t runs = 0;
   const auto done = [&] { progress.update(++runs); };
   for (const auto& scene : plan.scenes) {
     for (const auto& size : plan.sizes) {
-      auto stills = run_stills(scene, size, options, plan.presets, done, sheets);
+      auto stills = measure::run_stills(scene, size, options, plan.presets, done, sheets);
       table.notes += started(stills.starts, scene.name + " " + size.word);
       const std::size_t first = table.blocks.size();
       table.blocks.insert(table.blocks.end(), stills.blocks.begin(), stills.blocks.end());
       write_outputs(options, table);
       if (options.cumul_frames == 0) continue;
       for (std::size_t b = first; b < table.blocks.size(); ++b)
-        run_film(scene, size, options, table.blocks[b]);
+        measure::run_film(scene, size, options, table.blocks[b]);
       write_outputs(options, table);
     }
   }

@@ -8,20 +8,21 @@
 #include <numeric>
 #include <sstream>
 
-#include "apps/bench/bar_chart.hpp"
-#include "apps/bench/cells.hpp"
 #include "apps/bench/commands.hpp"
-#include "apps/common/finite_water.hpp"
-#include "apps/common/fluid_picture.hpp"
+#include "apps/bench/table_options.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
-#include "apps/common/timing.hpp"
+#include "libsim/measure/cells.hpp"
+#include "libsim/render/fluid_picture.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
+#include "stats/base/timing.hpp"
+#include "stats/figures/bar_chart.hpp"
 #include "stats/fps_window.hpp"
 #include "stats/ptpe/ptpe.hpp"
 
@@ -32,7 +33,7 @@ namespace {
 constexpr int width_px = 1280;
 constexpr int height_px = 720;
 
-struct Table2Options : TableOptions {
+struct Table2Options : measure::TableOptions {
   int frames = 300;
   int warm_up = 60;
   std::string methods = "all";  ///< or names separated by commas
@@ -69,34 +70,34 @@ class Stage {
 
   sim::Simulation& fluid() { return *fluid_; }
   void look(int frame) {
-    picture_.look(*fluid_, view_, gaze_at(scene_.view, sim::gaze_point(scene_, frame)));
+    picture_.look(*fluid_, view_, sim::gaze_at(scene_.view, sim::gaze_point(scene_, frame)));
   }
   void draw() { picture_.draw(*fluid_, view_, target_.framebuffer()); }
 
  private:
   const sim::Scene& scene_;
   std::unique_ptr<sim::Simulation> fluid_;
-  FluidPicture picture_;
+  sim::FluidPicture picture_;
   sim::Offscreen target_{width_px, height_px};
   sim::View view_ = sim::make_view(scene_.view, width_px, height_px);
 };
 
 /// Measures wall times. Within a step, only the method itself waits for the device.
-CellRun time_frames(const CellScene& scene, const sim::SimulationOptions& choice,
+CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& choice,
                     const Table2Options& options) {
   Stage stage(scene.scene, choice);
   sim::Simulation& fluid = stage.fluid();
   CellRun run;
   for (int frame = 1; frame <= options.frames; ++frame) {
-    const double start = milliseconds_now();
+    const double start = base::milliseconds_now();
     stage.look(frame);
-    const double looked = milliseconds_now();
+    const double looked = base::milliseconds_now();
     fluid.step_frame();
     fluid.synchronize();
-    const double stepped = milliseconds_now();
+    const double stepped = base::milliseconds_now();
     stage.draw();
     glFinish();
-    const double drawn = milliseconds_now();
+    const double drawn = base::milliseconds_now();
     run.followed_ms.push_back(drawn - looked);
     fluid.frame_time(run.followed_ms.back());
     if (frame <= options.warm_up) continue;
@@ -106,14 +107,14 @@ CellRun time_frames(const CellScene& scene, const sim::SimulationOptions& choice
     run.frame_ms.push_back(drawn - looked);
     run.seen_ms += (looked - start) / (options.frames - options.warm_up);
   }
-  check_finite(fluid, scene.name);
+  sim::check_finite(fluid, scene.name);
   run.seen_way = fluid.report().seen.way;
   return run;
 }
 
 /// Runs the same frames again, with a clock that waits between parts. A measured tau follows the frame times
 /// of the first run, so that the clock does not change what is solved.
-void time_parts(const CellScene& scene, sim::SimulationOptions choice, const Table2Options& options,
+void time_parts(const sim::CellScene& scene, sim::SimulationOptions choice, const Table2Options& options,
                 CellRun& run) {
   choice.time_parts = true;
   Stage stage(scene.scene, choice);
@@ -134,8 +135,8 @@ void time_parts(const CellScene& scene, sim::SimulationOptions choice, const Tab
   }
 }
 
-std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, sim::MethodKind method,
-                                sim::Preset preset, const std::string& tau_word,
+std::vector<std::string> row_of(const sim::CellScene& scene, const measure::CellSize& size,
+                                sim::MethodKind method, sim::Preset preset, const std::string& tau_word,
                                 const stats::PtpeModel& model, const CellRun& run, double hires_ms) {
   const Moments particles = moments_of(run.particles);
   const double step_ms = moments_of(run.step_ms).mean;
@@ -148,22 +149,22 @@ std::vector<std::string> row_of(const CellScene& scene, const CellSize& size, si
           sim::method_name(method),
           sim::preset_name(preset),
           tau_word,
-          number(particles.mean, 0),
-          number(particles.sd, 0),
-          number(particles.mean / finest, 3),
-          number(quantile(run.frame_ms, 0.5), 3),
-          number(step_ms, 3),
-          number(quantile(run.step_ms, 0.99), 3),
-          number(moments_of(run.saliency_ms).mean, 3),
-          number(moments_of(run.levels_ms).mean, 3),
-          number(moments_of(run.activation_ms).mean, 3),
-          number(moments_of(run.solve_ms).mean, 3),
-          number(quantile(run.render_ms, 0.5), 3),
-          number(run.seen_ms, 3),
-          picture_way_name(run.seen_way),
-          number(fps.sd, 2),
-          number(stats::ptpe_tolerance(model, fps), 2),
-          number(hires_ms / step_ms, 3)};
+          figures::number(particles.mean, 0),
+          figures::number(particles.sd, 0),
+          figures::number(particles.mean / finest, 3),
+          figures::number(base::quantile(run.frame_ms, 0.5), 3),
+          figures::number(step_ms, 3),
+          figures::number(base::quantile(run.step_ms, 0.99), 3),
+          figures::number(moments_of(run.saliency_ms).mean, 3),
+          figures::number(moments_of(run.levels_ms).mean, 3),
+          figures::number(moments_of(run.activation_ms).mean, 3),
+          figures::number(moments_of(run.solve_ms).mean, 3),
+          figures::number(base::quantile(run.render_ms, 0.5), 3),
+          figures::number(run.seen_ms, 3),
+          sim::picture_way_name(run.seen_way),
+          figures::number(fps.sd, 2),
+          figures::number(stats::ptpe_tolerance(model, fps), 2),
+          figures::number(hires_ms / step_ms, 3)};
 }
 
 /// HiRes always runs, because the others are compared with it.
@@ -205,8 +206,9 @@ std::vector<RowPlan> rows_of(const Table2Options& options) {
   return out;
 }
 
-void add_rows(const CellScene& scene, const CellSize& size, sim::Preset preset, const Table2Options& options,
-              TextTable& table, Progress& progress, std::size_t& done) {
+void add_rows(const sim::CellScene& scene, const measure::CellSize& size, sim::Preset preset,
+              const Table2Options& options, figures::TextTable& table, base::Progress& progress,
+              std::size_t& done) {
   std::vector<std::pair<RowPlan, CellRun>> runs;
   double hires_ms = 0;
   for (const auto& row : rows_of(options)) {
@@ -217,7 +219,7 @@ void add_rows(const CellScene& scene, const CellSize& size, sim::Preset preset, 
     choice.readings = sim::readings_of(preset);
     choice.cache = sim::default_cache_folder();
     choice.temporal.model = options.model;
-    choice.temporal.fixed_tau = tau_of(row.tau, scene.name, size.word, row.method);
+    choice.temporal.fixed_tau = measure::tau_of(row.tau, scene.name, size.word, row.method);
     auto run = time_frames(scene, choice, options);
     time_parts(scene, choice, options, run);
     if (row.method == sim::MethodKind::HiRes) hires_ms = moments_of(run.step_ms).mean;
@@ -229,12 +231,12 @@ void add_rows(const CellScene& scene, const CellSize& size, sim::Preset preset, 
   }
 }
 
-void write_outputs(const Table2Options& options, const TextTable& table) {
-  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(table));
-  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(table));
+void write_outputs(const Table2Options& options, const figures::TextTable& table) {
+  if (!options.csv.empty()) base::write_file_atomically(options.csv, figures::to_csv(table));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, figures::to_markdown(table));
   if (options.svg_folder.empty()) return;
-  make_folder(options.svg_folder);
-  BarChart chart;
+  base::make_folder(options.svg_folder);
+  figures::BarChart chart;
   chart.title = "Speed-up over HiRes: wall time of a step, with the hand-over of the picture";
   chart.unit = "x";
   for (const auto& row : table.rows) {
@@ -242,25 +244,25 @@ void write_outputs(const Table2Options& options, const TextTable& table) {
     chart.bars.push_back({row[0] + " " + row[1] + " " + row[3], row[2] + live, std::stod(row.back())});
   }
   base::write_file_atomically(std::filesystem::path(options.svg_folder) / "table2_speedup.svg",
-                              to_svg(chart));
+                              figures::to_svg(chart));
 }
 
 void run_table2(const Table2Options& options) {
-  const auto scenes = scenes_of(options.scene);
-  const auto sizes = sizes_of(options.n_star);
-  const auto presets = presets_of(options.preset);
-  tau_of(options.tau, scenes.front().name, sizes.front().word, sim::MethodKind::OursTsp);
+  const auto scenes = sim::scenes_of(options.scene);
+  const auto sizes = measure::sizes_of(options.n_star);
+  const auto presets = measure::presets_of(options.preset);
+  measure::tau_of(options.tau, scenes.front().name, sizes.front().word, sim::MethodKind::OursTsp);
   auto context = sim::GlContext::make_headless();
-  TextTable table{head, {}};
+  figures::TextTable table{head, {}};
   const std::size_t cells = scenes.size() * sizes.size() * presets.size() * rows_of(options).size();
-  Progress progress("cells", cells);
+  base::Progress progress("cells", cells);
   std::size_t done = 0;
   for (const auto& scene : scenes) {
     for (const auto& size : sizes) {
       for (const auto preset : presets) add_rows(scene, size, preset, options, table, progress, done);
     }
   }
-  std::printf("%s", to_markdown(table).c_str());
+  std::printf("%s", figures::to_markdown(table).c_str());
   write_outputs(options, table);
 }
 

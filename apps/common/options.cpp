@@ -89,13 +89,13 @@ CLI::Option* add_backend(CLI::App& command, std::string& backend, const char* wh
       ->capture_default_str();
 }
 
-CLI::Option* add_size(CLI::App& command, PictureSize& size, const char* what) {
-  const auto take = [&size](const std::string& text) { size = parse_picture_size(text); };
-  return command.add_option_function<std::string>("--size", take, what)->default_str(size_words(size));
+CLI::Option* add_size(CLI::App& command, base::PictureSize& size, const char* what) {
+  const auto take = [&size](const std::string& text) { size = base::parse_picture_size(text); };
+  return command.add_option_function<std::string>("--size", take, what)->default_str(base::size_words(size));
 }
 
-CLI::Option* add_size(CLI::App& command, std::optional<PictureSize>& size, const char* what) {
-  const auto take = [&size](const std::string& text) { size = parse_picture_size(text); };
+CLI::Option* add_size(CLI::App& command, std::optional<base::PictureSize>& size, const char* what) {
+  const auto take = [&size](const std::string& text) { size = base::parse_picture_size(text); };
   return command.add_option_function<std::string>("--size", take, what);
 }
 

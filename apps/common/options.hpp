@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/common/picture_size.hpp"
+#include "stats/base/picture_size.hpp"
 
 namespace apps {
 
@@ -35,8 +35,8 @@ CLI::Option* add_backend(CLI::App& command, std::string& backend);
 CLI::Option* add_backend(CLI::App& command, std::string& backend, const char* what);
 
 /// --size WIDTHxHEIGHT (parse_picture_size) with its default, or empty by default.
-CLI::Option* add_size(CLI::App& command, PictureSize& size, const char* what);
-CLI::Option* add_size(CLI::App& command, std::optional<PictureSize>& size, const char* what);
+CLI::Option* add_size(CLI::App& command, base::PictureSize& size, const char* what);
+CLI::Option* add_size(CLI::App& command, std::optional<base::PictureSize>& size, const char* what);
 
 /// --screen-width-mm and --viewing-distance-mm.
 std::array<CLI::Option*, 2> add_viewing(CLI::App& command, std::optional<double>& screen_width_mm,

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -11,18 +10,14 @@
 #include <filesystem>
 
 #include "apps/common/options.hpp"
-#include "apps/common/streams.hpp"
-#include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/streams.hpp"
 #include "stats/base/utc.hpp"
 
 namespace apps {
 
 namespace {
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// OpenMP threads that spin while they wait starve the other threads of a small machine, including the
 /// pacing. The runtime reads its settings once, before main(), so the program restarts with them set.
@@ -34,19 +29,6 @@ void wait_passively(char** argv) {
   if (program.empty() || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
   execv(program.c_str(), argv);  // returns only when it failed; the program then runs as it is
 }
-
-}  // namespace
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw base::Error(folder.string(), "cannot be made a folder: " + error.message(),
-                      "choose another folder");
-  }
-}
-
-namespace {
 
 /// Text of --version: the version and the build options.
 std::string version_text(const std::string& program) {
@@ -94,13 +76,13 @@ std::shared_ptr<CLI::App> new_program(const char* description, const char* name)
 }
 
 int run_program(CLI::App& app, int argc, char** argv) {
-  if (!open_standard_streams()) return 1;
+  if (!base::open_standard_streams()) return 1;
   wait_passively(argv);
-  const PlainOutput plain;
+  const base::PlainOutput plain;
   app.set_version_flag("--version", [name = app.get_name()] { return version_text(name); });
   app.require_subcommand(0, 1);
   app.failure_message([](const CLI::App* failed, const CLI::Error& error) {
-    return for_terminal(CLI::FailureMessage::simple(failed, error)) + "\n";
+    return base::for_terminal(CLI::FailureMessage::simple(failed, error)) + "\n";
   });
   check_numbers(app);
   // With these ignored, a file-size limit or a pipe without a reader is an error of the write and does not
@@ -109,46 +91,14 @@ int run_program(CLI::App& app, int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   try {
     const int status = run_commands(app, argc, argv);
-    return finish_output() ? status : std::max(status, 1);
+    return base::finish_output() ? status : std::max(status, 1);
   } catch (const std::exception& error) {
     const auto chosen = app.get_subcommands();
     const std::string command = app.get_name() + (chosen.empty() ? "" : " " + chosen.front()->get_name());
     std::fprintf(stderr, "%s: error: %s\n", app.get_name().c_str(),
-                 for_terminal(error_text(error, command)).c_str());
+                 base::for_terminal(error_text(error, command)).c_str());
   }
   return 1;
-}
-
-Progress::Progress(std::string label, std::size_t total)
-    : label_(std::move(label)),
-      total_(total),
-      started_s_(seconds_now()),
-      terminal_(isatty(STDERR_FILENO) == 1) {}
-
-Progress::~Progress() {
-  if (terminal_ && drawn_s_ > 0) std::fputc('\n', stderr);
-}
-
-void Progress::update(std::size_t done) {
-  const double now = seconds_now();
-  if (now - started_s_ < 2 || done == 0) return;
-  const int tenth = total_ ? static_cast<int>(10 * done / total_) : 0;
-  if (terminal_ ? (now - drawn_s_ < 0.1 && done < total_) : tenth == drawn_tenth_) return;
-  drawn_s_ = now;
-  drawn_tenth_ = tenth;
-  draw(done);
-}
-
-void Progress::draw(std::size_t done) {
-  const double fraction = total_ ? static_cast<double>(done) / static_cast<double>(total_) : 0;
-  const double elapsed = seconds_now() - started_s_;
-  const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
-  constexpr int width = 30;
-  std::string bar(width, '.');
-  for (int i = 0; i < static_cast<int>(fraction * width); ++i) bar[static_cast<std::size_t>(i)] = '#';
-  std::fprintf(stderr, "%s%s [%s] %3.0f %%  %s left%s", terminal_ ? "\r" : "", label_.c_str(), bar.c_str(),
-               100 * fraction, base::duration_words(left).c_str(), terminal_ ? "   " : "\n");
-  std::fflush(stderr);
 }
 
 }  // namespace apps

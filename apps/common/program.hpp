@@ -1,9 +1,7 @@
 #pragma once
-/// Tasks of every program: parse the command line, run, report errors, show progress.
+/// Tasks of every program: parse the command line, run, report errors.
 
-#include <cstddef>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -27,29 +25,5 @@ int run_program(CLI::App& app, int argc, char** argv);
 /// The message for an error on stderr. Adds place and remedy to errors of other libraries, which lack them.
 /// command: as typed, "vip-stats report".
 std::string error_text(const std::exception& error, const std::string& command);
-
-/// Makes a folder and its parents if missing; base::Error on failure.
-void make_folder(const std::filesystem::path& folder);
-
-/// Shows the progress of a long step on stderr: a line redrawn at most ten times a second, or one plain line
-/// per tenth if stderr is not a terminal. Shows nothing for steps that end within two seconds.
-class Progress {
- public:
-  Progress(std::string label, std::size_t total);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  void update(std::size_t done);
-
- private:
-  void draw(std::size_t done);
-
-  std::string label_;
-  std::size_t total_;
-  double started_s_;
-  double drawn_s_ = 0;
-  int drawn_tenth_ = -1;
-  bool terminal_;
-};
 
 }  // namespace apps

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/stats/data/task_choice.hpp"
+#include "libstudy/analysis/task_choice.hpp"
 
 namespace apps {
 
@@ -15,7 +15,7 @@ struct ChoiceOptions {
   std::string question;  ///< its id; empty: all
   std::optional<double> level;  ///< empty: see level_of()
 
-  TaskSelection selection(TaskKind task, const stats::AnalysisPlan& plan) const {
+  study::TaskSelection selection(study::TaskKind task, const stats::AnalysisPlan& plan) const {
     return {task, protocol, plan, question, level};
   }
 };

@@ -14,13 +14,13 @@
 #include "apps/common/options.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
-#include "apps/stats/data/plan_file.hpp"
-#include "apps/stats/ptpe/calibration_history.hpp"
-#include "apps/stats/ptpe/fit_text.hpp"
-#include "apps/stats/ptpe/heat_map.hpp"
-#include "apps/stats/ptpe/pilot_fit.hpp"
-#include "apps/stats/ptpe/truth.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "apps/stats/fit_text.hpp"
+#include "libstudy/analysis/plan_file.hpp"
+#include "libstudy/analysis/ptpe/calibration_history.hpp"
+#include "libstudy/analysis/ptpe/heat_map.hpp"
+#include "libstudy/analysis/ptpe/pilot_fit.hpp"
+#include "libstudy/analysis/ptpe/truth.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
@@ -43,18 +43,18 @@ struct FitCommand {
   stats::AnalysisPlan rules;  ///< the plan in force
   stats::BootstrapOptions bootstrap;
 
-  bool too_wide(const PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
+  bool too_wide(const study::PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
   /// True if there are doubts that --force overrules, that is, all except that about the form.
-  bool doubted(const PilotFit& fit) const {
+  bool doubted(const study::PilotFit& fit) const {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code != stats::form_rejected; });
   }
-  bool other_form(const PilotFit& fit) const {
+  bool other_form(const study::PilotFit& fit) const {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code == stats::form_rejected; });
   }
   /// True if something prevents the solver's file and was not overruled.
-  bool barred(const PilotFit& fit) const {
+  bool barred(const study::PilotFit& fit) const {
     return (!force && (too_wide(fit) || doubted(fit))) || (!accept_form && other_form(fit));
   }
 };
@@ -77,13 +77,14 @@ void write_json(const FitCommand& command, base::Json json) {
                     mend);
 }
 
-std::string fitted_name(const ChosenTask& chosen) {
+std::string fitted_name(const study::ChosenTask& chosen) {
   return chosen.protocol.name + " " + chosen.protocol.version + ", question \"" + chosen.question.id + "\"";
 }
 
 /// Writes fit.json and prints the fit; with a truth also whether it was recovered.
-void report(const FitCommand& command, const PilotFit& fit, const std::optional<stats::PtpeModel>& truth) {
-  auto json = fit_json(fit);
+void report(const FitCommand& command, const study::PilotFit& fit,
+            const std::optional<stats::PtpeModel>& truth) {
+  auto json = study::fit_json(fit);
   auto refused = base::Json::array();
   for (const auto& doubt : fit.doubts) refused.push_back({{"code", doubt.code}, {"text", doubt.text}});
   json["solver_file"] = {{"max_relative_half_width", command.max_width},
@@ -91,17 +92,17 @@ void report(const FitCommand& command, const PilotFit& fit, const std::optional<
                          {"refused", refused},
                          {"forced", command.force},
                          {"form_accepted", command.accept_form}};
-  std::optional<Recovery> recovery;
-  if (truth && fit.ok()) recovery = check_recovery(fit, *truth);
-  if (recovery) json["truth"] = recovery_json(*recovery);
+  std::optional<study::Recovery> recovery;
+  if (truth && fit.ok()) recovery = study::check_recovery(fit, *truth);
+  if (recovery) json["truth"] = study::recovery_json(*recovery);
   write_json(command, json);
   print_fit(fit);
-  if (recovery) std::printf("%s", format_recovery(fit, *recovery).c_str());
+  if (recovery) std::printf("%s", study::format_recovery(fit, *recovery).c_str());
 }
 
 /// Refuses a curve that the ratings do not support or that is too uncertain, since it would not be a real
 /// calibration.
-void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
+void refuse_for_solver(const FitCommand& command, const study::PilotFit& fit) {
   if (!command.barred(fit)) return;
   const bool wide = command.too_wide(fit) && !command.force;
   const bool form = command.other_form(fit) && !command.accept_form;
@@ -126,9 +127,9 @@ void refuse_for_solver(const FitCommand& command, const PilotFit& fit) {
 
 /// Writes the record before the file, so that a calibration in force is always in the record. Locked, so that
 /// of two fits neither loses the other's line, and the file in force is the last in the record.
-void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
+void hand_to_solver(const FitCommand& command, const study::PilotFit& fit) {
   const base::FileLock lock(command.out);
-  const auto text = sim::format_ptpe_file(ptpe_file(fit));
+  const auto text = sim::format_ptpe_file(study::ptpe_file(fit));
   const auto main = fit.main();
   base::Json record{{"database", std::filesystem::path(command.database).filename().string()},
                     {"protocol", fit.data.protocol.name},
@@ -142,75 +143,76 @@ void hand_to_solver(const FitCommand& command, const PilotFit& fit) {
                     {"n_participants", fit.participants},
                     {"n_simulated", fit.data.simulated.size()},
                     {"test_data", fit.data.test_data},
-                    {"exclude", timing_rule_name(command.rules.exclusions.timing)},
+                    {"exclude", study::timing_rule_name(command.rules.exclusions.timing)},
                     {"relative_half_width", fit.relative_half_width()},
                     {"max_relative_half_width", command.max_width},
                     {"forced", command.force && (command.too_wide(fit) || command.doubted(fit))},
                     {"form_rejected", command.other_form(fit)},
                     {"version", base::version()}};
   if (!command.lacking.empty()) record["incomplete"] = command.lacking;
-  append_calibration(command.out, text, record);
+  study::append_calibration(command.out, text, record);
   base::write_file_atomically(command.out, text);
 }
 
 /// Advice for a fit that failed.
-std::string mend_of(const PilotFit& fit) {
-  if (!fit.level_within_scale()) return mend_of_level(fit.data.question);
+std::string mend_of(const study::PilotFit& fit) {
+  if (!fit.level_within_scale()) return study::mend_of_level(fit.data.question);
   return "collect more answers, or choose another --level";
 }
 
-void fit_one(const FitCommand& command, const study::TaskStudy& study, const ChosenTask& chosen,
+void fit_one(const FitCommand& command, const study::TaskStudy& study, const study::ChosenTask& chosen,
              const std::optional<stats::PtpeModel>& truth) {
-  const auto data = collect_task(study, chosen, command.rules.exclusions);
-  const double level = level_of(command.choice.selection(TaskKind::Pilot, command.rules), chosen.question);
-  if (const auto nothing = nothing_counts(data); !nothing.empty()) {
-    write_json(command, failed_fit_json(level, nothing));
+  const auto data = study::collect_task(study, chosen, command.rules.exclusions);
+  const double level =
+      study::level_of(command.choice.selection(study::TaskKind::Pilot, command.rules), chosen.question);
+  if (const auto nothing = study::nothing_counts(data); !nothing.empty()) {
+    write_json(command, study::failed_fit_json(level, nothing));
     no_fit(command, fitted_name(chosen), nothing,
            data.flow.trials_excluded > 0 ? "collect answers, or choose another --exclude or --plan"
                                          : "collect answers");
   }
-  const auto fit = fit_pilot(data, level, command.bootstrap, command.rules.pilot);
-  if (truth) check_comparable(fit, command.truth);
+  const auto fit = study::fit_pilot(data, level, command.bootstrap, command.rules.pilot);
+  if (truth) study::check_comparable(fit, command.truth);
   report(command, fit, truth);
   if (!fit.ok()) no_fit(command, fitted_name(chosen), fit.reason, mend_of(fit));
   if (!command.out.empty()) refuse_for_solver(command, fit);
-  if (!command.svg.empty()) base::write_file_atomically(command.svg, heat_map_svg(fit));
+  if (!command.svg.empty()) base::write_file_atomically(command.svg, study::heat_map_svg(fit));
   if (!command.out.empty()) hand_to_solver(command, fit);
 }
 
 /// With output files only one fit is allowed. Without them every protocol and question is fitted separately.
-stats::Result<std::vector<ChosenTask>> chosen_pilots(const FitCommand& command,
-                                                     const study::TaskStudy& study) {
-  const auto selection = command.choice.selection(TaskKind::Pilot, command.rules);
-  if (!writes_files(command)) return choose_tasks(study, selection);
-  const auto one = choose_task(study, selection);
+stats::Result<std::vector<study::ChosenTask>> chosen_pilots(const FitCommand& command,
+                                                            const study::TaskStudy& study) {
+  const auto selection = command.choice.selection(study::TaskKind::Pilot, command.rules);
+  if (!writes_files(command)) return study::choose_tasks(study, selection);
+  const auto one = study::choose_task(study, selection);
   if (!one) return stats::Refusal{one.reason()};
-  return std::vector<ChosenTask>{*one};
+  return std::vector<study::ChosenTask>{*one};
 }
 
 void fit_ptpe(FitCommand& command) {
-  const auto history = command.out.empty() ? "" : history_of(command.out).string();
+  const auto history = command.out.empty() ? "" : study::history_of(command.out).string();
   check_apart(command.database, {{"--out", command.out},
                                  {"the record of --out", history},
                                  {"--json", command.json},
                                  {"--svg", command.svg}});
   std::optional<stats::PtpeModel> truth;
-  if (!command.truth.empty()) truth = parse_truth(command.truth);
-  if (!command.plan.empty()) command.rules = read_plan(command.plan).plan;
+  if (!command.truth.empty()) truth = study::parse_truth(command.truth);
+  if (!command.plan.empty()) command.rules = study::read_plan(command.plan).plan;
   command.bootstrap.seed = command.seed.value_or(command.rules.seed);
   command.bootstrap.confidence = command.rules.confidence;
-  if (command.exclude) command.rules.exclusions.timing = timing_rule_of(*command.exclude);
+  if (command.exclude) command.rules.exclusions.timing = study::timing_rule_of(*command.exclude);
   const auto study = study::read_tasks({command.database, command.incomplete});
   command.lacking = study.lacking;
   if (!study.lacking.empty()) std::printf("incomplete: %s\n", study.lacking.c_str());
   const auto chosen = chosen_pilots(command, study);
   if (!chosen) {
-    write_json(command, failed_fit_json(command.choice.level, chosen.reason()));
+    write_json(command, study::failed_fit_json(command.choice.level, chosen.reason()));
     no_fit(command, "", chosen.reason(),
-           mend_of_choice(study, command.choice.selection(TaskKind::Pilot, command.rules)));
+           study::mend_of_choice(study, command.choice.selection(study::TaskKind::Pilot, command.rules)));
   }
   std::optional<base::Error> failure;  // of one fit; the others are still made
-  for (const ChosenTask& one : *chosen) {
+  for (const study::ChosenTask& one : *chosen) {
     if (chosen->size() > 1) std::printf("%s:\n", fitted_name(one).c_str());
     try {
       fit_one(command, study, one, truth);

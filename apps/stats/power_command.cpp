@@ -12,9 +12,9 @@
 #include "apps/common/program.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
-#include "apps/stats/power/power_figure.hpp"
-#include "apps/stats/power/power_text.hpp"
-#include "apps/stats/power/shard.hpp"
+#include "apps/stats/power_text.hpp"
+#include "libstudy/power/power_figure.hpp"
+#include "libstudy/power/shard.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/error.hpp"
@@ -31,7 +31,7 @@ struct PowerCommand {
   ChoiceOptions choice;
   std::vector<std::filesystem::path> shards;
   bool list = false;
-  PowerRequest request;
+  study::PowerRequest request;
   int studies = 0;
 };
 
@@ -40,14 +40,14 @@ void refuse(const std::string& option, const std::string& problem, const std::st
 }
 
 /// Refuses options that have no effect for this kind of protocol.
-void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& options) {
+void check_kind(const study::PowerRequest& request, study::PowerKind kind, const CLI::App& options) {
   const auto only = [&](const char* option, bool fits, const char* where) {
     if (options.count(option) > 0 && !fits)
       refuse(option, "does not apply to protocol " + request.protocol.name,
              std::string("it is for ") + where);
   };
-  const bool task1 = kind == PowerKind::Task1, task2 = kind == PowerKind::Task2,
-             pilot = kind == PowerKind::Pilot;
+  const bool task1 = kind == study::PowerKind::Task1, task2 = kind == study::PowerKind::Task2,
+             pilot = kind == study::PowerKind::Pilot;
   for (const char* option :
        {"--difference", "--sd", "--sd-sickness", "--person-by-method", "--earlier", "--answers"})
     only(option, task1, "Task 1");
@@ -71,31 +71,32 @@ void check_kind(const PowerRequest& request, PowerKind kind, const CLI::App& opt
 
 void complete(PowerCommand& command, const CLI::App& options) {
   if (command.protocol.empty()) throw CLI::RequiredError("protocol");
-  PowerRequest& request = command.request;
-  if (!command.plan.empty()) request.plan = read_plan(command.plan);
+  study::PowerRequest& request = command.request;
+  if (!command.plan.empty()) request.plan = study::read_plan(command.plan);
   request.protocol = study::read_protocol(study::find_protocol(command.protocol));
   request.file = command.protocol;
-  const PowerKind kind = power_kind(request.protocol);
+  const study::PowerKind kind = study::power_kind(request.protocol);
   request.question = command.choice.question;
   request.level = command.choice.level;
   check_kind(request, kind, options);
-  request.n = command.n.empty() ? std::vector{request.protocol.participants} : parse_participants(command.n);
+  request.n =
+      command.n.empty() ? std::vector{request.protocol.participants} : study::parse_participants(command.n);
   // Numbers of studies that take about half a minute on two cores, for any count of numbers of participants.
   const bool many = request.n.size() > 12;
   const int usual_studies = many ? 1000 : 2000, usual_pilots = many ? 200 : 400;
-  request.studies = command.studies > 0        ? command.studies
-                    : kind == PowerKind::Pilot ? usual_pilots
-                                               : usual_studies;
-  request.answers = command.answers == "likert" ? AnswerScale::Likert : AnswerScale::Continuous;
+  request.studies = command.studies > 0               ? command.studies
+                    : kind == study::PowerKind::Pilot ? usual_pilots
+                                                      : usual_studies;
+  request.answers = command.answers == "likert" ? study::AnswerScale::Likert : study::AnswerScale::Continuous;
   if (!command.observer.empty()) request.observer = study::parse_ptpe_observer(command.observer);
   if (command.person_by_method)
     request.person_by_method = {*command.person_by_method, *command.person_by_method};
-  if (!command.earlier.empty()) request.person_by_method = person_by_method_of(command.earlier);
-  if (kind == PowerKind::Pilot) return;
+  if (!command.earlier.empty()) request.person_by_method = study::person_by_method_of(command.earlier);
+  if (kind == study::PowerKind::Pilot) return;
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    if (kind == PowerKind::Task2) std::erase(request.worlds, "margin");                 // the same as null
+    if (kind == study::PowerKind::Task2) std::erase(request.worlds, "margin");          // the same as null
     if (!request.protocol.design.effects.empty()) std::erase(request.worlds, "paper");  // has no effects
     return;
   }
@@ -111,29 +112,29 @@ void complete(PowerCommand& command, const CLI::App& options) {
 }
 
 /// Writes all files or none: every text is made before the first is written.
-void write_files(const PowerCommand& command, const Json& json) {
+void write_files(const PowerCommand& command, const study::Json& json) {
   const std::string text = command.json.empty() ? "" : json.dump(2) + "\n";
-  const std::string table = command.csv.empty() ? "" : power_csv(json);
-  const std::string picture = command.svg.empty() ? "" : power_svg(json);
+  const std::string table = command.csv.empty() ? "" : study::power_csv(json);
+  const std::string picture = command.svg.empty() ? "" : study::power_svg(json);
   if (!text.empty()) base::write_file_atomically(command.json, text);
   if (!table.empty()) base::write_file_atomically(command.csv, table);
   if (!picture.empty()) base::write_file_atomically(command.svg, picture);
 }
 
-void write_and_print(const PowerCommand& command, const StudyOutcomes& outcomes) {
-  const Json json = power_json(command.request, outcomes);
+void write_and_print(const PowerCommand& command, const study::StudyOutcomes& outcomes) {
+  const study::Json json = study::power_json(command.request, outcomes);
   write_files(command, json);
   print_power(command.request, json);
 }
 
 void run_one(const PowerCommand& command) {
-  const auto cells = power_cells(command.request);
-  const auto found =
-      std::find_if(cells.begin(), cells.end(), [&](const PowerCell& one) { return one.key == command.cell; });
+  const auto cells = study::power_cells(command.request);
+  const auto found = std::find_if(cells.begin(), cells.end(),
+                                  [&](const study::PowerCell& one) { return one.key == command.cell; });
   if (found == cells.end())
     refuse("--cell " + command.cell, "is no cell of this calculation",
            "copy one from --list, given with the same program and options");
-  run_cell(command.request, *found, command.out);
+  study::run_cell(command.request, *found, command.out);
 }
 
 void check_outputs(const PowerCommand& command) {
@@ -154,26 +155,26 @@ void check_outputs(const PowerCommand& command) {
 void run_power(PowerCommand& command, const CLI::App& options) {
   check_outputs(command);
   complete(command, options);
-  const PowerRequest& request = command.request;
+  const study::PowerRequest& request = command.request;
   if (command.list) {
-    for (const auto& cell : power_cells(request))
-      std::printf("%s %s\n", cell.key.c_str(), to_text(cell).c_str());
+    for (const auto& cell : study::power_cells(request))
+      std::printf("%s %s\n", cell.key.c_str(), study::to_text(cell).c_str());
   } else if (!command.cell.empty()) {
     run_one(command);
   } else {
-    write_and_print(command, simulate_studies(request, {0, request.studies}));
+    write_and_print(command, study::simulate_studies(request, {0, request.studies}));
   }
 }
 
 void merge(PowerCommand& command, const CLI::App& options) {
   check_outputs(command);
   complete(command, options);
-  write_and_print(command, join_shards(command.request, command.shards));
+  write_and_print(command, study::join_shards(command.request, command.shards));
 }
 
 /// Options of the calculation and its files, shared with `merge`.
 void add_request_options(CLI::App& sub, PowerCommand& command) {
-  PowerRequest& request = command.request;
+  study::PowerRequest& request = command.request;
   sub.add_option("protocol", command.protocol,
                  "Protocol file, or the name of one that comes with the program, such as task1");
   sub.add_option("--n", command.n,

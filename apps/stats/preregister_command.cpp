@@ -8,7 +8,7 @@
 
 #include "apps/common/options.hpp"
 #include "apps/stats/commands.hpp"
-#include "apps/stats/report/preregistration.hpp"
+#include "libstudy/preregistration/preregistration.hpp"
 
 namespace apps {
 
@@ -21,13 +21,14 @@ struct PreregisterCommand {
 };
 
 void preregister(const PreregisterCommand& command) {
-  report::BundleRequest request;
+  study::report::BundleRequest request;
   request.protocols.assign(command.protocols.begin(), command.protocols.end());
-  if (!command.plan.empty()) request.plan = read_plan(command.plan).plan;
+  if (!command.plan.empty()) request.plan = study::read_plan(command.plan).plan;
   if (command.seed) request.plan.seed = *command.seed;
   if (!command.power.empty()) request.power = command.power;
-  const std::string hash = report::freeze_bundle(request, command.out);
-  for (const auto& one : report::untested_claims(request)) std::printf("not tested: %s\n", one.c_str());
+  const std::string hash = study::report::freeze_bundle(request, command.out);
+  for (const auto& one : study::report::untested_claims(request))
+    std::printf("not tested: %s\n", one.c_str());
   std::printf("%s  %s\nDeposit this hash where its date can be proved, before the first participant.\n",
               hash.c_str(), command.out.c_str());
 }

@@ -11,14 +11,14 @@
 #include "apps/common/options.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/report/preregistration.hpp"
-#include "apps/stats/tasks/csv.hpp"
-#include "apps/stats/tasks/results.hpp"
-#include "apps/stats/tasks/sickness_json.hpp"
+#include "libstudy/analysis/tasks/csv.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/analysis/tasks/sickness_json.hpp"
+#include "libstudy/preregistration/preregistration.hpp"
+#include "libstudy/report/page.hpp"
 #include "libstudy/store/export_register.hpp"
-#include "libstudy/store/status.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
 
@@ -34,59 +34,60 @@ struct ReportCommand {
   study::StudyFile file() const { return {database, incomplete}; }
 };
 
-constexpr std::array all_tasks{TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2, TaskKind::Own};
+constexpr std::array all_tasks{study::TaskKind::Pilot, study::TaskKind::Task1, study::TaskKind::Task2,
+                               study::TaskKind::Own};
 
-void add_preregistration(Json& json, const report::Bundle& bundle,
+void add_preregistration(study::Json& json, const study::report::Bundle& bundle,
                          const std::vector<study::ProtocolRow>& protocols) {
-  json["preregistration"] = report::compare_with_bundle(bundle, protocols, json);
+  json["preregistration"] = study::report::compare_with_bundle(bundle, protocols, json);
   if (!json.contains("apart")) return;
-  for (Json& one : json["apart"])
-    one["preregistration"] = report::compare_with_bundle(bundle, protocols, one);
+  for (study::Json& one : json["apart"])
+    one["preregistration"] = study::report::compare_with_bundle(bundle, protocols, one);
 }
 
 /// Refuses a level at which no curve can be fitted, as fit-ptpe does.
 void check_level(const ReportCommand& command, const study::TaskStudy& study,
                  const stats::AnalysisPlan& plan) {
-  const auto pilots = choose_tasks(study, command.choice.selection(TaskKind::Pilot, plan));
+  const auto pilots = study::choose_tasks(study, command.choice.selection(study::TaskKind::Pilot, plan));
   if (!pilots)
     throw base::Error("--level", "does not apply here: " + pilots.reason(),
                       "leave it out: it applies to the curve of a pilot");
-  for (const ChosenTask& one : *pilots) {
-    if (within_scale(*command.choice.level, one.question)) continue;
+  for (const study::ChosenTask& one : *pilots) {
+    if (study::within_scale(*command.choice.level, one.question)) continue;
     throw base::Error(command.database,
-                      outside_scale(*command.choice.level, one.question) + "; nothing was written",
-                      mend_of_level(one.question));
+                      study::outside_scale(*command.choice.level, one.question) + "; nothing was written",
+                      study::mend_of_level(one.question));
   }
 }
 
-Json document(const ReportCommand& command) {
-  ResultsRequest request;
+study::Json document(const ReportCommand& command) {
+  study::ResultsRequest request;
   request.database = command.database;
   request.tasks.assign(all_tasks.begin(), all_tasks.end());
   request.protocol = command.choice.protocol;
   request.question = command.choice.question;
   request.level = command.choice.level;
   if (!command.sweep.empty()) {
-    request.sweep = std::make_shared<const SweepTables>(read_sweep_tables(command.sweep));
+    request.sweep = std::make_shared<const study::SweepTables>(study::read_sweep_tables(command.sweep));
     request.sweep_file = std::filesystem::path(command.sweep).filename().string();
   }
-  std::optional<report::Bundle> bundle;
+  std::optional<study::report::Bundle> bundle;
   if (!command.bundle.empty()) {
-    bundle = report::read_bundle(command.bundle);
+    bundle = study::report::read_bundle(command.bundle);
     request.plan = bundle->plan;
   } else if (!command.plan.empty()) {
-    request.plan = read_plan(command.plan);
+    request.plan = study::read_plan(command.plan);
   }
   auto study = study::read_tasks(command.file());
   study::read_about_people(command.file(), study);
   if (command.choice.level) check_level(command, study, request.plan.plan);
-  Results results = make_results(study, request);
+  study::Results results = study::make_results(study, request);
   if (results.json.at("flow").empty()) {
     std::string mend;
-    const std::string reason = nothing_chosen(study, command.choice.protocol, mend).reason;
+    const std::string reason = study::nothing_chosen(study, command.choice.protocol, mend).reason;
     throw base::Error(command.database, reason + "; nothing was written", mend);
   }
-  Json sickness = sickness_json(study::read_sickness(command.file()), request.plan.plan);
+  study::Json sickness = study::sickness_json(study::read_sickness(command.file()), request.plan.plan);
   if (!sickness.empty()) results.json["sickness"] = std::move(sickness);
   if (bundle) add_preregistration(results.json, *bundle, study::read_status(command.file()).protocols);
   return results.json;
@@ -95,14 +96,14 @@ Json document(const ReportCommand& command) {
 void write_report(const ReportCommand& command) {
   check_apart(command.database, {{"--html", command.html}, {"--json", command.json}, {"--csv", command.csv}});
   const study::RegisteredFiles files(command.file());
-  const Json json = document(command);
-  const std::string page = command.html.empty() ? "" : report::results_page(json);
+  const study::Json json = document(command);
+  const std::string page = command.html.empty() ? "" : study::report::results_page(json);
   const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
     files.write("vip-stats report", path, bytes);
   };
   if (!command.csv.empty()) {
-    for (const auto& folder : csv_folders(json, command.csv)) files.make_folder(folder);
-    write_csv_folder(json, command.csv, write);
+    for (const auto& folder : study::csv_folders(json, command.csv)) files.make_folder(folder);
+    study::write_csv_folder(json, command.csv, write);
   }
   if (!command.json.empty()) write(command.json, json.dump(2) + "\n");
   if (!command.html.empty()) {
@@ -110,7 +111,7 @@ void write_report(const ReportCommand& command) {
     std::printf("%s: %zu kB\n", command.html.c_str(), page.size() / 1000);
   }
   if (json.contains("preregistration")) {
-    const Json& check = json["preregistration"];
+    const study::Json& check = json["preregistration"];
     std::printf("%s\n", check["summary"].get<std::string>().c_str());
     for (const auto& difference : check["differences"])
       std::printf("  %s\n", difference.get<std::string>().c_str());

@@ -13,9 +13,9 @@
 #include "apps/common/options.hpp"
 #include "apps/stats/choice_options.hpp"
 #include "apps/stats/commands.hpp"
-#include "apps/stats/data/json_parts.hpp"
-#include "apps/stats/tasks/csv.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/analysis/tasks/csv.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
 #include "libstudy/store/export_register.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
@@ -25,46 +25,46 @@ namespace apps {
 namespace {
 
 struct TaskCommand {
-  TaskKind task = TaskKind::Task1;
+  study::TaskKind task = study::TaskKind::Task1;
   std::string database, json, csv, plan;
   bool incomplete = false;
   ChoiceOptions choice;
 };
 
-std::string number_text(const Json& value, int decimals) {
+std::string number_text(const study::Json& value, int decimals) {
   if (!value.is_number()) return value.is_string() ? value.get<std::string>() : "-";
   return fmt::format("{:.{}f}", value.get<double>(), decimals);
 }
 
-std::string word(const Json& value) { return value.get<std::string>(); }
+std::string word(const study::Json& value) { return value.get<std::string>(); }
 
-std::string p_text(const Json& p) {
+std::string p_text(const study::Json& p) {
   if (p.is_number() && p.get<double>() < 0.0001) return "< .0001";
   return number_text(p, 4);
 }
 
-std::string interval_text(const Json& ci) {
+std::string interval_text(const study::Json& ci) {
   if (!ci.is_array()) return "-";
-  const int digits = interval_decimals({number_of(ci[0]), number_of(ci[1])}, 2);
+  const int digits = study::interval_decimals({study::number_of(ci[0]), study::number_of(ci[1])}, 2);
   return "[" + number_text(ci[0], digits) + ", " + number_text(ci[1], digits) + "]";
 }
 
 /// "95 % interval".
-std::string interval_head(const Json& json) {
+std::string interval_head(const study::Json& json) {
   return fmt::format("{:g} % interval", 100 * json.at("plan").at("confidence").get<double>());
 }
 
 /// The length of the longest name, at least `least`; a method's name may include a level of effects.
 template <class Name>
-int width_of(const Json& list, int least, const Name& name) {
+int width_of(const study::Json& list, int least, const Name& name) {
   for (const auto& one : list) least = std::max(least, static_cast<int>(name(one).size()));
   return least;
 }
 
-void print_cells(const Json& task, const std::string& interval) {
-  const Json& cells = task.at("cells");
+void print_cells(const study::Json& task, const std::string& interval) {
+  const study::Json& cells = task.at("cells");
   const auto width = [&](const char* field, int least) {
-    return width_of(cells, least, [&](const Json& cell) { return word(cell.at(field)); });
+    return width_of(cells, least, [&](const study::Json& cell) { return word(cell.at(field)); });
   };
   const int score = width("score", 28), n_star = width("n_star", 5), method = width("method", 9);
   std::printf("\n%-*s %-*s %-*s %4s %7s %6s  %s\n", score, "score", n_star, "n_*", method, "method", "n",
@@ -76,15 +76,15 @@ void print_cells(const Json& task, const std::string& interval) {
                 number_text(cell.at("sd"), 2).c_str(), interval_text(cell.at("ci")).c_str());
 }
 
-std::string pair_name(const Json& pair) { return word(pair.at("a")) + " over " + word(pair.at("b")); }
+std::string pair_name(const study::Json& pair) { return word(pair.at("a")) + " over " + word(pair.at("b")); }
 
 /// A pair's test in one word; the rules below name it in full.
-const char* test_word(const Json& pair) {
+const char* test_word(const study::Json& pair) {
   return pair.contains("by_person") ? "shares" : pair.at("test").is_null() ? "-" : "binomial";
 }
 
 /// Prints the kinds of the pairs' intervals, with the pairs' names if the kinds differ.
-void print_interval_names(const Json& pairs) {
+void print_interval_names(const study::Json& pairs) {
   std::vector<std::pair<std::string, std::string>> names;  // of intervals, of their pairs
   for (const auto& pair : pairs) {
     const bool people = pair.contains("by_person");
@@ -101,15 +101,15 @@ void print_interval_names(const Json& pairs) {
     std::printf("interval%s: %s\n", names.size() == 1 ? "s" : (" of " + of).c_str(), name.c_str());
 }
 
-void print_pairs(const Json& task, const std::string& interval) {
+void print_pairs(const study::Json& task, const std::string& interval) {
   const int width = width_of(task.at("pairs"), 22, pair_name);
   std::printf("\n%-*s %4s %4s %6s %8s %8s  %-16s %s\n", width, "chosen", "k", "n", "share", "p", "Holm",
               interval.c_str(), "test");
   std::string notes;
   for (const auto& pair : task.at("pairs")) {
     const bool people = pair.contains("by_person");
-    const Json& share = people ? pair.at("by_person").at("share") : pair.at("share");
-    const Json& ci = people ? pair.at("by_person").at("ci") : pair.at("clopper_pearson");
+    const study::Json& share = people ? pair.at("by_person").at("share") : pair.at("share");
+    const study::Json& ci = people ? pair.at("by_person").at("ci") : pair.at("clopper_pearson");
     std::printf("%-*s %4d %4d %6s %8s %8s  %-16s %s\n", width, pair_name(pair).c_str(),
                 pair.at("k").get<int>(), pair.at("n").get<int>(), number_text(share, 2).c_str(),
                 p_text(pair.at("p")).c_str(), p_text(pair.at("p_holm")).c_str(), interval_text(ci).c_str(),
@@ -119,7 +119,7 @@ void print_pairs(const Json& task, const std::string& interval) {
     if (!note.empty()) notes += pair_name(pair) + ": " + note + "\n";
   }
   print_interval_names(task.at("pairs"));
-  const Json& several = task.at("several_answers");
+  const study::Json& several = task.at("several_answers");
   if (several.at("participants").get<int>() > 0)
     std::printf("%d of %d participants answered a pair more than once, at most %d times.\n",
                 several.at("participants").get<int>(), several.at("of").get<int>(),
@@ -131,7 +131,7 @@ void print_pairs(const Json& task, const std::string& interval) {
     std::printf("Circular triads are not given: %s.\n", word(task.at("triads").at("refused")).c_str());
 }
 
-void print_test(const Json& test) {
+void print_test(const study::Json& test) {
   const bool holds = test.at("holds").get<bool>(), against = test.at("against").get<bool>();
   std::printf("    %-36s %8s  p %-8s Holm %-8s %s\n", word(test.at("label")).c_str(),
               number_text(test.at("estimate"), 3).c_str(), p_text(test.at("p")).c_str(),
@@ -141,9 +141,9 @@ void print_test(const Json& test) {
                         : word(test.at("reason")).c_str());
 }
 
-void print_hypotheses(const Json& json) {
+void print_hypotheses(const study::Json& json) {
   for (const auto& one : json.at("hypotheses")) {
-    const Json& paper = one.at("paper");
+    const study::Json& paper = one.at("paper");
     std::printf("\n%s %s\n  %s. %s\n  By the paper's rule (%s): %s\n", word(one.at("id")).c_str(),
                 word(one.at("title")).c_str(), word(one.at("status")).c_str(),
                 word(one.at("status_text")).c_str(), word(paper.at("rule")).c_str(),
@@ -154,24 +154,25 @@ void print_hypotheses(const Json& json) {
 
 /// Prints the protocol's name, since a database may hold several protocols of a task, each analysed by
 /// itself.
-void print_name(const Json& json) {
-  const Json& protocol = json.at("study").at("protocols").at(0);
+void print_name(const study::Json& json) {
+  const study::Json& protocol = json.at("study").at("protocols").at(0);
   std::printf("protocol %s %s, SHA-256 %.12s\n", word(protocol.at("name")).c_str(),
               word(protocol.at("version")).c_str(), word(protocol.at("sha256")).c_str());
 }
 
-void print_results(const Json& json, TaskKind task) {
+void print_results(const study::Json& json, study::TaskKind task) {
   if (json.at("study").contains("incomplete"))
     std::printf("incomplete: %s\n", word(json.at("study").at("incomplete")).c_str());
-  const Json& flow = json.at("flow").at(task_name(task));
+  const study::Json& flow = json.at("flow").at(study::task_name(task));
   std::printf("%d participants, %d of %d answered trials analysed, %zu exclusions\n",
               flow.at("analysed").get<int>(), flow.at("trials_analysed").get<int>(),
               flow.at("trials_answered").get<int>(), json.at("exclusions").size());
   for (const auto& note : json.at("study").at("notes")) std::printf("note: %s\n", word(note).c_str());
   for (const auto& one : json.at("not_analysed"))
     std::printf("not analysed: %s: %s\n", word(one.at("what")).c_str(), word(one.at("reason")).c_str());
-  const Json& part = json.at(task_name(task));
-  task == TaskKind::Task1 ? print_cells(part, interval_head(json)) : print_pairs(part, interval_head(json));
+  const study::Json& part = json.at(study::task_name(task));
+  task == study::TaskKind::Task1 ? print_cells(part, interval_head(json))
+                                 : print_pairs(part, interval_head(json));
   print_hypotheses(json);
   for (const auto& variant : json.at("sensitivity")) {
     std::string changes;
@@ -192,34 +193,34 @@ void run(const TaskCommand& command) {
       std::filesystem::weakly_canonical(command.json) == std::filesystem::weakly_canonical(command.database))
     throw base::Error("--json " + command.json, "is the database", "give it a file of its own");
   if (command.choice.level)
-    throw base::Error("--level", std::string("does not apply to ") + task_name(command.task),
+    throw base::Error("--level", std::string("does not apply to ") + study::task_name(command.task),
                       "leave it out: it applies to the curve of a pilot");
-  ResultsRequest request;
+  study::ResultsRequest request;
   request.database = command.database;
   request.tasks = {command.task};
   request.protocol = command.choice.protocol;
   request.question = command.choice.question;
   request.level = command.choice.level;
   request.incomplete = command.incomplete;
-  if (!command.plan.empty()) request.plan = read_plan(command.plan);
+  if (!command.plan.empty()) request.plan = study::read_plan(command.plan);
   // Opened before the data are read; without an output file nothing is registered.
   std::optional<study::RegisteredFiles> files;
   if (!command.json.empty() || !command.csv.empty())
     files.emplace(study::StudyFile(command.database, command.incomplete));
   const auto write = [&](const std::filesystem::path& path, const std::string& bytes) {
-    files->write(std::string("vip-stats ") + task_name(command.task), path, bytes);
+    files->write(std::string("vip-stats ") + study::task_name(command.task), path, bytes);
   };
-  const Results results = study_results(request);
+  const study::Results results = study::study_results(request);
   if (!results.missing.empty()) {
     throw base::Error(command.database, results.missing.front().reason + "; nothing was written",
                       results.missing.front().mend);
   }
   if (!command.json.empty()) write(command.json, results.json.dump(2) + "\n");
   if (!command.csv.empty()) {
-    for (const auto& folder : csv_folders(results.json, command.csv)) files->make_folder(folder);
-    write_csv_folder(results.json, command.csv, write);
+    for (const auto& folder : study::csv_folders(results.json, command.csv)) files->make_folder(folder);
+    study::write_csv_folder(results.json, command.csv, write);
   }
-  const Json apart = results.json.value("apart", Json::array());
+  const study::Json apart = results.json.value("apart", study::Json::array());
   if (!apart.empty()) print_name(results.json);
   print_results(results.json, command.task);
   for (const auto& one : apart) {
@@ -229,10 +230,10 @@ void run(const TaskCommand& command) {
   }
 }
 
-void add_command(CLI::App& app, TaskKind task, const char* what) {
+void add_command(CLI::App& app, study::TaskKind task, const char* what) {
   auto command = std::make_shared<TaskCommand>();
   command->task = task;
-  auto* sub = app.add_subcommand(task_name(task), what);
+  auto* sub = app.add_subcommand(study::task_name(task), what);
   add_database_argument(*sub, command->database);
   add_incomplete(*sub, command->incomplete);
   sub->add_option("--json", command->json, "File for every number (docs/report.md)")->check(output_file());
@@ -253,8 +254,8 @@ void add_command(CLI::App& app, TaskKind task, const char* what) {
 }  // namespace
 
 void add_task_commands(CLI::App& app) {
-  add_command(app, TaskKind::Task1, "Realism and cybersickness of the methods, H1 to H3");
-  add_command(app, TaskKind::Task2, "Which of two methods is preferred, H4 to H6");
+  add_command(app, study::TaskKind::Task1, "Realism and cybersickness of the methods, H1 to H3");
+  add_command(app, study::TaskKind::Task2, "Which of two methods is preferred, H4 to H6");
 }
 
 }  // namespace apps

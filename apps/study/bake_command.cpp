@@ -4,17 +4,17 @@
 #include <memory>
 
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
-#include "apps/study/bakes/bake_protocol.hpp"
-#include "apps/study/bakes/read_whole.hpp"
-#include "apps/study/bakes/write_bake.hpp"
+#include "apps/study/bake_protocol.hpp"
 #include "apps/study/commands.hpp"
-#include "apps/study/session_framing.hpp"
 #include "apps/study/session_player.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
+#include "libstudy/runner/session_framing.hpp"
+#include "libstudy/stimulus/bakes/read_whole.hpp"
+#include "libstudy/stimulus/bakes/write_bake.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
 
 namespace apps {
 
@@ -28,7 +28,7 @@ struct BakeCommand {
   double content_step_s = 0;
   bool force = false;
   // Only with a protocol:
-  std::optional<PictureSize> size;
+  std::optional<base::PictureSize> size;
   std::string keep = "particles";
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
@@ -37,8 +37,8 @@ stats::PtpeModel ptpe_model(const BakeCommand& command) {
   return command.ptpe.empty() ? stats::PtpeModel{} : sim::read_ptpe_file(command.ptpe).model;
 }
 
-BakeOrder order_of(const BakeCommand& command) {
-  BakeOrder order;
+study::BakeOrder order_of(const BakeCommand& command) {
+  study::BakeOrder order;
   order.fluid.scene = base::find_input(command.scene);
   order.fluid.method = command.method;
   order.fluid.n_star = command.n_star;
@@ -50,7 +50,7 @@ BakeOrder order_of(const BakeCommand& command) {
   if (!command.rate.empty()) order.fluid.fixed_rate = sim::parse_frame_rate(command.rate);
   order.frames = command.frames;
   order.pictures = !command.pictures.empty();
-  if (order.pictures) order.size = parse_picture_size(command.pictures, "--pictures");
+  if (order.pictures) order.size = base::parse_picture_size(command.pictures, "--pictures");
   order.scene_gaze = true;
   return order;
 }
@@ -74,13 +74,13 @@ void print_sizes(const std::string& out, const sim::BakeSizes& sizes) {
 
 void bake(const BakeCommand& command) {
   const StopSignals signals;
-  const BakeOrder order = order_of(command);
-  const sim::BakeHeader header = header_of(order);
+  const study::BakeOrder order = order_of(command);
+  const sim::BakeHeader header = study::header_of(order);
   sim::BakeWriter::check_target(command.out, command.force);
   std::optional<sim::GlContext> context;
-  if (draws(header)) context = sim::GlContext::make_headless();
-  std::optional<Progress> settling, frames;
-  BakeHooks hooks;
+  if (study::draws(header)) context = sim::GlContext::make_headless();
+  std::optional<base::Progress> settling, frames;
+  study::BakeHooks hooks;
   hooks.stop = [&] {
     if (StopSignals::stop_requested())
       throw base::Error(command.out, "stopped on request; no file was written", "run the same command again");
@@ -93,7 +93,7 @@ void bake(const BakeCommand& command) {
     if (!frames) frames.emplace("bake", static_cast<std::size_t>(command.frames));
     frames->update(static_cast<std::size_t>(done));
   };
-  print_sizes(command.out, write_bake(order, header, command.out, command.force, hooks));
+  print_sizes(command.out, study::write_bake(order, header, command.out, command.force, hooks));
 }
 
 void bake_all(const BakeCommand& command) {
@@ -103,10 +103,10 @@ void bake_all(const BakeCommand& command) {
   ProtocolBakes request{file, command.out, {}, command.keep == "pictures"};
   request.look.size = *command.size;
   request.look.common.viewing =
-      screen_viewing(command.screen_width_mm, command.viewing_distance_mm, protocol.true_angle);
+      study::screen_viewing(command.screen_width_mm, command.viewing_distance_mm, protocol.true_angle);
   request.look.common.backend = command.backend;
   request.look.common.model = ptpe_model(command);
-  check_visible(frame_scenes(protocol, request.look.common.viewing, request.look.size));
+  study::check_visible(study::frame_scenes(protocol, request.look.common.viewing, request.look.size));
   bake_protocol(protocol, request, [&] {
     if (StopSignals::stop_requested())
       throw base::Error(command.out, "stopped on request; bakes that are complete stay, no other was written",
@@ -117,7 +117,7 @@ void bake_all(const BakeCommand& command) {
 void verify(const std::string& path) {
   const sim::BakeReader bake(path);
   const sim::BakeHeader& h = bake.header();
-  const ReadingSpeed speed = read_whole(bake);
+  const study::ReadingSpeed speed = study::read_whole(bake);
   std::printf("%s: %s, %s, n_* %lld, on %s, bake %s: all %lld frames are whole\n", path.c_str(),
               h.scene_name.c_str(), h.method.c_str(), static_cast<long long>(h.n_star), h.backend.c_str(),
               bake.content_hash().c_str(), static_cast<long long>(h.frame_count));

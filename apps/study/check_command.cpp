@@ -3,21 +3,21 @@
 #include <memory>
 #include <string>
 
-#include "apps/common/headless_display.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
-#include "apps/study/bakes/cell_effects.hpp"
 #include "apps/study/check_report.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/live_rates.hpp"
-#include "apps/study/pages/page_fonts.hpp"
-#include "apps/study/preview.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/scene/scene.hpp"
+#include "libstudy/pages/gui/page_fonts.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
+#include "libstudy/runner/preview.hpp"
+#include "libstudy/stimulus/bakes/cell_effects.hpp"
+#include "libstudy/stimulus/headless_display.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
+#include "stats/base/progress.hpp"
 
 namespace apps {
 
@@ -33,13 +33,13 @@ struct CheckOptions {
   bool compare = false;
   bool measure = false;
   std::string backend = "auto", preview;
-  PictureSize size{1920, 1080};
+  base::PictureSize size{1920, 1080};
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
 /// Checks scenes, methods, n_* and effects, which libstudy only passes on.
 void check_stimuli(const study::Protocol& protocol, const std::string& file) {
-  for (const auto& what : stimuli_of(protocol)) {
+  for (const auto& what : study::stimuli_of(protocol)) {
     try {
       sim::parse_method(what.method);
       sim::parse_n_star(what.n_star);
@@ -48,47 +48,48 @@ void check_stimuli(const study::Protocol& protocol, const std::string& file) {
       throw base::Error(file + ": design", error.what(), "");
     }
   }
-  check_cell_effects(protocol);
+  study::check_cell_effects(protocol);
 }
 
-std::vector<RefreshCheck> check_common(const study::Protocol& protocol) {
-  std::vector<RefreshCheck> checks;
-  Progress progress("refresh rates", common_refreshes.size());
-  for (const double refresh_hz : common_refreshes) {
-    checks.push_back(check_refresh(protocol, refresh_hz));
+std::vector<study::RefreshCheck> check_common(const study::Protocol& protocol) {
+  std::vector<study::RefreshCheck> checks;
+  base::Progress progress("refresh rates", study::common_refreshes.size());
+  for (const double refresh_hz : study::common_refreshes) {
+    checks.push_back(study::check_refresh(protocol, refresh_hz));
     progress.update(checks.size());
   }
   return checks;
 }
 
 /// Measures without cached times, on a display without a window.
-MeasuredReport measure_here(const CheckOptions& options, const CheckReport& report, const Viewing& viewing) {
+study::MeasuredReport measure_here(const CheckOptions& options, const CheckReport& report,
+                                   const study::Viewing& viewing) {
   const study::Protocol& protocol = report.protocol;
-  RunOptions choice;
+  study::RunOptions choice;
   choice.display = "headless";
   choice.backend = options.backend;
-  HeadlessDisplay display(options.size.width, options.size.height);
-  CellStimuli stimuli(choice, protocol, {}, viewing);
+  study::HeadlessDisplay display(options.size.width, options.size.height);
+  study::CellStimuli stimuli(choice, protocol, {}, viewing);
   const auto all = [](int) { return true; };
   const double refresh_hz = report.refresh->refresh_hz;
   const auto live = measure_live(protocol, stimuli, {display, report.scenes, refresh_hz, {}, all});
-  return judge_measured(protocol, live.stimuli, refresh_hz, [&](const study::FpsSetting& setting) {
-    return intervals_on(*report.refresh, report.settings, setting);
+  return study::judge_measured(protocol, live.stimuli, refresh_hz, [&](const study::FpsSetting& setting) {
+    return study::intervals_on(*report.refresh, report.settings, setting);
   });
 }
 
 CheckReport make_report(const CheckOptions& options, const study::Protocol& protocol) {
-  const Viewing viewing =
-      screen_viewing(options.screen_width_mm, options.viewing_distance_mm, protocol.true_angle);
+  const study::Viewing viewing =
+      study::screen_viewing(options.screen_width_mm, options.viewing_distance_mm, protocol.true_angle);
   CheckReport report{.protocol = protocol,
-                     .outline = outline_session(protocol),
-                     .balance = check_balance(protocol),
-                     .settings = checked_settings(protocol),
+                     .outline = study::outline_session(protocol),
+                     .balance = study::check_balance(protocol),
+                     .settings = study::checked_settings(protocol),
                      .refresh = {},
                      .common = {},
                      .measured = {},
-                     .scenes = frame_scenes(protocol, viewing, options.size)};
-  if (options.refresh_hz > 0) report.refresh = check_refresh(protocol, options.refresh_hz);
+                     .scenes = study::frame_scenes(protocol, viewing, options.size)};
+  if (options.refresh_hz > 0) report.refresh = study::check_refresh(protocol, options.refresh_hz);
   std::int64_t frames = 0;
   for (const auto& one : report.settings) frames += study::frame_count(one.setting);
   if (frames > 0 && (frames <= most_compared || options.compare)) report.common = check_common(protocol);
@@ -97,14 +98,14 @@ CheckReport make_report(const CheckOptions& options, const study::Protocol& prot
 }
 
 /// Each scene once for each level of effects, with the level in its name.
-std::vector<FramedScene> with_levels(const study::Protocol& protocol,
-                                     const std::vector<FramedScene>& scenes) {
+std::vector<study::FramedScene> with_levels(const study::Protocol& protocol,
+                                            const std::vector<study::FramedScene>& scenes) {
   if (protocol.design.effects.empty()) return scenes;
-  std::vector<FramedScene> out;
-  for (const FramedScene& scene : scenes) {
+  std::vector<study::FramedScene> out;
+  for (const study::FramedScene& scene : scenes) {
     for (const study::EffectSet& level : protocol.design.effects) {
       out.push_back(scene);
-      out.back().scene = scene_with(scene.scene, effects_of(protocol, level.name, scene.scene));
+      out.back().scene = study::scene_with(scene.scene, study::effects_of(protocol, level.name, scene.scene));
       out.back().scene.name += ", effects " + level.name;
     }
   }
@@ -122,15 +123,16 @@ void check_protocol(const CheckOptions& options) {
   const CheckReport report = make_report(options, protocol);
   print_report(report);
   if (!options.preview.empty())
-    write_preview(options.preview, with_levels(protocol, report.scenes), protocol.design.paint_temperature);
+    study::write_preview(options.preview, with_levels(protocol, report.scenes),
+                         protocol.design.paint_temperature);
   if (!options.json.empty()) base::write_file_atomically(options.json, report_json(report).dump(2) + "\n");
   if (report.measured && !report.measured->collapse.empty()) {
     throw base::Error(path.string() + ": timing = \"native\"",
                       "would compare equal stimuli on this machine: " + report.measured->collapse,
                       "use timing = \"table2\" or \"equal\", or larger n_*");
   }
-  check_visible(report.scenes);
-  check_pages(report.protocol);
+  study::check_visible(report.scenes);
+  study::check_pages(report.protocol);
 }
 
 }  // namespace

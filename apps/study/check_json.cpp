@@ -1,14 +1,14 @@
 
-#include "apps/common/claims.hpp"
-#include "apps/study/bakes/bake_plan.hpp"
 #include "apps/study/check_report.hpp"
+#include "libstudy/analysis/claims.hpp"
+#include "libstudy/stimulus/bakes/bake_plan.hpp"
 #include "stats/base/json.hpp"
 
 namespace apps {
 
 namespace {
 
-base::Json setting_json(const CheckedSetting& checked, const study::RefreshVerdict& verdict,
+base::Json setting_json(const study::CheckedSetting& checked, const study::RefreshVerdict& verdict,
                         double refresh_hz) {
   base::Json json{{"mean_fps", checked.setting.mean},
                   {"sd_fps", checked.setting.sd},
@@ -33,7 +33,7 @@ base::Json effects_json(const study::StimulusSpec& what) {
 
 void add_refresh(base::Json& json, const CheckReport& report) {
   if (!report.refresh) return;
-  const RefreshCheck& check = *report.refresh;
+  const study::RefreshCheck& check = *report.refresh;
   json["refresh_hz"] = check.refresh_hz;
   json["asked_refresh_hz"] = check.asked_hz;
   json["exact"] = check.exact;
@@ -45,11 +45,11 @@ void add_refresh(base::Json& json, const CheckReport& report) {
 
 void add_common(base::Json& json, const CheckReport& report) {
   if (!report.settings.empty()) {
-    const Span speeds = play_speeds(report);
+    const study::Span speeds = play_speeds(report);
     json["play_speed"] = {speeds.least, speeds.most};
   }
   if (report.common.empty()) return;
-  json["best_refresh_hz"] = best_refresh(report.common).refresh_hz;
+  json["best_refresh_hz"] = study::best_refresh(report.common).refresh_hz;
   for (const auto& rate : report.common) {
     json["common_refreshes"].push_back({{"refresh_hz", rate.refresh_hz},
                                         {"exact", rate.exact},
@@ -60,7 +60,7 @@ void add_common(base::Json& json, const CheckReport& report) {
 }
 
 void add_framing(base::Json& json, const CheckReport& report) {
-  for (const FramedScene& one : report.scenes) {
+  for (const study::FramedScene& one : report.scenes) {
     const auto& drawn = one.view.viewport;
     base::Json framing{{"scene", one.file},
                        {"width_px", drawn.width},
@@ -77,7 +77,7 @@ void add_framing(base::Json& json, const CheckReport& report) {
   }
 }
 
-void add_measured(base::Json& json, const MeasuredReport& measured) {
+void add_measured(base::Json& json, const study::MeasuredReport& measured) {
   json["too_slow"] = measured.too_slow;
   json["collapse"] = measured.collapse;
   for (const auto& one : measured.cells) {
@@ -100,9 +100,9 @@ void add_measured(base::Json& json, const MeasuredReport& measured) {
 /// The analyses that vip-stats will report besides the answers by cell.
 base::Json analyses_json(const study::Protocol& protocol) {
   auto tested = base::Json::array(), fitted = tested, not_tested = tested;
-  const auto shown = hypotheses_of(protocol, {});
+  const auto shown = study::hypotheses_of(protocol, {});
   for (const auto& one : shown.claims) tested.push_back(one.id);
-  for (const auto& question : curve_questions(protocol))
+  for (const auto& question : study::curve_questions(protocol))
     fitted.push_back({{"question", question.id}, {"level", study::fitted_level(question)}});
   for (const auto& [id, reason] : shown.left_out) not_tested.push_back({{"id", id}, {"reason", reason}});
   return {{"tested", tested}, {"fitted", fitted}, {"not_tested", not_tested}};
@@ -133,7 +133,7 @@ base::Json report_json(const CheckReport& report) {
                               {"seconds", {one.seconds.least, one.seconds.most}}});
   }
   json["analyses"] = analyses_json(protocol);
-  const Balance& balance = report.balance;
+  const study::PlannedBalance& balance = report.balance;
   json["balance"] = {{"participants", balance.planned},
                      {"sequences", balance.sequences},
                      {"least", balance.least},
@@ -144,7 +144,7 @@ base::Json report_json(const CheckReport& report) {
                      {"even_above", balance.even_above}};
   add_refresh(json, report);
   add_common(json, report);
-  for (const auto& one : plan_bakes(protocol)) {
+  for (const auto& one : study::plan_bakes(protocol)) {
     json["stimuli"].push_back({{"scene", one.what.scene},
                                {"method", one.what.method},
                                {"effects", effects_json(one.what)},

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <string>
 
-#include "apps/common/claims.hpp"
-#include "apps/study/bakes/bake_plan.hpp"
 #include "libsim/scene/scene.hpp"
+#include "libstudy/analysis/claims.hpp"
+#include "libstudy/stimulus/bakes/bake_plan.hpp"
 #include "stats/base/file.hpp"
 
 namespace apps {
@@ -23,22 +23,22 @@ std::string remark_of(const CheckReport& report, std::size_t setting, const std:
   if (report.protocol.design.timing != TimingSource::Table2) return reason;
   const auto& cells = report.settings[setting].cells;
   std::string out =
-      stimulus_name(report.protocol.design.cells[static_cast<std::size_t>(cells.front())].stimulus);
+      study::stimulus_name(report.protocol.design.cells[static_cast<std::size_t>(cells.front())].stimulus);
   if (cells.size() > 1) out += " and " + std::to_string(cells.size() - 1) + " more";
   return reason.empty() ? out : out + ": " + reason;
 }
 
-double longest_ms(const RefreshCheck& check, std::size_t setting) {
+double longest_ms(const study::RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
 }
 
 /// Prints the analyses that vip-stats will report; it describes the answers of any protocol.
 void print_analyses(const study::Protocol& protocol) {
-  const auto shown = hypotheses_of(protocol, {});
+  const auto shown = study::hypotheses_of(protocol, {});
   std::string ids;
   for (const auto& one : shown.claims) ids += (ids.empty() ? "" : ", ") + one.id;
   if (!ids.empty()) std::printf("tested: %s\n", ids.c_str());
-  for (const auto& question : curve_questions(protocol))
+  for (const auto& question : study::curve_questions(protocol))
     std::printf("fitted: the curve of question %s, at level %g of %d to %d\n", question.id.c_str(),
                 study::fitted_level(question), question.scale_min, question.scale_max);
   for (const auto& [id, reason] : shown.left_out)
@@ -52,12 +52,12 @@ std::string slower_words(const study::Protocol& protocol) {
   };
   std::string out;
   if (any([](const study::Block& block) { return !block.text.empty(); }))
-    out += fmt::format("texts read at {:g} words/s", slow_pace.words_per_s);
+    out += fmt::format("texts read at {:g} words/s", study::slow_pace.words_per_s);
   if (any([](const study::Block& block) {
         return block.kind == study::BlockKind::Break || block.between_groups_s > 0;
       }))
     out += fmt::format("{}each break {:g} s longer than it must be", out.empty() ? "" : " and ",
-                       slow_pace.break_s);
+                       study::slow_pace.break_s);
   return out.empty() ? "" : " (the longer with " + out + ")";
 }
 
@@ -69,22 +69,22 @@ void print_session(const CheckReport& report) {
   for (const auto& outline : report.outline.blocks) {
     std::printf("%-14s %-13s %5.1f to %4.1f  %s\n", outline.block->id.c_str(),
                 study::block_kind_name(outline.block->kind).c_str(), outline.seconds.least / 60,
-                outline.seconds.most / 60, describe_block(protocol, outline).c_str());
+                outline.seconds.most / 60, study::describe_block(protocol, outline).c_str());
   }
   const auto& all = report.outline;
   std::printf(
       "\nplan: %d units, %d trials; %.1f to %.1f min with %g to %g s an answer%s, %.1f to %.1f min of them "
       "the %d trials of the design\n",
-      all.units, all.trials, all.session_s.least / 60, all.session_s.most / 60, quick_pace.answer_s,
-      slow_pace.answer_s, slower_words(protocol).c_str(), all.trials_s.least / 60, all.trials_s.most / 60,
-      protocol.design.groups * study::trials_of_group(protocol.design));
+      all.units, all.trials, all.session_s.least / 60, all.session_s.most / 60, study::quick_pace.answer_s,
+      study::slow_pace.answer_s, slower_words(protocol).c_str(), all.trials_s.least / 60,
+      all.trials_s.most / 60, protocol.design.groups * study::trials_of_group(protocol.design));
   std::printf("a showing is cut, and fails, when it goes on for %g s past its %g s\n", overrun_s(protocol),
               protocol.design.cells.front().setting.duration_s);
-  std::printf("balance: %s\n", describe_balance(protocol, report.balance).c_str());
+  std::printf("balance: %s\n", study::describe_balance(protocol, report.balance).c_str());
   print_analyses(protocol);
 }
 
-void print_settings(const CheckReport& report, const RefreshCheck& check) {
+void print_settings(const CheckReport& report, const study::RefreshCheck& check) {
   if (check.asked_hz != check.refresh_hz)
     std::printf(
         "\n%g Hz counts as %g Hz, as in run: holds are whole periods of it, and each showing is %.2f %% %s\n",
@@ -113,10 +113,10 @@ void print_settings(const CheckReport& report, const RefreshCheck& check) {
   }
 }
 
-void print_common(const std::vector<RefreshCheck>& checks) {
+void print_common(const std::vector<study::RefreshCheck>& checks) {
   std::printf("\nexact settings by refresh:");
   for (const auto& check : checks) std::printf(" %g Hz %d;", check.refresh_hz, check.exact);
-  const auto& best = best_refresh(checks);
+  const auto& best = study::best_refresh(checks);
   std::printf("\nbest of these: %g Hz, %d exact, mean distance to the unquantised rates %.2g frames/s\n",
               best.refresh_hz, best.exact, best.distance);
 }
@@ -127,14 +127,14 @@ void print_speed(const CheckReport& report) {
     std::printf("play speed: %s\n", content.real_time ? "real time" : "rate of the machine x content_step_s");
     return;
   }
-  const Span speeds = play_speeds(report);
+  const study::Span speeds = play_speeds(report);
   std::printf("play speed: %.2f to %.2f of real time (%s, content step %.4g ms): part of the stimulus\n",
               speeds.least, speeds.most, content.real_time ? "real_time" : "per_frame: mean x content_step_s",
               1000 * content.content_step_s);
 }
 
 /// True if the scene has free obstacles, which a bake of particles does not store.
-bool has_free_obstacles(const PlannedStimulus& one) {
+bool has_free_obstacles(const study::PlannedStimulus& one) {
   return sim::any_free(sim::read_scene(base::find_input(one.what.scene)).obstacles);
 }
 
@@ -146,9 +146,9 @@ void print_stimuli(const CheckReport& report) {
   if (report.protocol.design.paint_temperature)
     std::printf("overlay: temperature is painted over the water of every stimulus\n");
   std::printf("\nstimuli:\n");
-  for (const auto& one : plan_bakes(report.protocol)) {
+  for (const auto& one : study::plan_bakes(report.protocol)) {
     const std::string rate = one.rate ? " at " + study::setting_name(*one.rate) : "";
-    std::printf("  %-28s ", (stimulus_name(one.what) + rate).c_str());
+    std::printf("  %-28s ", (study::stimulus_name(one.what) + rate).c_str());
     if (!one.live.empty()) {
       std::printf("live: %s\n", one.live.c_str());
     } else {
@@ -175,15 +175,15 @@ void print_stimuli(const CheckReport& report) {
 
 void print_framing(const CheckReport& report) {
   std::printf("\nframing:\n");
-  for (const FramedScene& one : report.scenes) {
-    std::printf("  %s", describe_framing(one).c_str());
+  for (const study::FramedScene& one : report.scenes) {
+    std::printf("  %s", study::describe_framing(one).c_str());
     for (const std::string& name : one.cut) std::printf("; %s leaves the picture", name.c_str());
     if (one.cut.empty())
       std::printf(one.scene.visible.empty() ? "; the scene declares nothing that must stay visible"
                                             : "; all that must stay visible is in the picture");
     std::printf("\n");
   }
-  for (const std::string& note : framing_notes(report.protocol, report.scenes))
+  for (const std::string& note : study::framing_notes(report.protocol, report.scenes))
     std::printf("  %s\n", note.c_str());
 }
 
@@ -211,11 +211,11 @@ double overrun_s(const study::Protocol& protocol) {
   return static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns) / 1e9;
 }
 
-Span play_speeds(const CheckReport& report) {
-  Span out{HUGE_VAL, 0};
+study::Span play_speeds(const CheckReport& report) {
+  study::Span out{HUGE_VAL, 0};
   for (const auto& [setting, cells] : report.settings) {
-    out.least = std::min(out.least, play_speed(report.protocol, setting));
-    out.most = std::max(out.most, play_speed(report.protocol, setting));
+    out.least = std::min(out.least, study::play_speed(report.protocol, setting));
+    out.most = std::max(out.most, study::play_speed(report.protocol, setting));
   }
   return out;
 }
@@ -230,7 +230,7 @@ void print_report(const CheckReport& report) {
   print_speed(report);
   print_stimuli(report);
   print_framing(report);
-  if (report.measured) std::printf("\nmeasured here:\n%s", measured_table(*report.measured).c_str());
+  if (report.measured) std::printf("\nmeasured here:\n%s", study::measured_table(*report.measured).c_str());
 }
 
 }  // namespace apps

@@ -4,15 +4,15 @@
 #include <string>
 
 #include "apps/common/options.hpp"
-#include "apps/common/streams.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/withdrawal.hpp"
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
 #include "libstudy/store/open_study.hpp"
 #include "libstudy/store/own_exports.hpp"
+#include "stats/base/streams.hpp"
 
 namespace apps {
 
@@ -103,7 +103,7 @@ void add_export_command(CLI::App& app) {
     if (const auto why = study::why_not_registered())
       std::fprintf(stderr,
                    "exports cannot be registered, so a withdrawal lists them and does not delete them: %s\n",
-                   for_terminal(*why).c_str());
+                   base::for_terminal(*why).c_str());
   });
 }
 

@@ -6,13 +6,13 @@
 #include <memory>
 #include <string>
 
-#include "apps/common/headset/offer.hpp"
-#include "apps/common/headset/picture_copy.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
-#include "apps/study/check/refresh_check.hpp"
 #include "apps/study/commands.hpp"
 #include "apps/study/headset_show.hpp"
+#include "libstudy/check/refresh_check.hpp"
+#include "libstudy/headset/offer.hpp"
+#include "libstudy/headset/picture_copy.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -37,20 +37,20 @@ std::string listed(const Values& values, Text text) {
 
 std::string hertz(double rate) { return fmt::format("{:g}", rate); }
 
-std::string refresh_text(const HeadsetOffer& offer) {
+std::string refresh_text(const study::HeadsetOffer& offer) {
   if (!offer.session) return "not known: " + offer.no_session;
-  const HeadsetOffer::InSession& session = *offer.session;
+  const study::HeadsetOffer::InSession& session = *offer.session;
   if (session.refresh_hz.empty()) return "not reported; it is measured when a session runs";
   std::string out = listed(session.refresh_hz, hertz) + " Hz";
   if (session.refresh_now) out += ", now " + hertz(*session.refresh_now) + " Hz";
   return out;
 }
 
-void print_offer(const HeadsetOffer& offer) {
+void print_offer(const study::HeadsetOffer& offer) {
   const auto row = [](const char* name, const std::string& text) { fmt::print("{:<12}{}\n", name, text); };
   row("runtime", offer.runtime + " " + offer.runtime_version);
   row("headset", offer.headset);
-  row("pictures", listed(offer.eyes, [](const EyePicture& eye) {
+  row("pictures", listed(offer.eyes, [](const study::EyePicture& eye) {
         return fmt::format("{} x {} px", eye.width, eye.height);
       }));
   row("refresh", refresh_text(offer));
@@ -59,16 +59,16 @@ void print_offer(const HeadsetOffer& offer) {
   row("gaze", offer.eye_gaze ? "eye tracker" : "none");
   row("times", offer.time_converts ? "on the system's clock: evidence grade C"
                                    : "not on the system's clock: evidence grade D");
-  if (offer.session) row("formats", listed(offer.session->formats, gl_format_name));
+  if (offer.session) row("formats", listed(offer.session->formats, study::gl_format_name));
   row("extensions", listed(offer.extensions, [](const std::string& name) { return name; }));
 }
 
 /// One line per setting: "mean 40, SD 5 frames/s exact at 90, 120 Hz".
-void print_exact_settings(const std::vector<CheckedSetting>& settings,
-                          const std::vector<RefreshCheck>& checks) {
+void print_exact_settings(const std::vector<study::CheckedSetting>& settings,
+                          const std::vector<study::RefreshCheck>& checks) {
   for (std::size_t i = 0; i < settings.size(); ++i) {
     std::string exact;
-    for (const RefreshCheck& check : checks) {
+    for (const study::RefreshCheck& check : checks) {
       if (check.verdicts[i].feasibility != study::Feasibility::Exact) continue;
       exact += (exact.empty() ? "" : ", ") + hertz(check.refresh_hz);
     }
@@ -77,19 +77,20 @@ void print_exact_settings(const std::vector<CheckedSetting>& settings,
   }
 }
 
-base::Json offer_json(const HeadsetOffer& offer) {
+base::Json offer_json(const study::HeadsetOffer& offer) {
   base::Json out{{"runtime", offer.runtime},      {"runtime_version", offer.runtime_version},
                  {"headset", offer.headset},      {"eyes", base::Json::array()},
                  {"opaque", offer.opaque},        {"position", offer.position},
                  {"eye_gaze", offer.eye_gaze},    {"time_converts", offer.time_converts},
                  {"extensions", offer.extensions}};
-  for (const EyePicture& eye : offer.eyes)
+  for (const study::EyePicture& eye : offer.eyes)
     out["eyes"].push_back({{"width_px", eye.width}, {"height_px", eye.height}});
   if (offer.session) {
     out["refresh_hz"] = offer.session->refresh_hz;
     if (offer.session->refresh_now) out["refresh_now_hz"] = *offer.session->refresh_now;
     out["formats"] = base::Json::array();
-    for (const std::int64_t format : offer.session->formats) out["formats"].push_back(gl_format_name(format));
+    for (const std::int64_t format : offer.session->formats)
+      out["formats"].push_back(study::gl_format_name(format));
   }
   return out;
 }
@@ -97,19 +98,20 @@ base::Json offer_json(const HeadsetOffer& offer) {
 void print_headset(const HeadsetOptions& options) {
   std::optional<study::Protocol> protocol;
   if (!options.protocol.empty()) protocol = study::read_protocol(study::find_protocol(options.protocol));
-  const HeadsetOffer offer = read_headset_offer();
+  const study::HeadsetOffer offer = study::read_headset_offer();
   print_offer(offer);
   base::Json json = offer_json(offer);
   if (protocol) {
-    const std::vector<CheckedSetting> settings = checked_settings(*protocol);
-    std::vector<RefreshCheck> checks;
+    const std::vector<study::CheckedSetting> settings = study::checked_settings(*protocol);
+    std::vector<study::RefreshCheck> checks;
     if (offer.session) {
-      for (const double rate : offer.session->refresh_hz) checks.push_back(check_refresh(*protocol, rate));
+      for (const double rate : offer.session->refresh_hz)
+        checks.push_back(study::check_refresh(*protocol, rate));
     }
     fmt::print("\n{}, {} settings\n", protocol->name, settings.size());
     if (checks.empty())
       fmt::print("  which of them are exact follows from the refresh: vip-study check --refresh HZ\n");
-    for (const RefreshCheck& check : checks) {
+    for (const study::RefreshCheck& check : checks) {
       fmt::print("  at {} Hz: {} exact, {} approximate, {} unreachable\n", hertz(check.refresh_hz),
                  check.exact, check.approximate, check.unreachable);
       json["protocol"].push_back({{"refresh_hz", check.refresh_hz},

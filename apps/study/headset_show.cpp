@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/common/headset/loader.hpp"
-#include "apps/common/headset/session_maker.hpp"
-#include "apps/common/headset/system.hpp"
-#include "apps/common/headset/test_scene.hpp"
+#include "libstudy/headset/loader.hpp"
+#include "libstudy/headset/session_maker.hpp"
+#include "libstudy/headset/system.hpp"
+#include "libstudy/headset/test_scene.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -29,9 +29,9 @@ using Seconds = std::chrono::duration<double>;
 constexpr Seconds most_idle{30};
 
 /// Angles of a ray to the right and up from the head's forward direction, degrees.
-std::array<double, 2> angles_in_head(const HeadsetPose& head, const HeadsetPose& ray) {
-  const auto axes = axes_of(head);
-  const auto direction = direction_of(ray);
+std::array<double, 2> angles_in_head(const study::HeadsetPose& head, const study::HeadsetPose& ray) {
+  const auto axes = study::axes_of(head);
+  const auto direction = study::direction_of(ray);
   std::array<double, 3> along{};
   for (std::size_t i = 0; i < 9; ++i)
     along[i / 3] += static_cast<double>(axes[i]) * static_cast<double>(direction[i % 3]);
@@ -43,7 +43,7 @@ struct GazeCount {
   std::int64_t samples = 0, valid = 0, tracked = 0, last_ns = -1;
   std::array<double, 2> sum_deg{};
 
-  void add(const HeadsetGaze& gaze, const HeadsetPose& head) {
+  void add(const study::HeadsetGaze& gaze, const study::HeadsetPose& head) {
     if (gaze.sampled_ns && *gaze.sampled_ns == last_ns) return;  // a repeated sample of a slow tracker
     last_ns = gaze.sampled_ns.value_or(-1);
     ++samples;
@@ -59,7 +59,7 @@ struct ShowReport {
   std::string headset, ended;
   std::vector<std::string> states, notes;
   std::int64_t frames = 0, shown = 0, dropped = 0, repeated = 0, off_grid = 0, selected = 0, pushed = 0;
-  HeadsetRate rate;
+  study::HeadsetRate rate;
   bool times_convert = false, has_gaze = false;
   GazeCount gaze;
 };
@@ -70,7 +70,7 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-std::string rate_text(const HeadsetRate& rate) {
+std::string rate_text(const study::HeadsetRate& rate) {
   std::string out = rate.measured_hz
                         ? fmt::format("{:.2f} Hz measured from predicted times", *rate.measured_hz)
                         : "not known: too few steps between predicted times";
@@ -112,8 +112,8 @@ void print_report(const ShowReport& report) {
 /// One headset session of the show; another may follow if it is lost.
 class Show {
  public:
-  Show(std::unique_ptr<HeadsetSession> session, const TestScene& scene, const ShowChoice& choice,
-       ShowReport& report)
+  Show(std::unique_ptr<study::HeadsetSession> session, const study::TestScene& scene,
+       const ShowChoice& choice, ShowReport& report)
       : session_(std::move(session)),
         picture_(session_->picture_size().width, session_->picture_size().height),
         scene_(scene),
@@ -137,9 +137,9 @@ class Show {
   bool run(double& seconds_left) {
     auto idle_since = std::chrono::steady_clock::now();
     while (true) {
-      for (const HeadsetEvent& event : session_->poll()) note(event);
-      if (session_->state() == HeadsetState::Exiting) return true;
-      if (session_->state() == HeadsetState::LossPending || runtime_ends_) return false;
+      for (const study::HeadsetEvent& event : session_->poll()) note(event);
+      if (session_->state() == study::HeadsetState::Exiting) return true;
+      if (session_->state() == study::HeadsetState::LossPending || runtime_ends_) return false;
       if (session_->running()) {
         frame(seconds_left);
         if (seconds_left <= 0 && !asked_to_exit_) ask_to_exit();
@@ -164,9 +164,9 @@ class Show {
     session_->request_exit();
   }
 
-  void note(const HeadsetEvent& event) {
-    using Kind = HeadsetEvent::Kind;
-    if (event.kind == Kind::State) report_.states.emplace_back(name_of(event.state));
+  void note(const study::HeadsetEvent& event) {
+    using Kind = study::HeadsetEvent::Kind;
+    if (event.kind == Kind::State) report_.states.emplace_back(study::name_of(event.state));
     if (event.kind == Kind::Refresh)
       report_.notes.push_back(
           fmt::format("refresh went from {:.4g} to {:.4g} Hz", event.from_hz, event.to_hz));
@@ -176,13 +176,13 @@ class Show {
   }
 
   void frame(double& seconds_left) {
-    const HeadsetSlot slot = session_->wait();
+    const study::HeadsetSlot slot = session_->wait();
     if (last_ns_) seconds_left -= static_cast<double>(slot.predicted_ns - *last_ns_) * 1e-9;
     last_ns_ = slot.predicted_ns;
     session_->begin(slot);
     take(session_->input(slot));
-    const EyeViews views = session_->views(slot);
-    const bool shows = slot.should_render && can_be_shown(views);
+    const study::EyeViews views = session_->views(slot);
+    const bool shows = slot.should_render && study::can_be_shown(views);
     if (shows) {
       for (std::size_t eye = 0; eye < views.size(); ++eye)
         scene_.draw(views[eye], picture_.framebuffer(), eye == 0 ? 0 : views[0].width_px);
@@ -192,7 +192,7 @@ class Show {
     report_.shown += shows;
   }
 
-  void take(const HeadsetInput& input) {
+  void take(const study::HeadsetInput& input) {
     if (input.gaze) report_.gaze.add(*input.gaze, input.head);
     report_.selected += input.hands.select_began;
     const bool pushed = std::hypot(input.hands.stick[0], input.hands.stick[1]) > 0.5f;
@@ -200,9 +200,9 @@ class Show {
     pushed_ = pushed;
   }
 
-  std::unique_ptr<HeadsetSession> session_;
+  std::unique_ptr<study::HeadsetSession> session_;
   sim::Offscreen picture_;
-  const TestScene& scene_;
+  const study::TestScene& scene_;
   ShowReport& report_;
   double asked_hz_;  ///< 0: none
   std::optional<std::int64_t> last_ns_;
@@ -210,15 +210,15 @@ class Show {
 };
 
 void show_sessions(const ShowChoice& choice, ShowReport& report) {
-  const sim::GlContext gl = make_headset_context();
-  const TestScene scene;
-  SessionMaker sessions(gl, {.eye_gaze = true, .patience_s = choice.patience_s});
+  const sim::GlContext gl = study::make_headset_context();
+  const study::TestScene scene;
+  study::SessionMaker sessions(gl, {.eye_gaze = true, .patience_s = choice.patience_s});
   auto session = sessions.make();
   for (double seconds_left = choice.seconds;;) {
     try {
       Show show(std::move(session), scene, choice, report);
       if (show.run(seconds_left)) return;
-    } catch (const HeadsetLost&) {
+    } catch (const study::HeadsetLost&) {
     }
     session = sessions.make();
     report.notes.emplace_back("a session was lost and started again");

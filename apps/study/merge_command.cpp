@@ -7,8 +7,8 @@
 #include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "apps/study/desk/database_place.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/console/database_place.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/open_study.hpp"
 
 namespace apps {
@@ -42,7 +42,7 @@ void print_balance(const study::Merge& done, const std::string& into) {
 }
 
 void merge(const MergeCommand& command) {
-  warn_of_place(command.into);
+  study::warn_of_place(command.into);
   if (command.incomplete) {
     for (const std::string& source : command.sources) print_lacking(source, study::lacking_of(source));
   }

@@ -4,17 +4,17 @@
 #include <cstdio>
 #include <memory>
 
-#include "apps/study/bakes/moved_bakes.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "apps/study/headset/answer_ways.hpp"
 #include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
 #include "apps/study/station_warnings.hpp"
+#include "libstudy/pages/headset/answer_ways.hpp"
 #include "libstudy/session/interruptions.hpp"
-#include "libstudy/session/machine.hpp"
+#include "libstudy/stimulus/bakes/moved_bakes.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/machine.hpp"
 
 namespace apps {
 
@@ -50,7 +50,7 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
 }
 
 /// Refuses settings other than those with which the sessions began.
-void check_settings(const std::vector<std::string>& files, const RunOptions& recorded,
+void check_settings(const std::vector<std::string>& files, const study::RunOptions& recorded,
                     const std::string& place) {
   for (const std::string& file : files) {
     const std::string text = base::read_file(file, 1 << 20);
@@ -68,7 +68,7 @@ void check_settings(const std::vector<std::string>& files, const RunOptions& rec
 }
 
 /// Refuses changed stimuli. Only records a changed station and how its display frames the scenes.
-void check_unchanged(study::Store& store, const study::OpenRun& run, const SessionSetup& setup,
+void check_unchanged(study::Store& store, const study::OpenRun& run, const study::SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {
     if (session.plan.stimulus != setup.stimuli->description()) {
@@ -83,23 +83,24 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const Sessi
                             " on this display, which makes test data",
                         "resume on the display where the session began");
     }
-    store.add_framing(session.id, framing_record(setup.scenes));
-    store.log(session.id, "resumed", study::describe_machine() + "; display " + setup.display->description(),
+    store.add_framing(session.id, study::framing_record(setup.scenes));
+    store.log(session.id, "resumed", base::describe_machine() + "; display " + setup.display->description(),
               setup.clock->now_ns());
   }
 }
 
 /// The options of each run, with the current path of its bake.
-std::vector<RunOptions> recorded_options(const std::vector<study::OpenRun>& runs,
-                                         const std::vector<std::string>& stimuli, const std::string& place) {
+std::vector<study::RunOptions> recorded_options(const std::vector<study::OpenRun>& runs,
+                                                const std::vector<std::string>& stimuli,
+                                                const std::string& place) {
   if (runs.empty()) return {};
-  std::vector<RunOptions> all;
-  std::vector<RecordedBake> bakes;
+  std::vector<study::RunOptions> all;
+  std::vector<study::RecordedBake> bakes;
   for (const study::OpenRun& run : runs) {
-    all.push_back(parse_run_options(run.options, place));
+    all.push_back(study::parse_run_options(run.options, place));
     bakes.push_back({all.back().bake, run.sessions.front().plan.stimulus});
   }
-  const std::vector<std::string> paths = find_bakes(bakes, stimuli, place);
+  const std::vector<std::string> paths = study::find_bakes(bakes, stimuli, place);
   for (std::size_t i = 0; i < all.size(); ++i) all[i].bake = paths[i];
   return all;
 }
@@ -121,11 +122,12 @@ Played play_rest(const ResumeOptions& resume) {
   const auto recorded = recorded_options(runs, resume.stimuli, place);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const study::OpenRun& run = runs[i];
-    const RunOptions& chosen = recorded[i];
+    const study::RunOptions& chosen = recorded[i];
     const study::Protocol protocol = rebuild_protocol(run, place);
     check_settings(resume.settings, chosen, place);
-    check_keys_are_free(chosen.answer, options.console);
-    SessionSetup setup = make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
+    study::check_keys_are_free(chosen.answer, options.console);
+    study::SessionSetup setup =
+        study::make_session_setup(chosen, protocol, run.sessions.front().plan.ptpe, place, place);
     setup.warnings = warnings;
     open_mirror(options, setup);
     setup.rates = check_live(protocol, setup, options.accept_slow || chosen.accept_slow);

@@ -6,21 +6,21 @@
 #include <optional>
 
 #include "apps/common/options.hpp"
-#include "apps/common/picture_size.hpp"
-#include "apps/common/streams.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "apps/study/headset/answer_ways.hpp"
 #include "apps/study/live_rates.hpp"
 #include "apps/study/session_player.hpp"
 #include "apps/study/station_warnings.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/observer/observer.hpp"
+#include "libstudy/pages/headset/answer_ways.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
-#include "libstudy/session/machine.hpp"
 #include "libstudy/session/session.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/machine.hpp"
+#include "stats/base/picture_size.hpp"
+#include "stats/base/streams.hpp"
 
 namespace apps {
 
@@ -31,7 +31,7 @@ namespace {
 struct RunCommand {
   std::string protocol;
   PlayOptions play;
-  RunOptions run;
+  study::RunOptions run;
   int participants = 0;
   std::vector<std::string> codes;
   int visit = 1;
@@ -39,7 +39,7 @@ struct RunCommand {
   std::optional<double> trial_seconds;
   std::string bake, ptpe;
   std::vector<std::string> settings;  ///< files
-  std::optional<PictureSize> size;
+  std::optional<base::PictureSize> size;
 };
 
 /// P01, P02, ... or the given codes.
@@ -55,7 +55,7 @@ std::vector<std::string> participant_codes(const RunCommand& command, const stud
 }
 
 /// Default clock and display: real time and a window for a person, neither for an observer.
-void choose_defaults(RunOptions& run) {
+void choose_defaults(study::RunOptions& run) {
   const bool person = run.observer.empty();
   if (run.display.empty()) run.display = person ? "window" : "none";
   if (run.clock.empty()) run.clock = person || run.display == "window" ? "real" : "virtual";
@@ -63,7 +63,7 @@ void choose_defaults(RunOptions& run) {
 }
 
 /// Sets the size; without one, a window fills the monitor.
-void take_size(const std::optional<PictureSize>& size, RunOptions& run) {
+void take_size(const std::optional<base::PictureSize>& size, study::RunOptions& run) {
   if (!size && run.display != "window") return;
   run.width_px = size ? size->width : 0;
   run.height_px = size ? size->height : 0;
@@ -87,26 +87,26 @@ std::vector<std::string> read_settings(const std::vector<std::string>& paths,
   std::vector<std::string> texts;
   for (const std::string& path : paths) {
     texts.push_back(base::read_file(path, 1 << 20));
-    SessionSettings({texts.back()}, protocol, path);
+    study::SessionSettings({texts.back()}, protocol, path);
   }
   return texts;
 }
 
 study::SessionPlan common_plan(const RunCommand& command, const study::Protocol& protocol,
-                               const SessionSetup& setup, const std::optional<std::string>& ptpe) {
+                               const study::SessionSetup& setup, const std::optional<std::string>& ptpe) {
   study::SessionPlan session;
   session.visit = command.visit;
   session.station_number = study::parse_station_number(command.run.station);
   session.seed = study::seed_of_station(static_cast<std::uint64_t>(command.seed), session.station_number);
   session.test_data = protocol.test_data || !setup.departure().empty() ||
                       (command.run.display == "openxr" && command.run.clock == "virtual");
-  session.framing = framing_record(setup.scenes);
+  session.framing = study::framing_record(setup.scenes);
   session.observer = setup.participant->simulated();
   session.virtual_clock = setup.virtual_clock;
   session.display = setup.display->description();
   session.stimulus = setup.stimuli->description();
-  session.machine = study::describe_machine();
-  session.time_zone = study::local_time_zone();
+  session.machine = base::describe_machine();
+  session.time_zone = base::local_time_zone();
   session.ptpe = ptpe;
   const bool fixation = protocol.fixation && command.run.gaze == "fixed";
   session.gaze_source = fixation ? "fixation" : command.run.gaze;
@@ -121,7 +121,7 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
 study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
                              study::SessionPlan session, const std::vector<std::string>& codes,
                              std::vector<int> taken) {
-  study::RunPlan run{protocol, format_run_options(command.run), {}};
+  study::RunPlan run{protocol, study::format_run_options(command.run), {}};
   for (const std::string& code : codes) {
     taken.push_back(study::next_slot(protocol, taken, session.station_number));
     session.participant = code;
@@ -159,7 +159,7 @@ void check_station_number(study::Store& store, const study::Protocol& protocol,
 
 Played play_planned(const RunCommand& command, const study::Protocol& protocol,
                     const study::SessionPlan& common, const std::vector<std::string>& codes,
-                    SessionSetup& setup) {
+                    study::SessionSetup& setup) {
   study::Store store(command.play.database, study::sqlite::Open::Create, command.play.max_pages,
                      tell_of_locks(command.play.database));
   print_list("Still left of a withdrawal or a merge:", store.left_to_clean());
@@ -190,8 +190,8 @@ void run(RunCommand& command) {
   for (const std::string& code : codes) study::check_participant_code(code);
   const auto ptpe = read_ptpe(command.ptpe);
   command.run.settings = read_settings(command.settings, protocol);
-  check_keys_are_free(command.run.answer, command.play.console);
-  SessionSetup setup = make_session_setup(command.run, protocol, ptpe, command.ptpe);
+  study::check_keys_are_free(command.run.answer, command.play.console);
+  study::SessionSetup setup = study::make_session_setup(command.run, protocol, ptpe, command.ptpe);
   study::check_settings(protocol, *setup.display);
   open_mirror(command.play, setup);
   setup.rates = check_live(protocol, setup, command.play.accept_slow);
@@ -201,14 +201,14 @@ void run(RunCommand& command) {
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
   if (!setup.departure().empty())
     std::fprintf(stderr, "%s: shows %s; the data are marked as test data\n", command.bake.c_str(),
-                 for_terminal(setup.departure()).c_str());
+                 base::for_terminal(setup.departure()).c_str());
   for (const std::string& note : setup.stimuli->bakes().notes(command.protocol))
-    std::fprintf(stderr, "%s: %s\n", command.bake.c_str(), for_terminal(note).c_str());
+    std::fprintf(stderr, "%s: %s\n", command.bake.c_str(), base::for_terminal(note).c_str());
   for (const std::string& note : setup.stimuli->settings().notes(protocol))
-    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), for_terminal(note).c_str());
-  for (const std::string& note : framing_notes(protocol, setup.scenes))
-    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), for_terminal(note).c_str());
-  if (setup.gaze && !asks_gaze(protocol))
+    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), base::for_terminal(note).c_str());
+  for (const std::string& note : study::framing_notes(protocol, setup.scenes))
+    std::fprintf(stderr, "%s: %s\n", command.protocol.c_str(), base::for_terminal(note).c_str());
+  if (setup.gaze && !study::asks_gaze(protocol))
     std::fprintf(stderr, "%s: does not ask %s; gaze will not be recorded\n", command.protocol.c_str(),
                  study::gaze_question);
   const StopSignals signals;

@@ -5,7 +5,7 @@
 
 #include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
-#include "libstudy/store/salvage.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 
 namespace apps {
 

@@ -10,23 +10,23 @@
 #include <functional>
 #include <optional>
 
-#include "apps/common/program.hpp"
-#include "apps/common/streams.hpp"
-#include "apps/study/desk/certificate.hpp"
-#include "apps/study/desk/console.hpp"
-#include "apps/study/desk/progress.hpp"
-#include "apps/study/desk/terminal.hpp"
 #include "apps/study/station_warnings.hpp"
 #include "apps/study/withdrawal.hpp"
+#include "libstudy/console/certificate.hpp"
+#include "libstudy/console/console.hpp"
+#include "libstudy/console/progress.hpp"
+#include "libstudy/console/terminal.hpp"
 #include "libstudy/pacing/real_time.hpp"
 #include "libstudy/session/session.hpp"
-#include "libstudy/store/frame_costs.hpp"
 #include "libstudy/store/names.hpp"
 #include "libstudy/store/personal.hpp"
-#include "libstudy/store/session_counts.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/frame_costs.hpp"
+#include "libstudy/store/read/session_counts.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/progress.hpp"
+#include "stats/base/streams.hpp"
 
 namespace apps {
 
@@ -71,14 +71,14 @@ study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database) {
   return [database, calls = 0](const std::string& holder) mutable {
     if (calls++ % 10 == 0) {
       std::fprintf(stderr, "%s%s: %s keeps it locked; waiting, nothing is lost. Close it there.\n",
-                   ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", for_terminal(database.string()).c_str(),
-                   for_terminal(holder).c_str());
+                   ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "",
+                   base::for_terminal(database.string()).c_str(), base::for_terminal(holder).c_str());
     }
     return !StopSignals::stop_requested();
   };
 }
 
-void open_mirror(const PlayOptions& options, const SessionSetup& setup) {
+void open_mirror(const PlayOptions& options, const study::SessionSetup& setup) {
   if (!options.mirror) return;
   if (!setup.open_mirror)
     throw base::Error("--mirror", "there is no participant's window to mirror",
@@ -107,14 +107,15 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
 class Steering {
  public:
   Steering(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-           const SessionSetup& setup, const PlayOptions& options, std::vector<std::string> warnings)
+           const study::SessionSetup& setup, const PlayOptions& options, std::vector<std::string> warnings)
       : store_(store),
         protocol_(protocol),
         window_(setup.request),
         events_(options.events),
         warnings_(std::move(warnings)) {
     if (options.console) {
-      console_.emplace(protocol, store, options.database, setup.idle, showing_times(protocol, setup.rates));
+      console_.emplace(protocol, store, options.database, setup.idle,
+                       study::showing_times(protocol, setup.rates));
       terminal_.emplace(*console_);
     } else {
       progress_.emplace("session steps", units_left(run));
@@ -168,24 +169,26 @@ class Steering {
 
   study::Store& store_;
   const study::Protocol& protocol_;
-  const WindowRequest& window_;
+  const study::WindowRequest& window_;
   bool events_;
   std::vector<std::string> warnings_;  ///< of the station, for the console
   std::size_t done_ = 0;
-  std::optional<Progress> progress_;
-  std::optional<Console> console_;
-  std::optional<ConsoleTerminal> terminal_;
+  std::optional<base::Progress> progress_;
+  std::optional<study::Console> console_;
+  std::optional<study::ConsoleTerminal> terminal_;
 };
 
 /// Prints the remaining duration in real time on stderr, before the first step.
-void print_length(const study::OpenRun& run, const study::Protocol& protocol, const SessionSetup& setup) {
+void print_length(const study::OpenRun& run, const study::Protocol& protocol,
+                  const study::SessionSetup& setup) {
   const bool person = !setup.participant->simulated();
-  const auto showing_s = showing_times(protocol, setup.rates);
+  const auto showing_s = study::showing_times(protocol, setup.rates);
   double seconds = 0;
-  for (const auto& session : run.sessions) seconds += expected_s(protocol, session.units, person, showing_s);
-  std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n", for_terminal(protocol.name).c_str(),
-               run.sessions.size(), run.sessions.size() == 1 ? "" : "s",
-               base::duration_words(seconds).c_str());
+  for (const auto& session : run.sessions)
+    seconds += study::expected_s(protocol, session.units, person, showing_s);
+  std::fprintf(stderr, "%s: %zu session%s in real time, about %s\n",
+               base::for_terminal(protocol.name).c_str(), run.sessions.size(),
+               run.sessions.size() == 1 ? "" : "s", base::duration_words(seconds).c_str());
 }
 
 /// The session's current state in the store; none if it has no open unit.
@@ -227,7 +230,7 @@ RunEnd tell_ends(const study::OpenRun& run, const std::vector<EndedEarly>& all,
   return end;
 }
 
-void log_mirror(study::Store& store, const study::OpenSession& session, const SessionSetup& setup,
+void log_mirror(study::Store& store, const study::OpenSession& session, const study::SessionSetup& setup,
                 bool reveals) {
   store.log(session.id, reveals ? study::mirror_event : study::pages_mirror_event,
             reveals ? "the experimenter sees the participant's view"
@@ -236,7 +239,7 @@ void log_mirror(study::Store& store, const study::OpenSession& session, const Se
 }
 
 void play_sessions(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-                   SessionSetup& setup, const PlayOptions& options, std::vector<EndedEarly>& early) {
+                   study::SessionSetup& setup, const PlayOptions& options, std::vector<EndedEarly>& early) {
   std::optional<study::RealTimeScheduling> real_time;
   if (!setup.virtual_clock) {
     real_time.emplace();
@@ -261,8 +264,8 @@ void play_sessions(study::Store& store, const study::OpenRun& run, const study::
     if (real_time) store.log(session.id, "scheduling", real_time->note(), setup.clock->now_ns());
     if (options.mirror) log_mirror(store, session, setup, options.mirror_reveal);
     if (!setup.rates.cells.empty())
-      store.log(session.id, "live rates", measured_table(setup.rates), setup.clock->now_ns());
-    if (const auto costs = frame_costs(setup.rates); !costs.empty())
+      store.log(session.id, "live rates", study::measured_table(setup.rates), setup.clock->now_ns());
+    if (const auto costs = study::frame_costs(setup.rates); !costs.empty())
       store.log(session.id, study::frame_costs_event, study::format_frame_costs(costs),
                 setup.clock->now_ns());
     play(session);
@@ -286,7 +289,7 @@ const char* const exit_status_help =
     "4 a person did not consent or is not eligible.";
 
 RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-                SessionSetup& setup, const PlayOptions& options) {
+                study::SessionSetup& setup, const PlayOptions& options) {
   std::vector<EndedEarly> early;
   const auto tell = [&] { return tell_ends(run, early, options.database); };
   try {
@@ -303,7 +306,7 @@ void print_certificate(const std::filesystem::path& database, const study::OpenR
                        const study::Protocol& protocol) {
   const auto rows = study::read_certificate(database, run.id, protocol.pacing.mean);
   const bool coloured = ::isatty(STDOUT_FILENO) == 1;
-  print_coloured(format_certificate(rows, protocol.pacing.mean, coloured));
+  base::print_coloured(study::format_certificate(rows, protocol.pacing.mean, coloured));
 }
 
 }  // namespace apps

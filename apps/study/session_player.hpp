@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/study/session_setup.hpp"
+#include "libstudy/runner/session_setup.hpp"
 #include "libstudy/store/store.hpp"
 
 namespace apps {
@@ -42,7 +42,7 @@ struct PlayOptions {
 };
 
 /// Opens the mirror if requested. base::Error if there is no window, or no room for a second one.
-void open_mirror(const PlayOptions& options, const SessionSetup& setup);
+void open_mirror(const PlayOptions& options, const study::SessionSetup& setup);
 
 /// How people's sessions ended: the last of these values that applies to any of them. Sessions of observers
 /// are Done.
@@ -55,7 +55,7 @@ enum class RunEnd {
 /// Plays all sessions of an open run with a progress bar, and prints which ended early. base::Error naming
 /// resume if it was stopped on request.
 RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
-                SessionSetup& setup, const PlayOptions& options);
+                study::SessionSetup& setup, const PlayOptions& options);
 
 /// Work left after a command has played and closed its database.
 struct Played {

@@ -2,11 +2,11 @@
 
 #include <cstdio>
 
-#include "apps/common/streams.hpp"
-#include "apps/study/desk/database_place.hpp"
-#include "apps/study/desk/preflight.hpp"
-#include "apps/study/desk/progress.hpp"
+#include "libstudy/console/database_place.hpp"
+#include "libstudy/console/preflight.hpp"
+#include "libstudy/console/progress.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/streams.hpp"
 #include "stats/base/utc.hpp"
 
 namespace apps {
@@ -16,16 +16,17 @@ namespace {
 constexpr std::int64_t back_s = 60, ahead_s = std::int64_t{366} * 86'400;
 
 std::vector<std::string> check_window_station(study::Store& store, const study::OpenSession& session,
-                                              const study::Protocol& protocol, const SessionSetup& setup,
+                                              const study::Protocol& protocol,
+                                              const study::SessionSetup& setup,
                                               const std::filesystem::path& database) {
-  const auto bytes = expected_bytes(protocol, session.units);
-  const auto judged = judge_preflight(setup.screen, read_station(database), bytes);
-  const std::string lines = format_preflight(judged);
+  const auto bytes = study::expected_bytes(protocol, session.units);
+  const auto judged = study::judge_preflight(setup.screen, study::read_station(database), bytes);
+  const std::string lines = study::format_preflight(judged);
   std::fprintf(stderr, "%s", lines.c_str());
   store.log(session.id, "preflight", lines, setup.clock->now_ns());
   std::vector<std::string> warnings;
-  for (const PreflightLine& line : judged) {
-    if (line.readiness == Readiness::Warn) warnings.push_back(line.what + ": " + line.finding);
+  for (const study::PreflightLine& line : judged) {
+    if (line.readiness == study::Readiness::Warn) warnings.push_back(line.what + ": " + line.finding);
   }
   return warnings;
 }
@@ -49,16 +50,17 @@ std::string clock_problem(const std::string& now, const std::string& newest, con
 }
 
 std::vector<std::string> warn_of_station(study::Store& store, const std::filesystem::path& database) {
-  std::vector<std::string> warnings = place_problems(database);
+  std::vector<std::string> warnings = study::place_problems(database);
   if (const auto problem = clock_problem(base::utc_now(), store.newest_utc(), base::built_utc());
       !problem.empty())
     warnings.push_back(problem);
-  for (const std::string& one : warnings) std::fprintf(stderr, "warning: %s\n", for_terminal(one).c_str());
+  for (const std::string& one : warnings)
+    std::fprintf(stderr, "warning: %s\n", base::for_terminal(one).c_str());
   return warnings;
 }
 
 std::vector<std::string> check_station(study::Store& store, const study::OpenRun& run,
-                                       const study::Protocol& protocol, const SessionSetup& setup,
+                                       const study::Protocol& protocol, const study::SessionSetup& setup,
                                        const std::filesystem::path& database) {
   std::vector<std::string> warnings;
   for (const std::string& one : setup.warnings) warnings.push_back(one.substr(0, one.find('\n')));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/study/session_setup.hpp"
+#include "libstudy/runner/session_setup.hpp"
 #include "libstudy/store/store.hpp"
 
 namespace apps {
@@ -21,7 +21,7 @@ std::vector<std::string> warn_of_station(study::Store& store, const std::filesys
 /// Call before the first step: logs those warnings in each session; with a window, also logs and prints the
 /// facts of screen and computer. Returns all warnings.
 std::vector<std::string> check_station(study::Store& store, const study::OpenRun& run,
-                                       const study::Protocol& protocol, const SessionSetup& setup,
+                                       const study::Protocol& protocol, const study::SessionSetup& setup,
                                        const std::filesystem::path& database);
 
 }  // namespace apps

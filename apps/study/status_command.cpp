@@ -6,7 +6,7 @@
 #include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/text.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "apps/common/options.hpp"
 #include "apps/study/commands.hpp"
-#include "apps/study/desk/database_place.hpp"
 #include "apps/study/withdrawal.hpp"
+#include "libstudy/console/database_place.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -38,7 +38,7 @@ void confirm(const WithdrawCommand& command) {
 }
 
 void withdraw(const WithdrawCommand& command) {
-  warn_of_place(command.database);
+  study::warn_of_place(command.database);
   confirm(command);
   withdraw_and_tell(command.database, command.participant);
 }

@@ -5,15 +5,16 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "apps/common/finite_water.hpp"
-#include "apps/common/fluid_picture.hpp"
-#include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
+#include "libsim/render/fluid_picture.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
 #include "stats/fps_window.hpp"
 
 namespace apps {
@@ -37,11 +38,11 @@ class PictureFolder {
  public:
   explicit PictureFolder(const ViewOptions& options)
       : folder_(options.png_folder), overlays_(parse_overlays(options.overlay)) {
-    if (!folder_.empty()) make_folder(folder_);
+    if (!folder_.empty()) base::make_folder(folder_);
   }
 
   /// Writes the pictures of the frame that `picture` has just drawn.
-  void write(int frame, const PreparedFluid& prepared, FluidPicture& picture, const sim::View& view,
+  void write(int frame, const PreparedFluid& prepared, sim::FluidPicture& picture, const sim::View& view,
              const sim::Offscreen& target) {
     sim::Simulation& fluid = *prepared.fluid;
     OverlayPainter painter(prepared.scene, prepared.finest_spacing_m);
@@ -121,18 +122,18 @@ void run_headless(const ViewOptions& options) {
   PictureFolder pictures(options);
   const PreparedFluid prepared = prepare_fluid(options);
   std::printf("OpenGL: %s\n", sim::gl_description().c_str());
-  FluidPicture picture(prepared.scene);
+  sim::FluidPicture picture(prepared.scene);
   const sim::View view = sim::make_view(prepared.camera, options.size.width, options.size.height);
 
   Timing timing;
   constexpr int usual_frames = 100;
   const int frames = options.frames.value_or(usual_frames);
-  Progress progress("frames", static_cast<std::size_t>(frames));
+  base::Progress progress("frames", static_cast<std::size_t>(frames));
   for (int frame = 0; frame < frames; ++frame) {
     if (frame > 0) {
       const sim::Vec3d at =
           sim::gaze_point(prepared.scene, sim::scene_frame(prepared.scene, frame, prepared.frame_dt_s));
-      picture.look(*prepared.fluid, view, gaze_at(prepared.camera, at));
+      picture.look(*prepared.fluid, view, sim::gaze_at(prepared.camera, at));
     }
     const double start = seconds_now();
     if (frame > 0) {
@@ -157,9 +158,10 @@ void run_headless(const ViewOptions& options) {
     if (kept) pictures.write(frame, prepared, picture, view, target);
     progress.update(static_cast<std::size_t>(frame) + 1);
   }
-  check_finite(*prepared.fluid, options.scene);
+  sim::check_finite(*prepared.fluid, options.scene);
   print_timing(timing, frames, prepared);
-  if (prepared.follows_picture) std::printf("seen   %s\n", in_words(prepared.fluid->report().seen).c_str());
+  if (prepared.follows_picture)
+    std::printf("seen   %s\n", sim::in_words(prepared.fluid->report().seen).c_str());
   if (timing.draws) print_render_counts(picture.renderer().counts());
   if (prepared.ptpe) print_tolerance(*prepared.ptpe, timing.window.moments());
   pictures.print();

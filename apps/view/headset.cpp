@@ -8,10 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "apps/common/fluid_stimulus.hpp"
-#include "apps/common/headset/headset_recorder.hpp"
 #include "apps/view/options.hpp"
 #include "libsim/render/gl_context.hpp"
+#include "libstudy/headset/headset_recorder.hpp"
+#include "libstudy/stimulus/fluid_stimulus.hpp"
 #include "stats/base/error.hpp"
 #include "stats/fps_window.hpp"
 
@@ -43,7 +43,7 @@ struct Shown {
 /// Shows the scene around the person in real time, or slower if the fluid takes longer.
 class HeadsetViewer {
  public:
-  HeadsetViewer(HeadsetDisplay& display, const ViewOptions& options)
+  HeadsetViewer(study::HeadsetDisplay& display, const ViewOptions& options)
       : frames_(options.frames),
         display_(display),
         clock_(display),
@@ -56,7 +56,7 @@ class HeadsetViewer {
     PreparedFluid prepared = prepare_fluid(options);
     prepared.scene.view = prepared.camera;
     frame_ns_ = std::llround(1e9 * prepared.frame_dt_s);
-    Viewing viewing;
+    study::Viewing viewing;
     viewing.ray = [this] { return recorder_.ray(); };
     // The fluid starts once, because steps never go back.
     const auto fluid = std::make_shared<std::unique_ptr<sim::Simulation>>(std::move(prepared.fluid));
@@ -69,7 +69,7 @@ class HeadsetViewer {
     try {
       play(shown);
     } catch (const base::Error&) {
-      if (display_.facts().state != HeadsetState::Exiting) throw;
+      if (display_.facts().state != study::HeadsetState::Exiting) throw;
       shown.ended = "the headset's software asked to leave";
     }
     return shown;
@@ -106,15 +106,15 @@ class HeadsetViewer {
   }
 
   bool seen() const {
-    const HeadsetState state = display_.facts().state;
-    return state == HeadsetState::Visible || state == HeadsetState::Focused;
+    const study::HeadsetState state = display_.facts().state;
+    return state == study::HeadsetState::Visible || state == study::HeadsetState::Focused;
   }
 
   std::optional<int> frames_;
-  HeadsetDisplay& display_;
-  HeadsetClock clock_;
-  HeadsetRecorder recorder_;
-  std::optional<LiveFluid> fluid_;
+  study::HeadsetDisplay& display_;
+  study::HeadsetClock clock_;
+  study::HeadsetRecorder recorder_;
+  std::optional<study::LiveFluid> fluid_;
   std::int64_t frame_ns_ = 0;  ///< of the fluid
 };
 
@@ -126,14 +126,15 @@ void print(const Shown& shown) {
 }
 
 /// Null if there is no headset; prints why.
-std::unique_ptr<HeadsetDisplay> connect(const std::string& clock) {
+std::unique_ptr<study::HeadsetDisplay> connect(const std::string& clock) {
   const bool stands_still = clock == "virtual";
   study::HeadsetRules rules;
   rules.hold = study::Hold::State;
   ::setenv("XR_LOADER_DEBUG", "none", 0);  // the program prints one line of its own instead
   try {
-    return std::make_unique<HeadsetDisplay>(stands_still ? SlotDrive::Caller : SlotDrive::Thread,
-                                            HeadsetChoice{.eye_gaze = true}, rules);
+    return std::make_unique<study::HeadsetDisplay>(
+        stands_still ? study::SlotDrive::Caller : study::SlotDrive::Thread,
+        study::HeadsetChoice{.eye_gaze = true}, rules);
   } catch (const base::Error& error) {
     if (stands_still) throw;  // no person watches
     const std::string told = error.what();

@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     if (headless) options.display = "headless";
     if (!setting_file.empty()) apps::take_setting(options, setting_file);
     if (!sweep.empty())
-      options.sweep = std::make_shared<const apps::SweepTables>(apps::read_sweep_tables(sweep));
+      options.sweep = std::make_shared<const study::SweepTables>(study::read_sweep_tables(sweep));
     if (options.clock == "virtual" && options.display != "openxr")
       throw base::Error("--clock virtual", "is for a headset", "leave it out, or use --display openxr");
     if (options.display == "headless") return apps::run_headless(options);

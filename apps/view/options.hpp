@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/picture_size.hpp"
-#include "apps/common/setting_file.hpp"
-#include "apps/common/sweep/setting_price.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
+#include "libsim/setting/setting_file.hpp"
 #include "libsim/simulation.hpp"
+#include "libstudy/sweep/setting_price.hpp"
+#include "stats/base/picture_size.hpp"
 
 namespace apps {
 
@@ -21,17 +21,17 @@ struct ViewOptions {
   std::string n_star = "16k";
   std::string backend = "auto";
   std::string preset = "tuned";
-  std::string overlay = "none";              ///< painted over the water; headless, several with commas
-  std::string tau = "live";                  ///< live or fixed:X
-  int levels = 4;                            ///< N
-  std::optional<double> alpha;               ///< weight of the temporal feature; none = the preset's
-  std::optional<int> iterations;             ///< per substep; none = the scene's
-  std::string camera = "view";               ///< view | overview
-  std::string ptpe;                          ///< fitted.toml; empty = none
-  std::optional<SettingFile> setting;        ///< best.toml, the source of method, n_star, levels ...
-  std::shared_ptr<const SweepTables> sweep;  ///< costs and errors of settings; null = not asked for
-  std::string png_folder;                    ///< empty = no pictures
-  PictureSize size{1280, 720};
+  std::string overlay = "none";                     ///< painted over the water; headless, several with commas
+  std::string tau = "live";                         ///< live or fixed:X
+  int levels = 4;                                   ///< N
+  std::optional<double> alpha;                      ///< weight of the temporal feature; none = the preset's
+  std::optional<int> iterations;                    ///< per substep; none = the scene's
+  std::string camera = "view";                      ///< view | overview
+  std::string ptpe;                                 ///< fitted.toml; empty = none
+  std::optional<sim::SettingFile> setting;          ///< best.toml, the source of method, n_star, levels ...
+  std::shared_ptr<const study::SweepTables> sweep;  ///< costs and errors of settings; null = not asked for
+  std::string png_folder;                           ///< empty = no pictures
+  base::PictureSize size{1280, 720};
   std::optional<int> frames;       ///< none: 100 headless; in a headset until it is left
   int every = 1;                   ///< number of frames per picture
   std::string display = "window";  ///< window | headless | openxr
@@ -52,14 +52,14 @@ struct PreparedFluid {
   bool follows_picture = false;  ///< levels depend on the last picture
   bool follows_rate = false;     ///< the solver uses the frame rate
   double frame_dt_s = 0;         ///< of the fluid
-  SolverSetting setting;         ///< in force at frame 0
+  sim::SolverSetting setting;    ///< in force at frame 0
 };
 /// Takes method, n_star, levels, alpha, iterations and tau from best.toml. Its other numbers apply as long as
 /// method, n_star, levels and preset are unchanged.
 void take_setting(ViewOptions& options, const std::string& path);
 
 /// Lines with the sweep's results for a setting in this scene file; none without a sweep.
-std::vector<std::string> price_lines(const ViewOptions& options, const SolverSetting& setting,
+std::vector<std::string> price_lines(const ViewOptions& options, const sim::SolverSetting& setting,
                                      const sim::Scene& scene);
 
 /// Reads and settles the scene and prints a summary, with the schedule if asked for. Calls `settling` with

@@ -71,7 +71,7 @@ bool OverlayPainter::take_saliency(OverlayKind kind, const sim::Simulation& flui
   return !values_.empty();
 }
 
-void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, FluidPicture& picture,
+void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, sim::FluidPicture& picture,
                            unsigned framebuffer) {
   sim::Overlay overlay;
   legend_.clear();

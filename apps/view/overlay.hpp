@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/common/fluid_picture.hpp"
-#include "apps/common/temperature_scale.hpp"
+#include "libsim/render/fluid_picture.hpp"
+#include "libsim/render/temperature_scale.hpp"
 
 namespace apps {
 
@@ -40,7 +40,7 @@ class OverlayPainter {
   /// `finest_spacing_m` is 2 r_*. The scene gives the range of temperatures.
   OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
       : finest_spacing_m_(finest_spacing_m), temperatures_(scene) {}
-  void paint(OverlayKind kind, sim::Simulation& fluid, FluidPicture& picture, unsigned framebuffer);
+  void paint(OverlayKind kind, sim::Simulation& fluid, sim::FluidPicture& picture, unsigned framebuffer);
   /// Meaning of the last paint's colours, e.g. "speed 0 to 10 m/s".
   const std::string& legend() const { return legend_; }
 
@@ -48,7 +48,7 @@ class OverlayPainter {
   bool take_saliency(OverlayKind kind, const sim::Simulation& fluid);
 
   double finest_spacing_m_;
-  TemperatureScale temperatures_;
+  sim::TemperatureScale temperatures_;
   std::vector<float> values_;
   std::vector<sim::ParticleSaliency> saliency_;
   std::vector<sim::RenderParticle> particles_;

@@ -2,17 +2,17 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/common/program.hpp"
-#include "apps/common/setting_file.hpp"
 #include "apps/view/effect_switches.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/scene/fill.hpp"
+#include "libsim/setting/setting_file.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/progress.hpp"
 #include "stats/base/text.hpp"
 
 namespace apps {
@@ -35,32 +35,32 @@ sim::SimulationOptions chosen(const ViewOptions& options) {
 /// True if the options still have the values of the setting file.
 bool as_set(const ViewOptions& options) {
   if (!options.setting) return false;
-  const SolverSetting& of = options.setting->setting;
+  const sim::SolverSetting& of = options.setting->setting;
   return sim::parse_method(options.method) == of.method && options.preset == "tuned" &&
-         sim::parse_n_star(options.n_star) == std::llround(of[SolverKnob::Size]) &&
-         options.levels == static_cast<int>(of[SolverKnob::Levels]);
+         sim::parse_n_star(options.n_star) == std::llround(of[sim::SolverKnob::Size]) &&
+         options.levels == static_cast<int>(of[sim::SolverKnob::Levels]);
 }
 
 }  // namespace
 
 void take_setting(ViewOptions& options, const std::string& path) {
-  options.setting = read_setting_file(path);
-  const SolverSetting& of = options.setting->setting;
-  const auto made = to_options(of, sim::Backend::Cpu, 1);
+  options.setting = sim::read_setting_file(path);
+  const sim::SolverSetting& of = options.setting->setting;
+  const auto made = sim::to_options(of, sim::Backend::Cpu, 1);
   options.method = sim::method_name(of.method);
   options.n_star = std::to_string(made.n_star);
-  options.levels = static_cast<int>(of[SolverKnob::Levels]);
-  if (turns(SolverKnob::Alpha, of.method)) options.alpha = of[SolverKnob::Alpha];
+  options.levels = static_cast<int>(of[sim::SolverKnob::Levels]);
+  if (sim::turns(sim::SolverKnob::Alpha, of.method)) options.alpha = of[sim::SolverKnob::Alpha];
   options.iterations = made.iterations;
   options.tau = made.temporal.fixed_tau ? "fixed:" + base::shortest(*made.temporal.fixed_tau) : "live";
 }
 
-std::vector<std::string> price_lines(const ViewOptions& options, const SolverSetting& setting,
+std::vector<std::string> price_lines(const ViewOptions& options, const sim::SolverSetting& setting,
                                      const sim::Scene& scene) {
   if (!options.sweep) return {};
   if (sim::parse_preset(options.preset) != sim::Preset::Tuned)
     return {"not measured: sweeps run the tuned readings, not the paper's"};
-  return in_words(prices_of(*options.sweep, setting, scene.sha256));
+  return study::in_words(study::prices_of(*options.sweep, setting, scene.sha256));
 }
 
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
@@ -71,21 +71,21 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   prepared.camera = options.camera == "overview" ? prepared.scene.overview : prepared.scene.view;
   if (!options.ptpe.empty()) prepared.ptpe = sim::read_ptpe_file(options.ptpe);
   sim::SimulationOptions choice =
-      as_set(options) ? to_options(options.setting->setting, sim::choose_backend(options.backend), 1)
+      as_set(options) ? sim::to_options(options.setting->setting, sim::choose_backend(options.backend), 1)
                       : chosen(options);
   choice.cache = sim::default_cache_folder();
   // In a window, overlays may be chosen later.
   choice.saliency_parts = options.overlay != "none" || options.display == "window";
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.frame_dt_s = choice.frame_dt_s > 0 ? choice.frame_dt_s : prepared.scene.frame_dt_s;
-  prepared.setting = setting_of(prepared.scene, choice);
+  prepared.setting = sim::setting_of(prepared.scene, choice);
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
   prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
   prepared.follows_rate =
       (choice.temporal.always || sim::traits_of(choice.method).temporal) && !choice.temporal.fixed_tau;
   {
-    Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));
+    base::Progress progress("settling", static_cast<std::size_t>(std::max(1, prepared.scene.settle_frames)));
     choice.settling =
         settling ? settling : [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
     prepared.fluid = sim::make_simulation(prepared.scene, choice);
@@ -96,8 +96,8 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
               sim::backend_name(choice.backend).c_str());
   if (!options.effects_off.empty()) std::printf("with %s\n", in_words(prepared.scene.effects).c_str());
   if (as_set(options)) {
-    std::printf("%s\n", describe(*options.setting).c_str());
-    const auto note = other_scene(*options.setting, prepared.scene.sha256);
+    std::printf("%s\n", sim::describe(*options.setting).c_str());
+    const auto note = sim::other_scene(*options.setting, prepared.scene.sha256);
     if (!note.empty()) std::printf("%s\n", note.c_str());
   }
   for (const auto& line : price_lines(options, prepared.setting, prepared.scene))

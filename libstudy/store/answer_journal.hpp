@@ -29,8 +29,8 @@
 #include <utility>
 #include <vector>
 
-#include "libstudy/store/journal_file.hpp"
-#include "libstudy/store/journal_rows.hpp"
+#include "libstudy/store/file/journal_file.hpp"
+#include "libstudy/store/file/journal_rows.hpp"
 
 namespace study {
 

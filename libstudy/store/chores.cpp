@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/backups.hpp"
 #include "libstudy/store/export_register.hpp"
+#include "libstudy/store/file/backups.hpp"
 #include "libstudy/store/personal.hpp"
 #include "stats/base/error.hpp"
 

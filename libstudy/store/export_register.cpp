@@ -9,13 +9,13 @@
 #include <cstring>
 #include <vector>
 
-#include "libstudy/store/beside.hpp"
-#include "libstudy/store/database.hpp"
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/export_rows.hpp"
-#include "libstudy/store/journal_file.hpp"
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/journal_file.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
 #include "libstudy/store/open_study.hpp"
-#include "libstudy/store/writer_lock.hpp"
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -24,7 +24,6 @@
 namespace study {
 
 namespace fs = std::filesystem;
-using export_rows::strike_out;
 using export_rows::this_host;
 using sqlite::Connection;
 using sqlite::Open;
@@ -178,7 +177,7 @@ RegisteredExport::~RegisteredExport() {
     if (row.bind_all(this_host(), own_.path.string()).step()) {
       const std::int64_t id = row.integer(0);
       row.reset();
-      strike_out(*file, id);
+      export_rows::strike_out(*file, id);
     }
     transaction.commit();
     std::error_code ignored;

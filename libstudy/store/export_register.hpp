@@ -8,8 +8,8 @@
 #include <string>
 
 #include "libstudy/store/chores.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/own_exports.hpp"
-#include "libstudy/store/sqlite.hpp"
 #include "libstudy/store/study_file.hpp"
 
 namespace study {

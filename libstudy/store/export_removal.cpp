@@ -17,7 +17,6 @@
 namespace study {
 
 namespace fs = std::filesystem;
-using export_rows::strike_out;
 using export_rows::this_host;
 using sqlite::Connection;
 using sqlite::Statement;
@@ -163,7 +162,7 @@ void remove_empty_folders(Connection& database) {
     if (made.empty() || (::rmdir(path.c_str()) != 0 && errno != ENOENT)) continue;
     base::sync_folder_of(path);
     forget(made);
-    strike_out(database, id);
+    export_rows::strike_out(database, id);
   }
 }
 
@@ -187,7 +186,7 @@ void delete_exports_of_withdrawn(Connection& database, CleanUp& done) {
     }
     Transaction transaction(database);
     if (problem.empty()) {
-      strike_out(database, one.id);
+      export_rows::strike_out(database, one.id);
       ChorePlan(database).rewrite();
     } else {
       mark_tackled(database, one);

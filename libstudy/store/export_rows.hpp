@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 
 namespace study::export_rows {
 

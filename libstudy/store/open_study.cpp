@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "libstudy/store/backups.hpp"
-#include "libstudy/store/beside.hpp"
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/backups.hpp"
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "libstudy/store/settling.hpp"
 #include "stats/base/error.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/study_file.hpp"
 
 namespace study {

@@ -12,7 +12,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-std::string letters_of(const std::string& code) {
+std::string folded(const std::string& code) {
   std::string letters;
   for (const char c : code)
     if (std::isalnum(static_cast<unsigned char>(c)))
@@ -36,12 +36,11 @@ std::string without_zeros(const std::string& code) {
 
 bool reads_as_missing(const std::string& code) {
   constexpr std::array words{"na", "nan", "null", "none", "nil", "missing", "undefined"};
-  return std::find(words.begin(), words.end(), letters_of(code)) != words.end();
+  return std::find(words.begin(), words.end(), folded(code)) != words.end();
 }
 
 bool are_alike(const std::string& one, const std::string& other) {
-  return letters_of(one) == letters_of(other) ||
-         letters_of(without_zeros(one)) == letters_of(without_zeros(other));
+  return folded(one) == folded(other) || folded(without_zeros(one)) == folded(without_zeros(other));
 }
 
 void check_new_code(sqlite::Connection& database, const std::string& code) {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 
 namespace study {
 

@@ -2,10 +2,10 @@
 
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/chores.hpp"
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
 #include "libstudy/store/open_study.hpp"
 #include "libstudy/store/settling.hpp"
-#include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 

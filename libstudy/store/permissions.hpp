@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/refusals.hpp"
-#include "libstudy/store/sqlite.hpp"
 #include "libstudy/store/study_file.hpp"
 
 namespace study {

@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "libstudy/store/beside.hpp"
-#include "libstudy/store/schema.hpp"
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/file/schema.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {

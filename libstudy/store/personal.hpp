@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 
 namespace study {
 

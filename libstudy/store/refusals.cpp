@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "libstudy/store/backups.hpp"
 #include "libstudy/store/chores.hpp"
+#include "libstudy/store/file/backups.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {

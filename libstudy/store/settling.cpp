@@ -1,9 +1,9 @@
 #include "libstudy/store/settling.hpp"
 
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/backups.hpp"
 #include "libstudy/store/chores.hpp"
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/backups.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "libstudy/store/refusals.hpp"
 #include "stats/base/error.hpp"
 

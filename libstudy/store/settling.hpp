@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/journal_file.hpp"
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/journal_file.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 
 namespace study {
 

@@ -3,9 +3,9 @@
 #include <array>
 
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/beside.hpp"
 #include "libstudy/store/chores.hpp"
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "libstudy/store/names.hpp"
 #include "libstudy/store/settling.hpp"
 #include "libstudy/store/store_statements.hpp"

@@ -19,8 +19,8 @@
 #include "libstudy/display/headset.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "libstudy/protocol/protocol.hpp"
-#include "libstudy/store/sqlite.hpp"
-#include "libstudy/store/writer_lock.hpp"
+#include "libstudy/store/file/sqlite.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
 
 namespace study {
 

@@ -3,13 +3,13 @@
 #include <optional>
 
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/backups.hpp"
-#include "libstudy/store/beside.hpp"
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/backups.hpp"
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
 #include "libstudy/store/open_study.hpp"
 #include "libstudy/store/refusals.hpp"
 #include "libstudy/store/settling.hpp"
-#include "libstudy/store/writer_lock.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {

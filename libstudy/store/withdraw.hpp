@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libstudy/store/chores.hpp"
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/study_file.hpp"
 
 namespace study {

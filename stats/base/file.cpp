@@ -73,6 +73,14 @@ void write_file_atomically(const fs::path& path, std::string_view bytes) {
   file.put_in_place();
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw Error(folder.string(), "cannot be made a folder: " + error.message(), "choose another folder");
+  }
+}
+
 fs::path resource(const std::string& relative) {
   if (const char* share = std::getenv("VIP_SHARE_DIR")) return fs::path(share) / relative;
   std::error_code ignored;

@@ -16,6 +16,9 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 /// file or the new one, never a part. On failure the temporary file is removed.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
+/// Makes a folder and its parents if missing; Error on failure.
+void make_folder(const std::filesystem::path& folder);
+
 /// Path of a file or folder that ships with the project, e.g. "shaders/splat.comp" or
 /// "data/scenes/single_dam.toml": in $VIP_SHARE_DIR if that is set, else in <program>/../share/vip-lab if
 /// that folder exists (an installed program), else in the source tree. Does not check that the file exists.

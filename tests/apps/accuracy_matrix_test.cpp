@@ -4,23 +4,23 @@
 #include <map>
 #include <set>
 
-#include "apps/common/named_scenes.hpp"
-#include "apps/common/sweep/matrix.hpp"
+#include "libsim/setting/named_scenes.hpp"
+#include "libstudy/sweep/matrix.hpp"
 
 namespace apps {
 namespace {
 
 TEST(AccuracyMatrix, NoSettingStandsTwiceAndTheReferenceIsFirst) {
-  const SweepPlan plan;
-  const auto cells = cells_of(plan);
+  const study::SweepPlan plan;
+  const auto cells = study::cells_of(plan);
   std::set<std::string> keys;
-  for (const auto& cell : cells) keys.insert(key_of(cell, "scene", "program"));
+  for (const auto& cell : cells) keys.insert(study::key_of(cell, "scene", "program"));
   EXPECT_EQ(keys.size(), cells.size());
-  EXPECT_EQ(cells[0].setting, reference_setting("SingleDam", 4096));
+  EXPECT_EQ(cells[0].setting, study::reference_setting("SingleDam", 4096));
   EXPECT_EQ(cells[1].setting, cells[0].setting);
   EXPECT_EQ(cells[1].seed, 2);
   std::set<std::string> settings;
-  for (const auto& cell : cells) settings.insert(to_text(cell.setting));
+  for (const auto& cell : cells) settings.insert(sim::to_text(cell.setting));
   EXPECT_GE(settings.size(), 80u);
   EXPECT_LE(settings.size(), 120u);
 }
@@ -28,16 +28,16 @@ TEST(AccuracyMatrix, NoSettingStandsTwiceAndTheReferenceIsFirst) {
 TEST(AccuracyMatrix, TheQuarterOfTheFactorialIsBalanced) {
   std::map<std::array<double, 3>, std::set<double>> levels;
   std::map<double, int> each;
-  for (const auto& cell : cells_of({.seeds = 1})) {
+  for (const auto& cell : study::cells_of({.seeds = 1})) {
     const auto& s = cell.setting;
-    const auto usual = usual_setting("SingleDam", sim::MethodKind::Ours, 4096);
-    bool others = s.method == sim::MethodKind::Ours && s[SolverKnob::Substeps] > 0;
-    for (const auto knob : {SolverKnob::Rate, SolverKnob::CoarseCycles, SolverKnob::Momentum,
-                            SolverKnob::Alpha, SolverKnob::Fovea, SolverKnob::Beta})
+    const auto usual = sim::usual_setting("SingleDam", sim::MethodKind::Ours, 4096);
+    bool others = s.method == sim::MethodKind::Ours && s[sim::SolverKnob::Substeps] > 0;
+    for (const auto knob : {sim::SolverKnob::Rate, sim::SolverKnob::CoarseCycles, sim::SolverKnob::Momentum,
+                            sim::SolverKnob::Alpha, sim::SolverKnob::Fovea, sim::SolverKnob::Beta})
       others = others && s[knob] == usual[knob];
     if (others)
-      levels[{s[SolverKnob::Size], s[SolverKnob::Iterations], s[SolverKnob::Substeps]}].insert(
-          s[SolverKnob::Levels]);
+      levels[{s[sim::SolverKnob::Size], s[sim::SolverKnob::Iterations], s[sim::SolverKnob::Substeps]}].insert(
+          s[sim::SolverKnob::Levels]);
   }
   EXPECT_EQ(levels.size(), 36u) << "4 sizes, 3 numbers of projections, 3 of substeps";
   // Settings that change one knob at the usual size and projections come in addition to the quarter.
@@ -50,13 +50,14 @@ TEST(AccuracyMatrix, TheQuarterOfTheFactorialIsBalanced) {
 }
 
 TEST(AccuracyMatrix, AKeyNamesEverythingThatACellDependsOn) {
-  const SweepCell cell{usual_setting("SingleDam", sim::MethodKind::Ours, 1024), 1, 2, ""};
-  std::set<std::string> keys{key_of(cell, "scene", "program"), key_of(cell, "other scene", "program"),
-                             key_of(cell, "scene", "other program")};
-  for (const auto& traits : solver_knobs()) {
+  const study::SweepCell cell{sim::usual_setting("SingleDam", sim::MethodKind::Ours, 1024), 1, 2, ""};
+  std::set<std::string> keys{study::key_of(cell, "scene", "program"),
+                             study::key_of(cell, "other scene", "program"),
+                             study::key_of(cell, "scene", "other program")};
+  for (const auto& traits : sim::solver_knobs()) {
     auto other = cell;
     other.setting[traits.knob] += 1;
-    keys.insert(key_of(other, "scene", "program"));
+    keys.insert(study::key_of(other, "scene", "program"));
   }
   for (const int what : {0, 1, 2, 3}) {
     auto other = cell;
@@ -64,18 +65,18 @@ TEST(AccuracyMatrix, AKeyNamesEverythingThatACellDependsOn) {
     if (what == 1) other.seconds = 3;
     if (what == 2) other.size = "640x360";
     if (what == 3) other.setting.method = sim::MethodKind::HiRes;
-    keys.insert(key_of(other, "scene", "program"));
+    keys.insert(study::key_of(other, "scene", "program"));
   }
-  EXPECT_EQ(keys.size(), 3 + solver_knob_count + 4);
-  auto hires = usual_setting("SingleDam", sim::MethodKind::HiRes, 1024), same = hires;
-  same[SolverKnob::Levels] = 2;
-  EXPECT_EQ(to_text(hires), to_text(same)) << "HiRes has no levels to number";
+  EXPECT_EQ(keys.size(), 3 + sim::solver_knob_count + 4);
+  auto hires = sim::usual_setting("SingleDam", sim::MethodKind::HiRes, 1024), same = hires;
+  same[sim::SolverKnob::Levels] = 2;
+  EXPECT_EQ(sim::to_text(hires), sim::to_text(same)) << "HiRes has no levels to number";
 }
 
 TEST(AccuracyMatrix, TheUsualSettingIsWhatTheProgramsHave) {
-  const auto scene = scenes_of("SingleDam").front().scene;
+  const auto scene = sim::scenes_of("SingleDam").front().scene;
   for (const auto method : {sim::MethodKind::HiRes, sim::MethodKind::Ours}) {
-    auto usual = to_options(usual_setting("SingleDam", method, 64), sim::Backend::Cpu, 1);
+    auto usual = sim::to_options(sim::usual_setting("SingleDam", method, 64), sim::Backend::Cpu, 1);
     usual.cache.clear();
     sim::SimulationOptions plain;
     plain.method = method;

@@ -6,11 +6,11 @@
 #include <map>
 #include <set>
 
-#include "apps/bench/accuracy/accuracy_page.hpp"
-#include "apps/bench/accuracy/run_cell.hpp"
-#include "apps/bench/accuracy/work_precision.hpp"
-#include "apps/bench/log_axis.hpp"
+#include "libstudy/sweep/run/accuracy_page.hpp"
+#include "libstudy/sweep/run/run_cell.hpp"
+#include "libstudy/sweep/run/work_precision.hpp"
 #include "stats/base/error.hpp"
+#include "stats/figures/log_axis.hpp"
 #include "tests/apps/small_sweep.hpp"
 #include "tests/apps/table_test_support.hpp"
 
@@ -24,8 +24,9 @@ using ::testing::ThrowsMessage;
 
 TEST(AccuracySample, MassesWeigh) {
   // A particle of level 1 has twice the mass of one of level 0.
-  const auto sample = sample_of(0.5, {{.id = 0, .level = 1, .x_m = 0, .y_m = 3, .z_m = 1, .vx_m_s = 2},
-                                      {.id = 1, .level = 0, .x_m = 3, .y_m = 0, .z_m = 1, .vy_m_s = 4}});
+  const auto sample =
+      study::sample_of(0.5, {{.id = 0, .level = 1, .x_m = 0, .y_m = 3, .z_m = 1, .vx_m_s = 2},
+                             {.id = 1, .level = 0, .x_m = 3, .y_m = 0, .z_m = 1, .vy_m_s = 4}});
   EXPECT_DOUBLE_EQ(sample.time_s, 0.5);
   EXPECT_DOUBLE_EQ(sample.centre_m[0], 1);
   EXPECT_DOUBLE_EQ(sample.centre_m[1], 2);
@@ -37,42 +38,42 @@ TEST(AccuracySample, MassesWeigh) {
 TEST(AccuracySample, TheFrontLeavesOnePerCentOfTheMassBefore) {
   std::vector<sim::ParticleState> water;
   for (int i = 0; i < 1000; ++i) water.push_back({.id = i, .x_m = static_cast<float>(i)});
-  EXPECT_DOUBLE_EQ(sample_of(0, water).front_m, 989);
+  EXPECT_DOUBLE_EQ(study::sample_of(0, water).front_m, 989);
 }
 
 TEST(AccuracyErrors, AreRootMeanSquaresInPerCent) {
-  const auto errors = water_errors(run_with(3, 11, 1), run_with(1, 10, 1), 20);
+  const auto errors = study::water_errors(run_with(3, 11, 1), run_with(1, 10, 1), 20);
   EXPECT_DOUBLE_EQ(errors[0], 10);
   EXPECT_DOUBLE_EQ(errors[1], 5);
   EXPECT_DOUBLE_EQ(errors[2], 10);
   EXPECT_DOUBLE_EQ(errors[3], 0.1);
   auto uneven = run_with(1, 10, 1);
   uneven.samples[1].front_m = 4;
-  EXPECT_DOUBLE_EQ(water_errors(uneven, run_with(1, 10, 1), 100)[0], 3 / std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(study::water_errors(uneven, run_with(1, 10, 1), 100)[0], 3 / std::sqrt(2.0));
   auto shorter = uneven;
   shorter.samples.pop_back();
-  EXPECT_THROW(water_errors(shorter, uneven, 1), base::Error);
+  EXPECT_THROW(study::water_errors(shorter, uneven, 1), base::Error);
   shorter = uneven;
   shorter.samples[0].time_s = 0.15;
-  EXPECT_THROW(water_errors(shorter, uneven, 1), base::Error);
+  EXPECT_THROW(study::water_errors(shorter, uneven, 1), base::Error);
 }
 
-const SweepPlan small_plan{.n_star = 512};
-const SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
+const study::SweepPlan small_plan{.n_star = 512};
+const study::SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
 
-StoredCell stored(const SolverSetting& setting, int seed, const CellRun& run) {
-  const SweepCell cell{setting, seed, small_plan.seconds, small_plan.size};
+study::StoredCell stored(const sim::SolverSetting& setting, int seed, const study::CellRun& run) {
+  const study::SweepCell cell{setting, seed, small_plan.seconds, small_plan.size};
   return {cell, origin, run};
 }
 
 /// A reference with a floor of 0.1 of 10 m, HiRes with usual settings and with two other numbers of
 /// projections.
-std::vector<StoredCell> small_sweep() {
-  const auto reference = reference_setting("SingleDam", 512);
-  const auto usual = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
+std::vector<study::StoredCell> small_sweep() {
+  const auto reference = study::reference_setting("SingleDam", 512);
+  const auto usual = sim::usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
   auto eight = usual, three = usual;
-  eight[SolverKnob::Iterations] = 8;
-  three[SolverKnob::Iterations] = 3;
+  eight[sim::SolverKnob::Iterations] = 8;
+  three[sim::SolverKnob::Iterations] = 3;
   auto as_quick = run_with(1.3, 10, 10);
   for (std::size_t i = 0; i < as_quick.frames.size(); ++i) as_quick.frames[i].solve_ms += i % 2 ? 0.5 : -0.5;
   return {stored(reference, 1, run_with(1, 10, 100)),
@@ -85,14 +86,14 @@ std::vector<StoredCell> small_sweep() {
 }
 
 TEST(AccuracyPrices, ArePairsOfMillisecondsAndErrors) {
-  const auto list = price_list(small_sweep(), small_plan, origin, 10);
+  const auto list = study::price_list(small_sweep(), small_plan, origin, 10);
   EXPECT_NEAR(list.floor[0], 0.1, 1e-9);
   ASSERT_EQ(list.settings.size(), 3u);
   ASSERT_EQ(list.prices.size(), 2u);
-  const Price& three = list.prices[0];
+  const study::Price& three = list.prices[0];
   EXPECT_TRUE(three.free()) << "its frames are faster and slower by turns";
-  const Price& eight = list.prices[1];
-  EXPECT_EQ(eight.knob, SolverKnob::Iterations);
+  const study::Price& eight = list.prices[1];
+  EXPECT_EQ(eight.knob, sim::SolverKnob::Iterations);
   EXPECT_DOUBLE_EQ(eight.from, 4);
   EXPECT_DOUBLE_EQ(eight.to, 8);
   EXPECT_DOUBLE_EQ(eight.ms, 4);
@@ -101,86 +102,89 @@ TEST(AccuracyPrices, ArePairsOfMillisecondsAndErrors) {
   EXPECT_NEAR(eight.errors[0].low, 1 - 3, 1e-9);
   EXPECT_NEAR(eight.errors[0].high, 1.2 - 2, 1e-9);
   EXPECT_NEAR(eight.errors[3].high, 0.1, 1e-9);
-  const std::string text = to_markdown(list);
+  const std::string text = study::to_markdown(list);
   EXPECT_THAT(text, HasSubstr("| HiRes | projections | 4 to 8 | +4.00 [+4.00, +4.00] | -1.4 [-2, -0.8] |"));
   EXPECT_THAT(text, HasSubstr("| HiRes | projections | 4 to 3 | free |"));
   EXPECT_THAT(text, HasSubstr("was not compared with finer ones"));
-  EXPECT_THAT(to_csv(price_table(list)), HasSubstr("iterations,4,8,4.000,4.000,4.000,no,-1.4000"));
+  EXPECT_THAT(figures::to_csv(study::price_table(list)),
+              HasSubstr("iterations,4,8,4.000,4.000,4.000,no,-1.4000"));
 }
 
 TEST(AccuracyPrices, AReferenceCountsAsConvergedByAThirdOfTheSmallestError) {
   for (const double moved : {0.03, 0.05}) {  // of 10 m: 0.3 and 0.5 %; the smallest error is 1.1 %
     auto cells = small_sweep();
-    for (const auto& finer : finer_references(reference_setting("SingleDam", 512)))
+    for (const auto& finer : study::finer_references(study::reference_setting("SingleDam", 512)))
       cells.push_back(stored(finer, 1, run_with(1 + moved, 10, 200)));
-    const auto list = price_list(cells, small_plan, origin, 10);
+    const auto list = study::price_list(cells, small_plan, origin, 10);
     EXPECT_EQ(list.finer.size(), 3u);
     EXPECT_EQ(list.settings.size(), 3u) << "what judges the reference is no choice";
     EXPECT_EQ(list.converged[0], moved < 0.04);
-    EXPECT_THAT(to_markdown(list), HasSubstr(moved < 0.04 ? "0.1 %; the reference counts as converged"
-                                                          : "0.1 %; the reference does not count"));
+    EXPECT_THAT(study::to_markdown(list), HasSubstr(moved < 0.04 ? "0.1 %; the reference counts as converged"
+                                                                 : "0.1 %; the reference does not count"));
   }
 }
 
 TEST(AccuracyPrices, NeverMixMachinesProgramsOrScenes) {
   auto cells = small_sweep();
-  const auto alone = to_markdown(price_list(cells, small_plan, origin, 10));
+  const auto alone = study::to_markdown(study::price_list(cells, small_plan, origin, 10));
   for (const int what : {0, 1, 2}) {
-    auto other = stored(usual_setting("SingleDam", sim::MethodKind::LoRes, 512), 1, run_with(5, 5, 5));
+    auto other = stored(sim::usual_setting("SingleDam", sim::MethodKind::LoRes, 512), 1, run_with(5, 5, 5));
     if (what == 0) other.origin.machine = "another";
     if (what == 1) other.origin.program = "0.2.0 def";
     if (what == 2) other.origin.scene_sha256 = "beef";
     cells.push_back(other);
   }
-  EXPECT_EQ(to_markdown(price_list(cells, small_plan, origin, 10)), alone);
+  EXPECT_EQ(study::to_markdown(study::price_list(cells, small_plan, origin, 10)), alone);
   cells.erase(cells.begin());
-  EXPECT_THAT([&] { price_list(cells, small_plan, origin, 10); },
+  EXPECT_THAT([&] { study::price_list(cells, small_plan, origin, 10); },
               ThrowsMessage<base::Error>(HasSubstr("no finished reference")));
 }
 
 TEST(AccuracyFront, HoldsWhatNoneBeats) {
   const auto setting = [](double ms, double error) {
-    SettingResult out;
+    study::SettingResult out;
     out.ms_mean = ms;
     out.errors[2].mean = error;
     return out;
   };
-  const std::vector<SettingResult> settings{setting(9, 1),  setting(4, 3), setting(5, 3), setting(4, 4),
-                                            setting(12, 1), setting(2, 8), setting(6, 2)};
-  EXPECT_EQ(pareto_front(settings, SweepError::Kinetic), (std::vector<std::size_t>{5, 1, 6, 0}));
-  EXPECT_TRUE(pareto_front({}, SweepError::Kinetic).empty());
+  const std::vector<study::SettingResult> settings{setting(9, 1), setting(4, 3),  setting(5, 3),
+                                                   setting(4, 4), setting(12, 1), setting(2, 8),
+                                                   setting(6, 2)};
+  EXPECT_EQ(study::pareto_front(settings, study::SweepError::Kinetic),
+            (std::vector<std::size_t>{5, 1, 6, 0}));
+  EXPECT_TRUE(study::pareto_front({}, study::SweepError::Kinetic).empty());
 }
 
 TEST(AccuracyFront, MoreSeedsAreOfItsSettingsOnly) {
   auto sweep = small_sweep();
-  auto worse = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
-  worse[SolverKnob::Substeps] = 4;
+  auto worse = sim::usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
+  worse[sim::SolverKnob::Substeps] = 4;
   sweep.push_back(stored(worse, 1, run_with(2, 20, 50, 0.01)));
-  const auto list = price_list(sweep, small_plan, origin, 10);
+  const auto list = study::price_list(sweep, small_plan, origin, 10);
   std::set<std::string> on_front, asked;
-  for (std::size_t e = 0; e < sweep_error_count; ++e)
-    for (const auto i : pareto_front(list.settings, static_cast<SweepError>(e)))
-      on_front.insert(to_text(list.settings[i].setting));
-  EXPECT_FALSE(on_front.contains(to_text(worse)));
-  const auto cells = more_seeds_of_fronts(list, small_plan, 5);
+  for (std::size_t e = 0; e < study::sweep_error_count; ++e)
+    for (const auto i : study::pareto_front(list.settings, static_cast<study::SweepError>(e)))
+      on_front.insert(sim::to_text(list.settings[i].setting));
+  EXPECT_FALSE(on_front.contains(sim::to_text(worse)));
+  const auto cells = study::more_seeds_of_fronts(list, small_plan, 5);
   EXPECT_EQ(cells.size(), 5 * on_front.size());
-  for (const auto& cell : cells) asked.insert(to_text(cell.setting));
+  for (const auto& cell : cells) asked.insert(sim::to_text(cell.setting));
   EXPECT_EQ(asked, on_front);
   EXPECT_EQ(cells[4].seed, 5);
   EXPECT_EQ(cells[4].seconds, small_plan.seconds);
 }
 
 TEST(LogAxis, EndsOutsideTheValues) {
-  EXPECT_EQ(log_ticks(3, 40), (std::vector<double>{2, 5, 10, 20, 50}));
-  EXPECT_EQ(log_ticks(10, 10), (std::vector<double>{10, 20}));
-  EXPECT_EQ(log_ticks(2, 9000), (std::vector<double>{1, 10, 100, 1000, 10000})) << "powers alone";
-  const LogScale scale{1, 100};
+  EXPECT_EQ(figures::log_ticks(3, 40), (std::vector<double>{2, 5, 10, 20, 50}));
+  EXPECT_EQ(figures::log_ticks(10, 10), (std::vector<double>{10, 20}));
+  EXPECT_EQ(figures::log_ticks(2, 9000), (std::vector<double>{1, 10, 100, 1000, 10000})) << "powers alone";
+  const figures::LogScale scale{1, 100};
   EXPECT_DOUBLE_EQ(scale.share(10), 0.5);
 }
 
 TEST(AccuracyPage, ShowsEachErrorTheFrontsAndThePrices) {
-  const auto list = price_list(small_sweep(), small_plan, origin, 10);
-  const auto page = accuracy_page(list, small_plan);
+  const auto list = study::price_list(small_sweep(), small_plan, origin, 10);
+  const auto page = study::accuracy_page(list, small_plan);
   for (const char* words :
        {"<h1>What accuracy costs in time: SingleDam</h1>", "Error of front", "Error of centre of mass",
         "Error of kinetic energy", "Error of density", "a machine", "0.1.0 abc", "The floor is 0.1 %",
@@ -189,35 +193,35 @@ TEST(AccuracyPage, ShowsEachErrorTheFrontsAndThePrices) {
     EXPECT_THAT(page, HasSubstr(words));
   }
   EXPECT_THAT(page, ::testing::Not(HasSubstr("http"))) << "needs nothing from elsewhere";
-  const auto picture = work_precision(list, SweepError::Front);
+  const auto picture = study::work_precision(list, study::SweepError::Front);
   ASSERT_TRUE(picture);
   EXPECT_THAT(picture->body, HasSubstr(">60 Hz<"));
   EXPECT_THAT(picture->body, HasSubstr(">floor<"));
 }
 
 TEST(AccuracyPage, SaysWhereThereIsNothingToDraw) {
-  auto list = price_list(small_sweep(), small_plan, origin, 10);
+  auto list = study::price_list(small_sweep(), small_plan, origin, 10);
   for (auto& one : list.settings) one.errors[1] = {};
-  EXPECT_FALSE(work_precision(list, SweepError::Centre));
-  EXPECT_THAT(accuracy_page(list, small_plan), HasSubstr("No setting has an error above 0."));
+  EXPECT_FALSE(study::work_precision(list, study::SweepError::Centre));
+  EXPECT_THAT(study::accuracy_page(list, small_plan), HasSubstr("No setting has an error above 0."));
 }
 
 std::string bytes_of(const std::filesystem::path& path) { return base::read_file(path, 1 << 24); }
 
 TEST(SweepFile, GivesBackWhatItWasGiven) {
   const ::test::TemporaryFolder folder;
-  auto cell = stored(usual_setting("SingleDam", sim::MethodKind::OursTsp, 512), 2, run_with(1.25, 7, 3));
+  auto cell = stored(sim::usual_setting("SingleDam", sim::MethodKind::OursTsp, 512), 2, run_with(1.25, 7, 3));
   cell.cell.size = "640x360";
   cell.run.frames[3].draw_ms = 1.5;
   cell.run.particles_mean = 123.5;
   cell.run.substeps_mean = 2.25;
   cell.run.braked = 4;
   {
-    SweepFile file(folder / "a.db", Open::Create);
+    study::SweepFile file(folder / "a.db", Open::Create);
     file.add(cell);
     file.add(cell);
   }
-  SweepFile file(folder / "a.db", Open::Read);
+  study::SweepFile file(folder / "a.db", Open::Read);
   const auto cells = file.cells();
   ASSERT_EQ(cells.size(), 1u);
   const auto& found = cells[0];
@@ -230,7 +234,7 @@ TEST(SweepFile, GivesBackWhatItWasGiven) {
   ASSERT_EQ(found.run.samples.size(), 2u);
   EXPECT_EQ(found.run.samples[1].time_s, 0.2);
   EXPECT_EQ(found.run.samples[1].centre_m[1], 0.625);
-  EXPECT_EQ(water_errors(found.run, cell.run, 1)[2], 0);
+  EXPECT_EQ(study::water_errors(found.run, cell.run, 1)[2], 0);
   ASSERT_EQ(found.run.frames.size(), 8u);
   EXPECT_FALSE(found.run.frames[2].draw_ms);
   EXPECT_EQ(found.run.frames[3].all_ms(), cell.run.frames[3].all_ms());
@@ -241,34 +245,35 @@ TEST(SweepFile, GivesBackWhatItWasGiven) {
 TEST(SweepFile, ShardsInAnyOrderGiveTheSameCells) {
   const ::test::TemporaryFolder folder;
   const auto cells = small_sweep();
-  const auto in_order = [](SweepFile&& file) {
+  const auto in_order = [](study::SweepFile&& file) {
     std::vector<std::string> keys;
     for (const auto& cell : file.cells()) keys.push_back(cell.key());
     return keys;
   };
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    SweepFile(folder / (std::to_string(i) + ".db"), Open::Create).add(cells[i]);
-    SweepFile(folder / "serial.db", Open::Create).add(cells[i]);
+    study::SweepFile(folder / (std::to_string(i) + ".db"), Open::Create).add(cells[i]);
+    study::SweepFile(folder / "serial.db", Open::Create).add(cells[i]);
   }
   {
-    SweepFile merged(folder / "merged.db", Open::Create);
+    study::SweepFile merged(folder / "merged.db", Open::Create);
     for (std::size_t i = cells.size(); i-- > 0;)
       EXPECT_EQ(merged.merge(folder / (std::to_string(i) + ".db")), 1);
     EXPECT_EQ(merged.merge(folder / "serial.db"), 0);
   }
-  EXPECT_EQ(in_order(SweepFile(folder / "merged.db", Open::Read)),
-            in_order(SweepFile(folder / "serial.db", Open::Read)));
+  EXPECT_EQ(in_order(study::SweepFile(folder / "merged.db", Open::Read)),
+            in_order(study::SweepFile(folder / "serial.db", Open::Read)));
 }
 
 TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
   const ::test::TemporaryFolder folder;
   const auto path = folder / "a.db";
-  SweepFile(path, Open::Create).add(small_sweep()[0]);
+  study::SweepFile(path, Open::Create).add(small_sweep()[0]);
   const std::string sound = bytes_of(path);
   const auto refused = [&](const std::string& bytes, const char* why) {
     base::write_file_atomically(folder / "b.db", bytes);
     for (const auto how : {Open::Read, Open::Create}) {
-      EXPECT_THAT([&] { SweepFile(folder / "b.db", how); }, ThrowsMessage<base::Error>(HasSubstr(why)));
+      EXPECT_THAT([&] { study::SweepFile(folder / "b.db", how); },
+                  ThrowsMessage<base::Error>(HasSubstr(why)));
       EXPECT_EQ(bytes_of(folder / "b.db"), bytes) << why;
     }
   };
@@ -283,10 +288,10 @@ TEST(SweepFile, WhatIsNoneIsRefusedAndLeftAsItIs) {
   refused(foreign, "not a sweep file");
   refused(newer, "newer program (schema 9");
   refused(sound.substr(0, sound.size() / 2), "is damaged or cut short\n  mend: name another file");
-  EXPECT_THROW(SweepFile(folder / "none.db", Open::Read), base::Error);
+  EXPECT_THROW(study::SweepFile(folder / "none.db", Open::Read), base::Error);
   base::write_file_atomically(folder / "empty.db", "");
-  EXPECT_THROW(SweepFile(folder / "empty.db", Open::Read), base::Error);
-  EXPECT_TRUE(SweepFile(folder / "empty.db", Open::Create).cells().empty());
+  EXPECT_THROW(study::SweepFile(folder / "empty.db", Open::Read), base::Error);
+  EXPECT_TRUE(study::SweepFile(folder / "empty.db", Open::Create).cells().empty());
 }
 
 class AccuracyE2e : public test::TableTest {
@@ -296,7 +301,7 @@ class AccuracyE2e : public test::TableTest {
   std::map<std::string, std::vector<double>> times_of(const std::string& name) const {
     std::map<std::string, std::vector<double>> out;
     try {
-      for (const auto& cell : SweepFile(path(name), Open::Read).cells())
+      for (const auto& cell : study::SweepFile(path(name), Open::Read).cells())
         for (const auto& frame : cell.run.frames) out[cell.key()].push_back(frame.solve_ms);
     } catch (const base::Error&) {
       return {};

@@ -111,15 +111,16 @@ struct Place {
   std::vector<std::string> commands;
 };
 const std::vector<Place> shared_places{
-    {"apps/stats/data/task_",
+    {"libstudy/analysis/task_",
      {"vip-stats report", "vip-stats fit-ptpe", "vip-stats task1", "vip-stats task2"}},
-    {"apps/stats/tasks/", {"vip-stats report", "vip-stats task1", "vip-stats task2"}},
-    {"apps/stats/ptpe/", {"vip-stats fit-ptpe"}},
+    {"libstudy/analysis/tasks/", {"vip-stats report", "vip-stats task1", "vip-stats task2"}},
+    {"libstudy/analysis/ptpe/", {"vip-stats fit-ptpe"}},
     {"apps/stats/power", {"vip-stats power"}},
+    {"libstudy/power/", {"vip-stats power"}},
     {"apps/stats/fit_ptpe_command", {"vip-stats fit-ptpe"}},
     {"apps/stats/report_command", {"vip-stats report"}},
     {"apps/stats/task_commands", {"vip-stats task1", "vip-stats task2"}},
-    {"apps/stats/report/freeze", {"vip-stats preregister"}},
+    {"libstudy/preregistration/freeze", {"vip-stats preregister"}},
     {"apps/study/merge_command", {"vip-study merge"}},
     {"apps/study/export_command", {"vip-study export"}},
     {"apps/study/consent_command", {"vip-study consent"}}};
@@ -130,7 +131,17 @@ const Words of_others{"--query-gpu", "--format"};
 /// Words after a program's name that continue the sentence.
 const Words words_of_sentences{"did", "does", "is", "made", "protocol", "read", "that"};
 
+/// Rooms of the libraries that serve one program.
+const std::map<std::string, std::string> rooms_of_programs{
+    {"libsim/measure/", "vip-bench"},           {"libstudy/sweep/run/", "vip-bench"},
+    {"libstudy/analysis/", "vip-stats"},        {"libstudy/power/", "vip-stats"},
+    {"libstudy/preregistration/", "vip-stats"}, {"libstudy/report/", "vip-stats"},
+    {"libstudy/check/", "vip-study"},           {"libstudy/console/", "vip-study"},
+    {"libstudy/runner/", "vip-study"}};
+
 std::vector<std::string> own_programs(const std::string& path) {
+  for (const auto& [room, program] : rooms_of_programs)
+    if (path.starts_with(room)) return {program};
   for (const auto& program : programs)
     if (path.starts_with("apps/" + program.substr(4) + "/")) return {program};
   return programs;
@@ -211,8 +222,8 @@ TEST(AdviceE2e, AnOptionThatIsNotThereWouldBeSeen) {
   const auto wrong = [](const char* path, const char* text) {
     return wrong_advice(known_programs(), path, text).size();
   };
-  EXPECT_EQ(wrong("apps/stats/data/task_choice.cpp", "choose one with --protocol"), 0u);
-  EXPECT_EQ(wrong("apps/stats/data/task_choice.cpp", "choose one with --exclude"), 3u);
+  EXPECT_EQ(wrong("libstudy/analysis/task_choice.cpp", "choose one with --protocol"), 0u);
+  EXPECT_EQ(wrong("libstudy/analysis/task_choice.cpp", "choose one with --exclude"), 3u);
   EXPECT_EQ(wrong("apps/study/run_command.cpp", "use --no-such-option"), 1u);
   EXPECT_EQ(wrong("stats/base/file.cpp", "use vip-study export --fmt"), 1u);
   EXPECT_EQ(wrong("stats/base/file.cpp", "restore it by vip-study recover"), 1u);

@@ -1,5 +1,5 @@
 /// The stimuli of a protocol that are baked, and differences between a bake and the order.
-#include "apps/study/bakes/session_bakes.hpp"
+#include "libstudy/stimulus/bakes/session_bakes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,15 +27,15 @@ std::string with_fixation(const std::string& text) {
   return test::replaced(text, "participants = ", "gaze = \"fixation\"\nparticipants = ");
 }
 
-std::vector<PlannedStimulus> plan_of(const std::string& text) {
-  return plan_bakes(study::parse_protocol(text, "test"));
+std::vector<study::PlannedStimulus> plan_of(const std::string& text) {
+  return study::plan_bakes(study::parse_protocol(text, "test"));
 }
 
-std::int64_t baked(const std::vector<PlannedStimulus>& plan) {
+std::int64_t baked(const std::vector<study::PlannedStimulus>& plan) {
   return std::count_if(plan.begin(), plan.end(), [](const auto& one) { return one.live.empty(); });
 }
 
-std::set<std::string> files(const std::vector<PlannedStimulus>& plan) {
+std::set<std::string> files(const std::vector<study::PlannedStimulus>& plan) {
   std::set<std::string> out;
   for (const auto& one : plan) {
     if (!one.file.empty()) out.insert(one.file);
@@ -84,8 +84,8 @@ TEST(BakePlan, ScenesOfOneNameAreToldApart) {
   EXPECT_THAT(files(plan), ElementsAre("dam_32k_HiRes-2.bake", "dam_32k_HiRes.bake"));
 }
 
-BakeOrder order() {
-  BakeOrder out;
+study::BakeOrder order() {
+  study::BakeOrder out;
   out.fluid.scene = base::resource("data/scenes/single_dam.toml");
   out.fluid.method = "Ours-TSp";
   out.fluid.n_star = "64";
@@ -95,50 +95,51 @@ BakeOrder order() {
 }
 
 TEST(BakeOrder, WhatIsWantedDepartsInNothing) {
-  EXPECT_THAT(fluid_departures(header_of(order()), header_of(order())), IsEmpty());
-  EXPECT_THAT(view_departures(header_of(order()), header_of(order())), IsEmpty());
+  EXPECT_THAT(study::fluid_departures(study::header_of(order()), study::header_of(order())), IsEmpty());
+  EXPECT_THAT(study::view_departures(study::header_of(order()), study::header_of(order())), IsEmpty());
 }
 
 /// Differences of a bake whose order was changed by `change` from the unchanged order.
 template <typename Change>
 std::string departures_after(const Change& change, bool view = false) {
-  BakeOrder other = order();
+  study::BakeOrder other = order();
   change(other);
-  const auto found = header_of(other), wanted = header_of(order());
-  return base::joined(view ? view_departures(found, wanted) : fluid_departures(found, wanted));
+  const auto found = study::header_of(other), wanted = study::header_of(order());
+  return base::joined(view ? study::view_departures(found, wanted) : study::fluid_departures(found, wanted));
 }
 
 TEST(BakeOrder, EveryDepartureOfTheFluidIsNamed) {
   const auto after = [](const auto& change) { return departures_after(change); };
-  EXPECT_THAT(after([](BakeOrder& o) { o.fluid.scene = base::resource("data/scenes/faucet.toml"); }),
+  EXPECT_THAT(after([](study::BakeOrder& o) { o.fluid.scene = base::resource("data/scenes/faucet.toml"); }),
               HasSubstr("scene Faucet"));
-  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.method = "Ours"; }), "method Ours instead of Ours-TSp");
-  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.n_star = "128"; }), "n_* 128 instead of 64");
-  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.content_step_s = 0.01; }),
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.fluid.method = "Ours"; }), "method Ours instead of Ours-TSp");
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.fluid.n_star = "128"; }), "n_* 128 instead of 64");
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.fluid.content_step_s = 0.01; }),
             "content step 0.01 s instead of 0.0166667 s");
-  EXPECT_EQ(after([](BakeOrder& o) { o.frames = 599; }), "599 frames instead of 600");
-  EXPECT_EQ(after([](BakeOrder& o) { o.frames = 601; }), "") << "more than are shown harm nothing";
-  EXPECT_THAT(after([](BakeOrder& o) { o.fluid.fixed_rate->sd = 4; }), HasSubstr("tau of 20, 4 frames/s"));
-  EXPECT_THAT(after([](BakeOrder& o) { o.fluid.model.a = 30; }), HasSubstr("a = 30"));
-  EXPECT_EQ(after([](BakeOrder& o) { o.scene_gaze = true; }),
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.frames = 599; }), "599 frames instead of 600");
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.frames = 601; }), "") << "more than are shown harm nothing";
+  EXPECT_THAT(after([](study::BakeOrder& o) { o.fluid.fixed_rate->sd = 4; }),
+              HasSubstr("tau of 20, 4 frames/s"));
+  EXPECT_THAT(after([](study::BakeOrder& o) { o.fluid.model.a = 30; }), HasSubstr("a = 30"));
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.scene_gaze = true; }),
             "gaze along the scene's keys instead of gaze on the middle of the picture");
 }
 
 TEST(BakeOrder, EveryDepartureOfThePictureIsNamed) {
   const auto after = [](const auto& change) { return departures_after(change, true); };
-  EXPECT_EQ(after([](BakeOrder& o) { o.size = {640, 360}; }), "picture 640x360 instead of 1280x720");
-  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.viewing.true_angle = true; }),
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.size = {640, 360}; }), "picture 640x360 instead of 1280x720");
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.fluid.viewing.true_angle = true; }),
             "camera angle 30 deg instead of 75 deg");
-  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.viewing = {}; }),
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.fluid.viewing = {}; }),
             "angle of the eye's view not known instead of 30 deg");
-  EXPECT_EQ(after([](BakeOrder& o) { o.fluid.overview = true; }), "") << "no picture is kept";
+  EXPECT_EQ(after([](study::BakeOrder& o) { o.fluid.overview = true; }), "") << "no picture is kept";
 }
 
 TEST(BakeOrder, TauWithoutAFrameRateIsRefused) {
-  BakeOrder other = order();
+  study::BakeOrder other = order();
   other.fluid.fixed_rate.reset();
   try {
-    header_of(other);
+    study::header_of(other);
     FAIL() << "accepted";
   } catch (const base::Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("--rate MEAN,SD"));
@@ -146,24 +147,24 @@ TEST(BakeOrder, TauWithoutAFrameRateIsRefused) {
 }
 
 TEST(BakeOrder, ParticlesAloneOfAFreeObstacleAreRefused) {
-  BakeOrder other = order();
+  study::BakeOrder other = order();
   other.fluid.scene = base::resource("data/scenes/float.toml");
   try {
-    header_of(other);
+    study::header_of(other);
     FAIL() << "accepted";
   } catch (const base::Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("has free obstacles"));
   }
   other.pictures = true;
-  EXPECT_EQ(header_of(other).scene_name, "Float");
+  EXPECT_EQ(study::header_of(other).scene_name, "Float");
 }
 
 /// A bake holds its scene's meshes, so it needs no file beside it.
 TEST(BakeOrder, HoldsTheTrianglesOfMeshes) {
-  BakeOrder other = order();
+  study::BakeOrder other = order();
   other.fluid.scene = base::resource("data/scenes/boat.toml");
   other.pictures = true;
-  const sim::BakeHeader header = header_of(other);
+  const sim::BakeHeader header = study::header_of(other);
   EXPECT_THAT(header.scene_text, HasSubstr("obj = '''\nv "));
   const sim::Scene scene = sim::baked_scene(header);
   EXPECT_EQ(scene.sha256, header.scene_sha256);
@@ -177,12 +178,12 @@ TEST(SessionBakes, PicturesOfAFreeObstacleArePlayedParticlesAloneAreNot) {
                                     "n_star = [\"32k\"]", "n_star = [\"64\"]"),
                      "duration_s = 10", "duration_s = 0.5"),
       "test");
-  const SessionLook look{{}, {32, 18}};
-  const auto plan = plan_bakes(protocol);
+  const study::SessionLook look{{}, {32, 18}};
+  const auto plan = study::plan_bakes(protocol);
   ASSERT_EQ(plan.size(), 1u);
-  auto wanted = order_of(protocol, plan[0], look);
+  auto wanted = study::order_of(protocol, plan[0], look);
   wanted.pictures = true;
-  sim::BakeHeader header = header_of(wanted);
+  sim::BakeHeader header = study::header_of(wanted);
   const sim::BakeHeader made = bake_test::header(header.frame_count, 32, 18);
   header.backend = made.backend;
   header.max_particles = made.max_particles;
@@ -199,14 +200,14 @@ TEST(SessionBakes, PicturesOfAFreeObstacleArePlayedParticlesAloneAreNot) {
   };
   write(plan[0].file);
   for (const auto& path : {folder / "", folder / plan[0].file}) {
-    const SessionBakes bakes(path, protocol, look);
+    const study::SessionBakes bakes(path, protocol, look);
     EXPECT_TRUE(bakes.whole());
     EXPECT_EQ(bakes.departure(), "");
   }
   header.picture_width_px = header.picture_height_px = 0;
   header.camera = "";
   write("particles.bake");
-  EXPECT_THAT([&] { SessionBakes(folder / "particles.bake", protocol, look); },
+  EXPECT_THAT([&] { study::SessionBakes(folder / "particles.bake", protocol, look); },
               ::testing::ThrowsMessage<base::Error>(HasSubstr("has free obstacles")));
 }
 

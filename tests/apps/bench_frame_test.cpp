@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/bench/timed_run.hpp"
+#include "libsim/measure/timed_run.hpp"
 #include "libsim/scene/effects.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
@@ -108,11 +108,11 @@ TEST(TimedRun, MeasuredStatesMeetEachFrameBetweenTurnsAsOften) {
   for (const int turn : {1, 2, 4, 6}) {
     readings.levels_period_frames = turn;
     for (const int frames : {1, 40, 60, 100, 120, 500}) {
-      const int every = apps::tenth_of(frames, sim::MethodKind::Ours, readings);
+      const int every = measure::tenth_of(frames, sim::MethodKind::Ours, readings);
       std::vector<int> met(static_cast<std::size_t>(turn));
       for (int k = 1; k <= 12; ++k) ++met[static_cast<std::size_t>(k * every % turn)];
       for (const int times : met) EXPECT_EQ(times, 12 / turn) << frames << " frames, turns of " << turn;
-      EXPECT_EQ(apps::tenth_of(frames, sim::MethodKind::HiRes, readings), std::max(1, frames / 10));
+      EXPECT_EQ(measure::tenth_of(frames, sim::MethodKind::HiRes, readings), std::max(1, frames / 10));
     }
   }
 }

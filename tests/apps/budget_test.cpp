@@ -1,5 +1,5 @@
 /// vip-bench accuracy --budget: the setting with the least error within a budget.
-#include "apps/bench/accuracy/budget.hpp"
+#include "libstudy/sweep/run/budget.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,13 +18,13 @@ using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 TEST(Budget, IsWrittenInMilliseconds) {
-  EXPECT_DOUBLE_EQ(parse_budget("11.1ms"), 11.1);
+  EXPECT_DOUBLE_EQ(study::parse_budget("11.1ms"), 11.1);
   for (const char* words : {"", "ms", "11.1", "11.1 ms", "11.1s", "-1ms", "0ms", "nanms", "infms", "1e9ms"})
-    EXPECT_THROW(parse_budget(words), base::Error) << words;
+    EXPECT_THROW(study::parse_budget(words), base::Error) << words;
 }
 
-SettingResult result(double p95, double low, double error, double high) {
-  SettingResult out;
+study::SettingResult result(double p95, double low, double error, double high) {
+  study::SettingResult out;
   out.ms_mean = p95 - 1;
   out.ms_p95 = p95;
   out.errors[1] = {error, low, high};
@@ -32,20 +32,21 @@ SettingResult result(double p95, double low, double error, double high) {
 }
 
 TEST(Budget, TheLeastErrorComesFirstAndTiesGoToTheCheaper) {
-  const std::vector<SettingResult> settings{result(12, 0.1, 0.1, 0.1),  // over the budget
-                                            result(11, 1.0, 1.2, 1.4),  // least error within the budget
-                                            result(8, 1.3, 1.5, 1.7),  // not significantly worse, and cheaper
-                                            result(5, 1.5, 1.6, 1.8),  // worse
-                                            result(0, 0, 0, 0)};       // too short to be timed
-  EXPECT_THAT(within_budget(settings, 11, SweepError::Centre), ElementsAre(2, 1, 3));
-  EXPECT_THAT(within_budget(settings, 7, SweepError::Centre), ElementsAre(3));
-  EXPECT_THAT(within_budget(settings, 4, SweepError::Centre), IsEmpty());
+  const std::vector<study::SettingResult> settings{
+      result(12, 0.1, 0.1, 0.1),  // over the budget
+      result(11, 1.0, 1.2, 1.4),  // least error within the budget
+      result(8, 1.3, 1.5, 1.7),   // not significantly worse, and cheaper
+      result(5, 1.5, 1.6, 1.8),   // worse
+      result(0, 0, 0, 0)};        // too short to be timed
+  EXPECT_THAT(study::within_budget(settings, 11, study::SweepError::Centre), ElementsAre(2, 1, 3));
+  EXPECT_THAT(study::within_budget(settings, 7, study::SweepError::Centre), ElementsAre(3));
+  EXPECT_THAT(study::within_budget(settings, 4, study::SweepError::Centre), IsEmpty());
 }
 
-CellRun run_of(double front, double ms) {
-  CellRun out;
+study::CellRun run_of(double front, double ms) {
+  study::CellRun out;
   for (const double time : {0.1, 0.2}) {
-    WaterSample sample{.time_s = time, .front_m = front, .kinetic_j_kg = 10};
+    study::WaterSample sample{.time_s = time, .front_m = front, .kinetic_j_kg = 10};
     sample.centre_m[0] = front;
     out.samples.push_back(sample);
   }
@@ -55,30 +56,30 @@ CellRun run_of(double front, double ms) {
 
 class BudgetChoice : public ::testing::Test {
  protected:
-  const SweepPlan plan{.n_star = 512};
-  const SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
-  const SolverSetting usual = usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
-  const SolverSetting eight = [&] {
+  const study::SweepPlan plan{.n_star = 512};
+  const study::SweepOrigin origin{"a machine", "0.1.0 abc", "feed"};
+  const sim::SolverSetting usual = sim::usual_setting("SingleDam", sim::MethodKind::HiRes, 512);
+  const sim::SolverSetting eight = [&] {
     auto out = usual;
-    out[SolverKnob::Iterations] = 8;
+    out[sim::SolverKnob::Iterations] = 8;
     return out;
   }();
-  std::vector<SweepCell> run_anew;
+  std::vector<study::SweepCell> run_anew;
   std::vector<std::string> heard;
 
-  StoredCell stored(const SolverSetting& setting, int seed, double front, double ms) const {
+  study::StoredCell stored(const sim::SolverSetting& setting, int seed, double front, double ms) const {
     return {{setting, seed, plan.seconds, plan.size}, origin, run_of(front, ms)};
   }
-  std::vector<StoredCell> cells() const {
-    const auto reference = reference_setting("SingleDam", 512);
+  std::vector<study::StoredCell> cells() const {
+    const auto reference = study::reference_setting("SingleDam", 512);
     return {stored(reference, 1, 1, 100), stored(reference, 2, 1.001, 100), stored(usual, 1, 1.2, 5),
             stored(usual, 2, 1.21, 5),    stored(eight, 1, 1.1, 9),         stored(eight, 2, 1.11, 9)};
   }
   /// Chooses a setting; cells that run again take these times.
-  SettingFile choose(double budget_ms, double usual_ms, double eight_ms) {
-    return choose_setting(
-        cells(), origin, {plan, budget_ms, SweepError::Centre, 10},
-        [&](const SweepCell& cell) {
+  sim::SettingFile choose(double budget_ms, double usual_ms, double eight_ms) {
+    return study::choose_setting(
+        cells(), origin, {plan, budget_ms, study::SweepError::Centre, 10},
+        [&](const study::SweepCell& cell) {
           run_anew.push_back(cell);
           const bool is_eight = cell.setting == eight;
           return stored(cell.setting, cell.seed, is_eight ? 1.12 : 1.2, is_eight ? eight_ms : usual_ms);
@@ -102,19 +103,19 @@ TEST_F(BudgetChoice, IsMeasuredAnewFromStartsThatTheSweepHasNotSeen) {
 }
 
 TEST_F(BudgetChoice, IsAmongTheSettingsThatAreWished) {
-  const auto run = [&](const SweepCell& cell) { return stored(cell.setting, cell.seed, 1.2, 5); };
+  const auto run = [&](const study::SweepCell& cell) { return stored(cell.setting, cell.seed, 1.2, 5); };
   const auto said = [](const std::string&) {};
-  BudgetRequest request{plan, 10, SweepError::Centre, 10};
+  study::BudgetRequest request{plan, 10, study::SweepError::Centre, 10};
   request.n_star = 512;
   request.frames_per_s = 60;
   request.method = sim::MethodKind::HiRes;
-  EXPECT_EQ(choose_setting(cells(), origin, request, run, said).setting, eight);
+  EXPECT_EQ(study::choose_setting(cells(), origin, request, run, said).setting, eight);
   request.method = sim::MethodKind::Ours;
-  EXPECT_THAT([&] { choose_setting(cells(), origin, request, run, said); },
+  EXPECT_THAT([&] { study::choose_setting(cells(), origin, request, run, said); },
               ThrowsMessage<base::Error>(HasSubstr("match no setting of the sweep")));
   request.method.reset();
   request.frames_per_s = 90;
-  EXPECT_THROW(choose_setting(cells(), origin, request, run, said), base::Error);
+  EXPECT_THROW(study::choose_setting(cells(), origin, request, run, said), base::Error);
 }
 
 TEST_F(BudgetChoice, WhatDoesNotKeepTheBudgetAgainIsLeft) {
@@ -151,7 +152,7 @@ TEST_F(BudgetE2e, FromTheSweepToTheProgramsThatRunIt) {
   const auto chosen = table(sweep + " --budget 100000ms --error kinetic --out " + path("best.toml"));
   ASSERT_EQ(chosen.exit_code, 0) << chosen.out;
   EXPECT_THAT(chosen.out, Not(HasSubstr("cells are there"))) << "the sweep is whole";
-  const auto file = read_setting_file(path("best.toml"));
+  const auto file = sim::read_setting_file(path("best.toml"));
   EXPECT_EQ(file.measured.error, "kinetic_pct");
   EXPECT_EQ(file.measured.seeds, 3);
   const auto timed =

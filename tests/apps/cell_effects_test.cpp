@@ -1,14 +1,14 @@
 /// Levels of the factor effects as effects of a scene.
 
-#include "apps/study/bakes/cell_effects.hpp"
+#include "libstudy/stimulus/bakes/cell_effects.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/study/bakes/bake_plan.hpp"
-#include "apps/study/cell_stimuli.hpp"
-#include "apps/study/check/measured_check.hpp"
 #include "libsim/scene/picture_effects_text.hpp"
+#include "libstudy/check/measured_check.hpp"
+#include "libstudy/runner/cell_stimuli.hpp"
+#include "libstudy/stimulus/bakes/bake_plan.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/study_test_support.hpp"
@@ -34,7 +34,7 @@ study::Protocol protocol_with(const std::string& effects, const std::string& set
 
 std::string error_of(const study::Protocol& protocol) {
   try {
-    check_cell_effects(protocol);
+    study::check_cell_effects(protocol);
   } catch (const base::Error& error) {
     return error.what();
   }
@@ -65,16 +65,16 @@ TEST(CellEffects, OfEachLevelAreThoseThatItNames) {
                     set_of("keep = [\"foam\"]\neffect = [{kind = \"air_drag\", rate_per_s = 2}]"));
   const auto scene = sim::read_scene(base::find_input("data/scenes/sea_spray.toml"));
   EXPECT_EQ(error_of(protocol), "");
-  EXPECT_THAT(*effects_of(protocol, "none", scene).water, IsEmpty());
-  EXPECT_EQ(sim::format_effects(*effects_of(protocol, "scene", scene).water),
+  EXPECT_THAT(*study::effects_of(protocol, "none", scene).water, IsEmpty());
+  EXPECT_EQ(sim::format_effects(*study::effects_of(protocol, "scene", scene).water),
             sim::format_effects(scene.effects));
-  const auto both = *effects_of(protocol, "foam", scene).water;
+  const auto both = *study::effects_of(protocol, "foam", scene).water;
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[0].kind, sim::EffectKind::AirDrag);
   EXPECT_EQ(both[0].coefficient, 2);
   EXPECT_EQ(both[1].kind, sim::EffectKind::Foam);
   EXPECT_EQ(both[1].coefficient, 0.3);
-  EXPECT_THAT(levels_in_words(protocol, scene),
+  EXPECT_THAT(study::levels_in_words(protocol, scene),
               AllOf(HasSubstr("none: no effects, scene: foam emission_per_s = 0.3 "),
                     HasSubstr("foam: air_drag rate_per_s = 2 ")));
 }
@@ -82,7 +82,7 @@ TEST(CellEffects, OfEachLevelAreThoseThatItNames) {
 TEST(CellEffects, WithoutTheFactorAreTheScenesOwn) {
   NEEDS_EFFECTS;
   const auto protocol = study::read_protocol(base::resource("protocols/task1.toml"));
-  const CellEffects of = cell_effects(protocol, protocol.design.cells.front().stimulus);
+  const study::CellEffects of = study::cell_effects(protocol, protocol.design.cells.front().stimulus);
   EXPECT_FALSE(of.water || of.picture);
   EXPECT_EQ(error_of(protocol), "");
 }
@@ -117,11 +117,11 @@ TEST(CellEffects, OfThePictureStayWhereNoSetNamesOne) {
       protocol_with(two_levels, set_of("effect = [{kind = \"air_drag\", rate_per_s = 1}]"), "pool_light");
   const auto scene = sim::read_scene(base::find_input("data/scenes/pool_light.toml"));
   for (const char* level : {"none", "foam"}) {
-    const CellEffects of = effects_of(protocol, level, scene);
+    const study::CellEffects of = study::effects_of(protocol, level, scene);
     EXPECT_FALSE(of.picture) << level;
-    EXPECT_EQ(scene_with(scene, of).picture_effects.size(), 2u) << level;
+    EXPECT_EQ(study::scene_with(scene, of).picture_effects.size(), 2u) << level;
   }
-  EXPECT_THAT(levels_in_words(protocol, scene),
+  EXPECT_THAT(study::levels_in_words(protocol, scene),
               HasSubstr("none: no effects, foam: air_drag rate_per_s = 1 "));
 }
 
@@ -132,18 +132,18 @@ TEST(CellEffects, OfThePictureVaryWhereASetNamesOne) {
   const auto scene = sim::read_scene(base::find_input("data/scenes/pool_light.toml"));
   EXPECT_EQ(error_of(protocol), "");
   EXPECT_EQ(
-      levels_in_words(protocol, scene),
+      study::levels_in_words(protocol, scene),
       "none: no effects, foam: shadows strength = 0.5; caustics strength = 1, scene: shadows strength = "
       "1; caustics strength = 1");
-  const auto none = scene_with(scene, effects_of(protocol, "none", scene));
+  const auto none = study::scene_with(scene, study::effects_of(protocol, "none", scene));
   EXPECT_THAT(none.picture_effects, IsEmpty());
-  RunOptions options;
+  study::RunOptions options;
   options.display = "headless";
   options.backend = "cpu";
-  const CellStimuli stimuli(options, protocol, {}, {});
+  const study::CellStimuli stimuli(options, protocol, {}, {});
   for (std::size_t cell = 0; cell < 3; ++cell) {
     const auto live = stimuli.choice_of(protocol.design.cells[cell]).picture_effects;
-    const auto baked = order_of(protocol, plan_bakes(protocol)[cell], {}).fluid.picture_effects;
+    const auto baked = study::order_of(protocol, study::plan_bakes(protocol)[cell], {}).fluid.picture_effects;
     ASSERT_TRUE(live && baked);
     EXPECT_EQ(live->size(), cell == 0 ? 0u : 2u);
     EXPECT_EQ(sim::format_picture_effects(*live), sim::format_picture_effects(*baked));
@@ -211,13 +211,13 @@ TEST(CellEffects, ThatLeaveNoTemperatureToPaintAreRefused) {
 TEST(CellEffects, ReachTheFluidOfTheirCells) {
   NEEDS_EFFECTS;
   const auto protocol = study::read_protocol(base::resource("protocols/foam.toml"));
-  RunOptions options;
+  study::RunOptions options;
   options.display = "headless";
   options.backend = "cpu";
-  const CellStimuli stimuli(options, protocol, {}, {});
+  const study::CellStimuli stimuli(options, protocol, {}, {});
   const auto live = [&](std::size_t cell) { return stimuli.choice_of(protocol.design.cells[cell]).effects; };
   const auto baked = [&](std::size_t cell) {
-    return order_of(protocol, plan_bakes(protocol)[cell], {}).fluid.effects;
+    return study::order_of(protocol, study::plan_bakes(protocol)[cell], {}).fluid.effects;
   };
   for (const auto& effects : {live(0), baked(0)}) {
     ASSERT_TRUE(effects) << "none, not the scene's own";
@@ -232,11 +232,11 @@ TEST(CellEffects, ReachTheFluidOfTheirCells) {
 
 TEST(CellEffects, NameTheirBakesAndStimuli) {
   NEEDS_EFFECTS;
-  const auto plan = plan_bakes(study::read_protocol(base::resource("protocols/foam.toml")));
+  const auto plan = study::plan_bakes(study::read_protocol(base::resource("protocols/foam.toml")));
   std::vector<std::string> files, names;
   for (const auto& one : plan) {
     files.push_back(one.file);
-    names.push_back(stimulus_name(one.what));
+    names.push_back(study::stimulus_name(one.what));
   }
   EXPECT_THAT(files, ElementsAre("sea_spray_16k_LoRes_none.bake", "sea_spray_16k_LoRes_foam.bake",
                                  "sea_spray_16k_HiRes_none.bake", "sea_spray_16k_HiRes_foam.bake"));

@@ -1,15 +1,15 @@
 /// Which of H1 to H6 a protocol tests, and the reasons for the others: before the study, in the bundle and on
 /// the page.
 
-#include "apps/common/claims.hpp"
+#include "libstudy/analysis/claims.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/report/preregistration.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/preregistration/preregistration.hpp"
 #include "libstudy/protocol/protocol.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/new_file.hpp"
 #include "tests/apps/made_task_study.hpp"
@@ -50,7 +50,7 @@ std::string three_way() {
 
 std::vector<std::string> left_out_of(const std::string& text) {
   std::vector<std::string> out;
-  for (const auto& [id, reason] : hypotheses_of(study::parse_protocol(text, "a.toml"), {}).left_out)
+  for (const auto& [id, reason] : study::hypotheses_of(study::parse_protocol(text, "a.toml"), {}).left_out)
     out.push_back(id + ": " + reason);
   return out;
 }
@@ -73,9 +73,9 @@ TEST(Claims, RatingsAndPairsHaveReasonsOfTheirOwn) {
 
 std::string bundle_of(std::vector<std::filesystem::path> protocols) {
   const test::TemporaryFolder folder;
-  report::BundleRequest request;
+  study::report::BundleRequest request;
   request.protocols = std::move(protocols);
-  report::freeze_bundle(request, folder / "bundle");
+  study::report::freeze_bundle(request, folder / "bundle");
   return base::read_file(folder / "bundle" / "PREREGISTRATION.txt", 1 << 20);
 }
 
@@ -88,11 +88,11 @@ TEST(Claims, ABundleNamesWhatNoneOfItsProtocolsTests) {
 TEST(Claims, AMarginActsWhereverMethodsAreComparedByItsScore) {
   const test::TemporaryFolder folder;
   base::write_file_atomically(folder / "own.toml", own_realism());
-  report::BundleRequest request;
+  study::report::BundleRequest request;
   request.protocols = {folder / "own.toml"};
   request.plan.margin_realism = 0.3;
-  report::freeze_bundle(request, folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(request, folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   EXPECT_THAT(bundle.hypotheses, IsEmpty());
   EXPECT_EQ(bundle.plan.plan.margin_realism, 0.3);
   const std::string plan = base::read_file(folder / "bundle" / "plan.toml", 1 << 20);
@@ -100,11 +100,12 @@ TEST(Claims, AMarginActsWhereverMethodsAreComparedByItsScore) {
   EXPECT_THAT(plan, HasSubstr("# cannot act, as no ratings of cybersickness compare methods: sickness = "));
 }
 
-Json results_of(std::vector<study::TaskProtocol> protocols) {
-  PlanInForce plan;
+study::Json results_of(std::vector<study::TaskProtocol> protocols) {
+  study::PlanInForce plan;
   plan.plan.resamples = 100;
-  return make_results({std::move(protocols), 0},
-                      {"s.db", {TaskKind::Task1, TaskKind::Task2, TaskKind::Own}, "", plan})
+  return study::make_results(
+             {std::move(protocols), 0},
+             {"s.db", {study::TaskKind::Task1, study::TaskKind::Task2, study::TaskKind::Own}, "", plan})
       .json;
 }
 
@@ -113,24 +114,24 @@ TEST(Claims, ThePageNamesTheProtocolThatDoesNotTestThem) {
   own.name = "comfort";
   own.sha256 = std::string(64, '4');
   own.questions.erase(own.questions.begin());
-  const Json json = results_of({made_study::task1(6), own});
+  const study::Json json = results_of({made_study::task1(6), own});
   ASSERT_EQ(json.at("hypotheses").size(), 3u) << "H1 to H3 of task1";
   std::vector<std::string> lines;
-  for (const Json& one : json.at("not_analysed"))
+  for (const study::Json& one : json.at("not_analysed"))
     lines.push_back(std::string(one.at("what")) + " of " + std::string(one.at("protocol")));
   EXPECT_THAT(lines, ElementsAre("own design of comfort", "H1 to H3 of comfort", "H4 to H6 of comfort"));
-  EXPECT_THAT(report::results_page(json), HasSubstr(">comfort</span> (not analysed): "));
+  EXPECT_THAT(study::report::results_page(json), HasSubstr(">comfort</span> (not analysed): "));
 }
 
 TEST(Claims, PairsWithThreeAnswersLackTheChoiceOfTwo) {
   auto pairs = made_study::task2(6);
   pairs.questions[0].anchors.emplace_back(3, "no difference");
-  const Json json = results_of({pairs});
+  const study::Json json = results_of({pairs});
   std::string reasons;
-  for (const Json& one : json.at("not_analysed")) reasons += std::string(one.at("reason")) + "\n";
+  for (const study::Json& one : json.at("not_analysed")) reasons += std::string(one.at("reason")) + "\n";
   EXPECT_THAT(reasons, AllOf(HasSubstr("exactly two anchors"), HasSubstr("not rated one by one"),
                              Not(HasSubstr("asks no choice"))));
-  const auto refused = select_task({{pairs}, 0}, {TaskKind::Task2, "", {}});
+  const auto refused = study::select_task({{pairs}, 0}, {study::TaskKind::Task2, "", {}});
   EXPECT_THAT(refused.reason(), HasSubstr("a choice with exactly two anchors"));
 }
 

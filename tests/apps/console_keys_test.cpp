@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "apps/study/desk/console.hpp"
-#include "apps/study/desk/console_screen.hpp"
-#include "apps/study/desk/console_text.hpp"
-#include "apps/study/desk/progress.hpp"
+#include "libstudy/console/console.hpp"
+#include "libstudy/console/console_screen.hpp"
+#include "libstudy/console/console_text.hpp"
+#include "libstudy/console/progress.hpp"
 #include "stats/base/duration.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
@@ -57,7 +57,7 @@ class ConsoleTest : public ::testing::Test {
   study::Store store_;
   std::vector<study::OpenRun> runs_;
   std::optional<double> idle_s_;
-  Console console_{protocol_, store_, folder_.path() / "s.db", [this] { return idle_s_; }};
+  study::Console console_{protocol_, store_, folder_.path() / "s.db", [this] { return idle_s_; }};
 };
 
 TEST_F(ConsoleTest, HidesTheSettingUntilItIsRevealedAndLogsThat) {
@@ -138,7 +138,7 @@ TEST_F(ConsoleTest, WhatCannotBeKeptIsSaidNotToBe) {
   study::Store(path, study::sqlite::Open::Create).add_run(study::test::run_plan(protocol_, {"P01"}));
   study::Store full(path, study::sqlite::Open::Write, 1);  // the database cannot grow by a page
   const auto runs = full.open_runs();
-  Console console(protocol_, full, path);
+  study::Console console(protocol_, full, path);
   console.begin(runs.at(0).sessions.at(0));
   console.begins(runs.at(0).sessions.at(0).units.at(0));
   for (int i = 0; i < 40; ++i) {
@@ -205,28 +205,28 @@ TEST_F(ConsoleTest, ViewShowsLatenessAndWhatIsTyped) {
     frame.late = i == 20;
     console_.shown(frame);
   }
-  const ConsoleView view = console_.view(steady_ns());
+  const study::ConsoleView view = console_.view(study::steady_ns());
   EXPECT_THAT(view.rate, HasSubstr("late 1, worst 7.00 ms"));
   EXPECT_THAT(view.rate, Not(HasSubstr("frames/s"))) << "it would tell the setting";
   EXPECT_THAT(view.strip, HasSubstr("..."));
   EXPECT_THAT(view.person, StartsWith("looks at the stimulus"));
   EXPECT_THAT(view.alarms, Contains(HasSubstr("1 late frame in this showing")));
   type("nab");
-  EXPECT_EQ(console_.view(steady_ns()).typed, "note: ab");
+  EXPECT_EQ(console_.view(study::steady_ns()).typed, "note: ab");
 }
 
 TEST_F(ConsoleTest, ViewSaysWhatThePersonDoes) {
   const auto person = [&](double later_s = 0) {
-    return console_.view(steady_ns() + std::llround(1e9 * later_s)).person;
+    return console_.view(study::steady_ns() + std::llround(1e9 * later_s)).person;
   };
   EXPECT_THAT(person(), StartsWith("waits"));
   console_.begins(session().units.front());
   idle_s_ = 12;
   EXPECT_THAT(person(34),
               AllOf(StartsWith("on this page for 34 s"), HasSubstr("last key or mouse 12 s ago")));
-  EXPECT_THAT(console_.view(steady_ns()).alarms, Not(Contains(HasSubstr("nothing was pressed"))));
+  EXPECT_THAT(console_.view(study::steady_ns()).alarms, Not(Contains(HasSubstr("nothing was pressed"))));
   idle_s_ = 200;
-  EXPECT_THAT(console_.view(steady_ns() + 200'000'000'000).alarms,
+  EXPECT_THAT(console_.view(study::steady_ns() + 200'000'000'000).alarms,
               Contains(HasSubstr("nothing was pressed for 3 min")));
   type("p");
   EXPECT_THAT(person(), HasSubstr("PAUSE before the next step"));
@@ -235,7 +235,7 @@ TEST_F(ConsoleTest, ViewSaysWhatThePersonDoes) {
   type("p");
   console_.ends({study::EarlyEnd::Stopped, "sick"});
   EXPECT_THAT(person(), StartsWith("STOPPED"));
-  EXPECT_THAT(console_.view(steady_ns()).alarms, Contains(StartsWith("STOPPED")));
+  EXPECT_THAT(console_.view(study::steady_ns()).alarms, Contains(StartsWith("STOPPED")));
   console_.ends({study::EarlyEnd::NotEligible, "age"});
   EXPECT_THAT(person(), StartsWith("INELIGIBLE"));
   console_.take_reopened();
@@ -247,7 +247,7 @@ TEST_F(ConsoleTest, AFailedVerdictSaysWhatToDoNextAndWarningsStay) {
   failed.verdict = study::Verdict::Fail;
   console_.warn("power governor: powersave");
   console_.done({"P01", first_trial().plan, 1, {failed}});
-  const ConsoleView view = console_.view(steady_ns());
+  const study::ConsoleView view = console_.view(study::steady_ns());
   EXPECT_THAT(view.alarms, ElementsAre(HasSubstr("trial 1: timing FAILED; r shows it again"),
                                        "power governor: powersave"));
   EXPECT_THAT(view.last, HasSubstr("timing fail"));
@@ -260,15 +260,15 @@ TEST_F(ConsoleTest, ATrialThatWasCutIsToldApartFromOneThatFailed) {
   cut.verdict = study::Verdict::Fail;
   cut.cut = true;
   console_.done({"P01", first_trial().plan, 1, {study::test::verdict(), cut}});
-  EXPECT_THAT(console_.view(steady_ns()).alarms, ElementsAre(HasSubstr("trial 1: CUT")));
+  EXPECT_THAT(console_.view(study::steady_ns()).alarms, ElementsAre(HasSubstr("trial 1: CUT")));
   cut.nominal = {};
   cut.reason = "cut 20 s after its start";
   console_.done({"P01", first_trial().plan, 1, {cut}});
-  EXPECT_THAT(console_.view(steady_ns()).last, HasSubstr("timing fail: cut 20 s"));
+  EXPECT_THAT(console_.view(study::steady_ns()).last, HasSubstr("timing fail: cut 20 s"));
 }
 
 TEST(ConsoleScreen, FillsEightyByTwentyFourAndNoLineIsLonger) {
-  ConsoleView view;
+  study::ConsoleView view;
   view.title = "P01, visit 1: task1 1.0";
   view.clock = "14:03:05";
   view.done = 0.25;
@@ -278,7 +278,7 @@ TEST(ConsoleScreen, FillsEightyByTwentyFourAndNoLineIsLonger) {
   view.typed = "note: " + std::string(200, 'x') + "end";
   for (int i = 0; i < 30; ++i) view.said.push_back("said " + std::to_string(i) + std::string(100, '.'));
   for (int i = 0; i < 5; ++i) view.alarms.push_back("alarm " + std::to_string(i));
-  const auto lines = render_console(view, 80, 24);
+  const auto lines = study::render_console(view, 80, 24);
   ASSERT_EQ(lines.size(), 24u);
   for (const std::string& line : lines) EXPECT_LE(line.size(), 80u) << line;
   EXPECT_EQ(lines[0], "P01, visit 1: task1 1.0" + std::string(80 - 23 - 8, ' ') + "14:03:05");
@@ -293,47 +293,48 @@ TEST(ConsoleScreen, FillsEightyByTwentyFourAndNoLineIsLonger) {
 }
 
 TEST(ConsoleScreen, FitsEveryTerminal) {
-  ConsoleView view;
+  study::ConsoleView view;
   view.title = view.person = "\xE4\xBD\xA0\xE5\xA5\xBD \xC3\xBC";  // two wide letters, a narrow one
   view.said = {"one", "two"};
   for (const auto& [columns, rows] : {std::pair{132, 50}, {80, 24}, {20, 10}, {2, 1}, {1, 1}}) {
-    const auto lines = render_console(view, columns, rows);
+    const auto lines = study::render_console(view, columns, rows);
     EXPECT_EQ(lines.size(), static_cast<std::size_t>(rows));
     for (const std::string& line : lines)
       EXPECT_LE(line.size(), static_cast<std::size_t>(2 * columns)) << "bytes; three each for two columns";
   }
-  EXPECT_EQ(render_console(view, 14, 24)[4], "Person   \xE4\xBD\xA0...");
-  EXPECT_EQ(render_console(view, 80, 24)[12], "Alarms   none");
+  EXPECT_EQ(study::render_console(view, 14, 24)[4], "Person   \xE4\xBD\xA0...");
+  EXPECT_EQ(study::render_console(view, 80, 24)[12], "Alarms   none");
 }
 
 TEST_F(ConsoleTest, TellsTheTimeLeftByWhatWasMeasured) {
-  const auto left = [](const Console& console) { return console.view(steady_ns()).plan; };
-  Console slow(protocol_, store_, folder_.path() / "s.db", {},
-               std::vector<double>(protocol_.design.cells.size(), 300));
+  const auto left = [](const study::Console& console) { return console.view(study::steady_ns()).plan; };
+  study::Console slow(protocol_, store_, folder_.path() / "s.db", {},
+                      std::vector<double>(protocol_.design.cells.size(), 300));
   slow.begin(session());
   EXPECT_THAT(left(console_), AllOf(HasSubstr("about "), HasSubstr(" min")));
   EXPECT_THAT(
       left(slow),
-      HasSubstr(base::duration_words(expected_s(protocol_, session().units, true,
-                                                std::vector<double>(protocol_.design.cells.size(), 300)))));
+      HasSubstr(base::duration_words(study::expected_s(
+          protocol_, session().units, true, std::vector<double>(protocol_.design.cells.size(), 300)))));
   EXPECT_NE(left(slow), left(console_));
 }
 
 TEST_F(ConsoleTest, TimeLeftIsThatOfThePlan) {
   const study::OpenUnit& trial = first_trial();
-  EXPECT_DOUBLE_EQ(expected_s(protocol_, trial), 3 + 10 + 5);  // black 3, stimulus 10, one question
+  EXPECT_DOUBLE_EQ(study::expected_s(protocol_, trial), 3 + 10 + 5);  // black 3, stimulus 10, one question
   double sum = 0;
-  for (const auto& unit : session().units) sum += expected_s(protocol_, unit);
-  EXPECT_DOUBLE_EQ(expected_s(protocol_, session().units), sum);
+  for (const auto& unit : session().units) sum += study::expected_s(protocol_, unit);
+  EXPECT_DOUBLE_EQ(study::expected_s(protocol_, session().units), sum);
   EXPECT_GT(sum, 21 * 18);
-  EXPECT_DOUBLE_EQ(expected_s(protocol_, trial, false), 3 + 10) << "an observer answers at once";
-  EXPECT_LT(expected_s(protocol_, session().units, false), sum);
+  EXPECT_DOUBLE_EQ(study::expected_s(protocol_, trial, false), 3 + 10) << "an observer answers at once";
+  EXPECT_LT(study::expected_s(protocol_, session().units, false), sum);
   std::vector<double> showing_s(protocol_.design.cells.size(), 10);
   showing_s.at(static_cast<std::size_t>(trial.trial->first)) = 20;
-  EXPECT_DOUBLE_EQ(expected_s(protocol_, trial, true, showing_s), 3 + 20 + 5) << "as it was measured here";
-  EXPECT_DOUBLE_EQ(expected_s(protocol_, session().units, true, showing_s), sum + 10);
+  EXPECT_DOUBLE_EQ(study::expected_s(protocol_, trial, true, showing_s), 3 + 20 + 5)
+      << "as it was measured here";
+  EXPECT_DOUBLE_EQ(study::expected_s(protocol_, session().units, true, showing_s), sum + 10);
   // 21 settings of 10 s with a mean of 26.67 frames/s.
-  EXPECT_GT(expected_bytes(protocol_, session().units), 64u * 21 * 200);
+  EXPECT_GT(study::expected_bytes(protocol_, session().units), 64u * 21 * 200);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 /// Warnings, with the reason, about databases on network file systems and in folders that a service copies.
-#include "apps/study/desk/database_place.hpp"
+#include "libstudy/console/database_place.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// A probe on which everything has one kind of file system; these paths exist besides "/" and "/data".
-PlaceProbe made_probe(std::uint32_t kind, const std::string& mount = "", std::set<std::string> paths = {}) {
+study::PlaceProbe made_probe(std::uint32_t kind, const std::string& mount = "",
+                             std::set<std::string> paths = {}) {
   paths.insert({"/", "/data"});
   return {[kind](const fs::path&) { return kind; }, [mount](const fs::path&) { return mount; },
           [paths](const fs::path& path) { return paths.contains(path.string()); }};
@@ -29,18 +30,18 @@ TEST(DatabasePlace, NetworkFileSystemsAreNamedWithReasonAndMend) {
   const std::pair<std::uint32_t, const char*> kinds[] = {
       {0x6969, "NFS"}, {0xFF534D42, "SMB"}, {0x517B, "SMB"}, {0xFE534D42, "SMB"}, {0x01021997, "9p"}};
   for (const auto& [kind, name] : kinds)
-    EXPECT_THAT(place_problems("/data/s.db", made_probe(kind)),
+    EXPECT_THAT(study::place_problems("/data/s.db", made_probe(kind)),
                 ElementsAre(AllOf(HasSubstr("/data/s.db: "), HasSubstr(name), HasSubstr("locks"),
                                   HasSubstr("mend: "))));
-  EXPECT_THAT(place_problems("/data/s.db", made_probe(fuse, "fuse.sshfs")),
+  EXPECT_THAT(study::place_problems("/data/s.db", made_probe(fuse, "fuse.sshfs")),
               ElementsAre(HasSubstr("fuse.sshfs")));
 }
 
 TEST(DatabasePlace, LocalDisksPass) {
-  EXPECT_THAT(place_problems("/data/s.db", made_probe(ext4)), IsEmpty());
-  EXPECT_THAT(place_problems("/data/not/there/s.db", made_probe(ext4)), IsEmpty());
-  EXPECT_THAT(place_problems("/data/s.db", made_probe(fuse, "fuseblk")), IsEmpty());
-  EXPECT_THAT(place_problems("/data/Dropboxes of pigeons/s.db", made_probe(ext4)), IsEmpty());
+  EXPECT_THAT(study::place_problems("/data/s.db", made_probe(ext4)), IsEmpty());
+  EXPECT_THAT(study::place_problems("/data/not/there/s.db", made_probe(ext4)), IsEmpty());
+  EXPECT_THAT(study::place_problems("/data/s.db", made_probe(fuse, "fuseblk")), IsEmpty());
+  EXPECT_THAT(study::place_problems("/data/Dropboxes of pigeons/s.db", made_probe(ext4)), IsEmpty());
 }
 
 TEST(DatabasePlace, FoldersThatAServiceCopiesAreKnownByNameOrMark) {
@@ -49,11 +50,12 @@ TEST(DatabasePlace, FoldersThatAServiceCopiesAreKnownByNameOrMark) {
       {"Nextcloud", "Nextcloud"}, {"Google Drive", "Google Drive"}, {"iCloud Drive", "iCloud"}};
   for (const auto& [name, service] : names) {
     const std::string folder = std::string("/data/") + name;
-    EXPECT_THAT(place_problems(folder + "/study/s.db", made_probe(ext4, "", {folder, folder + "/study"})),
-                ElementsAre(AllOf(HasSubstr(service), HasSubstr("copies"), HasSubstr("mend: "))))
+    EXPECT_THAT(
+        study::place_problems(folder + "/study/s.db", made_probe(ext4, "", {folder, folder + "/study"})),
+        ElementsAre(AllOf(HasSubstr(service), HasSubstr("copies"), HasSubstr("mend: "))))
         << name;
   }
-  EXPECT_THAT(place_problems("/data/s.db", made_probe(ext4, "", {"/data/.stfolder"})),
+  EXPECT_THAT(study::place_problems("/data/s.db", made_probe(ext4, "", {"/data/.stfolder"})),
               ElementsAre(HasSubstr("Syncthing")));
 }
 

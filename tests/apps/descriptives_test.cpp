@@ -1,6 +1,6 @@
 /// Answers about pairs, described by cell or by order.
 
-#include "apps/stats/tasks/descriptives_json.hpp"
+#include "libstudy/analysis/tasks/descriptives_json.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 /// Six people judge all pairs, half of them in the other order. Answer "better" is 1 if HiRes is shown first,
 /// else 7. Answer "three" is always 2, "the second one", of three.
-TaskData rated_pairs() {
+study::TaskData rated_pairs() {
   auto pairs = made_study::task2(6);
   pairs.questions.push_back(made_study::scale("better", 1, 7));
   study::Question three = pairs.questions[0];
@@ -27,15 +27,15 @@ TaskData rated_pairs() {
       trial.answers.push_back({"three", 2});
     }
   }
-  return select_task({{pairs}, 0}, {TaskKind::Task2, "", {}}).value();
+  return study::select_task({{pairs}, 0}, {study::TaskKind::Task2, "", {}}).value();
 }
 
 TEST(Descriptives, AnAnswerAboutTheOrderOfAPairIsDescribedByOrder) {
   const auto data = rated_pairs();
-  for (const Json& question : descriptives_json(data, {"better", "three"})) {
+  for (const study::Json& question : study::descriptives_json(data, {"better", "three"})) {
     std::size_t answers = 0;
     std::set<std::string> names;
-    for (const Json& cell : question.at("cells")) {
+    for (const study::Json& cell : question.at("cells")) {
       const std::string shown = cell.at("shown");
       names.insert(shown);
       answers += cell.at("n").get<std::size_t>();
@@ -54,9 +54,9 @@ TEST(Descriptives, AnAnswerAboutTheOrderOfAPairIsDescribedByOrder) {
 
 TEST(Descriptives, AChoiceOfThePairIsOfBothOrders) {
   const auto data = rated_pairs();
-  const Json list = descriptives_json(data, {"preference"});
+  const study::Json list = study::descriptives_json(data, {"preference"});
   std::set<std::string> names;
-  for (const Json& cell : list.at(0).at("cells")) names.insert(cell.at("shown"));
+  for (const study::Json& cell : list.at(0).at("cells")) names.insert(cell.at("shown"));
   EXPECT_EQ(names.size(), 10u);
   EXPECT_TRUE(names.contains("LoRes and HiRes"));
 }

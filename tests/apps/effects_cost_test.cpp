@@ -1,4 +1,4 @@
-#include "apps/bench/effects_cost.hpp"
+#include "libsim/measure/effects_cost.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using sim::EffectKind;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::vector<std::string> names_of(const std::vector<EffectVariant>& variants) {
+std::vector<std::string> names_of(const std::vector<measure::EffectVariant>& variants) {
   std::vector<std::string> out;
   for (const auto& variant : variants) out.push_back(variant.name);
   return out;
@@ -29,27 +29,29 @@ sim::Scene scene_with(std::vector<sim::Effect> effects) {
 }
 
 TEST(EffectsCost, EachEffectRunsAloneWithWhatItNeeds) {
-  const auto variants = variants_of(
+  const auto variants = measure::variants_of(
       scene_with({{EffectKind::Adhesion, 2}, {EffectKind::Cohesion, 3}, {EffectKind::AirDrag, 1}}));
   EXPECT_THAT(names_of(variants),
               ElementsAre("none", "cohesion + adhesion", "cohesion", "air_drag", "all", "all at 0"));
   EXPECT_TRUE(variants[0].scene.effects.empty());
   EXPECT_EQ(variants[1].scene.effects.size(), 2u);
   for (const auto& effect : variants.back().scene.effects) EXPECT_EQ(effect.coefficient, 0);
-  EXPECT_THAT(names_of(variants_of(scene_with({{EffectKind::AirDrag, 1}, {EffectKind::Cohesion, 0}}))),
-              ElementsAre("none", "air_drag", "all at 0"));
+  EXPECT_THAT(
+      names_of(measure::variants_of(scene_with({{EffectKind::AirDrag, 1}, {EffectKind::Cohesion, 0}}))),
+      ElementsAre("none", "air_drag", "all at 0"));
 }
 
 TEST(EffectsCost, ASceneWithoutEffectsIsRefused) {
-  EXPECT_THROW(variants_of(scene_with({})), base::Error);
-  EXPECT_THROW(variants_of(scene_with({{EffectKind::AirDrag, 0}})), base::Error);
+  EXPECT_THROW(measure::variants_of(scene_with({})), base::Error);
+  EXPECT_THROW(measure::variants_of(scene_with({{EffectKind::AirDrag, 0}})), base::Error);
 }
 
 TEST(EffectsCost, WhatIsAddedIsOverTheFirstRow) {
-  const std::vector<EffectCost> costs{{.name = "none", .ms_frame = 4, .launches = 10, .column_bytes = 100},
-                                      {.name = "foam", .ms_frame = 5, .launches = 13, .column_bytes = 160}};
-  const EffectsRun run{"Pond", "Ours", "cpu", "1k", 7, 2};
-  const TextTable table = to_table(run, costs);
+  const std::vector<measure::EffectCost> costs{
+      {.name = "none", .ms_frame = 4, .launches = 10, .column_bytes = 100},
+      {.name = "foam", .ms_frame = 5, .launches = 13, .column_bytes = 160}};
+  const measure::EffectsRun run{"Pond", "Ours", "cpu", "1k", 7, 2};
+  const figures::TextTable table = measure::to_table(run, costs);
   ASSERT_EQ(table.rows.size(), 2u);
   const auto cell = [&](const char* column) {
     const auto at = std::find(table.head.begin(), table.head.end(), column) - table.head.begin();
@@ -60,7 +62,7 @@ TEST(EffectsCost, WhatIsAddedIsOverTheFirstRow) {
   EXPECT_EQ(cell("launches_added"), "3.0");
   EXPECT_EQ(cell("column_bytes_added"), "60");
   EXPECT_EQ(cell("device_bytes_added"), "-");
-  const std::string svg = to_svg(run, costs);
+  const std::string svg = measure::to_svg(run, costs);
   for (const char* words : {"Pond, Ours on cpu, n_* 1k", ">foam<", "5.000"})
     EXPECT_THAT(svg, HasSubstr(words));
 }

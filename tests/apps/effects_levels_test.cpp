@@ -1,4 +1,4 @@
-#include "apps/bench/effects_levels.hpp"
+#include "libsim/measure/effects_levels.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ sim::Scene scene_with(std::vector<sim::Effect> effects) {
 }
 
 TEST(EffectsLevels, EachEffectOfALevelOfItsOwnRunsAtEach) {
-  const auto variants = level_variants_of(scene_with(
+  const auto variants = measure::level_variants_of(scene_with(
       {{EffectKind::Cohesion, 3}, {EffectKind::Adhesion, 2}, {EffectKind::Foam, 0}, {EffectKind::Heat, 2}}));
   ASSERT_EQ(variants.size(), 12u) << "adhesion has cohesion's level, and no foam is made";
   for (std::size_t i = 0; i < 12; ++i) {
@@ -45,21 +45,21 @@ TEST(EffectsLevels, EachEffectOfALevelOfItsOwnRunsAtEach) {
 
 TEST(EffectsLevels, ASceneWithoutSuchAnEffectIsRefused) {
   for (const auto& effects : {std::vector<sim::Effect>{}, {{EffectKind::Foam, 0}}})
-    EXPECT_THAT([&] { level_variants_of(scene_with(effects)); },
+    EXPECT_THAT([&] { measure::level_variants_of(scene_with(effects)); },
                 testing::ThrowsMessage<base::Error>(HasSubstr("no effect that has a coarsest_level")));
 }
 
 TEST(EffectsLevels, SavedIsOfWhatAllLevelsTake) {
   const double equal = std::numeric_limits<double>::infinity();
-  const std::vector<LevelCost> costs{
+  const std::vector<measure::LevelCost> costs{
       {.effect = "air_drag", .levels = "none", .ms_frame = 9, .ms_passes = 0, .psnr_db = 40},
       {.effect = "air_drag", .levels = "0 to 3", .ms_frame = 11, .ms_passes = 1, .psnr_db = equal},
       {.effect = "foam", .levels = "none", .ms_frame = 10, .ms_passes = 0},
       {.effect = "foam", .levels = "0 to 3", .ms_frame = 15, .ms_passes = 4, .psnr_db = equal, .ssim = 1},
       {.effect = "foam", .levels = "0", .ms_frame = 12, .ms_passes = 1, .psnr_db = 30, .flip_percent = 2.5},
       {.effect = "foam", .levels = "0 to 3, start moved", .ms_frame = 15, .ms_passes = 4}};
-  const EffectsRun run{"Pond", "Ours", "cpu", "1k", 7, 2};
-  const TextTable table = to_table(run, costs);
+  const measure::EffectsRun run{"Pond", "Ours", "cpu", "1k", 7, 2};
+  const figures::TextTable table = measure::to_table(run, costs);
   ASSERT_EQ(table.rows.size(), 6u);
   const auto cell = [&](std::size_t row, const char* column) {
     const auto at = std::find(table.head.begin(), table.head.end(), column) - table.head.begin();
@@ -72,7 +72,7 @@ TEST(EffectsLevels, SavedIsOfWhatAllLevelsTake) {
   EXPECT_EQ(cell(2, "saved_percent"), "100.0");
   EXPECT_EQ(cell(3, "psnr_db"), "inf");
   EXPECT_EQ(cell(4, "flip_percent"), "2.50");
-  const std::string svg = to_svg(run, costs);
+  const std::string svg = measure::to_svg(run, costs);
   for (const char* words :
        {"Pond, Ours on cpu, n_* 1k", ">foam<", ">level 0 to 3<", ">level 0<", ">start moved<", "4.000"})
     EXPECT_THAT(svg, HasSubstr(words));

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "libstudy/store/export_bids.hpp"
+#include "libstudy/store/export/export_bids.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/bids_rules.hpp"
 #include "tests/common/psych_ds_rules.hpp"

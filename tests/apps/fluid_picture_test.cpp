@@ -1,4 +1,4 @@
-#include "apps/common/fluid_picture.hpp"
+#include "libsim/render/fluid_picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,13 +26,13 @@ TEST(FluidPictureGl, SaliencySeesTheLastFrameAndTheRecordSaysHow) {
     options.method = method;
     options.n_star = 64;
     const auto fluid = sim::make_simulation(scene, options);
-    apps::FluidPicture picture(scene);
+    sim::FluidPicture picture(scene);
     for (int frame = 0; frame < 3; ++frame) {
-      picture.look(*fluid, view, apps::gaze_at(scene.view, {2.4, 1, 1.2}));
+      picture.look(*fluid, view, sim::gaze_at(scene.view, {2.4, 1, 1.2}));
       fluid->step_frame();
       picture.draw(*fluid, view, target.framebuffer());
     }
-    const std::string seen = apps::in_words(fluid->report().seen);
+    const std::string seen = sim::in_words(fluid->report().seen);
     // The third step used the picture of the second.
     EXPECT_EQ(seen, method == sim::MethodKind::Ours ? "picture of frame 2 by way of host" : "no picture");
   }
@@ -71,7 +71,7 @@ TEST(FluidPictureGl, ShowsAFreeObstacleWhereItIs) {
   sim::SimulationOptions options;
   options.n_star = 64;
   const auto fluid = sim::make_simulation(scene, options);
-  apps::FluidPicture picture(scene);
+  sim::FluidPicture picture(scene);
   const sim::View view = sim::make_view(scene.view, 64, 96);
   const sim::Offscreen target(64, 96);
   picture.draw(*fluid, view, target.framebuffer());
@@ -91,8 +91,8 @@ TEST(Gaze, ThroughAPixelIsTheRayThatTheCameraDraws) {
   camera.eye_m = {3, 2, 9};
   camera.target_m = {1, 1, 0};
   const sim::View view = sim::make_view(camera, 320, 200);
-  const auto middle = apps::gaze_through(view, 160, 100);
-  const auto at_target = apps::gaze_at(camera, camera.target_m);
+  const auto middle = sim::gaze_through(view, 160, 100);
+  const auto at_target = sim::gaze_at(camera, camera.target_m);
   const double length = std::sqrt(4.0 + 1 + 81);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(middle.origin_m[k], camera.eye_m[k], 1e-5);
@@ -100,7 +100,7 @@ TEST(Gaze, ThroughAPixelIsTheRayThatTheCameraDraws) {
         << "the middle looks at the target";
   }
   // The upper edge is half the field of view above the middle.
-  const auto top = apps::gaze_through(view, 160, 200);
+  const auto top = sim::gaze_through(view, 160, 200);
   double dot = 0, norm = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     dot += top.direction[k] * middle.direction[k];

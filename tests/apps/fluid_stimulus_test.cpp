@@ -1,12 +1,12 @@
-#include "apps/common/fluid_stimulus.hpp"
+#include "libstudy/stimulus/fluid_stimulus.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "apps/common/headless_display.hpp"
 #include "libstudy/base/clock.hpp"
+#include "libstudy/stimulus/headless_display.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/libsim/bake/make_bake.hpp"
@@ -83,7 +83,7 @@ void expect_facts(const study::FrameFacts& facts, std::int64_t frame) {
 
 TEST(FluidStimulus, LiveFluidAdvancesOneFrameAStepAndBeginsAnewWhenItGoesBack) {
   int made = 0;
-  apps::LiveFluid fluid(scene(), 0.02, "fake", [&] {
+  study::LiveFluid fluid(scene(), 0.02, "fake", [&] {
     ++made;
     return std::make_unique<FakeSimulation>();
   });
@@ -100,7 +100,7 @@ TEST(FluidStimulus, LiveFluidAdvancesOneFrameAStepAndBeginsAnewWhenItGoesBack) {
 
 TEST(FluidStimulus, LiveFluidThatStandsAtItsStartIsNotComputedAgain) {
   int made = 0;
-  apps::LiveFluid fluid(scene(), 0.02, "fake", [&] {
+  study::LiveFluid fluid(scene(), 0.02, "fake", [&] {
     ++made;
     return std::make_unique<FakeSimulation>();
   });
@@ -115,20 +115,20 @@ TEST(FluidStimulus, LiveFluidThatStandsAtItsStartIsNotComputedAgain) {
 TEST(FluidStimulus, FramesHoldTheSolversAccountWhetherLiveOrBaked) {
   const bake_test::Folder folder;
   bake_test::write(folder / "a.bake", 7);
-  apps::LiveFluid live(scene(), 1.0 / 60, "fake", [] { return std::make_unique<FakeSimulation>(); });
+  study::LiveFluid live(scene(), 1.0 / 60, "fake", [] { return std::make_unique<FakeSimulation>(); });
   sim::BakeFrame frame;
   const sim::BakeReader baked(folder / "a.bake");
   live.start(0);
   for (int step = 0; step < 7; ++step) {
     expect_facts(live.prepare(step), step);
     baked.read_frame(step, frame);
-    expect_facts(apps::to_facts(frame.facts.time_s, frame.facts.account), step);
+    expect_facts(study::to_facts(frame.facts.time_s, frame.facts.account), step);
   }
 }
 
 TEST(FluidStimulus, FramesOfABakeOfFormat1MeasuredCountsAlone) {
   const auto file = base::resource("tests/libsim/bake/fixtures/format_1.bake");
-  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(file));
+  study::BakedPictures pictures(std::make_unique<sim::BakeReader>(file));
   pictures.start(0);
   const study::FrameFacts facts = pictures.prepare(0);
   EXPECT_FALSE(facts.particles_by_level.empty());
@@ -138,14 +138,14 @@ TEST(FluidStimulus, FramesOfABakeOfFormat1MeasuredCountsAlone) {
 TEST(FluidStimulus, BakeWithAnotherContentStepIsRefused) {
   const bake_test::Folder folder;
   bake_test::write(folder / "a.bake", 2, 32, 18);
-  apps::StimulusChoice choice;
+  study::StimulusChoice choice;
   choice.bake = folder / "a.bake";
   choice.content_step_s = 0.01667;  // 1/60 as rounded in a protocol
-  EXPECT_EQ(apps::make_stimulus(choice)->length(), 2);
-  EXPECT_TRUE(apps::shows_pictures(choice));
+  EXPECT_EQ(study::make_stimulus(choice)->length(), 2);
+  EXPECT_TRUE(study::shows_pictures(choice));
   choice.content_step_s = 0.02;
   try {
-    apps::make_stimulus(choice);
+    study::make_stimulus(choice);
     FAIL() << "accepted";
   } catch (const base::Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("a.bake: holds frames 0.0166667 s apart"));
@@ -155,7 +155,7 @@ TEST(FluidStimulus, BakeWithAnotherContentStepIsRefused) {
 class FluidStimulusGl : public ::testing::Test {
  protected:
   /// The picture on the display, bottom row first.
-  static sim::Bytes shown(const apps::HeadlessDisplay& display) {
+  static sim::Bytes shown(const study::HeadlessDisplay& display) {
     const sim::Image image = display.read();
     const std::size_t row = 4 * static_cast<std::size_t>(image.width);
     sim::Bytes out;
@@ -171,8 +171,8 @@ class FluidStimulusGl : public ::testing::Test {
 
 TEST_F(FluidStimulusGl, BakedPicturesAreShownExactly) {
   bake_test::write(folder_ / "a.bake", 40, 64, 36);
-  apps::HeadlessDisplay display(64, 36, true);
-  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  study::HeadlessDisplay display(64, 36, true);
+  study::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
   EXPECT_THAT(pictures.description(), HasSubstr("pictures of test, HiRes, n_* 64"));
   for (const int start : {0, 5}) {
     pictures.start(start);
@@ -190,8 +190,8 @@ TEST_F(FluidStimulusGl, BakedPicturesAreShownExactly) {
 
 TEST_F(FluidStimulusGl, RenderStaysUnseenUntilItIsPresented) {
   bake_test::write(folder_ / "a.bake", 2, 64, 36);
-  apps::HeadlessDisplay display(64, 36, true);
-  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  study::HeadlessDisplay display(64, 36, true);
+  study::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
   pictures.start(0);
   for (const int step : {0, 1}) {
     pictures.prepare(step);
@@ -206,8 +206,8 @@ TEST_F(FluidStimulusGl, RenderStaysUnseenUntilItIsPresented) {
 
 TEST_F(FluidStimulusGl, PicturesOfAnotherShapeStandBetweenBlackBars) {
   bake_test::write(folder_ / "a.bake", 1, 32, 18);
-  apps::HeadlessDisplay display(64, 64, true);
-  apps::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  study::HeadlessDisplay display(64, 64, true);
+  study::BakedPictures pictures(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
   pictures.start(0);
   pictures.prepare(0);
   display.render(pictures);
@@ -229,7 +229,7 @@ TEST_F(FluidStimulusGl, ParticlesOfASceneWithFreeObstaclesAreNotShown) {
     writer.finish();
   }
   try {
-    apps::BakedParticles baked(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+    study::BakedParticles baked(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
     FAIL() << "accepted";
   } catch (const base::Error& error) {
     EXPECT_NE(std::string(error.what()).find("not store the free obstacles"), std::string::npos);
@@ -244,9 +244,9 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
     for (int i = 0; i < 3; ++i) writer.add_frame(i / 60.0, bake_test::particles(i), bake_test::account(i));
     writer.finish();
   }
-  apps::HeadlessDisplay display(96, 54);
-  apps::BakedParticles baked(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
-  apps::LiveFluid live(scene(), 1.0 / 60, "fake", [] { return std::make_unique<FakeSimulation>(); });
+  study::HeadlessDisplay display(96, 54);
+  study::BakedParticles baked(std::make_unique<sim::BakeReader>(folder_ / "a.bake"));
+  study::LiveFluid live(scene(), 1.0 / 60, "fake", [] { return std::make_unique<FakeSimulation>(); });
   const auto picture = [&](study::Stimulus& stimulus, int step) {
     stimulus.prepare(step);
     display.render(stimulus);
@@ -266,12 +266,12 @@ TEST_F(FluidStimulusGl, BakedParticlesLookLikeTheLiveOnes) {
 }
 
 TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAPicture) {
-  apps::HeadlessDisplay display(64, 36);
+  study::HeadlessDisplay display(64, 36);
   std::vector<sim::Looks> looks;
-  apps::Viewing viewing;
+  study::Viewing viewing;
   viewing.gaze = [](int width, int height) { return std::optional(std::pair(0.25 * width, 0.5 * height)); };
   viewing.visual_angle_deg = [](int, int) { return 40.0; };
-  apps::LiveFluid live(
+  study::LiveFluid live(
       scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
   live.start(0);
   live.prepare(1);
@@ -284,7 +284,7 @@ TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAP
   // The camera has the scene's angle, and the gaze goes through a quarter of its width.
   const sim::View view = sim::make_view(scene().view, 64, 36);
   EXPECT_EQ(eye.view.projection, view.projection);
-  const sim::Gaze expected = apps::gaze_through(view, 16, 18);
+  const sim::Gaze expected = sim::gaze_through(view, 16, 18);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(eye.gaze.direction[k], expected.direction[k], 1e-6);
   const double half_degree = std::acos(-1.0) / 360;
   EXPECT_NEAR(eye.visual_scale,
@@ -292,12 +292,12 @@ TEST_F(FluidStimulusGl, LiveFluidIsToldWhereItsViewerLooksBeforeEachFrameAfterAP
 }
 
 TEST_F(FluidStimulusGl, LiveFluidIsAWindowOntoTheSceneWhereThatIsAsked) {
-  apps::HeadlessDisplay display(64, 36);
+  study::HeadlessDisplay display(64, 36);
   std::vector<sim::Looks> looks;
-  apps::Viewing viewing;
+  study::Viewing viewing;
   viewing.visual_angle_deg = [](int, int) { return 40.0; };
   viewing.true_angle = true;
-  apps::LiveFluid live(
+  study::LiveFluid live(
       scene(), 1.0 / 60, "fake", [&] { return std::make_unique<FakeSimulation>(&looks); }, viewing);
   live.start(0);
   live.prepare(1);

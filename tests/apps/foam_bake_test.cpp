@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "apps/study/bakes/write_bake.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libstudy/stimulus/bakes/write_bake.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -23,8 +23,8 @@ constexpr std::int64_t frames = 61;
 constexpr int width = 160, height = 90;
 
 /// The bore of SeaSpray at a coarse size; it has not hit anything yet, but overturns.
-BakeOrder order_with(std::vector<sim::Effect> effects) {
-  BakeOrder order;
+study::BakeOrder order_with(std::vector<sim::Effect> effects) {
+  study::BakeOrder order;
   order.fluid.scene = base::find_input("data/scenes/sea_spray.toml");
   order.fluid.method = "LoRes";
   order.fluid.n_star = "512";
@@ -41,8 +41,8 @@ sim::Effect much_foam() {
   return foam;
 }
 
-void write(const BakeOrder& order, const std::filesystem::path& path) {
-  write_bake(order, header_of(order), path, true, {});
+void write(const study::BakeOrder& order, const std::filesystem::path& path) {
+  study::write_bake(order, study::header_of(order), path, true, {});
 }
 
 std::vector<std::uint8_t> picture_of(study::Stimulus& stimulus, std::int64_t step) {
@@ -77,13 +77,13 @@ TEST(FoamBakeGl, IsPlayedAsItWasLive) {
   EXPECT_EQ(foamy.particles[7].x_m, bare.particles[7].x_m);
 
   const auto context = sim::GlContext::make_headless();
-  const auto live = make_live_fluid(order_with({much_foam()}).fluid);
-  StimulusChoice foam_choice, none_choice;
+  const auto live = study::make_live_fluid(order_with({much_foam()}).fluid);
+  study::StimulusChoice foam_choice, none_choice;
   foam_choice.bake = folder / "foam.bake";
   none_choice.bake = folder / "none.bake";
   const auto as_live = picture_of(*live, frames - 1);
-  const auto as_baked = picture_of(*make_stimulus(foam_choice), frames - 1);
-  const auto without_foam = picture_of(*make_stimulus(none_choice), frames - 1);
+  const auto as_baked = picture_of(*study::make_stimulus(foam_choice), frames - 1);
+  const auto without_foam = picture_of(*study::make_stimulus(none_choice), frames - 1);
   EXPECT_LT(difference(as_live, as_baked), 0.3) << "grey levels of 255";
   EXPECT_GT(difference(without_foam, as_baked), 3 * difference(as_live, as_baked) + 0.3);
 }
@@ -94,23 +94,23 @@ TEST(FoamBake, ItsHeaderAndDescriptionTellTheEffects) {
   auto order = order_with({much_foam()});
   order.frames = 1;
   write(order, folder / "foam.bake");
-  StimulusChoice choice;
+  study::StimulusChoice choice;
   choice.bake = folder / "foam.bake";
-  EXPECT_THAT(make_stimulus(choice)->description(), HasSubstr(", effects foam emission_per_s = 3 "));
+  EXPECT_THAT(study::make_stimulus(choice)->description(), HasSubstr(", effects foam emission_per_s = 3 "));
   order = order_with({});
   order.frames = 1;
   write(order, folder / "none.bake");
   choice.bake = folder / "none.bake";
-  EXPECT_THAT(make_stimulus(choice)->description(), HasSubstr(", effects none"));
+  EXPECT_THAT(study::make_stimulus(choice)->description(), HasSubstr(", effects none"));
 }
 
 TEST(FoamBake, OfOtherEffectsIsADeparture) {
   if (!sim::has_effects()) GTEST_SKIP() << "built without effects";
-  const auto wanted = header_of(order_with({much_foam()})), none = header_of(order_with({}));
-  EXPECT_THAT(fluid_departures(wanted, wanted), IsEmpty());
-  EXPECT_THAT(fluid_departures(none, wanted),
+  const auto wanted = study::header_of(order_with({much_foam()})), none = study::header_of(order_with({}));
+  EXPECT_THAT(study::fluid_departures(wanted, wanted), IsEmpty());
+  EXPECT_THAT(study::fluid_departures(none, wanted),
               Contains(AllOf(HasSubstr("no effects instead of foam emission_per_s = 3"))));
-  EXPECT_THAT(fluid_departures(wanted, none), Contains(HasSubstr("instead of no effects")));
+  EXPECT_THAT(study::fluid_departures(wanted, none), Contains(HasSubstr("instead of no effects")));
 }
 
 /// Formats before 4 stored no foam: particles without it are a different stimulus, but pictures still show
@@ -118,17 +118,17 @@ TEST(FoamBake, OfOtherEffectsIsADeparture) {
 TEST(FoamBake, OfAnEarlierFormatLacksTheScenesFoam) {
   if (!sim::has_effects()) GTEST_SKIP() << "built without effects";
   const sim::BakeReader old(base::resource("tests/libsim/bake/fixtures/format_3.bake"));
-  BakeOrder order = order_with({});
+  study::BakeOrder order = order_with({});
   order.fluid.effects.reset();
   order.fluid.n_star = "64";
   order.frames = 3;
-  auto found = old.header(), wanted = header_of(order);
+  auto found = old.header(), wanted = study::header_of(order);
   wanted.scene_sha256 = found.scene_sha256;  // the scene's file may have changed since
   wanted.scene_text = found.scene_text;
-  EXPECT_THAT(fluid_departures(found, wanted),
+  EXPECT_THAT(study::fluid_departures(found, wanted),
               Contains(HasSubstr("no particles of foam instead of foam (bakes before format 4 kept none)")));
   found.picture_width_px = found.picture_height_px = 64;
-  EXPECT_THAT(fluid_departures(found, wanted), IsEmpty());
+  EXPECT_THAT(study::fluid_departures(found, wanted), IsEmpty());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#include "apps/study/cell_stimuli.hpp"
+#include "libstudy/runner/cell_stimuli.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 #include "tests/common/needs_effects.hpp"
@@ -135,9 +135,9 @@ TEST_F(FoamKillE2e, LiveWaterAndItsPlanGoOnAsIfNothingHadBeen) {
   for (const auto& pair : pairs) EXPECT_EQ(pair.at("n"), 1) << pair;
 }
 
-std::vector<float> foam_at(CellStimuli& stimuli, const study::Protocol& protocol, std::size_t cell,
+std::vector<float> foam_at(study::CellStimuli& stimuli, const study::Protocol& protocol, std::size_t cell,
                            std::int64_t first, std::int64_t last) {
-  auto& fluid = dynamic_cast<LiveFluid&>(stimuli.stimulus(protocol.design.cells[cell]));
+  auto& fluid = dynamic_cast<study::LiveFluid&>(stimuli.stimulus(protocol.design.cells[cell]));
   fluid.start(first);
   for (std::int64_t step = first; step <= last; ++step) fluid.prepare(step);
   std::vector<sim::RenderParticle> foam;
@@ -150,14 +150,14 @@ std::vector<float> foam_at(CellStimuli& stimuli, const study::Protocol& protocol
 TEST(FoamKill, FoamOfACutShowingIsNotThereWhenItIsShownAgain) {
   NEEDS_EFFECTS;
   const auto protocol = study::parse_protocol(short_foam(), "p.toml");
-  RunOptions options;
+  study::RunOptions options;
   options.display = "headless";
   options.backend = "cpu";
-  CellStimuli fresh(options, protocol, {}, {});
+  study::CellStimuli fresh(options, protocol, {}, {});
   const auto wanted = foam_at(fresh, protocol, 1, 30, 60);
   ASSERT_GT(wanted.size(), 4u * 20);
 
-  CellStimuli stimuli(options, protocol, {}, {});
+  study::CellStimuli stimuli(options, protocol, {}, {});
   EXPECT_TRUE(foam_at(stimuli, protocol, 0, 30, 40).empty()) << "level none";
   const auto cut = foam_at(stimuli, protocol, 1, 30, 75);
   EXPECT_NE(cut, wanted);

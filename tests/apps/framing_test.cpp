@@ -1,5 +1,5 @@
 /// The part of a scene that a picture shows, and its visual angle.
-#include "apps/common/framing.hpp"
+#include "libstudy/stimulus/framing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ sim::Scene shipped(const char* name) {
   return sim::read_scene(base::resource(std::string("data/scenes/") + name + ".toml"));
 }
 
-Viewing seen_at(double angle_deg, bool true_angle) {
-  Viewing viewing;
+study::Viewing seen_at(double angle_deg, bool true_angle) {
+  study::Viewing viewing;
   viewing.visual_angle_deg = [=](int, int) { return angle_deg; };
   viewing.true_angle = true_angle;
   return viewing;
@@ -33,20 +33,20 @@ Viewing seen_at(double angle_deg, bool true_angle) {
 TEST(Framing, TheCameraKeepsTheScenesAngleUnlessTheTrueOneIsAsked) {
   sim::Camera camera;
   camera.vertical_fov_deg = 75;
-  const Framing unknown = frame_picture(camera, {}, 160, 90);
+  const study::Framing unknown = study::frame_picture(camera, {}, 160, 90);
   EXPECT_EQ(unknown.camera_deg, 75);
   EXPECT_FALSE(unknown.visual_deg);
   EXPECT_FALSE(unknown.ratio());
   EXPECT_EQ(unknown.visual_scale(), 1);
 
-  const Framing known = frame_picture(camera, seen_at(27, false), 160, 90);
+  const study::Framing known = study::frame_picture(camera, seen_at(27, false), 160, 90);
   EXPECT_EQ(known.camera_deg, 75);
   EXPECT_EQ(known.visual_deg, 27);
   EXPECT_DOUBLE_EQ(*known.ratio(), 27.0 / 75);
   const double half_degree = std::acos(-1.0) / 360;
   EXPECT_NEAR(known.visual_scale(), std::tan(27 * half_degree) / std::tan(75 * half_degree), 1e-12);
 
-  const Framing asked = frame_picture(camera, seen_at(27, true), 160, 90);
+  const study::Framing asked = study::frame_picture(camera, seen_at(27, true), 160, 90);
   EXPECT_EQ(asked.camera_deg, 27);
   EXPECT_EQ(*asked.ratio(), 1);
   EXPECT_EQ(asked.visual_scale(), 1);
@@ -58,15 +58,15 @@ TEST(Framing, PointsLieWhereTheCameraDrawsThem) {
   camera.target_m = {0, 0, -1};
   camera.vertical_fov_deg = 90;
   const sim::View view = sim::make_view(camera, 200, 100);
-  const auto place = place_in(view, {1, 0.5, -2});
+  const auto place = study::place_in(view, {1, 0.5, -2});
   ASSERT_TRUE(place);
   EXPECT_NEAR(place->first, 125, 1e-4);
   EXPECT_NEAR(place->second, 62.5, 1e-4);
-  EXPECT_FALSE(place_in(view, {0, 0, 1})) << "behind the eye";
+  EXPECT_FALSE(study::place_in(view, {0, 0, 1})) << "behind the eye";
 }
 
 TEST(Framing, APictureKeepsItsShapeInTheMiddle) {
-  const Rectangle to = fit_picture(1280, 720, 1000, 1000);
+  const study::Rectangle to = study::fit_picture(1280, 720, 1000, 1000);
   EXPECT_EQ(to.x0, 0);
   EXPECT_EQ(to.x1, 1000);
   EXPECT_EQ(to.y1 - to.y0, 563);
@@ -133,11 +133,11 @@ TEST_F(FramingGl, WhatMustStayVisibleIsDrawnWholeAtEveryShapeOfScreen) {
     const sim::Scene scene = shipped(name);
     ASSERT_FALSE(scene.visible.empty()) << name;
     for (const Shape& shape : {wide, old, ultra_wide}) {
-      const sim::View view = framed_view(scene.view, seen_at(27, false), shape.width, shape.height);
+      const sim::View view = study::framed_view(scene.view, seen_at(27, false), shape.width, shape.height);
       const Seen seen = draw(scene, view);
       EXPECT_TRUE(seen.any) << name;
       EXPECT_FALSE(seen.edge) << name << " " << shape.width;
-      EXPECT_THAT(cut_off(scene, view), IsEmpty()) << name << " " << shape.width;
+      EXPECT_THAT(study::cut_off(scene, view), IsEmpty()) << name << " " << shape.width;
     }
   }
 }
@@ -146,10 +146,10 @@ TEST_F(FramingGl, WhatMustStayVisibleIsDrawnWholeAtEveryShapeOfScreen) {
 TEST_F(FramingGl, ATrueAngleThatCutsItIsToldAsItIsDrawn) {
   for (const char* name : {"faucet", "jet_impact", "single_dam"}) {
     const sim::Scene scene = shipped(name);
-    const sim::View view = framed_view(scene.view, seen_at(27.4, true), wide.width, wide.height);
+    const sim::View view = study::framed_view(scene.view, seen_at(27.4, true), wide.width, wide.height);
     const Seen seen = draw(scene, view);
     EXPECT_TRUE(!seen.any || seen.edge) << name;
-    EXPECT_THAT(cut_off(scene, view), ElementsAre(scene.visible.front().name)) << name;
+    EXPECT_THAT(study::cut_off(scene, view), ElementsAre(scene.visible.front().name)) << name;
   }
 }
 
@@ -172,13 +172,13 @@ study::EyeView eye_at(double right_m) {
 }
 
 TEST(EyeView, StandsAtTheScenesCameraWithItsHeadingAndALevelHorizon) {
-  const sim::View view = eye_view(tilted(), eye_at(0));
+  const sim::View view = study::eye_view(tilted(), eye_at(0));
   // Slope s to the right is at (s + 1.2) / 2 of the width, slope t up at (t + 0.6) / 1 of the height.
-  const auto ahead = place_in(view, {-7, 2, 1});
+  const auto ahead = study::place_in(view, {-7, 2, 1});
   ASSERT_TRUE(ahead);
   EXPECT_NEAR(ahead->first, 120, 1e-3);
   EXPECT_NEAR(ahead->second, 60, 1e-3);
-  const auto aside = place_in(view, {-1, 2.8, -1});  // 4 m ahead, 2 m to the right, 0.8 m up
+  const auto aside = study::place_in(view, {-1, 2.8, -1});  // 4 m ahead, 2 m to the right, 0.8 m up
   ASSERT_TRUE(aside);
   EXPECT_NEAR(aside->first, 170, 1e-3);
   EXPECT_NEAR(aside->second, 80, 1e-3);
@@ -188,8 +188,8 @@ TEST(EyeView, StandsAtTheScenesCameraWithItsHeadingAndALevelHorizon) {
 TEST(EyeView, TwoEyesSeeATargetApartByItsDistance) {
   for (const double distance_m : {0.5, 1.0, 2.0}) {
     const sim::Vec3d target{3 - distance_m, 2, 1};
-    const auto left = place_in(eye_view(tilted(), eye_at(-0.032)), target);
-    const auto right = place_in(eye_view(tilted(), eye_at(0.032)), target);
+    const auto left = study::place_in(study::eye_view(tilted(), eye_at(-0.032)), target);
+    const auto right = study::place_in(study::eye_view(tilted(), eye_at(0.032)), target);
     ASSERT_TRUE(left && right);
     EXPECT_NEAR(left->first - right->first, 100 * 0.064 / distance_m, 1e-3);
     EXPECT_NEAR(left->second, right->second, 1e-3);
@@ -199,8 +199,8 @@ TEST(EyeView, TwoEyesSeeATargetApartByItsDistance) {
 TEST(EyeView, TurnsWithTheHead) {
   study::EyeView eye = eye_at(0);
   const double half = std::atan(0.5) / 2;
-  eye.orientation = {0, std::sin(half), 0, std::cos(half)};        // to the left
-  const auto met = place_in(eye_view(tilted(), eye), {-1, 2, 3});  // 4 m ahead, 2 m to the left
+  eye.orientation = {0, std::sin(half), 0, std::cos(half)};                      // to the left
+  const auto met = study::place_in(study::eye_view(tilted(), eye), {-1, 2, 3});  // 4 m ahead, 2 m to the left
   ASSERT_TRUE(met);
   EXPECT_NEAR(met->first, 120, 1e-3);
   EXPECT_NEAR(met->second, 60, 1e-3);
@@ -209,10 +209,10 @@ TEST(EyeView, TurnsWithTheHead) {
 TEST(EyeView, WithoutAnAreaIsRefused) {
   study::EyeView eye = eye_at(0);
   std::swap(eye.left_rad, eye.right_rad);
-  EXPECT_THROW(eye_view(tilted(), eye), base::Error);
+  EXPECT_THROW(study::eye_view(tilted(), eye), base::Error);
   eye = eye_at(0);
   eye.up_rad = eye.down_rad;
-  EXPECT_THROW(eye_view(tilted(), eye), base::Error);
+  EXPECT_THROW(study::eye_view(tilted(), eye), base::Error);
 }
 
 }  // namespace

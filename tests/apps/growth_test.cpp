@@ -1,4 +1,4 @@
-#include "apps/bench/growth_table.hpp"
+#include "libsim/measure/growth_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,11 +15,11 @@ namespace {
 using ::testing::HasSubstr;
 
 /// Times factor n^exponent, each changed by one of the shares.
-std::vector<GrowthRow> rows_of(double factor, double exponent, const std::vector<double>& shares) {
-  std::vector<GrowthRow> out;
+std::vector<measure::GrowthRow> rows_of(double factor, double exponent, const std::vector<double>& shares) {
+  std::vector<measure::GrowthRow> out;
   double particles = 1000;
   for (const double share : shares) {
-    GrowthRow row{.n_star = "1k", .particles = particles};
+    measure::GrowthRow row{.n_star = "1k", .particles = particles};
     row.ms_substep_mean = factor * std::pow(particles, exponent) * share;
     row.ms_substep_p99 = 1.5 * row.ms_substep_mean;
     out.push_back(row);
@@ -29,7 +29,7 @@ std::vector<GrowthRow> rows_of(double factor, double exponent, const std::vector
 }
 
 TEST(Growth, APowerLawGivesItsExponent) {
-  const Growth exact = growth_of(rows_of(2e-4, 1.25, {1, 1, 1, 1}));
+  const measure::Growth exact = measure::growth_of(rows_of(2e-4, 1.25, {1, 1, 1, 1}));
   EXPECT_NEAR(exact.exponent, 1.25, 1e-12);
   EXPECT_NEAR(exact.factor, 2e-4, 1e-12);
   EXPECT_NEAR(exact.standard_error, 0, 1e-12);
@@ -38,7 +38,7 @@ TEST(Growth, APowerLawGivesItsExponent) {
 // Closed form of a slope over x = -1, 0, 1 and its error with one degree of freedom.
 TEST(Growth, TheErrorIsThatOfASlope) {
   const std::vector<double> shares{1.1, 0.9, 1.3};
-  const Growth growth = growth_of(rows_of(1, 1, shares));
+  const measure::Growth growth = measure::growth_of(rows_of(1, 1, shares));
   const double step = std::log(4.0), a = std::log(1.1), b = std::log(0.9), c = std::log(1.3);
   const double slope = (c - a) / 2, mean = (a + b + c) / 3;
   const double rss = std::pow(a - mean + slope, 2) + std::pow(b - mean, 2) + std::pow(c - mean - slope, 2);
@@ -48,15 +48,16 @@ TEST(Growth, TheErrorIsThatOfASlope) {
 
 TEST(Growth, TwoSizesHaveNoErrorAndOneHasNoExponent) {
   const auto rows = rows_of(1, 0.5, {1, 1});
-  EXPECT_TRUE(std::isnan(growth_of(rows).standard_error));
-  EXPECT_THAT(in_words(growth_of(rows), 2), HasSubstr("0.500, standard error -, over 2 sizes"));
-  EXPECT_THROW(growth_of({rows[0]}), base::Error);
-  EXPECT_THROW(growth_of({rows[0], rows[0]}), base::Error);
+  EXPECT_TRUE(std::isnan(measure::growth_of(rows).standard_error));
+  EXPECT_THAT(measure::in_words(measure::growth_of(rows), 2),
+              HasSubstr("0.500, standard error -, over 2 sizes"));
+  EXPECT_THROW(measure::growth_of({rows[0]}), base::Error);
+  EXPECT_THROW(measure::growth_of({rows[0], rows[0]}), base::Error);
 }
 
 TEST(Growth, ThePictureHasAPointForEachSize) {
   const auto rows = rows_of(1e-3, 1, {1, 1, 1});
-  const std::string svg = to_svg({"Pond", "Ours", "cpu", 5}, rows, growth_of(rows));
+  const std::string svg = measure::to_svg({"Pond", "Ours", "cpu", 5}, rows, measure::growth_of(rows));
   std::size_t points = 0;
   for (auto at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++points;
   EXPECT_EQ(points, 3u);

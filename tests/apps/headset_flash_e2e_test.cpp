@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "libstudy/session/repeats.hpp"
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "tests/apps/headset_runs.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/common/fluid_stimulus.hpp"
-#include "apps/common/headset/headset_recorder.hpp"
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/headset/headset_recorder.hpp"
+#include "libstudy/stimulus/fluid_stimulus.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "tests/apps/headset_runs.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 
@@ -190,19 +190,19 @@ TEST_F(HeadsetGazeE2e, ATrackerIsValidatedAtNineTargets) {
 /// Mean x of the particles of the finest level in a live fluid, shown to eyes that look this many degrees to
 /// the left.
 double fine_x(double look_yaw) {
-  HeadsetChoice choice;
+  study::HeadsetChoice choice;
   choice.eye_gaze = true;
-  HeadsetDisplay display(SlotDrive::Caller, choice);
-  HeadsetClock clock(display);
-  HeadsetRecorder recorder(display, study::GazeOrigin::Tracker);
+  study::HeadsetDisplay display(study::SlotDrive::Caller, choice);
+  study::HeadsetClock clock(display);
+  study::HeadsetRecorder recorder(display, study::GazeOrigin::Tracker);
   recorder.start();
-  StimulusChoice stimulus;
+  study::StimulusChoice stimulus;
   stimulus.scene = base::find_input("data/scenes/single_dam.toml");
   stimulus.method = "FovFluid";
   stimulus.n_star = "512";
   stimulus.backend = "cpu";
   stimulus.viewing.ray = [&] { return recorder.ray(); };
-  const auto fluid = make_live_fluid(stimulus);
+  const auto fluid = study::make_live_fluid(stimulus);
   fluid->start(0);
   for (int step = 1; step <= 12; ++step) {
     fluid->prepare(step);

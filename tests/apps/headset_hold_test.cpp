@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "apps/common/headset/headset_display.hpp"
+#include "libstudy/headset/headset_display.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/headset_runs.hpp"
@@ -48,8 +48,8 @@ class HeadsetHoldGl : public test::HeadsetRuns {
   /// Plays two pictures for nine slots each, with a head that moves as `head` says.
   void play(const study::HeadsetRules& rules, const std::string& head = "head=walk") {
     use_here("size=32x32;" + head);
-    HeadsetDisplay display(SlotDrive::Caller, {}, rules);
-    HeadsetClock clock(display);
+    study::HeadsetDisplay display(study::SlotDrive::Caller, {}, rules);
+    study::HeadsetClock clock(display);
     const auto played = study::play_trial({100'000'000, 100'000'000}, {}, stimulus_, display, clock,
                                           {.late_after_ns = 500'000, .overrun_ns = 1'000'000'000}, {});
     for (const auto& frame : played.frames) EXPECT_FALSE(frame.late);
@@ -143,7 +143,7 @@ TEST_F(HeadsetHoldGl, AMetreOfTheSceneTakesTheProtocolsMetresOfTheRoom) {
 
 TEST_F(HeadsetHoldGl, TheProtocolsRefreshRateIsAskedForAndMet) {
   use_here("size=32x32");
-  const HeadsetDisplay display(SlotDrive::Caller, {}, {.refresh_hz = 120});
+  const study::HeadsetDisplay display(study::SlotDrive::Caller, {}, {.refresh_hz = 120});
   EXPECT_EQ(display.refresh_hz(), 120);
   EXPECT_NEAR(display.measured_hz(), 120, 1e-3);
   // The change of the rate does not affect the grade.
@@ -152,9 +152,9 @@ TEST_F(HeadsetHoldGl, TheProtocolsRefreshRateIsAskedForAndMet) {
 
 TEST_F(HeadsetHoldGl, ARefreshRateThatDoesNotComeStopsTheProgram) {
   use_here("size=32x32;ignores_rate=1");
-  EXPECT_THAT([] { HeadsetDisplay(SlotDrive::Caller, {}, {.refresh_hz = 120}); },
+  EXPECT_THAT([] { study::HeadsetDisplay(study::SlotDrive::Caller, {}, {.refresh_hz = 120}); },
               ::testing::ThrowsMessage<base::Error>(HasSubstr("does not go to the protocol's refresh_hz")));
-  EXPECT_THAT([] { HeadsetDisplay(SlotDrive::Caller, {}, {.refresh_hz = 100}); },
+  EXPECT_THAT([] { study::HeadsetDisplay(study::SlotDrive::Caller, {}, {.refresh_hz = 100}); },
               ::testing::ThrowsMessage<base::Error>(HasSubstr("100 Hz is not one of its refresh rates")));
 }
 

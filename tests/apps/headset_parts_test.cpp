@@ -4,11 +4,11 @@
 #include <cmath>
 #include <future>
 
-#include "apps/common/framing.hpp"
-#include "apps/common/headset/picture_turns.hpp"
-#include "apps/common/headset/rate_meter.hpp"
-#include "apps/common/headset/views.hpp"
-#include "apps/common/headset/watched_thread.hpp"
+#include "libstudy/headset/picture_turns.hpp"
+#include "libstudy/headset/rate_meter.hpp"
+#include "libstudy/headset/views.hpp"
+#include "libstudy/headset/watched_thread.hpp"
+#include "libstudy/stimulus/framing.hpp"
 
 namespace apps {
 namespace {
@@ -16,9 +16,9 @@ namespace {
 constexpr double degree = 3.14159265358979 / 180;
 
 /// Adds `count` slots `step_ns` apart. Returns the changes that were reported.
-std::vector<RateChange> add_slots(RateMeter& meter, std::int64_t& now_ns, int count, std::int64_t step_ns,
-                                  std::int64_t jitter_ns = 0) {
-  std::vector<RateChange> changes;
+std::vector<study::RateChange> add_slots(study::RateMeter& meter, std::int64_t& now_ns, int count,
+                                         std::int64_t step_ns, std::int64_t jitter_ns = 0) {
+  std::vector<study::RateChange> changes;
   for (int i = 0; i < count; ++i) {
     now_ns += step_ns;
     const std::int64_t beside_ns = jitter_ns * (i % 5 - 2) / 2;
@@ -30,7 +30,7 @@ std::vector<RateChange> add_slots(RateMeter& meter, std::int64_t& now_ns, int co
 constexpr std::int64_t at_90_hz = 11'111'111, at_72_hz = 13'888'889, at_45_hz = 22'222'222;
 
 TEST(HeadsetRate, IsTheSettledStepAndNeverTheFirst) {
-  RateMeter meter;
+  study::RateMeter meter;
   std::int64_t now_ns = 5;
   EXPECT_TRUE(add_slots(meter, now_ns, 8, 3 * at_90_hz).empty());
   EXPECT_FALSE(meter.hz());
@@ -41,7 +41,7 @@ TEST(HeadsetRate, IsTheSettledStepAndNeverTheFirst) {
 }
 
 TEST(HeadsetRate, JitterMovesItLittleAndIsOffTheGrid) {
-  RateMeter meter;
+  study::RateMeter meter;
   std::int64_t now_ns = 0;
   EXPECT_TRUE(add_slots(meter, now_ns, 500, at_90_hz, 2'000'000).empty());
   EXPECT_NEAR(*meter.hz(), 90, 0.1);  // 2 ms of jitter at both ends of some 490 periods
@@ -50,7 +50,7 @@ TEST(HeadsetRate, JitterMovesItLittleAndIsOffTheGrid) {
 }
 
 TEST(HeadsetRate, SlotsThatAreLeftOutOrToldTwiceAreCounted) {
-  RateMeter meter;
+  study::RateMeter meter;
   std::int64_t now_ns = 0;
   add_slots(meter, now_ns, 30, at_90_hz);
   EXPECT_TRUE(add_slots(meter, now_ns, 1, 4 * at_90_hz).empty());
@@ -64,7 +64,7 @@ TEST(HeadsetRate, SlotsThatAreLeftOutOrToldTwiceAreCounted) {
 
 TEST(HeadsetRate, AChangeIsToldOnceWhenItHasSettled) {
   for (const std::int64_t step_ns : {at_72_hz, at_45_hz}) {
-    RateMeter meter;
+    study::RateMeter meter;
     std::int64_t now_ns = 0;
     add_slots(meter, now_ns, 50, at_90_hz);
     const auto changes = add_slots(meter, now_ns, 60, step_ns);
@@ -78,7 +78,7 @@ TEST(HeadsetRate, AChangeIsToldOnceWhenItHasSettled) {
 }
 
 TEST(HeadsetRate, IsTheDisplaysWhereMostSlotsAreLeftOut) {
-  RateMeter meter;
+  study::RateMeter meter;
   std::int64_t now_ns = 0;
   for (int i = 0; i < 20; ++i) {
     add_slots(meter, now_ns, 2, 2 * at_90_hz);
@@ -91,7 +91,7 @@ TEST(HeadsetRate, IsTheDisplaysWhereMostSlotsAreLeftOut) {
 }
 
 TEST(HeadsetRate, APauseIsNoDroppedSlot) {
-  RateMeter meter;
+  study::RateMeter meter;
   std::int64_t now_ns = 0;
   add_slots(meter, now_ns, 50, at_90_hz);
   meter.interrupt();
@@ -101,25 +101,25 @@ TEST(HeadsetRate, APauseIsNoDroppedSlot) {
 }
 
 TEST(HeadsetViews, LookAlongTheirPose) {
-  HeadsetPose pose;
-  EXPECT_EQ(direction_of(pose), (std::array<float, 3>{0, 0, -1}));
+  study::HeadsetPose pose;
+  EXPECT_EQ(study::direction_of(pose), (std::array<float, 3>{0, 0, -1}));
   const auto half = static_cast<float>(std::sqrt(0.5));
   pose.turn = {0, half, 0, half};  // a quarter turn to the left
-  const auto left = direction_of(pose);
+  const auto left = study::direction_of(pose);
   EXPECT_NEAR(left[0], -1, 1e-6);
   EXPECT_NEAR(left[2], 0, 1e-6);
 }
 
 /// The renderers' view, in a scene whose camera is at the room's origin and looks along it.
-sim::View seen_by(const EyeView& eye) {
+sim::View seen_by(const study::HeadsetEye& eye) {
   sim::Camera camera;
   camera.eye_m = {0, 0, 0};
   camera.target_m = {0, 0, -1};
-  return eye_view(camera, study_view(eye, 0));
+  return study::eye_view(camera, study::study_view(eye, 0));
 }
 
 TEST(HeadsetViews, AFieldOfViewFillsItsPicture) {
-  EyeView eye;
+  study::HeadsetEye eye;
   eye.pose.place_m = {0.5f, 1, 2};
   eye.fov = {-0.9f, 0.7f, 0.8f, -0.85f};
   eye.width_px = 200;
@@ -132,7 +132,7 @@ TEST(HeadsetViews, AFieldOfViewFillsItsPicture) {
 }
 
 TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
-  EyeView eye;
+  study::HeadsetEye eye;
   eye.pose.place_m = {0.5f, 1, 2};
   const auto half = static_cast<float>(std::sin(15 * degree));
   eye.pose.turn = {0, 0, half, static_cast<float>(std::cos(15 * degree))};  // leans 30 degrees to the left
@@ -153,7 +153,7 @@ TEST(HeadsetViews, TheWorldIsSeenFromWhereTheEyeIs) {
 }
 
 TEST(HeadsetTurns, APictureThatIsDroppedWhileItIsDrawnNeverComesOn) {
-  PictureTurns turns;
+  study::PictureTurns turns;
   turns.begin();
   turns.drop();
   turns.post();
@@ -167,7 +167,7 @@ TEST(HeadsetTurns, APictureThatIsDroppedWhileItIsDrawnNeverComesOn) {
 }
 
 TEST(HeadsetWatch, ACallThatComesBackIsDone) {
-  WatchedThread watched;
+  study::WatchedThread watched;
   int calls = 0;
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(watched.run([&] { ++calls; }, std::chrono::hours(1)));
   EXPECT_EQ(calls, 3);
@@ -180,7 +180,7 @@ TEST(HeadsetWatch, ACallThatHangsIsLeftToItself) {
   auto held = std::make_shared<std::promise<void>>();
   const auto let_go = held->get_future();
   {
-    WatchedThread watched;
+    study::WatchedThread watched;
     EXPECT_FALSE(watched.run([wait, held = std::move(held)] { wait.wait(); }, std::chrono::milliseconds(1)));
     EXPECT_TRUE(watched.hangs());
     EXPECT_FALSE(watched.run([] {}, std::chrono::hours(1)));

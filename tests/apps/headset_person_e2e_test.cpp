@@ -4,7 +4,7 @@
 #include <regex>
 #include <sstream>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "tests/apps/headset_runs.hpp"
 #include "tests/apps/study_test_support.hpp"
 

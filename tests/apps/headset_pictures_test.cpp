@@ -2,7 +2,7 @@
 #include <cmath>
 #include <set>
 
-#include "apps/common/headset/test_scene.hpp"
+#include "libstudy/headset/test_scene.hpp"
 #include "tests/apps/headset_runs.hpp"
 
 namespace apps {
@@ -82,7 +82,7 @@ class HeadsetPicturesE2e : public test::HeadsetRuns {
   void expect_ramp(const std::string& profile) {
     const sim::Image image = show("size=800x400;" + profile, left_eye);
     const Slopes slopes{left_eye, image};
-    const TestRamp ramp;
+    const study::TestRamp ramp;
     const double middle_up =
         0.5 * static_cast<double>(ramp.down_m + ramp.up_m) / -static_cast<double>(ramp.z_m);
     const int y = static_cast<int>((left_eye.up - middle_up) / (left_eye.up - left_eye.down) * image.height);
@@ -114,7 +114,7 @@ TEST_F(HeadsetPicturesE2e, EachTargetStandsWhereGeometryHasIt) {
     for (const double moved_m : {0.0, step_m}) {
       const sim::Image image = show("size=600x600;at=2:x/" + std::to_string(moved_m), eye);
       for (std::size_t i = 0; i < 3; ++i) {
-        const TestDisc& disc = test_discs()[i];
+        const study::TestDisc& disc = study::test_discs()[i];
         Colour paint;
         for (std::size_t c = 0; c < 3; ++c) paint[c] = static_cast<int>(255 * disc.paint[c]);
         const auto [x_m, y_m, z_m] = disc.middle_m;
@@ -131,7 +131,8 @@ TEST_F(HeadsetPicturesE2e, EachTargetStandsWhereGeometryHasIt) {
   // Nearer discs have a larger parallax between the eyes, with the right sign.
   const double parallax[] = {right[0][0] - right[1][0], right[0][1] - right[1][1], right[0][2] - right[1][2]};
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(parallax[i], 2 * half_ipd_m / -static_cast<double>(test_discs()[i].middle_m[2]), 0.0014);
+    EXPECT_NEAR(parallax[i], 2 * half_ipd_m / -static_cast<double>(study::test_discs()[i].middle_m[2]),
+                0.0014);
 }
 
 TEST_F(HeadsetPicturesE2e, TheHorizonIsLevelAndTiltsAgainstTheHead) {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <thread>
 
-#include "apps/common/headset/headset_display.hpp"
+#include "libstudy/headset/headset_display.hpp"
 #include "libstudy/pacing/pacer.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/headset_runs.hpp"
@@ -45,9 +45,9 @@ class HeadsetRealTimeGl : public test::HeadsetRuns {
   ~HeadsetRealTimeGl() override { EXPECT_THAT(calls(), Not(HasSubstr("BREACH"))); }
 
   /// 20 Hz, so that a busy machine does not disturb the test.
-  HeadsetDisplay& start(const std::string& profile) {
+  study::HeadsetDisplay& start(const std::string& profile) {
     use_here("size=32x32;clock=real;rates=20;rate=20;" + profile);
-    display_.emplace(SlotDrive::Thread);
+    display_.emplace(study::SlotDrive::Thread);
     return *display_;
   }
   int count(const std::string& word) const {
@@ -57,12 +57,12 @@ class HeadsetRealTimeGl : public test::HeadsetRuns {
     return found;
   }
 
-  std::optional<HeadsetDisplay> display_;
+  std::optional<study::HeadsetDisplay> display_;
 };
 
 TEST_F(HeadsetRealTimeGl, NoSlotIsMissedWhileAStimulusStartsAndComputes) {
-  HeadsetDisplay& display = start("hash=1");
-  HeadsetClock clock(display);
+  study::HeadsetDisplay& display = start("hash=1");
+  study::HeadsetClock clock(display);
   SlowStimulus stimulus(std::chrono::seconds(2), std::chrono::milliseconds(50));
   const auto played = study::play_trial(std::vector<std::int64_t>(8, 200'000'000), {}, stimulus, display,
                                         clock, {.late_after_ns = 500'000, .overrun_ns = 5'000'000'000}, {});
@@ -82,8 +82,8 @@ TEST_F(HeadsetRealTimeGl, NoSlotIsMissedWhileAStimulusStartsAndComputes) {
 TEST_F(HeadsetRealTimeGl, APictureThatIsLeftBehindFadesAway) {
   std::string all = "0";
   for (int i = 1; i < 300; ++i) all += "," + std::to_string(i);
-  HeadsetDisplay& display = start("dump=" + all);
-  HeadsetClock clock(display);
+  study::HeadsetDisplay& display = start("dump=" + all);
+  study::HeadsetClock clock(display);
   SlowStimulus stimulus({}, {});
   stimulus.prepare(100);
   display.render(stimulus);
@@ -97,7 +97,7 @@ TEST_F(HeadsetRealTimeGl, APictureThatIsLeftBehindFadesAway) {
 }
 
 TEST_F(HeadsetRealTimeGl, WhatHappensToTheSessionIsToldToTheProgram) {
-  HeadsetDisplay& display = start("at=40:instance_lost/5");
+  study::HeadsetDisplay& display = start("at=40:instance_lost/5");
   const auto wait = [&] {
     for (int i = 0; i < 400; ++i) display.turn();
   };
@@ -107,8 +107,8 @@ TEST_F(HeadsetRealTimeGl, WhatHappensToTheSessionIsToldToTheProgram) {
 }
 
 TEST_F(HeadsetRealTimeGl, AHeadsetThatIsTakenOffHoldsNobodyUp) {
-  HeadsetDisplay& display = start("at=100:off/3");
-  HeadsetClock clock(display);
+  study::HeadsetDisplay& display = start("at=100:off/3");
+  study::HeadsetClock clock(display);
   SlowStimulus stimulus({}, {});
   stimulus.prepare(1);
   bool spoilt = false;

@@ -3,7 +3,7 @@
 #include <map>
 #include <sstream>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "tests/apps/headset_runs.hpp"
 
 namespace apps {

@@ -1,6 +1,6 @@
 /// HeadsetSession used like by a display, in this process: held pictures, pages, a frame thread, unchanged GL
 /// state.
-#include "apps/common/headset/headset_session.hpp"
+#include "libstudy/headset/headset_session.hpp"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -21,10 +21,10 @@ class HeadsetSessionGl : public test::HeadsetRuns {
  protected:
   ~HeadsetSessionGl() override { EXPECT_THAT(calls(), Not(HasSubstr("BREACH"))); }
 
-  HeadsetSession& start(const std::string& profile, const HeadsetChoice& choice = {}) {
+  study::HeadsetSession& start(const std::string& profile, const study::HeadsetChoice& choice = {}) {
     use_here("size=64x48;" + profile);
     session_.emplace(gl_, choice);
-    const PictureSize size = session_->picture_size();
+    const base::PictureSize size = session_->picture_size();
     picture_ = std::make_unique<sim::Offscreen>(size.width, size.height);
     if (choice.page_width_px > 0)
       page_ = std::make_unique<sim::Offscreen>(choice.page_width_px, choice.page_height_px);
@@ -36,11 +36,11 @@ class HeadsetSessionGl : public test::HeadsetRuns {
     ASSERT_TRUE(session_->running());
   }
   /// Returns the content of a frame.
-  using Draw = std::function<HeadsetLayers(const HeadsetSlot&)>;
+  using Draw = std::function<study::HeadsetLayers(const study::HeadsetSlot&)>;
   void run_frames(int count, const Draw& draw) {
     for (int i = 0; i < count; ++i) {
       session_->poll();
-      const HeadsetSlot slot = session_->wait();
+      const study::HeadsetSlot slot = session_->wait();
       session_->begin(slot);
       session_->end(slot, draw(slot));
     }
@@ -49,7 +49,9 @@ class HeadsetSessionGl : public test::HeadsetRuns {
     const std::array<float, 4> colour{red, 0.5f, 0.25f, 1};
     glClearNamedFramebufferfv(picture.framebuffer(), GL_COLOR, 0, colour.data());
   }
-  HeadsetLayers seen_from(const EyeViews& views) const { return {.picture = picture_.get(), .views = views}; }
+  study::HeadsetLayers seen_from(const study::EyeViews& views) const {
+    return {.picture = picture_.get(), .views = views};
+  }
   /// Text in the log's line of one frame that matches `what`.
   std::string logged(long frame, const std::string& what) const {
     const std::string all = calls();
@@ -60,16 +62,16 @@ class HeadsetSessionGl : public test::HeadsetRuns {
 
   sim::GlContext gl_ = sim::GlContext::make_headless();
   std::unique_ptr<sim::Offscreen> picture_, page_;
-  std::optional<HeadsetSession> session_;
+  std::optional<study::HeadsetSession> session_;
 };
 
 TEST_F(HeadsetSessionGl, AHeldPictureKeepsItsPoseWhileTheHeadMoves) {
   start("head=walk;dump=5,9");
   begin_running();
-  std::optional<EyeViews> held;
+  std::optional<study::EyeViews> held;
   std::array<float, 3> last_place{};
-  run_frames(10, [&](const HeadsetSlot& slot) -> HeadsetLayers {
-    const EyeViews now = session_->views(slot);
+  run_frames(10, [&](const study::HeadsetSlot& slot) -> study::HeadsetLayers {
+    const study::EyeViews now = session_->views(slot);
     if (!slot.should_render) return {};
     if (!held) {
       paint(*picture_, 1);
@@ -90,11 +92,11 @@ TEST_F(HeadsetSessionGl, AHeldPictureKeepsItsPoseWhileTheHeadMoves) {
 TEST_F(HeadsetSessionGl, APageStandsBeforeThePictures) {
   start("dump=5,7", {.page_width_px = 40, .page_height_px = 20});
   begin_running();
-  HeadsetPage page;
+  study::HeadsetPage page;
   page.pose.place_m = {0.1f, 0.2f, -1.5f};
   page.width_m = 0.8f;
   page.height_m = 0.4f;
-  run_frames(8, [&](const HeadsetSlot& slot) -> HeadsetLayers {
+  run_frames(8, [&](const study::HeadsetSlot& slot) -> study::HeadsetLayers {
     paint(*picture_, 0);
     paint(*page_, 1);
     // The last frame has only the page.
@@ -119,10 +121,10 @@ TEST_F(HeadsetSessionGl, APageStandsBeforeThePictures) {
 TEST_F(HeadsetSessionGl, NothingIsHandedOverForASlotThatNobodySees) {
   start("at=4:render/0", {.page_width_px = 40, .page_height_px = 20});
   begin_running();
-  HeadsetPage page;
+  study::HeadsetPage page;
   page.pose.place_m = {0, 0, -1};
   page.width_m = page.height_m = 0.5f;
-  run_frames(7, [&](const HeadsetSlot& slot) -> HeadsetLayers {
+  run_frames(7, [&](const study::HeadsetSlot& slot) -> study::HeadsetLayers {
     return {.picture = picture_.get(), .views = session_->views(slot), .page = page_.get(), .place = page};
   });
   EXPECT_EQ(logged(3, "render 1 layers [0-9]+"), "render 1 layers 2");
@@ -135,7 +137,7 @@ TEST_F(HeadsetSessionGl, FramesMayComeFromAThreadOfTheirOwn) {
   auto frames = std::async(std::launch::async, [&] {
     gl_.make_current();
     begin_running();
-    run_frames(20, [&](const HeadsetSlot& slot) -> HeadsetLayers {
+    run_frames(20, [&](const study::HeadsetSlot& slot) -> study::HeadsetLayers {
       paint(*picture_, 1);
       return seen_from(session_->views(slot));
     });
@@ -143,7 +145,7 @@ TEST_F(HeadsetSessionGl, FramesMayComeFromAThreadOfTheirOwn) {
   });
   frames.get();
   gl_.make_current();
-  EXPECT_EQ(session_->state(), HeadsetState::Focused);
+  EXPECT_EQ(session_->state(), study::HeadsetState::Focused);
   session_.reset();
   EXPECT_THAT(calls(), HasSubstr("xrDestroyInstance"));
 }
@@ -161,11 +163,11 @@ TEST_F(HeadsetSessionGl, TheCallersContextIsCurrentAfterEachCallAndWithoutErrors
     for (int i = 0; i < 5; ++i) {
       session_->poll();
       expect_own("poll");
-      const HeadsetSlot slot = session_->wait();
+      const study::HeadsetSlot slot = session_->wait();
       expect_own("wait");
       session_->begin(slot);
       expect_own("begin");
-      const EyeViews views = session_->views(slot);
+      const study::EyeViews views = session_->views(slot);
       session_->input(slot);
       paint(*picture_, 1);
       session_->end(slot, seen_from(views));
@@ -177,11 +179,11 @@ TEST_F(HeadsetSessionGl, TheCallersContextIsCurrentAfterEachCallAndWithoutErrors
 }
 
 TEST_F(HeadsetSessionGl, TimesThatDoNotConvertKeepTheirSteps) {
-  HeadsetSession& session = start("without=XR_KHR_convert_timespec_time");
+  study::HeadsetSession& session = start("without=XR_KHR_convert_timespec_time");
   EXPECT_FALSE(session.times_convert());
   begin_running();
   std::vector<std::int64_t> predicted;
-  run_frames(5, [&](const HeadsetSlot& slot) -> HeadsetLayers {
+  run_frames(5, [&](const study::HeadsetSlot& slot) -> study::HeadsetLayers {
     predicted.push_back(slot.predicted_ns);
     return {};
   });
@@ -190,11 +192,11 @@ TEST_F(HeadsetSessionGl, TimesThatDoNotConvertKeepTheirSteps) {
 }
 
 TEST_F(HeadsetSessionGl, APlaceThatIsNotTrackedIsTold) {
-  HeadsetSession& session = start("at=4:position/0");
+  study::HeadsetSession& session = start("at=4:position/0");
   begin_running();
   std::vector<bool> tracked;
-  run_frames(6, [&](const HeadsetSlot& slot) -> HeadsetLayers {
-    const HeadsetPose head = session.input(slot).head;
+  run_frames(6, [&](const study::HeadsetSlot& slot) -> study::HeadsetLayers {
+    const study::HeadsetPose head = session.input(slot).head;
     EXPECT_TRUE(head.turn_tracked);
     tracked.push_back(head.place_tracked);
     return {};

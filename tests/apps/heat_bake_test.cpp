@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "apps/study/bakes/bake_protocol.hpp"
-#include "apps/study/bakes/write_bake.hpp"
+#include "apps/study/bake_protocol.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libstudy/stimulus/bakes/write_bake.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/needs_effects.hpp"
@@ -25,8 +25,8 @@ using ::testing::Not;
 constexpr std::int64_t frames = 31;
 constexpr int width = 160, height = 90;
 
-BakeOrder order_with(bool paint, bool pictures = false, const std::string& scene = "hot_jet") {
-  BakeOrder order;
+study::BakeOrder order_with(bool paint, bool pictures = false, const std::string& scene = "hot_jet") {
+  study::BakeOrder order;
   order.fluid.scene = base::find_input("data/scenes/" + scene + ".toml");
   order.fluid.method = "LoRes";
   order.fluid.n_star = "512";
@@ -49,10 +49,10 @@ Picture picture_of(study::Stimulus& stimulus, const std::vector<study::EyeView>&
 }
 
 std::unique_ptr<study::Stimulus> played(const std::filesystem::path& bake, bool paint) {
-  StimulusChoice choice;
+  study::StimulusChoice choice;
   choice.bake = bake;
   choice.paint_temperature = paint;
-  return make_stimulus(choice);
+  return study::make_stimulus(choice);
 }
 
 /// Mean difference of the pictures' bytes, of 255.
@@ -66,16 +66,16 @@ TEST(HeatBakeGl, IsPaintedAsItWasLive) {
   NEEDS_EFFECTS;
   const test::TemporaryFolder folder;
   const auto context = sim::GlContext::make_headless();
-  const auto bake = [&](const BakeOrder& order, const char* name) {
-    write_bake(order, header_of(order), folder / name, true, {});
+  const auto bake = [&](const study::BakeOrder& order, const char* name) {
+    study::write_bake(order, study::header_of(order), folder / name, true, {});
     return folder / name;
   };
   const auto particles = bake(order_with(false), "particles.bake");
   const auto pictures = bake(order_with(true, true), "pictures.bake");
   const auto bare = bake(order_with(false, true), "bare.bake");
 
-  const Picture painted = picture_of(*make_live_fluid(order_with(true).fluid));
-  const Picture plain = picture_of(*make_live_fluid(order_with(false).fluid));
+  const Picture painted = picture_of(*study::make_live_fluid(order_with(true).fluid));
+  const Picture plain = picture_of(*study::make_live_fluid(order_with(false).fluid));
   ASSERT_GT(difference(painted, plain), 10);
   EXPECT_LT(difference(painted, picture_of(*played(particles, true))), 0.3);
   EXPECT_LT(difference(plain, picture_of(*played(particles, false))), 0.3);
@@ -95,7 +95,7 @@ TEST(HeatBakeGl, IsPaintedAsItWasLive) {
 TEST(HeatBakeGl, IsPaintedForBothEyes) {
   NEEDS_EFFECTS;
   const test::TemporaryFolder folder;
-  write_bake(order_with(false), header_of(order_with(false)), folder / "a.bake", true, {});
+  study::write_bake(order_with(false), study::header_of(order_with(false)), folder / "a.bake", true, {});
   const auto context = sim::GlContext::make_headless();
   std::vector<study::EyeView> eyes(2);
   for (int i = 0; i < 2; ++i) {
@@ -115,7 +115,7 @@ TEST(HeatBakeGl, IsPaintedForBothEyes) {
   };
   const Picture painted = picture_of(*played(folder / "a.bake", true), eyes),
                 plain = picture_of(*played(folder / "a.bake", false), eyes),
-                live = picture_of(*make_live_fluid(order_with(true).fluid), eyes);
+                live = picture_of(*study::make_live_fluid(order_with(true).fluid), eyes);
   for (const bool right : {false, true}) {
     EXPECT_GT(difference(half(painted, right), half(plain, right)), 10);
     EXPECT_LT(difference(half(painted, right), half(live, right)), 0.3);
@@ -126,11 +126,11 @@ TEST(HeatBake, HoldsTheTemperatureOfEachParticleWhateverIsPainted) {
   NEEDS_EFFECTS;
   const test::TemporaryFolder folder;
   const auto order = order_with(false);
-  write_bake(order, header_of(order), folder / "a.bake", true, {});
+  study::write_bake(order, study::header_of(order), folder / "a.bake", true, {});
   const sim::BakeReader bake(folder / "a.bake");
   EXPECT_EQ(bake.header().reference_k, 293.15);
   EXPECT_THAT(*bake.header().effects, HasSubstr("kind = \"heat\""));
-  const auto live = make_live_fluid(order.fluid);
+  const auto live = study::make_live_fluid(order.fluid);
   live->prepare(frames - 1);
   std::vector<float> wanted;
   live->simulation().read_field(sim::ParticleField::Temperature, wanted);
@@ -144,11 +144,11 @@ TEST(HeatBake, HoldsTheTemperatureOfEachParticleWhateverIsPainted) {
 }
 
 TEST(HeatBake, WaterWithoutHeatHoldsNoneAndKeepsItsFormat) {
-  const auto header = header_of(order_with(false, false, "single_dam"));
+  const auto header = study::header_of(order_with(false, false, "single_dam"));
   EXPECT_FALSE(header.reference_k);
   EXPECT_EQ(sim::format_of(header), 4u);
   try {
-    header_of(order_with(true, false, "single_dam"));
+    study::header_of(order_with(true, false, "single_dam"));
     FAIL();
   } catch (const base::Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("has no heat, and so no temperatures to paint"));
@@ -157,7 +157,7 @@ TEST(HeatBake, WaterWithoutHeatHoldsNoneAndKeepsItsFormat) {
 
 TEST(HeatBake, TakesTwoBytesMoreAParticle) {
   NEEDS_EFFECTS;
-  auto header = header_of(order_with(false));
+  auto header = study::header_of(order_with(false));
   const auto warm = most_bytes(header);
   header.reference_k.reset();
   EXPECT_EQ(warm - most_bytes(header), 2u * frames * 512);
@@ -168,33 +168,36 @@ TEST(HeatBakeGl, ItsDescriptionTellsWhatIsPainted) {
   const test::TemporaryFolder folder;
   auto order = order_with(false);
   order.frames = 1;
-  write_bake(order, header_of(order), folder / "a.bake", true, {});
+  study::write_bake(order, study::header_of(order), folder / "a.bake", true, {});
   const std::string words = ", painted temperature 293.15 to 353.15 K";
   EXPECT_THAT(played(folder / "a.bake", true)->description(), EndsWith(words));
   EXPECT_THAT(played(folder / "a.bake", false)->description(), Not(HasSubstr("painted")));
-  EXPECT_THAT(make_live_fluid(order_with(true).fluid)->description(), EndsWith(words));
+  EXPECT_THAT(study::make_live_fluid(order_with(true).fluid)->description(), EndsWith(words));
   const auto context = sim::GlContext::make_headless();
   auto pictures = order_with(true, true);
   pictures.frames = 1;
-  write_bake(pictures, header_of(pictures), folder / "b.bake", true, {});
+  study::write_bake(pictures, study::header_of(pictures), folder / "b.bake", true, {});
   EXPECT_THAT(played(folder / "b.bake", true)->description(), EndsWith("160x90 from view" + words));
-  EXPECT_THAT(make_live_fluid(order_with(false).fluid)->description(), Not(HasSubstr("painted")));
+  EXPECT_THAT(study::make_live_fluid(order_with(false).fluid)->description(), Not(HasSubstr("painted")));
 }
 
 TEST(HeatBake, ThatCannotBePaintedAsWantedIsADeparture) {
   NEEDS_EFFECTS;
-  auto old = header_of(order_with(false));
+  auto old = study::header_of(order_with(false));
   old.reference_k.reset();  // like formats before 5
-  EXPECT_THAT(fluid_departures(old, header_of(order_with(true))),
+  EXPECT_THAT(study::fluid_departures(old, study::header_of(order_with(true))),
               Contains("no temperatures instead of temperatures to paint (bakes before format 5 kept none)"));
-  EXPECT_THAT(fluid_departures(old, header_of(order_with(false))), IsEmpty());
-  EXPECT_THAT(fluid_departures(header_of(order_with(false)), header_of(order_with(true))), IsEmpty())
+  EXPECT_THAT(study::fluid_departures(old, study::header_of(order_with(false))), IsEmpty());
+  EXPECT_THAT(
+      study::fluid_departures(study::header_of(order_with(false)), study::header_of(order_with(true))),
+      IsEmpty())
       << "the player paints";
-  const auto plain = header_of(order_with(false, true)), painted = header_of(order_with(true, true));
-  EXPECT_THAT(fluid_departures(painted, painted), IsEmpty());
-  EXPECT_THAT(fluid_departures(plain, painted),
+  const auto plain = study::header_of(order_with(false, true)),
+             painted = study::header_of(order_with(true, true));
+  EXPECT_THAT(study::fluid_departures(painted, painted), IsEmpty());
+  EXPECT_THAT(study::fluid_departures(plain, painted),
               Contains("pictures with nothing painted over them instead of temperature painted over them"));
-  EXPECT_THAT(fluid_departures(painted, plain),
+  EXPECT_THAT(study::fluid_departures(painted, plain),
               Contains("pictures with temperature painted over them instead of nothing painted over them"));
 }
 

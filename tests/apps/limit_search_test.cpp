@@ -1,4 +1,4 @@
-#include "apps/bench/limit_search.hpp"
+#include "libsim/measure/limit_search.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@ TEST(LargestFactor, IsWithinItsResolutionOfTheLimit) {
   for (const double limit : {1.0, 1.3, 2.0, 3.1, 3.999}) {
     for (const double resolution : {1.05, 1.2, 2.0}) {
       std::vector<double> tried;
-      const auto found = largest_factor(UpTo{limit, tried}, 4, resolution);
-      EXPECT_EQ(found.reach, Reach::Found);
+      const auto found = measure::largest_factor(UpTo{limit, tried}, 4, resolution);
+      EXPECT_EQ(found.reach, measure::Reach::Found);
       EXPECT_LE(found.passed, limit);
       EXPECT_GE(found.passed * resolution * (1 + 1e-6), limit) << limit << " " << resolution;
       EXPECT_EQ(found.runs, static_cast<int>(tried.size()));
@@ -46,17 +46,17 @@ TEST(LargestFactor, IsWithinItsResolutionOfTheLimit) {
 
 TEST(LargestFactor, TriesNoMoreThanItMust) {
   std::vector<double> tried;
-  largest_factor(UpTo{1, tried}, 4, 2);
+  measure::largest_factor(UpTo{1, tried}, 4, 2);
   EXPECT_EQ(tried, (std::vector<double>{4, 2}));
   tried.clear();
-  largest_factor(UpTo{1, tried}, 2, 2);
+  measure::largest_factor(UpTo{1, tried}, 2, 2);
   EXPECT_EQ(tried, (std::vector<double>{2}));
 }
 
 TEST(LargestFactor, SaysThatAllPassed) {
   std::vector<double> tried;
-  const auto found = largest_factor(UpTo{9, tried}, 4, 1.1);
-  EXPECT_EQ(found.reach, Reach::AllPass);
+  const auto found = measure::largest_factor(UpTo{9, tried}, 4, 1.1);
+  EXPECT_EQ(found.reach, measure::Reach::AllPass);
   EXPECT_EQ(found.passed, 4);
   EXPECT_EQ(found.failed, "");
   EXPECT_EQ(tried.size(), 1u);
@@ -64,7 +64,7 @@ TEST(LargestFactor, SaysThatAllPassed) {
 
 /// A range of failures below a passing value is not found: the search assumes that smaller values pass, too.
 TEST(LargestFactor, TrustsThatWhatPassesPassesBelow) {
-  const auto found = largest_factor(
+  const auto found = measure::largest_factor(
       [](double factor) { return factor > 1.5 && factor < 1.9 ? "a hole"
                                  : factor > 3                 ? "too far"
                                                               : ""; }, 4,
@@ -76,10 +76,10 @@ TEST(LargestFactor, TrustsThatWhatPassesPassesBelow) {
 TEST(Fewest, IsTheLeastThatPasses) {
   for (int usual = 1; usual <= 9; ++usual) {
     for (int least = 1; least <= usual; ++least) {
-      const auto found = fewest(
+      const auto found = measure::fewest(
           [&](int count) { return count >= least ? "" : "breaks with " + std::to_string(count); }, usual);
       EXPECT_EQ(found.passed, least) << usual;
-      EXPECT_EQ(found.reach, least == 1 ? Reach::AllPass : Reach::Found);
+      EXPECT_EQ(found.reach, least == 1 ? measure::Reach::AllPass : measure::Reach::Found);
       EXPECT_EQ(found.failed, least == 1 ? "" : "breaks with " + std::to_string(least - 1));
     }
   }

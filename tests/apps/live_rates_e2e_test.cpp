@@ -5,7 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 

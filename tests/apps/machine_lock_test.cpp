@@ -7,8 +7,8 @@
 
 #include <sstream>
 
-#include "apps/bench/accuracy/machine_lock.hpp"
-#include "apps/common/sweep/sweep_file.hpp"
+#include "libstudy/sweep/run/machine_lock.hpp"
+#include "libstudy/sweep/sweep_file.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -44,7 +44,7 @@ class Other {
 TEST_F(MachineLockTest, IsHeldAsLongAsItLives) {
   Other other(file_);
   {
-    const MachineLock lock;
+    const study::MachineLock lock;
     EXPECT_FALSE(other.lock());
   }
   EXPECT_TRUE(other.lock());
@@ -52,7 +52,7 @@ TEST_F(MachineLockTest, IsHeldAsLongAsItLives) {
 
 TEST_F(MachineLockTest, EveryUserCanOpenItsFile) {
   const ::mode_t before = ::umask(0077);
-  { const MachineLock lock; }
+  { const study::MachineLock lock; }
   ::umask(before);
   struct stat found {};
   ASSERT_EQ(::stat(file_.c_str(), &found), 0);
@@ -61,11 +61,11 @@ TEST_F(MachineLockTest, EveryUserCanOpenItsFile) {
 
 TEST_F(MachineLockTest, WhatIsNoLockFileIsNamedWithItsMend) {
   std::filesystem::create_symlink(folder_ / "elsewhere", file_);
-  EXPECT_THAT([] { MachineLock(); },
+  EXPECT_THAT([] { study::MachineLock(); },
               ThrowsMessage<base::Error>(AllOf(HasSubstr(file_.string()), HasSubstr("VIP_LOCK_DIR"))));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "elsewhere"));
   ::setenv("VIP_LOCK_DIR", (folder_ / "none").c_str(), 1);
-  EXPECT_THAT([] { MachineLock(); }, ThrowsMessage<base::Error>(HasSubstr("none/vip-bench.lock")));
+  EXPECT_THAT([] { study::MachineLock(); }, ThrowsMessage<base::Error>(HasSubstr("none/vip-bench.lock")));
 }
 
 class MachineLockE2e : public MachineLockTest {
@@ -90,7 +90,7 @@ TEST_F(MachineLockE2e, ACellWaitsUntilTheLockIsFree) {
   ASSERT_TRUE(other.lock());
   auto cell = bench(quick + " --cell " + first_key(quick) + " --out " + shard_);
   EXPECT_THAT(cell.read_line().value_or(""), AllOf(HasSubstr("waits"), HasSubstr(file_.string())));
-  const auto cells_there = [&] { return SweepFile(shard_, study::sqlite::Open::Read).cells().size(); };
+  const auto cells_there = [&] { return study::SweepFile(shard_, study::sqlite::Open::Read).cells().size(); };
   EXPECT_EQ(cells_there(), 0u);
   other.unlock();
   const auto ended = cell.wait();

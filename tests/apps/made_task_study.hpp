@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/sickness.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/read/sickness.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 
 namespace made_study {
 

@@ -1,11 +1,11 @@
 #pragma once
 /// A setting file with a made-up [measured] part.
 
-#include "apps/common/setting_file.hpp"
+#include "libsim/setting/setting_file.hpp"
 
 namespace apps::test {
 
-inline SettingFile measured_setting(const SolverSetting& setting) {
+inline sim::SettingFile measured_setting(const sim::SolverSetting& setting) {
   return {setting,
           {.machine = "a machine",
            .program = "0.1.0 abc",

@@ -1,13 +1,13 @@
 /// Measurements of live cells before a session, and the judgement based on them.
-#include "apps/study/check/measuring.hpp"
+#include "libstudy/check/measuring.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "apps/study/check/kept_times.hpp"
-#include "apps/study/check/measured_check.hpp"
+#include "libstudy/check/kept_times.hpp"
+#include "libstudy/check/measured_check.hpp"
 #include "libstudy/display/null.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
@@ -64,20 +64,21 @@ std::vector<int> all_cells(const study::Protocol& protocol) {
   return out;
 }
 
-StepTimes measured(const study::Protocol& protocol, SlowStage& stage) {
-  return measure(protocol, all_cells(protocol), stage, stage, stage.clock, 0, {});
+study::StepTimes measured(const study::Protocol& protocol, SlowStage& stage) {
+  return study::measure(protocol, all_cells(protocol), stage, stage, stage.clock, 0, {});
 }
 
-MeasuredReport judged(const study::Protocol& protocol, const StepTimes& times) {
-  return judge_measured(protocol, {{all_cells(protocol), false, times}}, 0, [&](const FpsSetting& setting) {
-    return study::compile_schedule(setting, protocol.pacing, 0).intervals_ns;
-  });
+study::MeasuredReport judged(const study::Protocol& protocol, const study::StepTimes& times) {
+  return study::judge_measured(protocol, {{all_cells(protocol), false, times}}, 0,
+                               [&](const FpsSetting& setting) {
+                                 return study::compile_schedule(setting, protocol.pacing, 0).intervals_ns;
+                               });
 }
 
 TEST(Measure, GoesThroughTheLongestTrialAsASessionDoes) {
   const auto protocol = pilot_with("start_frame = 0", "start_frame = 7");
   SlowStage stage([](std::int64_t step) { return 1e-5 * static_cast<double>(step); }, 0.004);
-  const StepTimes times = measured(protocol, stage);
+  const study::StepTimes times = measured(protocol, stage);
   // (50, 20) for 10 s: 500 frames; a session makes the first one before the trial.
   ASSERT_EQ(times.compute_s.size(), 500u);
   EXPECT_EQ(times.draw_s.size(), 500u);
@@ -92,7 +93,7 @@ TEST(Measure, GoesThroughTheLongestTrialAsASessionDoes) {
 TEST(Measure, EndsAfterFiveSecondsWhereNoCellIsReached) {
   const auto protocol = study::test::pilot();
   SlowStage stage([](std::int64_t) { return 0.9; }, 0.1);
-  const StepTimes times = measured(protocol, stage);
+  const study::StepTimes times = measured(protocol, stage);
   EXPECT_EQ(times.compute_s.size(), 1u + 5);
   EXPECT_TRUE(judged(protocol, times).too_slow);
 }
@@ -100,9 +101,9 @@ TEST(Measure, EndsAfterFiveSecondsWhereNoCellIsReached) {
 TEST(Measure, GoesOnForTheCellsThatAreStillReached) {
   const auto protocol = study::test::pilot();
   SlowStage stage([](std::int64_t) { return 0.05; }, 0.01);  // 16.7 frames/s: 100 steps of (10, ...) in 6 s
-  const StepTimes times = measured(protocol, stage);
+  const study::StepTimes times = measured(protocol, stage);
   EXPECT_EQ(times.compute_s.size(), 100u);
-  for (const MeasuredCell& cell : judged(protocol, times).cells)
+  for (const study::MeasuredCell& cell : judged(protocol, times).cells)
     EXPECT_EQ(cell.too_slow, cell.setting.mean > 10)
         << study::setting_name(cell.setting) << ": " << cell.words;
 }
@@ -111,10 +112,10 @@ TEST(Measure, SeesTheLaterFramesThatAreDearer) {
   auto protocol = pilot_with("mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [20]");
   const auto dearer = [](std::int64_t step) { return step < 100 ? 0.02 : 0.09; };
   SlowStage stage(dearer, 0.001);
-  const StepTimes times = measured(protocol, stage);
+  const study::StepTimes times = measured(protocol, stage);
   EXPECT_GT(times.compute_s.size(), 100u);
   EXPECT_TRUE(judged(protocol, times).too_slow);
-  StepTimes first = times;
+  study::StepTimes first = times;
   first.compute_s.resize(60);
   first.draw_s.resize(60);
   const auto hasty = judged(protocol, first);
@@ -137,12 +138,12 @@ TEST(Measure, CallsBackAfterEveryStepSoThatItCanBeStopped) {
   const auto stop = [&calls] {
     if (++calls == 3) throw std::runtime_error("enough");
   };
-  EXPECT_THROW(measure(protocol, all_cells(protocol), stage, stage, stage.clock, 0, stop),
+  EXPECT_THROW(study::measure(protocol, all_cells(protocol), stage, stage, stage.clock, 0, stop),
                std::runtime_error);
   EXPECT_EQ(stage.rendered, 1 + 3);
 }
 
-StepTimes steps_of(double compute_s, double draw_s, std::size_t steps = 500) {
+study::StepTimes steps_of(double compute_s, double draw_s, std::size_t steps = 500) {
   return {std::vector<double>(steps, compute_s), std::vector<double>(steps, draw_s)};
 }
 
@@ -151,7 +152,7 @@ TEST(Rehearsal, AFastMachinePlaysTheScheduleAndAShowingLastsAsPlanned) {
   const auto report = judged(protocol, steps_of(0.001, 0.001));
   EXPECT_FALSE(report.too_slow);
   ASSERT_EQ(report.cells.size(), protocol.design.cells.size());
-  for (const MeasuredCell& cell : report.cells) {
+  for (const study::MeasuredCell& cell : report.cells) {
     EXPECT_EQ(cell.words, "");
     EXPECT_NEAR(cell.showing_s, 10, 0.02);
     EXPECT_NEAR(cell.fps.mean, 500, 1e-6);
@@ -161,22 +162,22 @@ TEST(Rehearsal, AFastMachinePlaysTheScheduleAndAShowingLastsAsPlanned) {
 TEST(Rehearsal, ASlowMachineIsCutAsASessionWouldBe) {
   const auto protocol = study::test::pilot();
   const auto report = judged(protocol, steps_of(0.65, 0.1));
-  for (const MeasuredCell& cell : report.cells) {
+  for (const study::MeasuredCell& cell : report.cells) {
     EXPECT_TRUE(cell.too_slow);
     EXPECT_THAT(cell.words, StartsWith("too slow live: 1.33 frames/s where "));
     EXPECT_NEAR(cell.showing_s, 20.25, 0.02) << "10 s, as much again, and what the next frame took";
   }
-  const auto times = showing_times(protocol, report);
+  const auto times = study::showing_times(protocol, report);
   EXPECT_EQ(times.size(), protocol.design.cells.size());
   EXPECT_NEAR(times.front(), 20.25, 0.02);
-  EXPECT_EQ(showing_times(protocol, {}).front(), 10) << "nothing was measured";
+  EXPECT_EQ(study::showing_times(protocol, {}).front(), 10) << "nothing was measured";
 }
 
 TEST(Rehearsal, ASpreadThatTheMachineCannotFollowFailsThoughTheMeanIsReached) {
   auto protocol = pilot_with("mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [50]");
   const auto report = judged(protocol, steps_of(0.015, 0.004));  // 52.6 frames/s
-  const MeasuredCell& steady = report.cells.front();
-  const MeasuredCell& spread = report.cells.back();
+  const study::MeasuredCell& steady = report.cells.front();
+  const study::MeasuredCell& spread = report.cells.back();
   ASSERT_EQ(steady.setting.sd, 0);
   ASSERT_EQ(spread.setting.sd, 20);
   EXPECT_FALSE(steady.too_slow);
@@ -187,21 +188,21 @@ TEST(Rehearsal, ASpreadThatTheMachineCannotFollowFailsThoughTheMeanIsReached) {
 TEST(Rehearsal, ContentInRealTimeComputesSeveralStepsForAFrame) {
   auto protocol = pilot_with("mode = \"per_frame\"", "mode = \"real_time\"");
   const FpsSetting slow{10, 0, 10}, fast{50, 0, 10};
-  EXPECT_EQ(content_steps(protocol, slow, 0), content_steps(protocol, fast, 0));
+  EXPECT_EQ(study::content_steps(protocol, slow, 0), study::content_steps(protocol, fast, 0));
   // A step of 1/60 s takes 20 ms: the six steps of a frame do not fit into 100 ms, while one or two fit into
   // the fast setting's interval.
-  const Rehearsal six = rehearse(protocol, slow, steps_of(0.020, 0.001, 600), {}, 0);
+  const study::Rehearsal six = study::rehearse(protocol, slow, steps_of(0.020, 0.001, 600), {}, 0);
   EXPECT_NEAR(six.frame_s.at(10), 6 * 0.020 + 0.001, 1e-9);
   EXPECT_EQ(six.frame_s.size(), 99u);
-  const Rehearsal cheap = rehearse(protocol, slow, steps_of(0.010, 0.001, 600), {}, 0);
+  const study::Rehearsal cheap = study::rehearse(protocol, slow, steps_of(0.010, 0.001, 600), {}, 0);
   EXPECT_NEAR(cheap.showing_s, 10, 0.02);
 }
 
 TEST(Rehearsal, StepsThatWereNotMeasuredTakeWhatTheLastOnesDid) {
-  StepTimes times = steps_of(0.001, 0.001, 100);
+  study::StepTimes times = steps_of(0.001, 0.001, 100);
   std::fill(times.compute_s.end() - 30, times.compute_s.end(), 0.2);
   const auto protocol = study::test::pilot();
-  const Rehearsal rehearsal = rehearse(protocol, {20, 0, 10}, times, {}, 0);
+  const study::Rehearsal rehearsal = study::rehearse(protocol, {20, 0, 10}, times, {}, 0);
   EXPECT_NEAR(rehearsal.frame_s.back(), 0.2 + 0.001, 1e-9);
   EXPECT_GT(rehearsal.showing_s, 15);
   EXPECT_EQ(rehearsal.measured, times.compute_s.size() - 1);
@@ -210,11 +211,11 @@ TEST(Rehearsal, StepsThatWereNotMeasuredTakeWhatTheLastOnesDid) {
 // A hundred steps were measured, six of them slow; the other hundred of the trial use the mean of the last
 // 30.
 TEST(Rehearsal, TheNinetyFifthPercentileIsOfMeasuredFramesAlone) {
-  StepTimes times = steps_of(0.001, 0, 100);
+  study::StepTimes times = steps_of(0.001, 0, 100);
   std::fill(times.compute_s.end() - 6, times.compute_s.end(), 0.04);
   auto protocol = study::test::pilot();
   protocol.design.cells = {{.stimulus = {}, .setting = {20, 0, 10}}};
-  const auto report = judge_measured(protocol, {{{0}, false, times}}, 0, [](const FpsSetting&) {
+  const auto report = study::judge_measured(protocol, {{{0}, false, times}}, 0, [](const FpsSetting&) {
     return std::vector<std::int64_t>(200, 50'000'000);
   });
   ASSERT_EQ(report.cells.size(), 1u);
@@ -224,15 +225,15 @@ TEST(Rehearsal, TheNinetyFifthPercentileIsOfMeasuredFramesAlone) {
 
 TEST(KeptTimes, AreReadBackUnderTheirKeyAlone) {
   const study::test::TemporaryFolder folder;
-  const StepTimes times{{0, 0.1, 1.0 / 3}, {0, 2e-5, 0.25}};
-  keep_step_times(folder.path() / "made", "this station", times);
-  const auto read = read_step_times(folder.path() / "made", "this station");
+  const study::StepTimes times{{0, 0.1, 1.0 / 3}, {0, 2e-5, 0.25}};
+  study::keep_step_times(folder.path() / "made", "this station", times);
+  const auto read = study::read_step_times(folder.path() / "made", "this station");
   ASSERT_TRUE(read);
   EXPECT_EQ(read->compute_s, times.compute_s);
   EXPECT_EQ(read->draw_s, times.draw_s);
-  EXPECT_FALSE(read_step_times(folder.path() / "made", "another station"));
-  EXPECT_FALSE(read_step_times({}, "this station"));
-  keep_step_times({}, "this station", times);  // keeps nothing, without an error
+  EXPECT_FALSE(study::read_step_times(folder.path() / "made", "another station"));
+  EXPECT_FALSE(study::read_step_times({}, "this station"));
+  study::keep_step_times({}, "this station", times);  // keeps nothing, without an error
 }
 
 TEST(KeptTimes, DamagedFilesAreMeasuredAgain) {
@@ -240,11 +241,11 @@ TEST(KeptTimes, DamagedFilesAreMeasuredAgain) {
   for (const char* text :
        {"{", "[]", R"({"key":"k"})", R"({"key":"k","compute_s":[0],"draw_s":[]})",
         R"({"key":"k","compute_s":[-1],"draw_s":[0]})", R"({"key":"other","compute_s":[0],"draw_s":[0]})"}) {
-    keep_step_times(folder.path(), "k", {{0}, {0}});
-    ASSERT_TRUE(read_step_times(folder.path(), "k"));
+    study::keep_step_times(folder.path(), "k", {{0}, {0}});
+    ASSERT_TRUE(study::read_step_times(folder.path(), "k"));
     for (const auto& file : std::filesystem::directory_iterator(folder.path()))
       std::ofstream(file.path()) << text;
-    EXPECT_FALSE(read_step_times(folder.path(), "k")) << text;
+    EXPECT_FALSE(study::read_step_times(folder.path(), "k")) << text;
   }
 }
 

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/report/page.hpp"
 #include "tests/apps/made_task_study.hpp"
 
 namespace apps {
@@ -28,15 +28,16 @@ study::TaskProtocol with_dropout(int participants) {
   return protocol;
 }
 
-Json results_of(const study::TaskProtocol& protocol, stats::ScoreTests tests = stats::ScoreTests::Paired) {
-  PlanInForce plan;
+study::Json results_of(const study::TaskProtocol& protocol,
+                       stats::ScoreTests tests = stats::ScoreTests::Paired) {
+  study::PlanInForce plan;
   plan.plan.tests = tests;
   plan.plan.resamples = 100;
-  return make_results({{protocol}, 0}, {"study.db", {TaskKind::Task1}, "", plan}).json;
+  return study::make_results({{protocol}, 0}, {"study.db", {study::TaskKind::Task1}, "", plan}).json;
 }
 
-TaskData data_of(const study::TaskProtocol& protocol) {
-  return select_task({{protocol}, 0}, {TaskKind::Task1, "", {}}).value();
+study::TaskData data_of(const study::TaskProtocol& protocol) {
+  return study::select_task({{protocol}, 0}, {study::TaskKind::Task1, "", {}}).value();
 }
 
 TEST(MissingAnswers, PlannedTrialsWithoutAnAnswerAreKnown) {
@@ -64,33 +65,33 @@ TEST(MissingAnswers, PeriodsAreThoseOfThePlanWhateverIsMissing) {
 
 TEST(MissingAnswers, PairsThatRestOnDifferentPeopleAreFlagged) {
   const auto json = results_of(with_dropout(12));
-  const Json& people = json.at("task1").at("people");
+  const study::Json& people = json.at("task1").at("people");
   ASSERT_EQ(people.size(), 6u);
-  EXPECT_EQ(people[0], (Json{{"score", "realism"},
-                             {"n_star", "16k"},
-                             {"planned", 12},
-                             {"any", 12},
-                             {"all", 12},
-                             {"fewest", 12},
-                             {"most", 12},
-                             {"differ", false}}));
-  EXPECT_EQ(people[1], (Json{{"score", "realism"},
-                             {"n_star", "32k"},
-                             {"planned", 12},
-                             {"any", 12},
-                             {"all", 8},
-                             {"fewest", 8},
-                             {"most", 12},
-                             {"differ", true}}));
-  const std::string page = report::results_page(json);
+  EXPECT_EQ(people[0], (study::Json{{"score", "realism"},
+                                    {"n_star", "16k"},
+                                    {"planned", 12},
+                                    {"any", 12},
+                                    {"all", 12},
+                                    {"fewest", 12},
+                                    {"most", 12},
+                                    {"differ", false}}));
+  EXPECT_EQ(people[1], (study::Json{{"score", "realism"},
+                                    {"n_star", "32k"},
+                                    {"planned", 12},
+                                    {"any", 12},
+                                    {"all", 8},
+                                    {"fewest", 8},
+                                    {"most", 12},
+                                    {"differ", true}}));
+  const std::string page = study::report::results_page(json);
   EXPECT_THAT(page, HasSubstr("pairs rest on different people"));
-  EXPECT_THAT(report::results_page(results_of(made_study::task1(12))),
+  EXPECT_THAT(study::report::results_page(results_of(made_study::task1(12))),
               Not(HasSubstr("pairs rest on different people")));
 }
 
 TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
   const auto json = results_of(with_dropout(12));
-  const Json& mixed = json.at("task1").at("mixed");
+  const study::Json& mixed = json.at("task1").at("mixed");
   ASSERT_EQ(mixed.size(), 3u);
   EXPECT_EQ(mixed[0].at("n"), 12 * 10 - 4 * 3);
   EXPECT_EQ(mixed[0].at("participants"), 12);
@@ -98,7 +99,7 @@ TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
   for (const auto& term : mixed[0].at("terms")) terms.push_back(term.at("term"));
   EXPECT_THAT(terms, ::testing::ElementsAre("scene jet_impact", "scene faucet"));
   // Here each n_* has its own period, and each method a fixed place.
-  EXPECT_EQ(mixed[0].at("left_out"), (Json{"position", "period 2"}));
+  EXPECT_EQ(mixed[0].at("left_out"), (study::Json{"position", "period 2"}));
   int less = 0;
   for (const auto& one : json.at("task1").at("comparisons")) {
     EXPECT_GT(one.at("mixed").at("se"), 0);
@@ -112,13 +113,13 @@ TEST(MissingAnswers, TippingPointsStandBesideEachPair) {
   const auto json = results_of(with_dropout(12));
   int tipped = 0;
   for (const auto& one : json.at("task1").at("comparisons")) {
-    const Json& tipping = one.at("tipping");
+    const study::Json& tipping = one.at("tipping");
     EXPECT_EQ(tipping.at("planned"), 12);
     EXPECT_EQ(tipping.at("holds"), one.at("p") < 0.05);
     const int missing = tipping.at("a").at("missing").get<int>() + tipping.at("b").at("missing").get<int>();
     EXPECT_EQ(missing > 0, one.at("n") < 12);
     for (const char* side : {"a", "b"}) {
-      const Json& answers = tipping.at(side);
+      const study::Json& answers = tipping.at(side);
       if (!answers.at("worse_by").is_number()) continue;
       ++tipped;
       EXPECT_GT(answers.at("worse_by"), 0);
@@ -133,18 +134,18 @@ TEST(MissingAnswers, TheTestsOfHypothesesHaveTippingPoints) {
   const auto json = results_of(with_dropout(12));
   for (const auto& hypothesis : json.at("hypotheses")) {
     for (const auto& test : hypothesis.at("tests")) {
-      const Json& tipping = test.at("tipping");
+      const study::Json& tipping = test.at("tipping");
       EXPECT_EQ(tipping.at("planned"), 12);
       EXPECT_EQ(tipping.at("holds"), test.at("holds"));
       missing += tipping.at("a").at("missing").get<int>() + tipping.at("b").at("missing").get<int>();
     }
   }
   EXPECT_GT(missing, 0);
-  EXPECT_THAT(report::results_page(json), HasSubstr("Tipping points of the tests of H1 to H3"));
-  const auto whole = report::results_page(results_of(made_study::task1(12)));
+  EXPECT_THAT(study::report::results_page(json), HasSubstr("Tipping points of the tests of H1 to H3"));
+  const auto whole = study::report::results_page(results_of(made_study::task1(12)));
   EXPECT_THAT(whole, Not(HasSubstr("Tipping points of")));
   EXPECT_THAT(whole, HasSubstr("No participant lacks an answer to a method: there are no tipping points."));
-  EXPECT_THAT(report::results_page(json), Not(HasSubstr("there are no tipping points")));
+  EXPECT_THAT(study::report::results_page(json), Not(HasSubstr("there are no tipping points")));
 }
 
 TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {
@@ -156,7 +157,7 @@ TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {
   const auto json = results_of(protocol);
   int without = 0;
   for (const auto& one : json.at("task1").at("comparisons")) {
-    const Json& tipping = one.at("tipping");
+    const study::Json& tipping = one.at("tipping");
     EXPECT_EQ(one.at("test"), "exact sign test");
     EXPECT_EQ(tipping.at("holds"), one.at("p") < 0.05);
     EXPECT_THAT(tipping.at("reason").get<std::string>(), HasSubstr("all differences are equal"));
@@ -164,7 +165,7 @@ TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {
     without += tipping.at("a").at("missing") > 0 ? 1 : 0;
   }
   EXPECT_GT(without, 0);
-  EXPECT_THAT(report::results_page(json), HasSubstr("unknown, "));
+  EXPECT_THAT(study::report::results_page(json), HasSubstr("unknown, "));
 }
 
 // The tests equal those in the results of each pair.
@@ -175,13 +176,13 @@ TEST(MissingAnswers, ThePlanMayDecideByTheMixedModel) {
   EXPECT_EQ(paired.at("plan").at("tests"), "paired");
   int compared = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Json& hypothesis = json.at("hypotheses")[i];
+    const study::Json& hypothesis = json.at("hypotheses")[i];
     EXPECT_THAT(hypothesis.at("rule").get<std::string>(), HasSubstr("t tests of the mixed model"));
-    const Json& of_pairs = paired.at("hypotheses")[i];
+    const study::Json& of_pairs = paired.at("hypotheses")[i];
     EXPECT_EQ(hypothesis.at("paired").at("status"), of_pairs.at("status"));
     EXPECT_FALSE(of_pairs.contains("paired"));
     for (std::size_t k = 0; k < hypothesis.at("tests").size(); ++k) {
-      const Json& test = hypothesis.at("tests")[k];
+      const study::Json& test = hypothesis.at("tests")[k];
       EXPECT_EQ(test.at("method"), "t test of the mixed model");
       EXPECT_EQ(test.at("tipping").at("holds"), test.at("holds"));
       EXPECT_EQ(hypothesis.at("paired").at("tests")[k].at("p"), of_pairs.at("tests")[k].at("p"));

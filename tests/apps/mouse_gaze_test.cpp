@@ -1,4 +1,4 @@
-#include "apps/study/desk/mouse_gaze.hpp"
+#include "libstudy/pages/mouse_gaze.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@ using study::GazePoint;
 
 struct Mouse {
   study::VirtualClock clock;
-  apps::MouseGaze::Place place = GazePoint{0.5, 0.25};
-  apps::MouseGaze gaze{[this] { return place; }, clock};
+  study::MouseGaze::Place place = GazePoint{0.5, 0.25};
+  study::MouseGaze gaze{[this] { return place; }, clock};
 };
 
 TEST(MouseGaze, TellsWhereItIsAtTheStartAndEachMove) {

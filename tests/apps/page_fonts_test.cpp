@@ -1,5 +1,5 @@
 /// All characters of a protocol's texts are drawn, or the protocol is refused before a participant sits down.
-#include "apps/study/pages/page_fonts.hpp"
+#include "libstudy/pages/gui/page_fonts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 
 #include <cstdlib>
 
-#include "apps/study/desk/page_characters.hpp"
-#include "apps/study/pages/gui.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
+#include "libstudy/pages/gui/gui.hpp"
+#include "libstudy/pages/page_characters.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/study_test_support.hpp"
 
@@ -33,12 +33,12 @@ study::Protocol protocol_asking(const std::string& words) {
 TEST(PageFonts, EveryShippedProtocolIsDrawn) {
   for (const auto& entry : fs::directory_iterator(base::resource("protocols"))) {
     if (entry.path().extension() != ".toml") continue;
-    EXPECT_NO_THROW(check_pages(study::read_protocol(entry.path()))) << entry.path();
+    EXPECT_NO_THROW(study::check_pages(study::read_protocol(entry.path()))) << entry.path();
   }
 }
 
 TEST(PageFonts, AccentsGreekCyrillicAndSignsAreDrawn) {
-  EXPECT_NO_THROW(check_pages(protocol_asking("Été, Größe, αβγ, Вы видели?, Łódź, 3 ≤ 5 → ☃ Վ")));
+  EXPECT_NO_THROW(study::check_pages(protocol_asking("Été, Größe, αβγ, Вы видели?, Łódź, 3 ≤ 5 → ☃ Վ")));
 }
 
 TEST(PageFonts, ScriptsThatWouldBeDrawnWronglyAreRefusedWithTheReason) {
@@ -48,7 +48,7 @@ TEST(PageFonts, ScriptsThatWouldBeDrawnWronglyAreRefusedWithTheReason) {
       {"Zu\u0308rich", "beside the letter"}, {"smo\u200Bothness", "cannot be seen"},
       {"Good \U0001F600?", "beyond U+FFFF"}};
   for (const auto& [words, reason] : refused) {
-    EXPECT_THAT([&] { check_pages(protocol_asking(words)); },
+    EXPECT_THAT([&] { study::check_pages(protocol_asking(words)); },
                 ThrowsMessage<base::Error>(AllOf(HasSubstr("asking.toml: block 'ratings', question "
                                                            "'satisfaction', text: the character U+"),
                                                  HasSubstr(reason), HasSubstr("mend: "))))
@@ -58,29 +58,31 @@ TEST(PageFonts, ScriptsThatWouldBeDrawnWronglyAreRefusedWithTheReason) {
 
 // Characters beyond the usual ones are drawn if a font has them, not replaced by a question mark.
 TEST(PageFonts, CharactersOfTheProtocolComeIntoTheAtlas) {
-  const PageType type(page_characters(protocol_asking("☃ snow?")));
+  const study::PageType type(study::page_characters(protocol_asking("☃ snow?")));
   ImFontAtlas atlas;
   const ImFont* const font = type.add(atlas, 20);
   atlas.Build();
   EXPECT_NE(font->FindGlyphNoFallback(u'☃'), nullptr);
   EXPECT_EQ(type.undrawn(U"☃a"), U"");
-  EXPECT_EQ(PageType({}).undrawn(U"☃a"), U"☃");
+  EXPECT_EQ(study::PageType({}).undrawn(U"☃a"), U"☃");
 }
 
 // Chinese has no spaces: lines break between characters, and no punctuation mark starts a line.
 TEST(PageFontsGl, WordsWithoutSpacesAreWrapped) {
   const sim::GlContext gl = sim::GlContext::make_headless();
   const sim::Offscreen picture(400, 300);
-  Gui gui(type_for_screen(600), {[] {
-                                   ImGui::GetIO().DisplaySize = {400, 300};
-                                 },
-                                 [&picture] { return picture.framebuffer(); }});
-  gui.begin(colour::background);
+  study::Gui gui(study::type_for_screen(600), {[] {
+                                                 ImGui::GetIO().DisplaySize = {400, 300};
+                                               },
+                                               [&picture] { return picture.framebuffer(); }});
+  gui.begin(study::colour::background);
   ImGui::PushFont(gui.body());
   ImGui::Begin("page");
-  const float one = draw_centred("中", {200, 0}, 100, colour::text);
-  EXPECT_GE(draw_centred("中中中中中中中中中中中中中中中中中中中中", {200, 0}, 100, colour::text), 2 * one);
-  EXPECT_EQ(draw_centred("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", {200, 0}, 100, colour::text), one);
+  const float one = study::draw_centred("中", {200, 0}, 100, study::colour::text);
+  EXPECT_GE(
+      study::draw_centred("中中中中中中中中中中中中中中中中中中中中", {200, 0}, 100, study::colour::text),
+      2 * one);
+  EXPECT_EQ(study::draw_centred("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", {200, 0}, 100, study::colour::text), one);
   ImGui::End();
   ImGui::PopFont();
   gui.end();

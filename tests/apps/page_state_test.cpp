@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "apps/study/desk/page.hpp"
-#include "apps/study/desk/viewing.hpp"
+#include "libstudy/pages/page.hpp"
+#include "libstudy/pages/viewing.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -47,40 +47,40 @@ Question words(bool required) {
   return question;
 }
 
-PageState page(const std::vector<Question>& questions, double least_s = 0) {
+study::PageState page(const std::vector<Question>& questions, double least_s = 0) {
   return {questions, least_s, shown};
 }
 
 TEST(PageState, NothingIsChosenBeforehandAndNothingCanBeSkipped) {
-  PageState state = page({scale(1, 7)});
+  study::PageState state = page({scale(1, 7)});
   EXPECT_FALSE(state.answered(0));
   EXPECT_FALSE(state.can_confirm(at(60'000)));
-  state.press(PageKey::Enter, at(1000));
+  state.press(study::PageKey::Enter, at(1000));
   state.click_confirm(at(1100));
   EXPECT_FALSE(state.confirmed());
   EXPECT_EQ(state.missing(), 1u);
 }
 
 TEST(PageState, TheFirst300MsCountForNothing) {
-  PageState state = page({scale(1, 7)});
+  study::PageState state = page({scale(1, 7)});
   state.digit(5, at(299));
   state.click(0, 5, at(299));
   EXPECT_FALSE(state.answered(0));
   state.digit(5, at(300));
   EXPECT_EQ(state.item(0).chosen, 5);
 
-  PageState text = page({});
-  text.press(PageKey::Enter, at(100));
+  study::PageState text = page({});
+  text.press(study::PageKey::Enter, at(100));
   EXPECT_FALSE(text.confirmed());
-  text.press(PageKey::Enter, at(301));
+  text.press(study::PageKey::Enter, at(301));
   EXPECT_TRUE(text.confirmed());
 }
 
 TEST(PageState, AnAnswerCanBeChangedUntilItIsConfirmed) {
-  PageState state = page({scale(1, 7)});
+  study::PageState state = page({scale(1, 7)});
   state.digit(5, at(1000));
   state.digit(2, at(2500));
-  state.press(PageKey::Enter, at(4000));
+  state.press(study::PageKey::Enter, at(4000));
   ASSERT_TRUE(state.confirmed());
   state.digit(7, at(5000));
   state.click(0, 7, at(5000));
@@ -92,7 +92,7 @@ TEST(PageState, AnAnswerCanBeChangedUntilItIsConfirmed) {
 
 TEST(PageState, AnAnswerTellsWhatItsLastChangeCameFrom) {
   using study::AnswerInput;
-  PageState state = page({scale(1, 7), scale(1, 7), words(false), scale(1, 7, false)});
+  study::PageState state = page({scale(1, 7), scale(1, 7), words(false), scale(1, 7, false)});
   state.digit(5, at(1000));
   state.use(AnswerInput::Ray);
   state.click(1, 3, at(1500));
@@ -109,7 +109,7 @@ TEST(PageState, AnAnswerTellsWhatItsLastChangeCameFrom) {
 }
 
 TEST(PageState, TheSameAnswerAgainIsNoChange) {
-  PageState state = page({scale(1, 7)});
+  study::PageState state = page({scale(1, 7)});
   state.digit(5, at(1000));
   state.digit(5, at(2000));
   state.click_confirm(at(3000));
@@ -117,10 +117,10 @@ TEST(PageState, TheSameAnswerAgainIsNoChange) {
 }
 
 TEST(PageState, DigitsOffTheScaleAndScalesBeyondOneDigit) {
-  PageState state = page({scale(1, 7), scale(0, 20)});
+  study::PageState state = page({scale(1, 7), scale(0, 20)});
   for (const int off : {0, 8, 9}) state.digit(off, at(1000));
   EXPECT_FALSE(state.answered(0));
-  state.press(PageKey::Down, at(1000));
+  state.press(study::PageKey::Down, at(1000));
   state.digit(1, at(1100));  // could be the start of 12
   EXPECT_FALSE(state.answered(1));
   state.click(1, 21, at(1200));
@@ -130,34 +130,34 @@ TEST(PageState, DigitsOffTheScaleAndScalesBeyondOneDigit) {
 }
 
 TEST(PageState, ArrowsPointAndEnterChooses) {
-  PageState state = page({scale(1, 7)});
-  state.press(PageKey::Right, at(1000));
-  state.press(PageKey::Right, at(1100));
+  study::PageState state = page({scale(1, 7)});
+  state.press(study::PageKey::Right, at(1000));
+  state.press(study::PageKey::Right, at(1100));
   EXPECT_EQ(state.item(0).cursor, 2);
   EXPECT_FALSE(state.answered(0)) << "pointing is not choosing";
-  state.press(PageKey::Enter, at(1200));
+  state.press(study::PageKey::Enter, at(1200));
   EXPECT_EQ(state.item(0).chosen, 2);
   EXPECT_FALSE(state.confirmed());
-  state.press(PageKey::Left, at(1300));
-  state.press(PageKey::Left, at(1400));  // stays at the end
+  state.press(study::PageKey::Left, at(1300));
+  state.press(study::PageKey::Left, at(1400));  // stays at the end
   EXPECT_EQ(state.item(0).cursor, 1);
-  state.press(PageKey::Enter, at(1500));
-  state.press(PageKey::Enter, at(1600));
+  state.press(study::PageKey::Enter, at(1500));
+  state.press(study::PageKey::Enter, at(1600));
   ASSERT_TRUE(state.confirmed());
   EXPECT_EQ(state.answers()[0].answer.score, 1);
 }
 
 TEST(PageState, UpAndDownMoveInAList) {
-  PageState state = page({list({{1, "first"}, {2, "second"}})});
-  state.press(PageKey::Up, at(1000));
+  study::PageState state = page({list({{1, "first"}, {2, "second"}})});
+  state.press(study::PageKey::Up, at(1000));
   EXPECT_EQ(state.item(0).cursor, 2) << "from below, the last one";
-  state.press(PageKey::Up, at(1100));
-  state.press(PageKey::Enter, at(1200));
+  state.press(study::PageKey::Up, at(1100));
+  state.press(study::PageKey::Enter, at(1200));
   EXPECT_EQ(state.item(0).chosen, 1);
 }
 
 TEST(PageState, AListOffersOnlyWhatHasWords) {
-  PageState state = page({list({{1, "yes"}, {3, "perhaps"}})});
+  study::PageState state = page({list({{1, "yes"}, {3, "perhaps"}})});
   state.digit(2, at(1000));
   state.click(0, 2, at(1000));
   EXPECT_FALSE(state.answered(0));
@@ -166,24 +166,24 @@ TEST(PageState, AListOffersOnlyWhatHasWords) {
 }
 
 TEST(PageState, EnterGoesFromQuestionToQuestionAndConfirmsAtTheButton) {
-  PageState state = page({scale(0, 3), scale(0, 3)});
-  state.press(PageKey::Enter, at(1000));
+  study::PageState state = page({scale(0, 3), scale(0, 3)});
+  state.press(study::PageKey::Enter, at(1000));
   EXPECT_EQ(state.focus(), 0u) << "a required question is not passed over";
   state.digit(1, at(1100));
-  state.press(PageKey::Enter, at(1200));
+  state.press(study::PageKey::Enter, at(1200));
   EXPECT_EQ(state.focus(), 1u);
   state.digit(2, at(1300));
-  state.press(PageKey::Enter, at(1400));
+  state.press(study::PageKey::Enter, at(1400));
   EXPECT_EQ(state.focus(), state.size());
   EXPECT_FALSE(state.confirmed()) << "reading over them is one Enter away";
-  state.press(PageKey::Enter, at(1500));
+  state.press(study::PageKey::Enter, at(1500));
   ASSERT_TRUE(state.confirmed());
   EXPECT_EQ(state.answers()[0].answer.score, 1);
   EXPECT_DOUBLE_EQ(state.answers()[1].response_time_s, 1.3);
 }
 
 TEST(PageState, TheButtonNeedsAllRequiredAnswers) {
-  PageState state = page({scale(0, 3), scale(0, 3), scale(0, 3, false)});
+  study::PageState state = page({scale(0, 3), scale(0, 3), scale(0, 3, false)});
   state.click(0, 0, at(1000));
   EXPECT_FALSE(state.can_confirm(at(1000)));
   state.click(1, 3, at(1100));
@@ -195,20 +195,20 @@ TEST(PageState, TheButtonNeedsAllRequiredAnswers) {
 }
 
 TEST(PageState, TheButtonLeadsToWhatIsStillOpen) {
-  PageState state = page({scale(0, 3), scale(0, 3), scale(0, 3)});
+  study::PageState state = page({scale(0, 3), scale(0, 3), scale(0, 3)});
   state.click(0, 1, at(1000));
-  state.press(PageKey::Next, at(1100));
-  state.press(PageKey::Next, at(1200));
+  state.press(study::PageKey::Next, at(1100));
+  state.press(study::PageKey::Next, at(1200));
   state.digit(2, at(1300));
-  state.press(PageKey::Next, at(1400));
+  state.press(study::PageKey::Next, at(1400));
   ASSERT_EQ(state.focus(), state.size());
-  state.press(PageKey::Enter, at(1500));
+  state.press(study::PageKey::Enter, at(1500));
   EXPECT_EQ(state.focus(), 1u);
   EXPECT_FALSE(state.confirmed());
 }
 
 TEST(PageState, ANumberIsCheckedAgainstItsRange) {
-  PageState state = page({number(16, 99)});
+  study::PageState state = page({number(16, 99)});
   state.digit(9, at(1000));
   EXPECT_TRUE(state.out_of_range(0));
   state.digit(0, at(1100));
@@ -216,24 +216,24 @@ TEST(PageState, ANumberIsCheckedAgainstItsRange) {
   state.digit(0, at(1200));
   EXPECT_TRUE(state.out_of_range(0));
   EXPECT_FALSE(state.can_confirm(at(1200)));
-  state.press(PageKey::Erase, at(1300));
-  state.press(PageKey::Enter, at(1400));
+  state.press(study::PageKey::Erase, at(1300));
+  state.press(study::PageKey::Enter, at(1400));
   ASSERT_TRUE(state.confirmed());
   EXPECT_EQ(state.answers()[0].answer.score, 90);
 }
 
 TEST(PageState, AFieldThatMayBeEmptyMayNotBeWrong) {
-  PageState state = page({number(16, 99, false)});
+  study::PageState state = page({number(16, 99, false)});
   EXPECT_TRUE(state.can_confirm(at(1000)));
   state.digit(7, at(1000));
   EXPECT_FALSE(state.can_confirm(at(1000)));
-  state.press(PageKey::Enter, at(1100));
+  state.press(study::PageKey::Enter, at(1100));
   EXPECT_FALSE(state.confirmed());
 }
 
 TEST(PageState, NegativeNumbersOnlyWhereTheyCanBe) {
-  PageState eyes = page({number(-20, 20)}), age = page({number(16, 99)});
-  for (PageState* state : {&eyes, &age}) {
+  study::PageState eyes = page({number(-20, 20)}), age = page({number(16, 99)});
+  for (study::PageState* state : {&eyes, &age}) {
     state->minus(at(1000));
     state->digit(3, at(1100));
   }
@@ -243,7 +243,7 @@ TEST(PageState, NegativeNumbersOnlyWhereTheyCanBe) {
 }
 
 TEST(PageState, WordsThatAreBlankAreNoAnswer) {
-  PageState state = page({words(true)});
+  study::PageState state = page({words(true)});
   state.write(0, " \n", at(1000));
   EXPECT_FALSE(state.can_confirm(at(1000)));
   state.write(0, "grainy", at(2000));
@@ -255,17 +255,17 @@ TEST(PageState, WordsThatAreBlankAreNoAnswer) {
 }
 
 TEST(PageState, ATextCannotBeLeftBeforeItsTime) {
-  PageState state = page({}, 5);
+  study::PageState state = page({}, 5);
   EXPECT_DOUBLE_EQ(state.wait_s(at(2000)), 3.0);
-  state.press(PageKey::Enter, at(4999));
+  state.press(study::PageKey::Enter, at(4999));
   state.click_confirm(at(4999));
   EXPECT_FALSE(state.confirmed());
-  state.press(PageKey::Enter, at(5000));
+  state.press(study::PageKey::Enter, at(5000));
   EXPECT_TRUE(state.confirmed());
 }
 
 TEST(PageState, TimeInADialogIsNoResponseTimeAndWhatFollowsIsGuarded) {
-  PageState state = page({scale(1, 7)}, 3);
+  study::PageState state = page({scale(1, 7)}, 3);
   state.leave_out(at(1000), at(11'000));
   EXPECT_DOUBLE_EQ(state.wait_s(at(11'000)), 2.0);
   state.digit(4, at(11'200));
@@ -277,25 +277,25 @@ TEST(PageState, TimeInADialogIsNoResponseTimeAndWhatFollowsIsGuarded) {
 }
 
 TEST(PageState, NoAnswersBeforeTheConfirmation) {
-  PageState state = page({scale(1, 7)});
+  study::PageState state = page({scale(1, 7)});
   state.digit(4, at(1000));
   EXPECT_THROW(state.answers(), std::logic_error);
 }
 
 TEST(Viewing, ThePictureIsAWindowOntoTheScene) {
   // Height twice the distance: 45 degrees up and 45 down.
-  EXPECT_NEAR(vertical_fov_deg(1200, 600), 90, 1e-12);
-  EXPECT_NEAR(vertical_fov_deg(2 * 700 * 0.57735026918962576, 700), 60, 1e-9);  // tan 30 degrees
-  EXPECT_NEAR(picture_height_mm(531.2, 1920, 1080), 298.8, 1e-9);
+  EXPECT_NEAR(study::vertical_fov_deg(1200, 600), 90, 1e-12);
+  EXPECT_NEAR(study::vertical_fov_deg(2 * 700 * 0.57735026918962576, 700), 60, 1e-9);  // tan 30 degrees
+  EXPECT_NEAR(study::picture_height_mm(531.2, 1920, 1080), 298.8, 1e-9);
 }
 
 TEST(Viewing, LengthsThatNoDesktopHasAreErrors) {
   for (const double bad : {0.0, -300.0, 0.3, 1e6, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(vertical_fov_deg(bad, 600), base::Error) << bad;
-    EXPECT_THROW(vertical_fov_deg(300, bad), base::Error) << bad;
-    EXPECT_THROW(picture_height_mm(bad, 1920, 1080), base::Error) << bad;
+    EXPECT_THROW(study::vertical_fov_deg(bad, 600), base::Error) << bad;
+    EXPECT_THROW(study::vertical_fov_deg(300, bad), base::Error) << bad;
+    EXPECT_THROW(study::picture_height_mm(bad, 1920, 1080), base::Error) << bad;
   }
-  EXPECT_THROW(picture_height_mm(500, 0, 1080), base::Error);
+  EXPECT_THROW(study::picture_height_mm(500, 0, 1080), base::Error);
 }
 
 }  // namespace

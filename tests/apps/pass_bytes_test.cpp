@@ -1,4 +1,4 @@
-#include "apps/bench/pass_bytes.hpp"
+#include "libsim/measure/pass_bytes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <memory>
 #include <set>
 
-#include "apps/bench/launch_table.hpp"
 #include "libsim/exec/bandwidth.hpp"
+#include "libsim/measure/launch_table.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -44,36 +44,36 @@ TEST(PassBytes, EveryPassOfTheTableIsLaunched) {
   auto launched = labels_of(sim::MethodKind::HiRes);
   EXPECT_FALSE(launched.contains("density beside fresh"));
   launched.merge(labels_of(sim::MethodKind::Ours));
-  for (const auto& pass : pass_bytes()) EXPECT_TRUE(launched.contains(pass.label)) << pass.label;
+  for (const auto& pass : measure::pass_bytes()) EXPECT_TRUE(launched.contains(pass.label)) << pass.label;
   // A launch over a few particles moves fewer bytes than one over all, so it has a name but no floor.
   EXPECT_TRUE(launched.contains("density beside fresh"));
   EXPECT_TRUE(launched.contains("displacement beside fresh"));
-  EXPECT_FALSE(least_bytes("density beside fresh", {}));
+  EXPECT_FALSE(measure::least_bytes("density beside fresh", {}));
 }
 
 TEST(PassBytes, TheTableHasAsManyBytesAsTheFunctorsMove) {
-  const PassWater water{.particles = 1000, .solved_share = 1, .listed = 50};
+  const measure::PassWater water{.particles = 1000, .solved_share = 1, .listed = 50};
   // Position and support 16, count 4, two results of 4, and 50 entries of 4.
-  EXPECT_EQ(least_bytes("density", water), 1000 * (16 + 4 + 4 + 4 + 50 * 4));
-  EXPECT_EQ(least_bytes("displacement", water), 1000 * (16 + 4 + 4 + 16 + 50 * 4));
-  EXPECT_EQ(least_bytes("list neighbours", water), 1000 * (16 + 4 + 50 * 4));
-  EXPECT_EQ(least_bytes("xsph", water), 1000 * (16 + 16 + 4 + 4 + 16 + 50 * 4));
-  EXPECT_EQ(least_bytes("ease", water), 1000 * (1 + 4 + 4 + 50 * 4));
-  EXPECT_EQ(least_bytes("predict", water), 1000 * 80);
-  EXPECT_EQ(least_bytes("velocity", water), 1000 * 80);
-  EXPECT_EQ(least_bytes("shift", water), 1000 * 32);
-  EXPECT_EQ(least_bytes("gather cells", water), 1000 * 20);
-  EXPECT_EQ(least_bytes("reorder", water), 1000 * (4 + 2 * 53));
-  EXPECT_EQ(least_bytes("count cells", water), 1000 * 24);
-  EXPECT_EQ(least_bytes("place by cell", water), 1000 * 12);
-  EXPECT_EQ(least_bytes("order within cells", water), 1000 * 16);
-  EXPECT_EQ(pass_bytes().size(), 13u);
+  EXPECT_EQ(measure::least_bytes("density", water), 1000 * (16 + 4 + 4 + 4 + 50 * 4));
+  EXPECT_EQ(measure::least_bytes("displacement", water), 1000 * (16 + 4 + 4 + 16 + 50 * 4));
+  EXPECT_EQ(measure::least_bytes("list neighbours", water), 1000 * (16 + 4 + 50 * 4));
+  EXPECT_EQ(measure::least_bytes("xsph", water), 1000 * (16 + 16 + 4 + 4 + 16 + 50 * 4));
+  EXPECT_EQ(measure::least_bytes("ease", water), 1000 * (1 + 4 + 4 + 50 * 4));
+  EXPECT_EQ(measure::least_bytes("predict", water), 1000 * 80);
+  EXPECT_EQ(measure::least_bytes("velocity", water), 1000 * 80);
+  EXPECT_EQ(measure::least_bytes("shift", water), 1000 * 32);
+  EXPECT_EQ(measure::least_bytes("gather cells", water), 1000 * 20);
+  EXPECT_EQ(measure::least_bytes("reorder", water), 1000 * (4 + 2 * 53));
+  EXPECT_EQ(measure::least_bytes("count cells", water), 1000 * 24);
+  EXPECT_EQ(measure::least_bytes("place by cell", water), 1000 * 12);
+  EXPECT_EQ(measure::least_bytes("order within cells", water), 1000 * 16);
+  EXPECT_EQ(measure::pass_bytes().size(), 13u);
 }
 
 TEST(PassBytes, WhoRestsIsLeftOutWhereOnlyTheSolvedAreVisited) {
-  const PassWater half{.particles = 1000, .solved_share = 0.5, .listed = 10};
-  EXPECT_EQ(least_bytes("density", half), 500 * 68);
-  EXPECT_EQ(least_bytes("predict", half), 1000 * 80);
+  const measure::PassWater half{.particles = 1000, .solved_share = 0.5, .listed = 10};
+  EXPECT_EQ(measure::least_bytes("density", half), 500 * 68);
+  EXPECT_EQ(measure::least_bytes("predict", half), 1000 * 80);
 }
 
 TEST(PassBytes, ListsAreAsLongAsBruteForceFindsThem) {
@@ -91,28 +91,28 @@ TEST(PassBytes, ListsAreAsLongAsBruteForceFindsThem) {
 }
 
 TEST(PassBytes, TheFloorIsBytesOverBandwidth) {
-  const PassWater water{.particles = 1e6, .solved_share = 1, .listed = 50};
+  const measure::PassWater water{.particles = 1e6, .solved_share = 1, .listed = 50};
   // 12 launches of 80 MB at 1,000 GB/s: 0.96 ms; 2.4 ms is 2.5 times that.
-  const auto floor = floor_of("predict", 12, 2.4, water, 1000);
+  const auto floor = measure::floor_of("predict", 12, 2.4, water, 1000);
   ASSERT_TRUE(floor);
   EXPECT_DOUBLE_EQ(floor->bytes_a_frame, 960e6);
   EXPECT_DOUBLE_EQ(floor->ms_a_frame, 0.96);
   EXPECT_DOUBLE_EQ(floor->times, 2.5);
-  EXPECT_FALSE(floor_of("classify cells", 12, 2.4, water, 1000));
+  EXPECT_FALSE(measure::floor_of("classify cells", 12, 2.4, water, 1000));
 }
 
 TEST(PassBytes, ListsOfUnknownLengthHaveNoFloor) {
-  const PassWater water{.particles = 10};
-  EXPECT_FALSE(floor_of("density", 1, 1, water, 1));
-  EXPECT_TRUE(floor_of("predict", 1, 1, water, 1));
+  const measure::PassWater water{.particles = 10};
+  EXPECT_FALSE(measure::floor_of("density", 1, 1, water, 1));
+  EXPECT_TRUE(measure::floor_of("predict", 1, 1, water, 1));
 }
 
 TEST(PassBytes, TheTableOfLaunchesHoldsBoth) {
-  LaunchSums sums;
+  measure::LaunchSums sums;
   sums.add({{"predict", 1, 0.5}, {"classify cells", 2, 1.5}});
   sums.add({{"predict", 1, 0.5}});
-  const PassWater water{.particles = 1e6, .solved_share = 1, .listed = 50};
-  const auto launches = launches_json(sums.all(), 2, water, 200);
+  const measure::PassWater water{.particles = 1e6, .solved_share = 1, .listed = 50};
+  const auto launches = measure::launches_json(sums.all(), 2, water, 200);
   ASSERT_EQ(launches.size(), 2u);
   EXPECT_EQ(launches[0]["pass"], "classify cells");
   EXPECT_TRUE(launches[0]["times_floor"].is_null());
@@ -121,7 +121,7 @@ TEST(PassBytes, TheTableOfLaunchesHoldsBoth) {
   EXPECT_DOUBLE_EQ(launches[1]["bytes_a_frame"].get<double>(), 80e6);
   EXPECT_DOUBLE_EQ(launches[1]["floor_ms_a_frame"].get<double>(), 0.4);
   EXPECT_DOUBLE_EQ(launches[1]["times_floor"].get<double>(), 1.25);
-  const std::string lines = launch_lines(launches, 200);
+  const std::string lines = measure::launch_lines(launches, 200);
   for (const char* part : {"200.0 GB/s", "times floor", "80.00", "0.4000", "1.25", "          -\n"})
     EXPECT_THAT(lines, HasSubstr(part));
 }

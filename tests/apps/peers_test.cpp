@@ -1,4 +1,4 @@
-#include "apps/bench/peers.hpp"
+#include "libsim/measure/peers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,9 +21,9 @@ const std::string head =
 
 class Peers : public ::testing::Test {
  protected:
-  std::vector<PeerRow> read(const std::string& text) {
+  std::vector<measure::PeerRow> read(const std::string& text) {
     base::write_file_atomically(file, text);
-    return read_peers(file);
+    return measure::read_peers(file);
   }
   std::string error_of(const std::string& text) {
     try {
@@ -38,16 +38,16 @@ class Peers : public ::testing::Test {
   const std::string file = folder / "peers.csv";
 };
 
-OurRow ours_on(const std::string& machine) {
-  return our_row({{"particles", 32768},
-                  {"backend", "cpu"},
-                  {"threads", 2},
-                  {"solve_ms_mean", 20.5},
-                  {"solve_ms_p95", 25.25},
-                  {"density_error_mean", 0.00125},
-                  {"neighbours_mean", 31.5},
-                  {"substeps_mean", 1.25}},
-                 0.005, 4, machine);
+measure::OurRow ours_on(const std::string& machine) {
+  return measure::our_row({{"particles", 32768},
+                           {"backend", "cpu"},
+                           {"threads", 2},
+                           {"solve_ms_mean", 20.5},
+                           {"solve_ms_p95", 25.25},
+                           {"density_error_mean", 0.00125},
+                           {"neighbours_mean", 31.5},
+                           {"substeps_mean", 1.25}},
+                          0.005, 4, machine);
 }
 
 TEST_F(Peers, KeepsWhatIsKnownAndWhatIsNot) {
@@ -63,7 +63,7 @@ TEST_F(Peers, KeepsWhatIsKnownAndWhatIsNot) {
   EXPECT_EQ(rows[0].density_error_percent, 0.61);
   EXPECT_EQ(rows[1].source, "there");
   EXPECT_FALSE(rows[1].iterations || rows[1].threads || rows[1].density_error_percent);
-  EXPECT_TRUE(to_json(rows)[1]["density_error_percent"].is_null());
+  EXPECT_TRUE(measure::to_json(rows)[1]["density_error_percent"].is_null());
 }
 
 TEST_F(Peers, AMalformedFileIsNamedWithItsLine) {
@@ -89,7 +89,7 @@ TEST_F(Peers, AMalformedFileIsNamedWithItsLine) {
 
 TEST_F(Peers, TheTableHoldsPeersAndOursWithoutARatio) {
   const auto peers = read(head + "A,DFSPH,32768,0.005,,cpu,2,58,,not recorded\n");
-  const std::string table = to_markdown(peers_table(peers, ours_on("Chip X; 2 cores")));
+  const std::string table = figures::to_markdown(measure::peers_table(peers, ours_on("Chip X; 2 cores")));
   EXPECT_THAT(table,
               HasSubstr("| A | DFSPH | 32768 | 0.005 | - | cpu | 2 | 58 | - | - | - | not recorded |"));
   EXPECT_THAT(table,
@@ -99,24 +99,25 @@ TEST_F(Peers, TheTableHoldsPeersAndOursWithoutARatio) {
 
 TEST_F(Peers, AnotherMachineIsSaidPlainly) {
   const auto peers = read(head + "A,PBF,8,1,,cpu,,1,,on Chip X; 2 cores\n");
-  EXPECT_THAT(peers_note(peers, ours_on("Chip X; 2 cores")),
+  EXPECT_THAT(measure::peers_note(peers, ours_on("Chip X; 2 cores")),
               AllOf(HasSubstr("1.25 substeps"), Not(HasSubstr("one machine only"))));
-  EXPECT_THAT(peers_note(peers, ours_on("Chip Y; 2 cores")), HasSubstr("one machine only"));
-  EXPECT_THAT(peers_note(peers, ours_on("")), HasSubstr("one machine only"));
+  EXPECT_THAT(measure::peers_note(peers, ours_on("Chip Y; 2 cores")), HasSubstr("one machine only"));
+  EXPECT_THAT(measure::peers_note(peers, ours_on("")), HasSubstr("one machine only"));
 }
 
 TEST_F(Peers, OnAGpuThreadsAndMachineAreNotKnown) {
-  OurRow ours = our_row({{"particles", 8},
-                         {"backend", "cuda"},
-                         {"threads", 2},
-                         {"solve_ms_mean", 1.0},
-                         {"solve_ms_p95", 1.0},
-                         {"density_error_mean", 0.0},
-                         {"neighbours_mean", 30.0},
-                         {"substeps_mean", 1.0}},
-                        0.005, 4, "");
+  measure::OurRow ours = measure::our_row({{"particles", 8},
+                                           {"backend", "cuda"},
+                                           {"threads", 2},
+                                           {"solve_ms_mean", 1.0},
+                                           {"solve_ms_p95", 1.0},
+                                           {"density_error_mean", 0.0},
+                                           {"neighbours_mean", 30.0},
+                                           {"substeps_mean", 1.0}},
+                                          0.005, 4, "");
   EXPECT_FALSE(ours.as_peer.threads);
-  EXPECT_THAT(to_markdown(peers_table({}, ours)), HasSubstr("| cuda | - | 1 | 1 | 0 | 30 | - |"));
+  EXPECT_THAT(figures::to_markdown(measure::peers_table({}, ours)),
+              HasSubstr("| cuda | - | 1 | 1 | 0 | 30 | - |"));
 }
 
 class PeersE2e : public ::testing::Test {

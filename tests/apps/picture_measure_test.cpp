@@ -1,5 +1,5 @@
 /// Features of pictures with known grain and motion.
-#include "apps/common/picture_measure.hpp"
+#include "libstudy/observer/picture_measure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 namespace {
 
-using apps::MeasuredPicture;
+using study::MeasuredPicture;
 
 /// 240 x 160 px with a much brighter border of 20 px that is not fluid.
 MeasuredPicture picture(const std::function<double(int, int)>& luminance) {
@@ -28,7 +28,7 @@ double wave(double x, double length_px) { return std::sin(2 * std::numbers::pi *
 
 double granularity_of(const std::function<double(int, int)>& luminance) {
   const MeasuredPicture one = picture(luminance);
-  return apps::measure_pictures({one, one, one}, 120, 80).granularity_px;
+  return study::measure_pictures({one, one, one}, 120, 80).granularity_px;
 }
 
 TEST(PictureMeasure, GranularityIsTheWavelengthOfAWave) {
@@ -49,21 +49,21 @@ TEST(PictureMeasure, GranularityKnowsNeitherContrastNorSlowShading) {
 TEST(PictureMeasure, OnlyTheGrainNearTheGazeCounts) {
   // Fine on the left, coarse on the right.
   const MeasuredPicture one = picture([](int x, int) { return 0.3 + 0.1 * wave(x, x < 120 ? 8 : 16); });
-  EXPECT_NEAR(apps::measure_pictures({one, one, one}, 45, 80).granularity_px, 8, 0.6);
-  EXPECT_NEAR(apps::measure_pictures({one, one, one}, 195, 80).granularity_px, 16, 1.2);
+  EXPECT_NEAR(study::measure_pictures({one, one, one}, 45, 80).granularity_px, 8, 0.6);
+  EXPECT_NEAR(study::measure_pictures({one, one, one}, 195, 80).granularity_px, 16, 1.2);
 }
 
 TEST(PictureMeasure, FlickerIsTheSecondDifferenceInTime) {
   const auto at = [](double light) { return picture([=](int, int) { return light; }); };
-  EXPECT_NEAR(apps::measure_pictures({at(0.2), at(0.2), at(0.2)}, 120, 80).flicker, 0, 1e-9);
-  EXPECT_NEAR(apps::measure_pictures({at(0.2), at(0.3), at(0.4)}, 120, 80).flicker, 0, 1e-6);  // even motion
-  EXPECT_NEAR(apps::measure_pictures({at(0.2), at(0.3), at(0.2)}, 120, 80).flicker, 0.2, 1e-6);
+  EXPECT_NEAR(study::measure_pictures({at(0.2), at(0.2), at(0.2)}, 120, 80).flicker, 0, 1e-9);
+  EXPECT_NEAR(study::measure_pictures({at(0.2), at(0.3), at(0.4)}, 120, 80).flicker, 0, 1e-6);  // even motion
+  EXPECT_NEAR(study::measure_pictures({at(0.2), at(0.3), at(0.2)}, 120, 80).flicker, 0.2, 1e-6);
 }
 
 TEST(PictureMeasure, PicturesWithoutFluidHaveNone) {
   MeasuredPicture empty = picture([](int x, int) { return 0.5 + 0.1 * wave(x, 8); });
   empty.fluid.assign(empty.fluid.size(), 0);
-  const auto found = apps::measure_pictures({empty, empty, empty}, 120, 80);
+  const auto found = study::measure_pictures({empty, empty, empty}, 120, 80);
   EXPECT_EQ(found.granularity_px, 0);
   EXPECT_EQ(found.flicker, 0);
 }

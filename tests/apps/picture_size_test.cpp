@@ -1,4 +1,4 @@
-#include "apps/common/picture_size.hpp"
+#include "stats/base/picture_size.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,22 +14,22 @@ using testing::StartsWith;
 using testing::ThrowsMessage;
 
 TEST(PictureSize, IsTwoNumbersWithNothingAround) {
-  const auto size = apps::parse_picture_size("1280x720");
+  const auto size = base::parse_picture_size("1280x720");
   EXPECT_EQ(size.width, 1280);
   EXPECT_EQ(size.height, 720);
-  EXPECT_NO_THROW(apps::parse_picture_size("16x8192"));
-  EXPECT_NO_THROW(apps::parse_picture_size("8192x4096"));
+  EXPECT_NO_THROW(base::parse_picture_size("16x8192"));
+  EXPECT_NO_THROW(base::parse_picture_size("8192x4096"));
   for (const std::string text :
        {"", "x", "640", "640x", "x360", "640x360x3", " 640x360", "640x360 ", "640 x360", "+640x360", "-5x0",
         "15x360", "640x8193", "0x0", "1e3x360", "99999999999x16"}) {
-    EXPECT_THAT([&] { apps::parse_picture_size(text, "--pictures"); },
+    EXPECT_THAT([&] { base::parse_picture_size(text, "--pictures"); },
                 ThrowsMessage<base::Error>(AllOf(StartsWith("--pictures " + text + ": "),
                                                  HasSubstr("is not a size"), HasSubstr("mend: "))));
   }
 }
 
 TEST(PictureSize, OneThatTakesTooMuchMemorySaysHowMuch) {
-  EXPECT_THAT([] { apps::parse_picture_size("8192x8192"); },
+  EXPECT_THAT([] { base::parse_picture_size("8192x8192"); },
               ThrowsMessage<base::Error>(AllOf(HasSubstr("2.7 GB of memory"), HasSubstr("8192x4096"))));
 }
 

@@ -1,4 +1,4 @@
-#include "apps/stats/ptpe/pilot_fit.hpp"
+#include "libstudy/analysis/ptpe/pilot_fit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,29 +10,30 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/ptpe/contour_lines.hpp"
-#include "apps/stats/ptpe/heat_map.hpp"
-#include "apps/stats/ptpe/pilot_people_json.hpp"
+#include "libstudy/analysis/ptpe/contour_lines.hpp"
+#include "libstudy/analysis/ptpe/heat_map.hpp"
+#include "libstudy/analysis/ptpe/pilot_people_json.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
 namespace {
 
-using apps::TaskKind;
-using apps::TaskSelection;
+using study::TaskKind;
+using study::TaskSelection;
 using ordered_json = base::Json;
 using study::TaskProtocol;
 using study::TaskTrial;
 using study::Verdict;
 using testing_pilot::simulated_pilot;
 
-stats::Result<apps::TaskData> select(const TaskProtocol& pilot,
-                                     const TaskSelection& selection = {TaskKind::Pilot, {}, {}}) {
-  return apps::select_task({{pilot}, 0}, selection);
+stats::Result<study::TaskData> select(const TaskProtocol& pilot,
+                                      const TaskSelection& selection = {TaskKind::Pilot, {}, {}}) {
+  return study::select_task({{pilot}, 0}, selection);
 }
 
-apps::PilotFit fit_of(const TaskProtocol& pilot, double level = 4) {
-  return apps::fit_pilot(*apps::collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}}), level, {200, 1, 0.95});
+study::PilotFit fit_of(const TaskProtocol& pilot, double level = 4) {
+  return study::fit_pilot(*study::collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}}), level,
+                          {200, 1, 0.95});
 }
 
 TaskSelection with_timing(stats::TimingRule rule) {
@@ -42,7 +43,7 @@ TaskSelection with_timing(stats::TimingRule rule) {
 }
 
 /// How often each rule excluded a trial or a visit.
-std::map<std::string, int> rules_of(const apps::TaskData& data) {
+std::map<std::string, int> rules_of(const study::TaskData& data) {
   std::map<std::string, int> out;
   for (const auto& one : data.exclusions) ++out[one.rule];
   return out;
@@ -50,14 +51,14 @@ std::map<std::string, int> rules_of(const apps::TaskData& data) {
 
 using Rules = std::map<std::string, int>;
 
-bool has_flag(const apps::PilotFit& fit, const std::string& code) {
+bool has_flag(const study::PilotFit& fit, const std::string& code) {
   return std::any_of(fit.flags.begin(), fit.flags.end(), [&](const auto& flag) { return flag.code == code; });
 }
 
 TEST(PilotFit, WritesEveryPromisedField) {
   const auto fit = fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
   ASSERT_TRUE(fit.ok()) << fit.reason;
-  const auto json = apps::fit_json(fit);
+  const auto json = study::fit_json(fit);
   EXPECT_EQ(json.at("status"), "ok");
   EXPECT_EQ(json.at("converged"), true);
   EXPECT_EQ(json.at("n_participants"), 16);
@@ -69,7 +70,7 @@ TEST(PilotFit, WritesEveryPromisedField) {
   EXPECT_EQ(json.at("means").at("arithmetic").size(), 2u);
   EXPECT_EQ(json.at("protocol").at("sha256"), std::string(64, '3'));
   EXPECT_TRUE(has_flag(fit, "simulated"));
-  const auto file = sim::parse_ptpe_file(sim::format_ptpe_file(apps::ptpe_file(fit)), "ptpe.toml");
+  const auto file = sim::parse_ptpe_file(sim::format_ptpe_file(study::ptpe_file(fit)), "ptpe.toml");
   EXPECT_EQ(file.model.a, fit.main().fit->a);
   EXPECT_EQ(file.b_ci, fit.main().spread->b_ci);
   EXPECT_EQ(file.n_simulated, 16);
@@ -99,16 +100,16 @@ TEST(PilotFit, TheFileSaysWhereTheCurveIsExtrapolated) {
   const auto fit = fit_of(simulated_pilot("ptpe:a=18,b=0.01", 16, 3));
   const auto& away = fit.chosen().direct.out_of_reach;
   ASSERT_FALSE(away.empty());
-  for (const auto& point : apps::ptpe_file(fit).band)
+  for (const auto& point : study::ptpe_file(fit).band)
     EXPECT_EQ(point.in_reach, std::count(away.begin(), away.end(), point.delta) == 0) << point.delta;
 }
 
 TEST(PilotFit, ACurveWithoutABandIsNotForASolver) {
   auto fit = fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
-  EXPECT_EQ(apps::ptpe_file(fit).band.size(), 5u);
+  EXPECT_EQ(study::ptpe_file(fit).band.size(), 5u);
   fit.harmonic.at(4).band = stats::Refusal{"the participants agree"};
-  EXPECT_TRUE(apps::ptpe_file(fit).band.empty());
-  EXPECT_TRUE(apps::fit_json(fit).at("bands").at(0).at("solver_ci").is_null());
+  EXPECT_TRUE(study::ptpe_file(fit).band.empty());
+  EXPECT_TRUE(study::fit_json(fit).at("bands").at(0).at("solver_ci").is_null());
 }
 
 TEST(PilotFit, AContourWithoutAnIntervalIsFlagged) {
@@ -144,7 +145,7 @@ TEST(PilotFit, SelectsByVerdictAndCountsWhatItLeavesOut) {
   EXPECT_EQ(usual.flow.trials_planned - usual.flow.trials_answered, 1);
   EXPECT_EQ(select(pilot, with_timing(stats::TimingRule::None))->ratings.size(), all - 3);
   EXPECT_EQ(select(pilot, with_timing(stats::TimingRule::Degraded))->ratings.size(), all - 5);
-  const auto json = apps::fit_json(fit_of(pilot));
+  const auto json = study::fit_json(fit_of(pilot));
   EXPECT_EQ(json.at("used").at("by_verdict"), (ordered_json{{"degraded", 1}, {"pass", all - 5}}));
   EXPECT_EQ(json.at("excluded").at("answers_by_rule"), (ordered_json{{"timing", 2}}));
 }
@@ -208,12 +209,12 @@ TEST(PilotFit, NeverPoolsTestDataOrProtocols) {
   other.sha256 = std::string(64, '2');
   const study::TaskStudy both{{pilot, other}, 0};
   const auto from_both = [&](const std::string& sha256) {
-    return apps::select_task(both, {TaskKind::Pilot, sha256, {}});
+    return study::select_task(both, {TaskKind::Pilot, sha256, {}});
   };
   EXPECT_NE(from_both("").reason().find("several protocols"), std::string::npos);
   EXPECT_EQ(from_both("2")->ratings.size(), 21u);
   EXPECT_FALSE(from_both("9"));
-  EXPECT_FALSE(apps::select_task({}, {TaskKind::Pilot, "", {}}));
+  EXPECT_FALSE(study::select_task({}, {TaskKind::Pilot, "", {}}));
 }
 
 TEST(PilotFit, NeverPoolsObserverModelsWithPeople) {
@@ -224,7 +225,7 @@ TEST(PilotFit, NeverPoolsObserverModelsWithPeople) {
   EXPECT_TRUE(people.simulated.empty());
   EXPECT_EQ(people.flow.simulated_left_out, 4);
   EXPECT_EQ(people.ratings.size(), 2u * 21);
-  EXPECT_TRUE(has_flag(apps::fit_pilot(people, 4, {200, 1, 0.95}), "simulated_left_out"));
+  EXPECT_TRUE(has_flag(study::fit_pilot(people, 4, {200, 1, 0.95}), "simulated_left_out"));
   // If people's data are all test data, they do not exclude the simulated participants.
   for (auto& session : pilot.sessions) session.test_data = session.observer.empty();
   EXPECT_EQ(select(pilot)->simulated.size(), 4u);
@@ -236,7 +237,7 @@ TEST(PilotFit, DescribesEachSettingOverItsParticipants) {
   const std::vector<int> scores{2, 3, 3, 5, 7};
   for (std::size_t i = 0; i < 5; ++i) pilot.sessions[i].trials[8].answers[0].score = scores[i];
   pilot.sessions[4].trials[8].excluded = "looked away";
-  const auto cell = apps::fit_json(fit_of(pilot)).at("cells").at(8);
+  const auto cell = study::fit_json(fit_of(pilot)).at("cells").at(8);
   EXPECT_EQ(cell.at("n"), 4);
   EXPECT_NEAR(cell.at("score").get<double>(), 3.25, 1e-12);
   const double sd = std::sqrt((1.5625 + 2 * 0.0625 + 3.0625) / 3), t975_of_3 = 3.182446305284263;
@@ -271,7 +272,7 @@ TEST(PilotFit, NamesTheReasonWhenThereIsNoFit) {
   for (const auto& [data, words] : cases) {
     const auto fit = fit_of(data);
     EXPECT_NE(fit.reason.find(words), std::string::npos) << fit.reason;
-    const auto json = apps::fit_json(fit);
+    const auto json = study::fit_json(fit);
     EXPECT_EQ(json.at("status"), "failed");
     EXPECT_TRUE(json.at("a_ci").is_null());
   }
@@ -280,7 +281,7 @@ TEST(PilotFit, NamesTheReasonWhenThereIsNoFit) {
 
 TEST(PilotFit, KeepsNoNumberThatIsNone) {
   // A NaN would be written as null: no null is allowed where the status is ok.
-  const auto json = apps::fit_json(fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7)));
+  const auto json = study::fit_json(fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7)));
   const std::function<void(const ordered_json&, const std::string&)> check = [&](const ordered_json& value,
                                                                                  const std::string& place) {
     const bool failed_part =
@@ -319,24 +320,24 @@ TEST(PilotFit, ReportsHowPeopleUsedTheScaleAndFollowsThePlan) {
     }
   }
   const auto fit_with = [&](const stats::PilotRules& rules) {
-    return apps::fit_pilot(*apps::collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}}), 4, {200, 1, 0.95},
-                           rules);
+    return study::fit_pilot(*study::collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}}), 4, {200, 1, 0.95},
+                            rules);
   };
   const auto kept = fit_with({});
   EXPECT_TRUE(has_flag(kept, "reverse_coders"));
   EXPECT_TRUE(has_flag(kept, "lapses"));
-  auto raters = apps::fit_json(kept).at("raters");
+  auto raters = study::fit_json(kept).at("raters");
   EXPECT_EQ(raters.at("reverse_coders").at("found"), 1);
   EXPECT_THAT(raters.at("reverse_coders").at("text").get<std::string>(),
               testing::StartsWith("1 of 16 participants rated higher frame rates lower"));
-  EXPECT_THAT(apps::reverse_coders(kept), testing::ElementsAre(testing::StartsWith("p3 (")));
-  EXPECT_EQ(apps::fit_json(kept).dump().find("p3"), std::string::npos) << "a fit names no one";
+  EXPECT_THAT(study::reverse_coders(kept), testing::ElementsAre(testing::StartsWith("p3 (")));
+  EXPECT_EQ(study::fit_json(kept).dump().find("p3"), std::string::npos) << "a fit names no one";
   EXPECT_EQ(raters.at("reverse_coders").at("rule"), "keep");
   EXPECT_TRUE(raters.at("drift").at("p").is_number());
   EXPECT_EQ(raters.at("lapses").at("found"), true);
   EXPECT_EQ(kept.participants, 16);
   const auto followed = fit_with({true, true, true});
-  raters = apps::fit_json(followed).at("raters");
+  raters = study::fit_json(followed).at("raters");
   EXPECT_EQ(raters.at("reverse_coders").at("rule"), "exclude");
   EXPECT_EQ(raters.at("lapses").at("rule"), "model");
   EXPECT_EQ(followed.participants, 15);
@@ -349,13 +350,13 @@ TEST(ContourPolylines, FollowTheLevelWithoutGaps) {
   for (const double mu : grid.mu) {
     for (const double delta : grid.delta) grid.nodes.push_back(stats::GridNode{mu + delta, mu, delta});
   }
-  const auto lines = apps::contour_polylines(grid, 3.2);
+  const auto lines = study::contour_polylines(grid, 3.2);
   ASSERT_EQ(lines.size(), 1u);
   for (const auto& point : lines[0]) EXPECT_NEAR(point.mu + point.delta, 3.2, 1e-12);
   EXPECT_NEAR(std::abs(lines[0].front().delta - lines[0].back().delta), 2.8, 1e-12);
   // A missing node removes its four cells.
   grid.nodes[5].reset();
-  for (const auto& line : apps::contour_polylines(grid, 3.2)) {
+  for (const auto& line : study::contour_polylines(grid, 3.2)) {
     for (const auto& point : line) EXPECT_TRUE(point.mu >= 2 - 1e-12 || point.delta >= 2 - 1e-12);
   }
   // A peak gives a closed line.
@@ -363,7 +364,7 @@ TEST(ContourPolylines, FollowTheLevelWithoutGaps) {
   for (int i = 0; i < 9; ++i) {
     peak.nodes.push_back(stats::GridNode{i == 4 ? 1.0 : 0.0, peak.mu[i / 3], peak.delta[i % 3]});
   }
-  const auto loop = apps::contour_polylines(peak, 0.5);
+  const auto loop = study::contour_polylines(peak, 0.5);
   ASSERT_EQ(loop.size(), 1u);
   EXPECT_EQ(loop[0].front().mu, loop[0].back().mu);
 }
@@ -392,7 +393,7 @@ bool balanced(const std::string& xml) {
 
 TEST(HeatMap, ShowsEveryCellBothContoursAndTheCurve) {
   const auto fit = fit_of(simulated_pilot("ptpe:a=24,b=0.02", 16, 7));
-  const auto svg = apps::heat_map_svg(fit);
+  const auto svg = study::heat_map_svg(fit);
   EXPECT_TRUE(balanced(svg));
   for (const auto& node : fit.grid.nodes) {
     if (!node) continue;

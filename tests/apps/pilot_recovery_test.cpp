@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/data/task_data.hpp"
+#include "libstudy/analysis/task_data.hpp"
 #include "stats/ptpe/pilot.hpp"
 #include "tests/apps/simulated_pilot.hpp"
 
@@ -35,7 +35,7 @@ Recovered recover(const Truth& truth, int studies, int resamples) {
   for (int study = 0; study < studies; ++study) {
     const auto pilot =
         testing_pilot::simulated_pilot(observer(truth), 16, static_cast<std::uint64_t>(study) + 1);
-    const auto data = apps::select_task({{pilot}, 0}, {apps::TaskKind::Pilot, {}, {}});
+    const auto data = study::select_task({{pilot}, 0}, {study::TaskKind::Pilot, {}, {}});
     const auto estimate = stats::estimate_pilot(stats::PilotTable(data->ratings), stats::PilotMean::Harmonic,
                                                 4, {resamples, static_cast<std::uint64_t>(study) + 1, 0.95});
     if (!estimate.spread) {

@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "apps/stats/power/shard.hpp"
+#include "libstudy/power/shard.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
@@ -21,9 +21,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-PowerRequest request_for(const std::string& protocol, std::vector<int> n, int studies,
-                         std::vector<std::string> worlds) {
-  PowerRequest out;
+study::PowerRequest request_for(const std::string& protocol, std::vector<int> n, int studies,
+                                std::vector<std::string> worlds) {
+  study::PowerRequest out;
   out.file = protocol;
   out.protocol = study::read_protocol(base::resource(protocol));
   out.n = std::move(n);
@@ -33,17 +33,17 @@ PowerRequest request_for(const std::string& protocol, std::vector<int> n, int st
 }
 
 /// Two blocks of studies of 24 people, with the mixed model.
-PowerRequest by_model() {
+study::PowerRequest by_model() {
   auto out = request_for("protocols/task1.toml", {24}, 220, {"null"});
   out.plan.plan.tests = stats::ScoreTests::Mixed;
   return out;
 }
-PowerRequest pairs() { return request_for("protocols/task2.toml", {8, 10}, 40, {"null", "paper"}); }
-PowerRequest pilot() { return request_for("protocols/ptpe_pilot.toml", {6, 8}, 12, {}); }
+study::PowerRequest pairs() { return request_for("protocols/task2.toml", {8, 10}, 40, {"null", "paper"}); }
+study::PowerRequest pilot() { return request_for("protocols/ptpe_pilot.toml", {6, 8}, 12, {}); }
 
-std::set<std::string> keys_of(const PowerRequest& request) {
+std::set<std::string> keys_of(const study::PowerRequest& request) {
   std::set<std::string> out;
-  for (const auto& cell : power_cells(request)) out.insert(cell.key);
+  for (const auto& cell : study::power_cells(request)) out.insert(cell.key);
   return out;
 }
 
@@ -52,15 +52,15 @@ TEST(PowerCells, MakeUpTheCalculation) {
   for (const auto tests : {stats::ScoreTests::Paired, stats::ScoreTests::Mixed}) {
     request.plan.plan.tests = tests;
     std::map<int, int> next;  // next study by n
-    for (const auto& cell : power_cells(request)) {
-      EXPECT_EQ(cell.studies.first, next[cell.n]) << to_text(cell);
+    for (const auto& cell : study::power_cells(request)) {
+      EXPECT_EQ(cell.studies.first, next[cell.n]) << study::to_text(cell);
       EXPECT_GT(cell.studies.count, 0);
       next[cell.n] += cell.studies.count;
     }
     EXPECT_EQ(next, (std::map<int, int>{{2, 2000}, {26, 2000}, {2000, 2000}}));
-    EXPECT_EQ(keys_of(request).size(), power_cells(request).size());
+    EXPECT_EQ(keys_of(request).size(), study::power_cells(request).size());
   }
-  EXPECT_EQ(to_text(power_cells(by_model())[1]), "24 participants, studies 209 to 220");
+  EXPECT_EQ(study::to_text(study::power_cells(by_model())[1]), "24 participants, studies 209 to 220");
 }
 
 TEST(PowerCells, AreKnownByAllThatTheirStudiesDependOn) {
@@ -86,13 +86,13 @@ TEST(PowerCells, AreKnownByAllThatTheirStudiesDependOn) {
 class PowerShards : public ::testing::Test {
  protected:
   /// Writes one file a cell, from the last cell to the first.
-  std::vector<std::filesystem::path> run_apart(const PowerRequest& request) const {
+  std::vector<std::filesystem::path> run_apart(const study::PowerRequest& request) const {
     std::vector<std::filesystem::path> out;
-    auto cells = power_cells(request);
+    auto cells = study::power_cells(request);
     std::ranges::reverse(cells);
     for (const auto& cell : cells) {
       out.push_back(folder_ / (cell.key + ".json"));
-      run_cell(request, cell, out.back());
+      study::run_cell(request, cell, out.back());
     }
     return out;
   }
@@ -105,18 +105,19 @@ TEST_F(PowerShards, GiveWhatOneRunGivesBitForBit) {
     auto shards = run_apart(request);
     EXPECT_GE(shards.size(), 2u);
     shards.push_back(shards.front());  // one shard twice
-    const auto serial = power_json(request, simulate_studies(request, {0, request.studies}));
-    EXPECT_TRUE(power_json(request, join_shards(request, shards)).dump() == serial.dump()) << request.file;
+    const auto serial = study::power_json(request, study::simulate_studies(request, {0, request.studies}));
+    EXPECT_TRUE(study::power_json(request, study::join_shards(request, shards)).dump() == serial.dump())
+        << request.file;
   }
 }
 
 TEST_F(PowerShards, KeepIntervalsWithoutEnd) {
   const auto request = pilot();
   const auto shards = run_apart(request);
-  Json shard = Json::parse(bytes_of(shards[0]));
-  shard["outcomes"][0] = Json::parse(R"([true, true, 24.5, "Inf", "-Inf", "Inf", 0.02, null, 0, 1])");
+  study::Json shard = study::Json::parse(bytes_of(shards[0]));
+  shard["outcomes"][0] = study::Json::parse(R"([true, true, 24.5, "Inf", "-Inf", "Inf", 0.02, null, 0, 1])");
   base::write_file_atomically(shards[0], shard.dump());
-  const auto joined = std::get<PilotOutcomes>(join_shards(request, shards));
+  const auto joined = std::get<study::PilotOutcomes>(study::join_shards(request, shards));
   const auto& read = joined[1][0];  // the last cell's shard is the first file
   EXPECT_EQ(read.a.value, 24.5);
   EXPECT_TRUE(std::isinf(read.a.ci[1]) && std::isinf(read.a.ci[0]) && read.a.ci[0] < 0);
@@ -127,8 +128,8 @@ TEST_F(PowerShards, KeepIntervalsWithoutEnd) {
 TEST_F(PowerShards, OfOtherStudiesAreRefusedByName) {
   const auto request = pairs();
   const auto shards = run_apart(request);
-  const auto refused = [&](const PowerRequest& other, const std::string& what) {
-    EXPECT_THAT([&] { join_shards(other, shards); },
+  const auto refused = [&](const study::PowerRequest& other, const std::string& what) {
+    EXPECT_THAT([&] { study::join_shards(other, shards); },
                 ThrowsMessage<base::Error>(AllOf(HasSubstr(shards[0].string()), HasSubstr(what))));
   };
   auto other = request;
@@ -144,7 +145,7 @@ TEST_F(PowerShards, OfOtherStudiesAreRefusedByName) {
   other = request;
   other.n = {8};
   refused(other, "holds \"10 participants, studies 1 to 40\", which is no cell");
-  Json older = Json::parse(bytes_of(shards[0]));
+  study::Json older = study::Json::parse(bytes_of(shards[0]));
   older["studies"]["program"] = "0.0.9 feed";
   base::write_file_atomically(shards[0], older.dump());
   refused(request, "another program (\"0.0.9 feed\"");
@@ -153,22 +154,22 @@ TEST_F(PowerShards, OfOtherStudiesAreRefusedByName) {
 TEST_F(PowerShards, MissingCellsAreNamed) {
   const auto request = pairs();
   auto shards = run_apart(request);
-  const auto missing = power_cells(request)[0];
+  const auto missing = study::power_cells(request)[0];
   shards.pop_back();
-  EXPECT_THAT([&] { join_shards(request, shards); },
+  EXPECT_THAT([&] { study::join_shards(request, shards); },
               ThrowsMessage<base::Error>(HasSubstr("1 of 2 cells are missing: " + missing.key +
                                                    " (8 participants, studies 1 to 40)")));
 }
 
 TEST_F(PowerShards, WhatIsNoneIsRefusedAndLeftAsItIs) {
   const auto request = pairs();
-  const auto cell = power_cells(request)[0];
+  const auto cell = study::power_cells(request)[0];
   const auto file = folder_ / "cell.json";
-  run_cell(request, cell, file);
+  study::run_cell(request, cell, file);
   const std::string sound = bytes_of(file);
   const auto refused = [&](const std::string& bytes, const char* why) {
     base::write_file_atomically(file, bytes);
-    EXPECT_THAT([&] { join_shards(request, {file}); }, ThrowsMessage<base::Error>(HasSubstr(why)));
+    EXPECT_THAT([&] { study::join_shards(request, {file}); }, ThrowsMessage<base::Error>(HasSubstr(why)));
     EXPECT_EQ(bytes_of(file), bytes);
   };
   refused("", "not a shard");
@@ -177,29 +178,29 @@ TEST_F(PowerShards, WhatIsNoneIsRefusedAndLeftAsItIs) {
   refused(sound.substr(0, 60), "damaged or cut short");
   auto text = sound;
   refused(text.replace(text.find("shard/1"), 7, "shard/2"), "newer program");
-  Json fewer = Json::parse(sound);
-  Json& figures = fewer["outcomes"][0][1];
-  figures = std::vector<Json>(figures.begin() + 1, figures.end());
+  study::Json fewer = study::Json::parse(sound);
+  study::Json& figures = fewer["outcomes"][0][1];
+  figures = std::vector<study::Json>(figures.begin() + 1, figures.end());
   refused(fewer.dump(), "damaged or cut short");
-  fewer = Json::parse(sound);
+  fewer = study::Json::parse(sound);
   fewer["outcomes"][0][0][0] = "many";
   refused(fewer.dump(), "damaged or cut short");
 }
 
 TEST_F(PowerShards, ACellThatIsThereIsNotRunAgainAndNothingElseIsOverwritten) {
   const auto request = pairs();
-  const auto cells = power_cells(request);
+  const auto cells = study::power_cells(request);
   const auto file = folder_ / "cell.json";
-  run_cell(request, cells[0], file);
+  study::run_cell(request, cells[0], file);
   const std::string marked = bytes_of(file) + " ";
   base::write_file_atomically(file, marked);
-  run_cell(request, cells[0], file);
+  study::run_cell(request, cells[0], file);
   EXPECT_EQ(bytes_of(file), marked);
-  EXPECT_THAT([&] { run_cell(request, cells[1], file); },
+  EXPECT_THAT([&] { study::run_cell(request, cells[1], file); },
               ThrowsMessage<base::Error>(HasSubstr(cells[1].key)));
   EXPECT_EQ(bytes_of(file), marked);
   base::write_file_atomically(file, "mine");
-  EXPECT_THROW(run_cell(request, cells[0], file), base::Error);
+  EXPECT_THROW(study::run_cell(request, cells[0], file), base::Error);
   EXPECT_EQ(bytes_of(file), "mine");
 }
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "apps/stats/power/power_json.hpp"
+#include "libstudy/power/power_json.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/inference/t_test.hpp"
@@ -18,11 +18,12 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// protocols/foam.toml with these methods and levels.
-PowerRequest foam_power(const std::string& methods, const std::string& levels, double effect, int studies) {
+study::PowerRequest foam_power(const std::string& methods, const std::string& levels, double effect,
+                               int studies) {
   std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
   text = test::replaced(text, "[\"LoRes\", \"HiRes\"]", methods);
   text = test::replaced(text, "[\"none\", \"foam\"]", levels);
-  PowerRequest request;
+  study::PowerRequest request;
   request.file = "foam.toml";
   request.protocol = study::parse_protocol(text, request.file);
   request.n = {24};
@@ -51,7 +52,7 @@ double exact_power(int n, double p) {
 
 TEST(PowerEffects, OfOneAnswerAPersonIsThatOfTheReportsTest) {
   const auto request = foam_power("[\"LoRes\"]", "[\"none\", \"foam\"]", 0.75, 2000);
-  const auto worlds = simulate_task_power(request);
+  const auto worlds = study::simulate_task_power(request);
   ASSERT_EQ(worlds.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     ASSERT_EQ(worlds[i].hypotheses.size(), 1u);
@@ -74,7 +75,7 @@ TEST(PowerEffects, OfOneAnswerAPersonIsThatOfTheReportsTest) {
 
 TEST(PowerEffects, TwoMethodsGiveTwoAnswersAndMorePower) {
   const auto power = [](const std::string& methods) {
-    return simulate_task_power(foam_power(methods, "[\"none\", \"foam\"]", 0.7, 600))
+    return study::simulate_task_power(foam_power(methods, "[\"none\", \"foam\"]", 0.7, 600))
         .front()
         .hypotheses.front()
         .curve.front()
@@ -88,7 +89,7 @@ TEST(PowerEffects, TwoMethodsGiveTwoAnswersAndMorePower) {
 TEST(PowerEffects, EveryLevelIsHeldAgainstNone) {
   auto request = foam_power("[\"LoRes\"]", "[\"foam\", \"none\", \"scene\"]", 0.8, 300);
   request.plan.plan.decision = stats::DecisionRule::Holm;
-  const auto claim = simulate_task_power(request).front().hypotheses.front();
+  const auto claim = study::simulate_task_power(request).front().hypotheses.front();
   ASSERT_EQ(claim.tests.size(), 2u);
   EXPECT_EQ(claim.tests[0].label, "foam over none");
   EXPECT_EQ(claim.tests[1].label, "scene over none");
@@ -101,9 +102,9 @@ TEST(PowerEffects, EveryLevelIsHeldAgainstNone) {
 }
 
 TEST(PowerEffects, WhatTheWorldsDoNotKnowIsRefused) {
-  const auto error_of = [](const PowerRequest& request) {
+  const auto error_of = [](const study::PowerRequest& request) {
     try {
-      simulate_task_power(request);
+      study::simulate_task_power(request);
     } catch (const base::Error& error) {
       return std::string(error.what());
     }
@@ -121,13 +122,13 @@ TEST(PowerEffects, WhatTheWorldsDoNotKnowIsRefused) {
   EXPECT_THAT(error_of(foam_power("[\"LoRes\"]", "[\"scene\", \"foam\"]", 0.7, 2)),
               HasSubstr("varies effects without level none"));
   request.protocol.design.pairs = false;
-  EXPECT_THROW(power_kind(request.protocol), base::Error);
+  EXPECT_THROW(study::power_kind(request.protocol), base::Error);
 }
 
 TEST(PowerEffects, TheJsonHasNoFigureOfThePapersRule) {
   const auto request = foam_power("[\"LoRes\"]", "[\"none\", \"foam\"]", 0.7, 50);
-  const Json json = power_json(request, simulate_task_power(request));
-  const Json& claim = json.at("worlds").at(0).at("hypotheses").at(0);
+  const study::Json json = study::power_json(request, study::simulate_task_power(request));
+  const study::Json& claim = json.at("worlds").at(0).at("hypotheses").at(0);
   EXPECT_EQ(claim.at("paper_rule"), "");
   EXPECT_FALSE(claim.at("curve").at(0).contains("paper_rule"));
   EXPECT_TRUE(claim.at("curve").at(0).contains("supported"));

@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/power/answers.hpp"
-#include "apps/stats/power/shown.hpp"
-#include "apps/stats/power/task_power.hpp"
+#include "libstudy/power/answers.hpp"
+#include "libstudy/power/shown.hpp"
+#include "libstudy/power/task_power.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 
 namespace {
 
-using apps::Json;
+using study::Json;
 
-apps::PowerRequest request_for(const std::string& world, int studies) {
-  apps::PowerRequest request;
+study::PowerRequest request_for(const std::string& world, int studies) {
+  study::PowerRequest request;
   request.file = "protocols/task1.toml";
   request.protocol = study::read_protocol(base::resource(request.file));
   request.n = {26};
@@ -32,14 +32,14 @@ apps::PowerRequest request_for(const std::string& world, int studies) {
 /// Correlation over people between the difference of two methods at one n_* and at the other.
 double correlation_between_n_stars(double person_by_method) {
   auto request = request_for("null", 1);
-  request.answers = apps::AnswerScale::Continuous;
+  request.answers = study::AnswerScale::Continuous;
   request.person_by_method = {person_by_method, 0};
-  const apps::ShownFactors factors(request.protocol.design);
+  const study::ShownFactors factors(request.protocol.design);
   constexpr int people = 2000;
-  const auto trials = apps::planned_trials(request.protocol, 1, people);
-  const auto worlds = apps::make_worlds(request, factors);
+  const auto trials = study::planned_trials(request.protocol, 1, people);
+  const auto worlds = study::make_worlds(request, factors);
   const auto answers =
-      apps::answer_task1(trials, factors, worlds.at(0).scenarios.at(0), apps::task1_scatter(request), 5);
+      study::answer_task1(trials, factors, worlds.at(0).scenarios.at(0), study::task1_scatter(request), 5);
   std::vector<std::array<double, 2>> difference(people);  // by n_*: method 0 minus method 1
   for (const auto& one : answers.realism) {
     if (one.method < 2)
@@ -63,11 +63,11 @@ TEST(PowerPersonByMethod, IsTheSameAtEveryNStarAndLeavesTheSpreadAsItWas) {
 }
 
 /// Power of H1's claim, with eight tests, if a difference is half its standard deviation.
-apps::Estimated power_of_h1(apps::PersonByMethod person_by_method, int studies) {
+study::Estimated power_of_h1(study::PersonByMethod person_by_method, int studies) {
   auto request = request_for("effect", studies);
   request.effect = 0.5;
   request.person_by_method = person_by_method;
-  const auto worlds = apps::simulate_task_power(request);
+  const auto worlds = study::simulate_task_power(request);
   const auto& h1 = worlds.at(0).hypotheses.at(0);
   EXPECT_EQ(h1.id, "H1");
   for (const auto& test : h1.tests) {

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <set>
 
-#include "apps/stats/power/power_figure.hpp"
-#include "apps/stats/power/power_json.hpp"
-#include "apps/stats/power/shown.hpp"
+#include "libstudy/power/power_figure.hpp"
+#include "libstudy/power/power_json.hpp"
+#include "libstudy/power/shown.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/inference/power.hpp"
@@ -18,8 +18,8 @@
 
 namespace {
 
-using apps::Json;
-using apps::PowerRequest;
+using study::Json;
+using study::PowerRequest;
 
 /// A simulated share lies within this many standard errors of the truth in all but 1 of 16,000 cases.
 constexpr double errors_allowed = 4;
@@ -36,7 +36,7 @@ PowerRequest request_for(const std::string& protocol, std::vector<int> n, int st
 PowerRequest task1(std::vector<std::string> worlds, int studies) {
   auto request = request_for("protocols/task1.toml", {26}, studies);
   request.worlds = std::move(worlds);
-  request.answers = apps::AnswerScale::Continuous;
+  request.answers = study::AnswerScale::Continuous;
   return request;
 }
 
@@ -47,7 +47,7 @@ PowerRequest task2(std::vector<std::string> worlds, int studies) {
 }
 
 /// Compares every test's uncorrected power with its formula.
-void expect_closed_forms(const std::vector<apps::WorldPower>& worlds, double discreteness = 0) {
+void expect_closed_forms(const std::vector<study::WorldPower>& worlds, double discreteness = 0) {
   int compared = 0;
   for (const auto& world : worlds) {
     for (const auto& hypothesis : world.hypotheses) {
@@ -67,18 +67,18 @@ void expect_closed_forms(const std::vector<apps::WorldPower>& worlds, double dis
 }
 
 TEST(PowerParticipants, RangesAndWhatIsNone) {
-  EXPECT_EQ(apps::parse_participants("26"), std::vector<int>{26});
-  EXPECT_EQ(apps::parse_participants("10:60").size(), 51u);
-  EXPECT_EQ(apps::parse_participants("10:21:5"), (std::vector{10, 15, 20}));
+  EXPECT_EQ(study::parse_participants("26"), std::vector<int>{26});
+  EXPECT_EQ(study::parse_participants("10:60").size(), 51u);
+  EXPECT_EQ(study::parse_participants("10:21:5"), (std::vector{10, 15, 20}));
   for (const char* bad : {"", "x", "10:", ":10", "60:10", "10:60:0", "10:60:-1", "1:60", "10:2001",
                           "10:20:1:1", "10-60", "99999999999", "26 "})
-    EXPECT_THROW(apps::parse_participants(bad), base::Error) << bad;
+    EXPECT_THROW(study::parse_participants(bad), base::Error) << bad;
 }
 
 TEST(Power, PreferenceOf70PercentWith26People) {
   auto request = task2({"effect"}, 2000);
   request.effect = 0.7;
-  const auto worlds = apps::simulate_task_power(request);
+  const auto worlds = study::simulate_task_power(request);
   expect_closed_forms(worlds);
   const auto& h4 = worlds[0].hypotheses[0];
   EXPECT_EQ(h4.id, "H4");
@@ -91,7 +91,7 @@ TEST(Power, PreferenceOf70PercentWith26People) {
 TEST(Power, EquivalenceWithinHalfAPointWith26People) {
   auto request = task1({"null"}, 800);
   request.plan.plan.directional = stats::Directional::All;
-  const auto worlds = apps::simulate_task_power(request);
+  const auto worlds = study::simulate_task_power(request);
   expect_closed_forms(worlds);
   const auto& h2 = worlds[0].hypotheses[1];
   EXPECT_EQ(h2.id, "H2");
@@ -101,7 +101,7 @@ TEST(Power, EquivalenceWithinHalfAPointWith26People) {
 
 // Two-sided like the other hypotheses: each of the two one-sided tests uses half of alpha.
 TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
-  const auto worlds = apps::simulate_task_power(task1({"null"}, 800));
+  const auto worlds = study::simulate_task_power(task1({"null"}, 800));
   expect_closed_forms(worlds);
   const auto& test = worlds[0].hypotheses[1].tests[0];
   const auto expected = stats::tost_power(26, {-0.5, 0.5, 1.3, 0, 0.025});
@@ -113,9 +113,9 @@ TEST(Power, EquivalenceIsAsStrictAsTheOtherClaims) {
 TEST(Power, SupportIsJudgedByThePlansRule) {
   auto request = task2({"effect"}, 400);
   request.effect = 0.75;
-  const auto both = apps::simulate_task_power(request)[0].hypotheses[1].curve[0];
+  const auto both = study::simulate_task_power(request)[0].hypotheses[1].curve[0];
   request.plan.plan.decision = stats::DecisionRule::Holm;
-  const auto corrected = apps::simulate_task_power(request)[0].hypotheses[1].curve[0];
+  const auto corrected = study::simulate_task_power(request)[0].hypotheses[1].curve[0];
   EXPECT_GT(both.supported.value, corrected.supported.value);
   EXPECT_EQ(both.any.value, corrected.any.value);
 }
@@ -125,9 +125,9 @@ TEST(Power, TheMixedModelDecidesWhereThePlanSaysSo) {
   auto request = task1({"effect"}, 60);
   request.effect = 0.8;
   request.plan.plan.tests = stats::ScoreTests::Mixed;
-  const auto mixed = apps::simulate_task_power(request);
+  const auto mixed = study::simulate_task_power(request);
   request.plan.plan.tests = stats::ScoreTests::Paired;
-  const auto paired = apps::simulate_task_power(request);
+  const auto paired = study::simulate_task_power(request);
   int differ = 0;
   for (std::size_t h = 0; h < 3; ++h) {
     EXPECT_NE(mixed[0].hypotheses[h].rule.find("mixed model"), std::string::npos);
@@ -147,8 +147,8 @@ TEST(Power, TheMixedModelDecidesWhereThePlanSaysSo) {
 // Like in a study's data: the position in the plan, and a period for each scene at one n_*.
 TEST(Power, TrialsHaveThePeriodsOfThePlan) {
   const auto request = task1({"effect"}, 1);
-  const apps::ShownFactors factors(request.protocol.design);
-  const auto trials = apps::planned_trials(request.protocol, 1, 2);
+  const study::ShownFactors factors(request.protocol.design);
+  const auto trials = study::planned_trials(request.protocol, 1, 2);
   std::set<int> periods;
   for (std::size_t i = 1; i < trials.size(); ++i) {
     periods.insert(trials[i].period);
@@ -168,22 +168,22 @@ TEST(Power, TrialsHaveThePeriodsOfThePlan) {
 TEST(Power, DifferencesAndMarginsFollowTheFormulas) {
   auto request = task1({"effect", "margin"}, 400);
   request.effect = 0.6;
-  expect_closed_forms(apps::simulate_task_power(request));
+  expect_closed_forms(study::simulate_task_power(request));
 }
 
 TEST(Power, WholeScoresLieNearTheFormulas) {
   auto request = task1({"effect"}, 600);
   request.effect = 0.6;
-  request.answers = apps::AnswerScale::Likert;
+  request.answers = study::AnswerScale::Likert;
   // Rounding to whole points and the scale's ends change the power by up to this much at 26 people.
-  expect_closed_forms(apps::simulate_task_power(request), 0.03);
+  expect_closed_forms(study::simulate_task_power(request), 0.03);
 }
 
 TEST(Power, FalseClaimsHoldInNoMoreThanAlphaOfStudies) {
   auto first = task1({"null", "margin"}, 400);
   auto second = task2({"null"}, 1500);
   for (const auto* request : {&first, &second}) {
-    for (const auto& world : apps::simulate_task_power(*request)) {
+    for (const auto& world : study::simulate_task_power(*request)) {
       for (const auto& hypothesis : world.hypotheses) {
         const auto tests = static_cast<int>(hypothesis.tests.size());
         const auto& at = hypothesis.curve[0];
@@ -199,7 +199,7 @@ TEST(Power, FalseClaimsHoldInNoMoreThanAlphaOfStudies) {
 }
 
 TEST(Power, ThePapersRuleConfirmsComparabilityWhereItIsFalse) {
-  const auto worlds = apps::simulate_task_power(task2({"null"}, 1000));
+  const auto worlds = study::simulate_task_power(task2({"null"}, 1000));
   const auto& h6 = worlds[0].hypotheses[2];
   EXPECT_EQ(h6.id, "H6");
   EXPECT_GT(h6.curve[0].paper.value, 0.8) << "no significant difference is what no difference gives";
@@ -207,7 +207,7 @@ TEST(Power, ThePapersRuleConfirmsComparabilityWhereItIsFalse) {
 }
 
 TEST(Power, ThePapersWorldHasItsPreferences) {
-  const auto worlds = apps::simulate_task_power(task2({"paper"}, 200));
+  const auto worlds = study::simulate_task_power(task2({"paper"}, 200));
   const auto& h5 = worlds[0].hypotheses[1];
   EXPECT_DOUBLE_EQ(h5.tests[0].truth, 19.0 / 26);
   EXPECT_DOUBLE_EQ(h5.tests[1].truth, 21.0 / 26);
@@ -221,28 +221,28 @@ TEST(Power, EqualForAnyNumberOfThreadsAndAnyRange) {
   request.n = {20, 26};
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
-  const auto one = apps::power_json(request, apps::simulate_task_power(request));
+  const auto one = study::power_json(request, study::simulate_task_power(request));
   omp_set_num_threads(3);
-  const auto three = apps::power_json(request, apps::simulate_task_power(request));
+  const auto three = study::power_json(request, study::simulate_task_power(request));
   omp_set_num_threads(threads);
   EXPECT_EQ(one.dump(), three.dump());
   auto alone = request;
   alone.n = {26};
-  const auto larger = apps::simulate_task_power(request), single = apps::simulate_task_power(alone);
+  const auto larger = study::simulate_task_power(request), single = study::simulate_task_power(alone);
   EXPECT_EQ(larger[0].hypotheses[1].tests[0].curve[1].holds.value,
             single[0].hypotheses[1].tests[0].curve[0].holds.value);
   auto other = alone;
   other.seed = 2;
-  EXPECT_NE(apps::simulate_task_power(other)[0].hypotheses[1].tests[0].curve[0].mean_estimate,
+  EXPECT_NE(study::simulate_task_power(other)[0].hypotheses[1].tests[0].curve[0].mean_estimate,
             single[0].hypotheses[1].tests[0].curve[0].mean_estimate);
 }
 
 TEST(Power, BiasOfIntervalsCostsPower) {
   auto request = task2({"effect"}, 1000);
   request.effect = 0.8;
-  const auto without = apps::simulate_task_power(request)[0].hypotheses[0].tests[0].curve[0];
+  const auto without = study::simulate_task_power(request)[0].hypotheses[0].tests[0].curve[0];
   request.interval_bias = 2;
-  const auto with = apps::simulate_task_power(request)[0].hypotheses[0].tests[0].curve[0];
+  const auto with = study::simulate_task_power(request)[0].hypotheses[0].tests[0].curve[0];
   EXPECT_LT(with.holds.value, without.holds.value - 0.1);
   EXPECT_FALSE(with.closed_form);
   EXPECT_GT(with.mean_estimate, 0.5) << "interval order is balanced";
@@ -250,8 +250,8 @@ TEST(Power, BiasOfIntervalsCostsPower) {
 
 TEST(PowerPlan, IsTheProtocolsOwn) {
   const auto request = task1({"null"}, 2);
-  const apps::ShownFactors factors(request.protocol.design);
-  const auto trials = apps::planned_trials(request.protocol, 7, 24);
+  const study::ShownFactors factors(request.protocol.design);
+  const auto trials = study::planned_trials(request.protocol, 7, 24);
   ASSERT_EQ(trials.size(), 240u);
   std::vector<int> scene_by_n_star(6);
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -265,7 +265,7 @@ TEST(PowerPlan, IsTheProtocolsOwn) {
 TEST(PowerPlan, RandomAssignmentLosesPairs) {
   auto request = task1({"null"}, 50);
   request.protocol.design.assignment = study::Assignment::PaperRandom;
-  const auto worlds = apps::simulate_task_power(request);
+  const auto worlds = study::simulate_task_power(request);
   const auto& point = worlds[0].hypotheses[0].tests[0].curve[0];
   EXPECT_LT(point.participants_least, point.participants_most);
   EXPECT_LT(point.participants_most, 27);
@@ -276,7 +276,7 @@ TEST(PowerPilot, PrecisionGrowsWithPeople) {
   auto request = request_for("protocols/ptpe_pilot.toml", {8, 24}, 80);
   request.precision_a = 3;  // between the median half widths of 8 and of 24 people
   request.precision_b = 0.009;
-  const auto power = apps::simulate_pilot_power(request);
+  const auto power = study::simulate_pilot_power(request);
   ASSERT_EQ(power.curve.size(), 2u);
   ASSERT_TRUE(power.curve[0].a && power.curve[1].a && power.curve[1].b);
   const auto &few = *power.curve[0].a, &many = *power.curve[1].a;
@@ -292,18 +292,18 @@ TEST(PowerPilot, PrecisionGrowsWithPeople) {
 // The curve's score is chosen as in fit-ptpe and report: the option's, else the plan's, else the protocol's.
 TEST(PowerPilot, TheCurveIsAtTheLevelOfThePlanOrTheProtocol) {
   auto request = request_for("protocols/ptpe_pilot.toml", {8}, 20);
-  EXPECT_EQ(apps::rated_level(request), 4);
+  EXPECT_EQ(study::rated_level(request), 4);
   request.plan.plan.levels["satisfaction"] = 5;
-  EXPECT_EQ(apps::rated_level(request), 5);
+  EXPECT_EQ(study::rated_level(request), 5);
   request.level = 4.5;
-  EXPECT_EQ(apps::rated_level(request), 4.5);
-  const auto power = apps::simulate_pilot_power(request);
+  EXPECT_EQ(study::rated_level(request), 4.5);
+  const auto power = study::simulate_pilot_power(request);
   ASSERT_TRUE(power.curve[0].a);
   EXPECT_NEAR(power.curve[0].a->mean.value, 23.68, 2) << "the observer's curve runs at the level fitted";
   request.level = 7;
-  EXPECT_THROW(apps::rated_level(request), base::Error);
+  EXPECT_THROW(study::rated_level(request), base::Error);
   request.question = "satisfacton";
-  EXPECT_THAT([&] { apps::rated_question(request); },
+  EXPECT_THAT([&] { study::rated_question(request); },
               ::testing::ThrowsMessage<base::Error>(::testing::HasSubstr("the nearest is \"satisfaction\"")));
 }
 
@@ -316,7 +316,7 @@ TEST(PowerTasks, ClaimsAboutMethodsThatAreNotShownHaveNoPower) {
   };
   auto request = task2({"null"}, 20);
   request.protocol = showing({"Ours", "FovFluid", "Ours-TSp"});
-  const auto worlds = apps::simulate_task_power(request);
+  const auto worlds = study::simulate_task_power(request);
   for (const auto& hypothesis : worlds.at(0).hypotheses) {
     for (const auto& test : hypothesis.tests) {
       EXPECT_NE(test.a, "HiRes") << hypothesis.id;
@@ -326,7 +326,7 @@ TEST(PowerTasks, ClaimsAboutMethodsThatAreNotShownHaveNoPower) {
   EXPECT_FALSE(worlds.at(0).hypotheses.empty());
   EXPECT_THAT(
       [&] {
-        apps::power_kind(showing({"LoRes", "HiRes"}));
+        study::power_kind(showing({"LoRes", "HiRes"}));
       },
       ::testing::ThrowsMessage<base::Error>(::testing::HasSubstr("tests none of H1 to H6")));
 }
@@ -334,15 +334,15 @@ TEST(PowerTasks, ClaimsAboutMethodsThatAreNotShownHaveNoPower) {
 TEST(PowerFiles, HoldTheSameFigures) {
   auto request = task2({"null", "paper"}, 50);
   request.n = {10, 20};
-  const Json json = apps::power_json(request, apps::simulate_task_power(request));
+  const Json json = study::power_json(request, study::simulate_task_power(request));
   EXPECT_EQ(json.at("schema"), "vip-power/1");
   EXPECT_EQ(json.at("protocol").at("sha256"), request.protocol.sha256);
   const Json& point = json.at("worlds").at(1).at("hypotheses").at(1).at("curve").at(0);
   EXPECT_GT(point.at("supported_se").get<double>(), 0);
   const std::string line = "\"paper\",\"H5\",,true,10,supported," + point.at("supported").dump() + "," +
                            point.at("supported_se").dump() + "\n";
-  EXPECT_NE(apps::power_csv(json).find(line), std::string::npos) << line;
-  const std::string picture = apps::power_svg(json);
+  EXPECT_NE(study::power_csv(json).find(line), std::string::npos) << line;
+  const std::string picture = study::power_svg(json);
   for (const char* words : {"H4", "H5", "H6", ">null<", ">paper<"})
     EXPECT_NE(picture.find(words), std::string::npos) << words;
   EXPECT_EQ(picture.find("nan"), std::string::npos);

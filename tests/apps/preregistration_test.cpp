@@ -6,9 +6,9 @@
 #include <set>
 #include <sstream>
 
-#include "apps/stats/report/line_difference.hpp"
-#include "apps/stats/report/preregistration.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/preregistration/line_difference.hpp"
+#include "libstudy/preregistration/preregistration.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -30,8 +30,8 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
 
-report::BundleRequest both_tasks() {
-  report::BundleRequest request;
+study::report::BundleRequest both_tasks() {
+  study::report::BundleRequest request;
   request.protocols = {"protocols/task1.toml", "protocols/task2.toml"};
   request.plan.resamples = 200;
   request.plan.seed = 7;
@@ -50,16 +50,18 @@ study::ProtocolRow row_of(const study::Protocol& protocol) {
 /// Both tasks answered under these protocols, analysed under the bundle's plan.
 struct Study {
   std::vector<study::ProtocolRow> rows;
-  Json results;
+  study::Json results;
 };
 
-Study answered(const report::Bundle& bundle, const study::Protocol& task1, const study::Protocol& task2) {
+Study answered(const study::report::Bundle& bundle, const study::Protocol& task1,
+               const study::Protocol& task2) {
   auto one = made_study::task1(12), two = made_study::task2(12);
   one.sha256 = task1.sha256;
   two.sha256 = task2.sha256;
-  return {
-      {row_of(task1), row_of(task2)},
-      make_results({{one, two}, 0}, {"study.db", {TaskKind::Task1, TaskKind::Task2}, "", bundle.plan}).json};
+  return {{row_of(task1), row_of(task2)},
+          study::make_results({{one, two}, 0},
+                              {"study.db", {study::TaskKind::Task1, study::TaskKind::Task2}, "", bundle.plan})
+              .json};
 }
 
 study::Protocol protocol(const std::string& name) {
@@ -68,7 +70,7 @@ study::Protocol protocol(const std::string& name) {
 
 TEST(Preregistration, ItsHashIsThatOfTheManifestAndTheManifestHoldsEveryFile) {
   const TemporaryFolder folder;
-  const auto hash = report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto hash = study::report::freeze_bundle(both_tasks(), folder / "bundle");
   const auto checked = test::run_shell("cd '" + (folder / "bundle").string() +
                                        "' && sha256sum -c MANIFEST.sha256 && sha256sum MANIFEST.sha256");
   EXPECT_EQ(checked.exit_code, 0) << checked.out;
@@ -79,7 +81,7 @@ TEST(Preregistration, ItsHashIsThatOfTheManifestAndTheManifestHoldsEveryFile) {
       EXPECT_THAT(checked.out, HasSubstr(name + ": OK"));
     }
   }
-  const auto bundle = report::read_bundle(folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   EXPECT_EQ(bundle.sha256, hash);
   EXPECT_THAT(bundle.altered, IsEmpty());
   EXPECT_EQ(bundle.plan.plan.seed, 7u);
@@ -90,8 +92,8 @@ TEST(Preregistration, FixesAllSixHypothesesWithTheirMargins) {
   const TemporaryFolder folder;
   auto request = both_tasks();
   request.plan.margin_realism = 0.4;
-  report::freeze_bundle(request, folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(request, folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   std::vector<std::string> ids;
   std::vector<std::size_t> families;
   for (const auto& hypothesis : bundle.hypotheses) {
@@ -113,10 +115,10 @@ TEST(Preregistration, NamesTheLevelOfAPilotsCurve) {
     const std::string scale = "scale = [1, 7]\n";
     text.insert(text.find(scale) + scale.size(), level);
     base::write_file_atomically(folder / "pilot.toml", text);
-    report::BundleRequest request;
+    study::report::BundleRequest request;
     request.protocols = {folder / "pilot.toml"};
-    report::freeze_bundle(request, folder / name);
-    return report::read_bundle(folder / name).plan.plan.levels;
+    study::report::freeze_bundle(request, folder / name);
+    return study::report::read_bundle(folder / name).plan.plan.levels;
   };
   EXPECT_EQ(freeze("", "middle"), (std::map<std::string, double>{{"satisfaction", 4}}));
   EXPECT_EQ(freeze("level = 4.5\n", "named"), (std::map<std::string, double>{{"satisfaction", 4.5}}));
@@ -124,15 +126,15 @@ TEST(Preregistration, NamesTheLevelOfAPilotsCurve) {
               HasSubstr("the curve of question satisfaction is fitted at level 4.5 of its scale, 1 to 7"));
 
   // If the curve is fitted at another level, the page says so.
-  const auto bundle = report::read_bundle(folder / "named");
+  const auto bundle = study::report::read_bundle(folder / "named");
   auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 6, 7);
   pilot.sha256 = bundle.protocols.begin()->first;
   study::ProtocolRow row;
   row.name = "ptpe_pilot";
   row.sha256 = pilot.sha256;
-  ResultsRequest request{"study.db", {TaskKind::Pilot}, "", bundle.plan};
+  study::ResultsRequest request{"study.db", {study::TaskKind::Pilot}, "", bundle.plan};
   const auto differences = [&] {
-    return report::compare_with_bundle(bundle, {row}, make_results({{pilot}, 0}, request).json)
+    return study::report::compare_with_bundle(bundle, {row}, study::make_results({{pilot}, 0}, request).json)
         .at("differences")
         .dump();
   };
@@ -143,17 +145,17 @@ TEST(Preregistration, NamesTheLevelOfAPilotsCurve) {
 
 TEST(Preregistration, AStudyThatKeepsToItDiffersInNothing) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
-  EXPECT_EQ(check.at("differences"), Json::array());
-  EXPECT_EQ(check.at("tasks"), (Json{{"task1", true}, {"task2", true}}));
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("differences"), study::Json::array());
+  EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", true}, {"task2", true}}));
   EXPECT_TRUE(check.at("holds").get<bool>());
 }
 
 /// Task 1's first answer is at `first`, Task 2's is long after the bundle.
-Json check_with_first_answer(const report::Bundle& bundle, const std::string& first) {
+study::Json check_with_first_answer(const study::report::Bundle& bundle, const std::string& first) {
   auto one = made_study::task1(12), two = made_study::task2(12);
   const auto task1 = protocol("task1.toml"), task2 = protocol("task2.toml");
   one.sha256 = task1.sha256;
@@ -162,14 +164,16 @@ Json check_with_first_answer(const report::Bundle& bundle, const std::string& fi
   one.sessions[7].first_answer_utc = first;
   for (auto& session : two.sessions) session.first_answer_utc = "2999-12-31T00:00:00Z";
   const auto results =
-      make_results({{one, two}, 0}, {"study.db", {TaskKind::Task1, TaskKind::Task2}, "", bundle.plan}).json;
-  return report::compare_with_bundle(bundle, {row_of(task1), row_of(task2)}, results);
+      study::make_results({{one, two}, 0},
+                          {"study.db", {study::TaskKind::Task1, study::TaskKind::Task2}, "", bundle.plan})
+          .json;
+  return study::report::compare_with_bundle(bundle, {row_of(task1), row_of(task2)}, results);
 }
 
 TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   const std::string frozen = bundle.about.at("frozen_utc");
   const auto before = check_with_first_answer(bundle, "2999-01-01T00:00:00Z");
   EXPECT_TRUE(before.at("holds").get<bool>()) << before.dump(2);
@@ -178,7 +182,7 @@ TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
   // Within the same second the order cannot be known.
   for (const std::string& first : {std::string("2001-01-01T00:00:00Z"), frozen}) {
     const auto after = check_with_first_answer(bundle, first);
-    EXPECT_EQ(after.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+    EXPECT_EQ(after.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));
     EXPECT_EQ(after.at("times")[0].at("frozen_before"), false);
     EXPECT_EQ(after.at("times")[1].at("frozen_before"), true);
     EXPECT_THAT(
@@ -195,14 +199,15 @@ TEST(Preregistration, OnlySessionsThatAreAnalysedHaveAFirstAnswer) {
   task.sessions[0].test_data = true;
   task.sessions[1].observer = "random";
   for (std::size_t i : {0u, 1u}) task.sessions[i].first_answer_utc = "2026-01-01T00:00:00Z";
-  EXPECT_EQ(select_task({{task}, 0}, {TaskKind::Task1, "", {}})->first_answer_utc, "2026-05-01T00:00:00Z");
+  EXPECT_EQ(study::select_task({{task}, 0}, {study::TaskKind::Task1, "", {}})->first_answer_utc,
+            "2026-05-01T00:00:00Z");
 }
 
 // A pilot beside the tasks is exploratory: a bundle of the tasks need not contain it.
 TEST(Preregistration, APilotBesideTheTasksIsNoDifference) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
   const auto pilot = protocol("ptpe_pilot.toml");
   study.rows.push_back(row_of(pilot));
@@ -210,33 +215,33 @@ TEST(Preregistration, APilotBesideTheTasksIsNoDifference) {
                                                  {"title", "Pilot"},
                                                  {"sha256", pilot.sha256},
                                                  {"first_answer_utc", "2001-01-01T00:00:00Z"}});
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
-  EXPECT_EQ(check.at("differences"), Json::array());
-  EXPECT_EQ(check.at("tasks"), (Json{{"task1", true}, {"task2", true}, {"pilot", false}}));
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("differences"), study::Json::array());
+  EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", true}, {"task2", true}, {"pilot", false}}));
 }
 
 TEST(Preregistration, AChangedProtocolIsNamedLineByLine) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   auto text = protocol("task1.toml").text;
   text.replace(text.find("duration_s = 30"), 15, "duration_s = 20");
   const auto study = answered(bundle, study::parse_protocol(text, "task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
   EXPECT_THAT(check.at("differences"), Contains("protocol task1, preregistered only: duration_s = 30"));
   EXPECT_THAT(check.at("differences"), Contains("protocol task1, used only: duration_s = 20"));
-  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+  EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));
   EXPECT_FALSE(check.at("holds").get<bool>());
 }
 
 TEST(Preregistration, AnotherMarginIsNamed) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
-  auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
+  auto bundle = study::report::read_bundle(folder / "bundle");
   bundle.plan.plan.margin_sickness = 0.5;
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
-  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));
   EXPECT_THAT(check.at("differences").dump(),
               HasSubstr("H2, Ours - HiRes, sickness, 16k, margin: preregistered 0.25, tested 0.5"));
 }
@@ -246,7 +251,7 @@ void freeze_as_before(const fs::path& folder) {
   auto request = both_tasks();
   request.plan.decision = stats::DecisionRule::Holm;
   request.plan.directional = stats::Directional::H2H3H6;
-  report::freeze_bundle(request, folder);
+  study::report::freeze_bundle(request, folder);
   std::istringstream lines(base::read_file(folder / "plan.toml", 1 << 20));
   std::string plan;
   for (std::string line; std::getline(lines, line);)
@@ -261,11 +266,11 @@ void freeze_as_before(const fs::path& folder) {
 TEST(Preregistration, AnEarlierBundleIsAnalysedUnderHolmAndDiffersInNothing) {
   const TemporaryFolder folder;
   freeze_as_before(folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   ASSERT_THAT(bundle.altered, IsEmpty());
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
-  EXPECT_EQ(check.at("differences"), Json::array());
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("differences"), study::Json::array());
   EXPECT_EQ(study.results.at("plan").at("decision"), "holm");
   EXPECT_EQ(study.results.at("plan").at("directional"), "H2, H3 and H6");
   for (const auto& hypothesis : study.results.at("hypotheses"))
@@ -275,10 +280,10 @@ TEST(Preregistration, AnEarlierBundleIsAnalysedUnderHolmAndDiffersInNothing) {
 TEST(Preregistration, AnotherDecisionRuleIsNamed) {
   const TemporaryFolder folder;
   freeze_as_before(folder / "bundle");
-  auto bundle = report::read_bundle(folder / "bundle");
+  auto bundle = study::report::read_bundle(folder / "bundle");
   bundle.plan.plan.decision = stats::DecisionRule::IntersectionUnion;
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
   EXPECT_THAT(check.at("differences").dump(), HasSubstr("H1, rule: preregistered "));
   EXPECT_FALSE(check.at("holds").get<bool>());
 }
@@ -287,80 +292,81 @@ TEST(Preregistration, TestsByTheMixedModelAreFrozenAndNotTakenForPairedOnes) {
   const TemporaryFolder folder;
   auto request = both_tasks();
   request.plan.tests = stats::ScoreTests::Mixed;
-  report::freeze_bundle(request, folder / "bundle");
-  auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(request, folder / "bundle");
+  auto bundle = study::report::read_bundle(folder / "bundle");
   EXPECT_EQ(bundle.plan.plan.tests, stats::ScoreTests::Mixed);
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  EXPECT_EQ(report::compare_with_bundle(bundle, study.rows, study.results).at("differences"), Json::array());
+  EXPECT_EQ(study::report::compare_with_bundle(bundle, study.rows, study.results).at("differences"),
+            study::Json::array());
   bundle.plan.plan.tests = stats::ScoreTests::Paired;
   const auto other = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, other.rows, other.results);
+  const auto check = study::report::compare_with_bundle(bundle, other.rows, other.results);
   EXPECT_THAT(check.at("differences").dump(), HasSubstr("H1, rule: preregistered \\\"t tests of the mixed"));
-  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", true}}));
+  EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));
 }
 
 TEST(Preregistration, ATouchedFileTakesTheNameAway) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
   auto plan = base::read_file(folder / "bundle/plan.toml", 1 << 20);
   base::write_file_atomically(folder / "bundle/plan.toml", plan + "# \n");
   fs::remove(folder / "bundle/PREREGISTRATION.txt");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   EXPECT_EQ(bundle.altered, (std::vector<std::string>{"PREREGISTRATION.txt", "plan.toml"}));
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
-  EXPECT_EQ(check.at("tasks"), (Json{{"task1", false}, {"task2", false}}));
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", false}}));
 }
 
 TEST(Preregistration, ANameThatNoFileCanHaveIsAFileThatWasRemoved) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
   const fs::path path = folder / "bundle/MANIFEST.sha256";
   const std::string name(300, 'n');
   base::write_file_atomically(path,
                               base::read_file(path, 1 << 20) + std::string(64, 'a') + "  " + name + "\n");
-  EXPECT_EQ(report::read_bundle(folder / "bundle").altered, std::vector<std::string>{name});
+  EXPECT_EQ(study::report::read_bundle(folder / "bundle").altered, std::vector<std::string>{name});
 }
 
 TEST(Preregistration, AProtocolThatIsNotInItIsExploratory) {
   const TemporaryFolder folder;
   auto request = both_tasks();
   request.protocols.pop_back();
-  report::freeze_bundle(request, folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(request, folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = report::compare_with_bundle(bundle, study.rows, study.results);
-  EXPECT_EQ(check.at("tasks"), (Json{{"task1", true}, {"task2", false}}));
+  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", true}, {"task2", false}}));
 }
 
 TEST(Preregistration, IsNeverWrittenOverAndLeavesNothingHalfDone) {
   const TemporaryFolder folder;
-  const auto hash = report::freeze_bundle(both_tasks(), folder / "bundle");
-  EXPECT_THAT([&] { report::freeze_bundle(both_tasks(), folder / "bundle"); },
+  const auto hash = study::report::freeze_bundle(both_tasks(), folder / "bundle");
+  EXPECT_THAT([&] { study::report::freeze_bundle(both_tasks(), folder / "bundle"); },
               ThrowsMessage<base::Error>(HasSubstr("never written over")));
-  EXPECT_EQ(report::read_bundle(folder / "bundle").sha256, hash);
+  EXPECT_EQ(study::report::read_bundle(folder / "bundle").sha256, hash);
   auto request = both_tasks();
   request.protocols.push_back("no_such_protocol.toml");
-  EXPECT_THROW(report::freeze_bundle(request, folder / "other"), base::Error);
+  EXPECT_THROW(study::report::freeze_bundle(request, folder / "other"), base::Error);
   request = both_tasks();
   request.protocols[1] = request.protocols[0];
-  EXPECT_THROW(report::freeze_bundle(request, folder / "other"), base::Error);
+  EXPECT_THROW(study::report::freeze_bundle(request, folder / "other"), base::Error);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
 }
 
 TEST(Preregistration, AFolderThatIsNoBundleIsRefused) {
   const TemporaryFolder folder;
-  EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
+  EXPECT_THROW(study::report::read_bundle(folder.path()), base::Error);
   base::write_file_atomically(folder / "MANIFEST.sha256", std::string(64, 'a') + "  ../secret\n");
-  EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
+  EXPECT_THROW(study::report::read_bundle(folder.path()), base::Error);
   base::write_file_atomically(folder / "MANIFEST.sha256", "");
-  EXPECT_THROW(report::read_bundle(folder.path()), base::Error);
+  EXPECT_THROW(study::report::read_bundle(folder.path()), base::Error);
 }
 
 /// For any content of a bundle's files the result is a comparison or an error with a remedy.
 TEST(Preregistration, PartsThatAreNotWhatTheyShouldBeAreRefusedInWords) {
   const TemporaryFolder folder;
-  report::freeze_bundle(both_tasks(), folder / "bundle");
+  study::report::freeze_bundle(both_tasks(), folder / "bundle");
   const std::vector<std::string> hostile{
       "",
       "{",
@@ -384,21 +390,21 @@ TEST(Preregistration, PartsThatAreNotWhatTheyShouldBeAreRefusedInWords) {
       const auto before = base::read_file(folder / ("bundle/" + std::string(name)), 1 << 20);
       base::write_file_atomically(folder / ("bundle/" + std::string(name)), text);
       EXPECT_THAT(
-          [&] { report::read_bundle(folder / "bundle"); },
+          [&] { study::report::read_bundle(folder / "bundle"); },
           ThrowsMessage<base::Error>(AllOf(HasSubstr(name), HasSubstr("mend: "), Not(HasSubstr("json.exc")))))
           << name << " " << text.substr(0, 80);
       base::write_file_atomically(folder / ("bundle/" + std::string(name)), before);
     }
   }
-  EXPECT_NO_THROW(report::read_bundle(folder / "bundle"));
+  EXPECT_NO_THROW(study::report::read_bundle(folder / "bundle"));
 }
 
 TEST(LineDifference, FindsWhatOneOfTwoTextsHas) {
-  const auto found = report::line_difference("a\nb\nc\n", "a\nx\nc\ny");
+  const auto found = study::report::line_difference("a\nb\nc\n", "a\nx\nc\ny");
   EXPECT_EQ(found.only_first, (std::vector<std::string>{"b"}));
   EXPECT_EQ(found.only_second, (std::vector<std::string>{"x", "y"}));
-  EXPECT_TRUE(report::line_difference("a\r\n\nb", "a\nb \n").only_first.empty());
-  EXPECT_EQ(report::line_difference("", "a").only_second.size(), 1u);
+  EXPECT_TRUE(study::report::line_difference("a\r\n\nb", "a\nb \n").only_first.empty());
+  EXPECT_EQ(study::report::line_difference("", "a").only_second.size(), 1u);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/report/page.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
 
@@ -52,7 +52,7 @@ inline Block block_of(const std::string& html) {
 }
 
 inline std::vector<Block> blocks_of(const base::Json& json) {
-  const std::string html = apps::report::results_page(json);
+  const std::string html = study::report::results_page(json);
   std::vector<Block> out;
   for (const std::string name : {"p", "li", "figcaption", "caption", "desc"}) {
     for (auto at = html.find("<" + name); at != std::string::npos; at = html.find("<" + name, at + 1)) {

@@ -6,10 +6,10 @@
 
 #include <set>
 
-#include "apps/stats/data/json_parts.hpp"
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/tasks/csv.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/analysis/tasks/csv.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/report_blocks.hpp"
@@ -24,18 +24,19 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-const std::vector<TaskKind> all_tasks{TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2, TaskKind::Own};
+const std::vector<study::TaskKind> all_tasks{study::TaskKind::Pilot, study::TaskKind::Task1,
+                                             study::TaskKind::Task2, study::TaskKind::Own};
 
-PlanInForce quick_plan() {
-  PlanInForce plan;
+study::PlanInForce quick_plan() {
+  study::PlanInForce plan;
   plan.plan.resamples = 200;
   return plan;
 }
 
-Json results_of(const study::TaskStudy& study, const std::string& question = "") {
-  ResultsRequest request{"study.db", all_tasks, "", quick_plan()};
+study::Json results_of(const study::TaskStudy& study, const std::string& question = "") {
+  study::ResultsRequest request{"study.db", all_tasks, "", quick_plan()};
   request.question = question;
-  return make_results(study, request).json;
+  return study::make_results(study, request).json;
 }
 
 /// Two methods in three scenes, each rated on two scales of 1 to 4.
@@ -88,8 +89,8 @@ study::TaskProtocol pilot_of_two_questions() {
 }
 
 /// Everything is on one page, each number is in the JSON, and each session is in a flow.
-void expect_true_page(const Json& json) {
-  const auto page = html_reader::read(report::results_page(json));
+void expect_true_page(const study::Json& json) {
+  const auto page = html_reader::read(study::report::results_page(json));
   EXPECT_THAT(report_walk::wrong_fields(page, json), IsEmpty());
   EXPECT_THAT(report_walk::unmarked_numbers(page, json), IsEmpty());
   EXPECT_EQ(report_walk::sessions_in_flows(json), json.at("roster").at("sessions"));
@@ -106,50 +107,50 @@ void expect_true_page(const Json& json) {
 }
 
 TEST(ReportChoice, AnotherDesignHasFlowTimingAndAnswersByCell) {
-  const Json json = results_of({{comfort(12)}, 0});
+  const study::Json json = results_of({{comfort(12)}, 0});
   expect_true_page(json);
   EXPECT_EQ(json.at("flow").at("own").at("analysed"), 12);
   EXPECT_EQ(json.at("timing").size(), 6u);
   ASSERT_EQ(json.at("descriptives").size(), 2u);
-  const Json& cell = json.at("descriptives")[0].at("cells").at(0);
+  const study::Json& cell = json.at("descriptives")[0].at("cells").at(0);
   EXPECT_EQ(cell.at("shown"), "LoRes");
   EXPECT_EQ(cell.at("n"), 12);
   EXPECT_EQ(cell.at("mean"), 1.5);
   EXPECT_NEAR(cell.at("sd").get<double>(), std::sqrt(3.0 / 11), 1e-12);
   EXPECT_EQ(cell.at("median"), 1.5);
-  EXPECT_EQ(cell.at("distribution"), (Json{{{"answer", 1}, {"count", 6}},
-                                           {{"answer", 2}, {"count", 6}},
-                                           {{"answer", 3}, {"count", 0}},
-                                           {{"answer", 4}, {"count", 0}}}));
+  EXPECT_EQ(cell.at("distribution"), (study::Json{{{"answer", 1}, {"count", 6}},
+                                                  {{"answer", 2}, {"count", 6}},
+                                                  {{"answer", 3}, {"count", 0}},
+                                                  {{"answer", 4}, {"count", 0}}}));
   EXPECT_TRUE(json.at("hypotheses").empty());
   EXPECT_THAT(json.at("not_analysed").at(0).at("reason").get<std::string>(), HasSubstr("realism"));
-  const std::string html = report::results_page(json);
+  const std::string html = study::report::results_page(json);
   for (const char* words : {"Simulated participants", "Flow of participants", "Timing certificate",
                             "Answers by cell", "Not analysed"})
     EXPECT_NE(html.find(words), std::string::npos) << words;
 }
 
 TEST(ReportChoice, TwoVersionsOfATaskStandApart) {
-  const Json json = results_of({{mended(made_study::task1(3), '5'), made_study::task1(12)}, 2});
+  const study::Json json = results_of({{mended(made_study::task1(3), '5'), made_study::task1(12)}, 2});
   expect_true_page(json);
   EXPECT_EQ(json.at("flow").at("task1").at("analysed"), 12) << "the version of most people comes first";
   ASSERT_EQ(json.at("apart").size(), 1u);
   EXPECT_EQ(json.at("apart")[0].at("flow").at("task1").at("analysed"), 3);
-  EXPECT_EQ(json.at("roster").at("protocols").at(0).at("sections"), Json{"apart 1"});
+  EXPECT_EQ(json.at("roster").at("protocols").at(0).at("sections"), study::Json{"apart 1"});
   // Analysed alone, each gives the same results as beside the other.
-  const Json alone = results_of({{made_study::task1(12)}, 2});
+  const study::Json alone = results_of({{made_study::task1(12)}, 2});
   EXPECT_EQ(json.at("task1"), alone.at("task1"));
   EXPECT_EQ(json.at("hypotheses"), alone.at("hypotheses"));
 }
 
 TEST(ReportChoice, EachQuestionOfAPilotIsFitted) {
   const study::TaskStudy study{{pilot_of_two_questions()}, 0};
-  const Json json = results_of(study);
+  const study::Json json = results_of(study);
   expect_true_page(json);
   EXPECT_EQ(json.at("pilot").at("question"), "satisfaction");
   EXPECT_EQ(json.at("pilot").at("level"), 4);
   ASSERT_EQ(json.at("apart").size(), 1u);
-  const Json& other = json.at("apart")[0].at("pilot");
+  const study::Json& other = json.at("apart")[0].at("pilot");
   EXPECT_EQ(other.at("question"), "smoothness");
   EXPECT_EQ(other.at("level"), 1.5) << "the middle of 0 to 3";
   EXPECT_EQ(other.at("status"), "ok") << other.at("reason");
@@ -157,7 +158,7 @@ TEST(ReportChoice, EachQuestionOfAPilotIsFitted) {
   // Each question is described once.
   EXPECT_EQ(json.at("descriptives").size(), 1u);
   EXPECT_EQ(json.at("apart")[0].at("descriptives").size(), 1u);
-  const Json chosen = results_of(study, "smoothness");
+  const study::Json chosen = results_of(study, "smoothness");
   EXPECT_FALSE(chosen.contains("apart"));
   EXPECT_EQ(chosen.at("pilot").at("a"), other.at("a"));
 }
@@ -165,7 +166,7 @@ TEST(ReportChoice, EachQuestionOfAPilotIsFitted) {
 TEST(ReportChoice, SicknessAskedInTrialsIsNoRatingOfFrameRates) {
   auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 6, 7);
   pilot.questions.push_back(made_study::scale("fms", 0, 20));
-  const Json json = results_of({{pilot}, 0});
+  const study::Json json = results_of({{pilot}, 0});
   EXPECT_FALSE(json.contains("apart"));
   EXPECT_EQ(json.at("pilot").at("question"), "satisfaction");
 }
@@ -173,13 +174,13 @@ TEST(ReportChoice, SicknessAskedInTrialsIsNoRatingOfFrameRates) {
 TEST(ReportChoice, ProtocolsSetAsideAreInTheRoster) {
   auto test = mended(made_study::task2(2), '6');
   for (auto& session : test.sessions) session.test_data = true;
-  const Json json = results_of({{made_study::task2(9), test}, 0});
+  const study::Json json = results_of({{made_study::task2(9), test}, 0});
   EXPECT_EQ(json.at("roster").at("sessions"), 11);
-  EXPECT_EQ(json.at("roster").at("protocols").at(1).at("sections"), Json::array());
+  EXPECT_EQ(json.at("roster").at("protocols").at(1).at("sections"), study::Json::array());
   EXPECT_EQ(json.at("roster").at("protocols").at(1).at("test_data"), 2);
   EXPECT_EQ(json.at("flow").at("task2").at("set_aside").at("protocols"), 2);
   EXPECT_EQ(report_walk::sessions_in_flows(json), 11) << "each session stands in a flow";
-  EXPECT_NE(report::results_page(json).find("set aside"), std::string::npos);
+  EXPECT_NE(study::report::results_page(json).find("set aside"), std::string::npos);
 }
 
 // Two files of the same name and version differ only in their hashes.
@@ -187,14 +188,14 @@ TEST(ReportChoice, AProtocolSetAsideIsNotTakenForTheOneAnalysed) {
   auto test = comfort(1);
   test.sha256 = std::string(64, '6');
   for (auto& session : test.sessions) session.test_data = true;
-  const Json json = results_of({{test, comfort(4)}, 0});
+  const study::Json json = results_of({{test, comfort(4)}, 0});
   expect_true_page(json);
   const std::string notes = json.at("study").at("notes").dump();
   EXPECT_THAT(notes, HasSubstr("protocol comfort 1.0, SHA-256 666666666666, 1 session, left out"));
 }
 
 TEST(ReportChoice, OneBannerNamesEachVersionAndCountsPeopleOnce) {
-  const Json json = results_of({{comfort(12), mended(comfort(3), '5')}, 0});
+  const study::Json json = results_of({{comfort(12), mended(comfort(3), '5')}, 0});
   expect_true_page(json);
   EXPECT_EQ(json.at("study").at("simulated_people"), 12) << "the three of version 1.1 are among the twelve";
   std::string banner;
@@ -217,19 +218,20 @@ TEST(ReportChoice, RealismAloneIsAnalysed) {
   for (auto& session : task.sessions)
     for (auto& trial : session.trials)
       std::erase_if(trial.answers, [](const auto& one) { return one.question != "realism"; });
-  const Json json = results_of({{task}, 0});
+  const study::Json json = results_of({{task}, 0});
   expect_true_page(json);
   EXPECT_EQ(json.at("task1").at("scores").size(), 1u);
   EXPECT_EQ(json.at("task1").at("comparisons").size(), 20u);
   EXPECT_TRUE(json.at("hypotheses").empty());
   EXPECT_EQ(json.at("not_analysed"),
-            (Json{{{"task", "task1"},
-                   {"protocol", "task1"},
-                   {"what", "H1 to H3"},
-                   {"reason",
-                    "the trials ask no question 'disorientation', 'unrealism', 'dizziness' or 'confusion' on "
-                    "a scale"}}}));
-  EXPECT_THAT(report::results_page(json), Not(HasSubstr("on cybersickness.")));
+            (study::Json{
+                {{"task", "task1"},
+                 {"protocol", "task1"},
+                 {"what", "H1 to H3"},
+                 {"reason",
+                  "the trials ask no question 'disorientation', 'unrealism', 'dizziness' or 'confusion' on "
+                  "a scale"}}}));
+  EXPECT_THAT(study::report::results_page(json), Not(HasSubstr("on cybersickness.")));
 }
 
 // "drawn and listed": every value, not only their number.
@@ -237,27 +239,27 @@ TEST(ReportChoice, ValuesBeyondTheWhiskersAreListed) {
   auto task = made_study::task1(12);
   for (auto& trial : task.sessions[0].trials)
     if (trial.first.what.method == "LoRes") trial.answers[0].score = 7;
-  const Json json = results_of({{task}, 0});
+  const study::Json json = results_of({{task}, 0});
   expect_true_page(json);
   std::size_t outliers = 0, printed = 0;
   for (const auto& cell : json.at("task1").at("cells")) outliers += cell.at("outliers").size();
-  for (const auto& text : html_reader::read(report::results_page(json)).texts)
+  for (const auto& text : html_reader::read(study::report::results_page(json)).texts)
     printed += text.attribute("data-field").find("/outliers/") != std::string::npos && !text.within("svg");
   EXPECT_GT(outliers, 0u);
   EXPECT_EQ(printed, outliers);
 }
 
 TEST(ReportChoice, RulesThatCannotActAreNotStated) {
-  const std::string html = report::results_page(results_of({{comfort(4)}, 0}));
+  const std::string html = study::report::results_page(results_of({{comfort(4)}, 0}));
   EXPECT_THAT(html, HasSubstr("Rules of exclusion for Own design: trials whose timing verdict"));
   EXPECT_THAT(html, AllOf(Not(HasSubstr("catch pages right")), Not(HasSubstr("repeated ratings differed"))));
   auto caught = comfort(4);
   for (auto& session : caught.sessions) session.catches = {{"attention", 2, 2}};
-  EXPECT_THAT(report::results_page(results_of({{caught}, 0})), HasSubstr("catch pages right"));
+  EXPECT_THAT(study::report::results_page(results_of({{caught}, 0})), HasSubstr("catch pages right"));
 }
 
 TEST(ReportChoice, TrackedGazeIsSaidOfMethodsThatFollowIt) {
-  EXPECT_EQ(results_of({{comfort(4)}, 0}).at("study").at("tracked_gaze"), Json());
+  EXPECT_EQ(results_of({{comfort(4)}, 0}).at("study").at("tracked_gaze"), study::Json());
   auto foveated = comfort(4);
   foveated.methods = {"LoRes", "FovFluid"};
   for (auto& session : foveated.sessions)
@@ -271,10 +273,10 @@ TEST(ReportChoice, AnOwnDesignSaysWhatIsNotTestedAndWhyThereAreNoTimes) {
   for (auto& session : own.sessions)
     for (auto& trial : session.trials)
       for (auto& answer : trial.answers) answer.response_time_s = 0;
-  const Json json = results_of({{own}, 0});
+  const study::Json json = results_of({{own}, 0});
   expect_true_page(json);
   EXPECT_EQ(json.at("not_analysed").at(1).at("what"), "H1 to H3");
-  EXPECT_THAT(report::results_page(json), HasSubstr("simulated participants take no time to answer"));
+  EXPECT_THAT(study::report::results_page(json), HasSubstr("simulated participants take no time to answer"));
 }
 
 TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
@@ -282,14 +284,14 @@ TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
   for (auto& session : task.sessions)
     std::erase_if(session.trials, [](const auto& trial) { return trial.first.what.method == "FovFluid"; });
   std::erase(task.methods, "FovFluid");
-  const Json json = results_of({{task}, 0});
+  const study::Json json = results_of({{task}, 0});
   expect_true_page(json);
   ASSERT_EQ(json.at("hypotheses").size(), 2u);
   EXPECT_EQ(json.at("hypotheses")[0].at("id"), "H2");
-  EXPECT_EQ(json.at("not_analysed"), (Json{{{"task", "task1"},
-                                            {"protocol", "task1"},
-                                            {"what", "H1"},
-                                            {"reason", "the protocol does not show FovFluid"}}}));
+  EXPECT_EQ(json.at("not_analysed"), (study::Json{{{"task", "task1"},
+                                                   {"protocol", "task1"},
+                                                   {"what", "H1"},
+                                                   {"reason", "the protocol does not show FovFluid"}}}));
 }
 
 /// Each of six people judges one pair in three scenes. `alike`: all always choose HiRes.
@@ -321,13 +323,13 @@ study::TaskProtocol pairs_over_scenes(bool alike) {
 }
 
 TEST(ReportChoice, PairsOverScenesAreDescribedByScene) {
-  const Json json = results_of({{pairs_over_scenes(true)}, 0});
+  const study::Json json = results_of({{pairs_over_scenes(true)}, 0});
   expect_true_page(json);
-  const Json& cells = json.at("descriptives").at(0).at("cells");
+  const study::Json& cells = json.at("descriptives").at(0).at("cells");
   ASSERT_EQ(cells.size(), 3u);
   EXPECT_EQ(cells[0].at("shown"), "LoRes and HiRes");
   EXPECT_EQ(cells[0].at("distribution"),
-            (Json{{{"answer", "LoRes"}, {"count", 0}}, {{"answer", "HiRes"}, {"count", 6}}}));
+            (study::Json{{{"answer", "LoRes"}, {"count", 0}}, {{"answer", "HiRes"}, {"count", 6}}}));
   EXPECT_TRUE(json.at("hypotheses").empty());
   EXPECT_THAT(json.at("task2").at("pairs").at(0).at("by_person").at("ci_name").get<std::string>(),
               HasSubstr("Clopper-Pearson over people"));
@@ -336,16 +338,16 @@ TEST(ReportChoice, PairsOverScenesAreDescribedByScene) {
 // Here the test over people applies: it is named, its interval is printed and drawn, and the binomial test is
 // not mentioned.
 TEST(ReportChoice, PairsAnsweredSeveralTimesNameTheTestThatWasMade) {
-  const Json json = results_of({{pairs_over_scenes(false)}, 0});
+  const study::Json json = results_of({{pairs_over_scenes(false)}, 0});
   expect_true_page(json);
-  const Json& task = json.at("task2");
-  EXPECT_EQ(task.at("several_answers"), (Json{{"participants", 6}, {"of", 6}, {"most", 3}}));
+  const study::Json& task = json.at("task2");
+  EXPECT_EQ(task.at("several_answers"), (study::Json{{"participants", 6}, {"of", 6}, {"most", 3}}));
   EXPECT_EQ(task.at("pairs").at(0).at("test"), "exact permutation test of people's shares");
   EXPECT_EQ(task.at("pairs").at(0).at("warning"), "");
   EXPECT_THAT(task.at("rules").at("tests").get<std::string>(), Not(HasSubstr("inomial")));
   EXPECT_THAT(task.at("triads").at("refused").get<std::string>(), HasSubstr("fewer than three methods"));
   EXPECT_THAT(task.at("detectable").at("reason").get<std::string>(), HasSubstr("how alike one person's"));
-  const std::string html = report::results_page(json);
+  const std::string html = study::report::results_page(json);
   const std::string section = html.substr(html.find("id=\"task2\""), html.find("id=\"descriptives\""));
   const std::string pairs = section.substr(0, section.find("Bias towards the first interval"));
   EXPECT_THAT(pairs, AllOf(Not(HasSubstr("inomial")), Not(HasSubstr("Wilson)"))));
@@ -357,13 +359,13 @@ TEST(ReportChoice, PairsAnsweredSeveralTimesNameTheTestThatWasMade) {
   EXPECT_EQ(printed, 2u) << "in the table and in APA style";
   EXPECT_NE(pairs.find("stroke-width=\"4.5\""), std::string::npos) << "the interval's line";
   // If each pair was answered once, everything refers to the binomial test.
-  const Json once = results_of({{made_study::task2(9)}, 0});
+  const study::Json once = results_of({{made_study::task2(9)}, 0});
   EXPECT_EQ(once.at("task2").at("pairs").at(0).at("test"), "exact binomial test");
   EXPECT_FALSE(once.at("task2").at("rules").contains("more_than_one_trial"));
 }
 
 TEST(ReportChoice, ReasonsCallMethodsByTheirNames) {
-  const Json few = results_of({{made_study::task1(3)}, 2});
+  const study::Json few = results_of({{made_study::task1(3)}, 2});
   std::string reasons;
   for (const auto& model : few.at("task1").at("ordinal")) {
     reasons += model.value("why_penalised", "") + "; ";
@@ -378,17 +380,18 @@ TEST(ReportChoice, ReasonsCallMethodsByTheirNames) {
       if (first || second) trial.answers = {{"preference", first ? 1 : 2}};
     }
   }
-  const Json winner = results_of({{pairs}, 0});
+  const study::Json winner = results_of({{pairs}, 0});
   EXPECT_EQ(winner.at("task2").at("bradley_terry").at("why_penalised"),
             "Ours wins every comparison with the others");
   expect_true_page(winner);
-  EXPECT_EQ(with_names("items 1, 3 together lose; method1:x", {"a", "b", "c"}), "a, c together lose; b:x");
+  EXPECT_EQ(study::with_names("items 1, 3 together lose; method1:x", {"a", "b", "c"}),
+            "a, c together lose; b:x");
 }
 
 TEST(ReportChoice, TablesOfWhatStandsApartHaveFoldersOfTheirOwn) {
-  const Json json = results_of({{mended(made_study::task1(3), '5'), made_study::task1(12)}, 2});
+  const study::Json json = results_of({{mended(made_study::task1(3), '5'), made_study::task1(12)}, 2});
   std::set<std::string> files;
-  write_csv_folder(json, "csv", [&](const std::filesystem::path& path, const std::string& bytes) {
+  study::write_csv_folder(json, "csv", [&](const std::filesystem::path& path, const std::string& bytes) {
     EXPECT_TRUE(files.insert(path.string()).second) << path;
     EXPECT_FALSE(bytes.empty());
   });

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/stats/report/page.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
@@ -32,7 +32,7 @@ TEST(ReportCommandE2e, MakesThePageOfASimulatedPilotFromItsJson) {
   ASSERT_EQ(made.exit_code, 0) << made.out;
   const auto html = base::read_file(folder / "r.html", 1 << 24);
   const auto json = base::Json::parse(base::read_file(folder / "r.json", 1 << 24));
-  EXPECT_TRUE(html == report::results_page(json)) << "the page is not made of the JSON alone";
+  EXPECT_TRUE(html == study::report::results_page(json)) << "the page is not made of the JSON alone";
   EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
   EXPECT_NE(html.find("<svg"), std::string::npos);
   // The page says that the bundle was frozen after the answers.

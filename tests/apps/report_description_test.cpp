@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/tasks/people_json.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "libstudy/analysis/tasks/people_json.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/json.hpp"
 #include "stats/inference/t_test.hpp"
 #include "tests/apps/html_reader.hpp"
@@ -28,27 +28,28 @@ using ::testing::Pair;
 
 constexpr int people = 26;
 
-const Json& made() {
-  static const Json json = [] {
-    PlanInForce plan;
+const study::Json& made() {
+  static const study::Json json = [] {
+    study::PlanInForce plan;
     plan.plan.resamples = 200;
-    return make_results({.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7),
-                                       made_study::task1(people), made_study::task2(people)},
-                         .about_people = made_study::about_people(people)},
-                        {"s.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+    return study::make_results(
+               {.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7),
+                              made_study::task1(people), made_study::task2(people)},
+                .about_people = made_study::about_people(people)},
+               {"s.db", {study::TaskKind::Pilot, study::TaskKind::Task1, study::TaskKind::Task2}, "", plan})
         .json;
   }();
   return json;
 }
 
 const std::string& page() {
-  static const std::string html = report::results_page(made());
+  static const std::string html = study::report::results_page(made());
   return html;
 }
 
 TEST(PeopleOfTheReport, SmallGroupsAreTakenTogetherWithTheNextSmallest) {
   const auto groups = [](std::vector<std::pair<std::string, int>> counts) {
-    return pool_small_groups(std::move(counts));
+    return study::pool_small_groups(std::move(counts));
   };
   auto got = groups({{"f", 13}, {"m", 12}, {"another", 1}});
   EXPECT_THAT(got.shown, ElementsAre(Pair("f", 13)));
@@ -68,15 +69,15 @@ TEST(PeopleOfTheReport, NoGroupThatIsShownOrFollowsIsSmaller) {
   for (int f = 0; f <= 9; ++f) {
     for (int m = 0; m <= 9; ++m) {
       for (int other = 0; other <= 5; ++other) {
-        const auto got = pool_small_groups({{"f", f}, {"m", m}, {"other", other}});
+        const auto got = study::pool_small_groups({{"f", f}, {"m", m}, {"other", other}});
         int shown = 0;
         for (const auto& [answer, n] : got.shown) {
-          EXPECT_GE(n, smallest_group);
+          EXPECT_GE(n, study::smallest_group);
           shown += n;
         }
         EXPECT_EQ(shown + got.pooled_people, f + m + other);
         if (!got.pooled.empty() && !got.shown.empty()) {
-          EXPECT_GE(got.pooled_people, smallest_group);
+          EXPECT_GE(got.pooled_people, study::smallest_group);
         }
       }
     }
@@ -84,10 +85,10 @@ TEST(PeopleOfTheReport, NoGroupThatIsShownOrFollowsIsSmaller) {
 }
 
 TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
-  const Json& task1 = made().at("people").at(0);  // the pilot asks nothing
+  const study::Json& task1 = made().at("people").at(0);  // the pilot asks nothing
   EXPECT_EQ(task1.at("task"), "task1");
   EXPECT_EQ(task1.at("participants"), people);
-  const Json &age = task1.at("questions").at(0), &gender = task1.at("questions").at(1);
+  const study::Json &age = task1.at("questions").at(0), &gender = task1.at("questions").at(1);
   EXPECT_EQ(age.at("n"), 25);
   EXPECT_EQ(age.at("missing"), 1);
   double sum = 0, squares = 0;
@@ -95,16 +96,16 @@ TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
   for (int person = 0; person < 25; ++person) squares += std::pow(20 + person % 12 - sum / 25, 2);
   EXPECT_NEAR(age.at("mean"), sum / 25, 1e-12);
   EXPECT_NEAR(age.at("sd"), std::sqrt(squares / 24), 1e-12);
-  EXPECT_EQ(age.at("range"), Json({20, 35})) << "20 to 31, in whole fives: the ends are single people";
-  EXPECT_EQ(gender.at("groups"), Json::array({{{"answer", "male"}, {"n", 12}}}));
+  EXPECT_EQ(age.at("range"), study::Json({20, 35})) << "20 to 31, in whole fives: the ends are single people";
+  EXPECT_EQ(gender.at("groups"), study::Json::array({{{"answer", "male"}, {"n", 12}}}));
   EXPECT_EQ(gender.at("pooled").at("n"), 13);
   EXPECT_THAT(page(), HasSubstr("What the analysed participants answered on pages outside the trials"));
 
-  PlanInForce plan;
+  study::PlanInForce plan;
   plan.plan.resamples = 100;
   const auto few =
-      make_results({.protocols = {made_study::task1(4)}, .about_people = made_study::about_people(4)},
-                   {"s.db", {TaskKind::Task1}, "", plan})
+      study::make_results({.protocols = {made_study::task1(4)}, .about_people = made_study::about_people(4)},
+                          {"s.db", {study::TaskKind::Task1}, "", plan})
           .json.at("people")
           .at(0)
           .at("questions");
@@ -121,9 +122,9 @@ TEST(DescriptionOfTheReport, DistributionsCountEveryAnswer) {
       if (trial.first.what.n_star == "16k")
         ++wanted[trial.first.what.method + " " + std::to_string(*trial.answers.at(0).score)];
   int seen = 0, all = 0;
-  for (const Json& cell : made().at("task1").at("distributions")) {
+  for (const study::Json& cell : made().at("task1").at("distributions")) {
     int n = 0;
-    for (const Json& one : cell.at("counts")) {
+    for (const study::Json& one : cell.at("counts")) {
       n += one.at("n").get<int>();
       if (cell.at("question") != "realism" || cell.at("n_star") != "16k") continue;
       const auto key = cell.at("method").get<std::string>() + " " + one.at("score").dump();
@@ -136,13 +137,13 @@ TEST(DescriptionOfTheReport, DistributionsCountEveryAnswer) {
   EXPECT_EQ(seen, 5 * 7);
   EXPECT_EQ(all, people * 10 * 5);
   int ratings = 0;
-  for (const Json& cell : made().at("pilot").at("distributions")) ratings += cell.at("n").get<int>();
+  for (const study::Json& cell : made().at("pilot").at("distributions")) ratings += cell.at("n").get<int>();
   EXPECT_EQ(ratings, 16 * 21);
 }
 
 TEST(DescriptionOfTheReport, MethodsByNStarAreDifferencesOfDifferences) {
   std::map<std::string, std::map<std::string, double>> scores;  // participant, "n_star method"
-  for (const Json& mean : made().at("task1").at("participant_means"))
+  for (const study::Json& mean : made().at("task1").at("participant_means"))
     scores[mean.at("participant")]
           [mean.at("n_star").get<std::string>() + mean.at("method").get<std::string>()] = mean.at("realism");
   std::vector<double> differences;
@@ -150,7 +151,7 @@ TEST(DescriptionOfTheReport, MethodsByNStarAreDifferencesOfDifferences) {
     differences.push_back((of["16kLoRes"] - of["16kOurs"]) - (of["32kLoRes"] - of["32kOurs"]));
   const auto wanted = stats::t_test_one(differences);
   int found = 0;
-  for (const Json& one : made().at("task1").at("by_n_star")) {
+  for (const study::Json& one : made().at("task1").at("by_n_star")) {
     EXPECT_GE(one.at("p_holm").get<double>(), one.at("p").get<double>());
     if (one.at("score") != "realism" || one.at("a") != "LoRes" || one.at("b") != "Ours") continue;
     EXPECT_NEAR(one.at("difference"), wanted->estimate, 1e-12);
@@ -161,20 +162,20 @@ TEST(DescriptionOfTheReport, MethodsByNStarAreDifferencesOfDifferences) {
 }
 
 TEST(DescriptionOfTheReport, ReliabilityDetectableEffectsAndTimesAreGiven) {
-  const Json& task1 = made().at("task1");
+  const study::Json& task1 = made().at("task1");
   ASSERT_EQ(task1.at("reliability").size(), 4u) << "four items and three, at two n_*";
-  for (const Json& one : task1.at("reliability")) {
+  for (const study::Json& one : task1.at("reliability")) {
     EXPECT_LT(one.at("ci")[0], one.at("alpha"));
     EXPECT_GT(one.at("ci")[1], one.at("alpha"));
     EXPECT_EQ(one.at("n"), people);
   }
-  for (const Json& one : task1.at("detectable")) {
+  for (const study::Json& one : task1.at("detectable")) {
     EXPECT_NEAR(one.at("d_z"), 0.571704834713, 1e-9) << "R's power.t.test for 26";
     EXPECT_NEAR(one.at("points").get<double>(),
                 one.at("d_z").get<double>() * one.at("sd_difference").get<double>(), 1e-12);
   }
   EXPECT_NEAR(made().at("task2").at("detectable").at("share"), 0.778848249382, 1e-9);
-  const Json& times = made().at("response_times");
+  const study::Json& times = made().at("response_times");
   ASSERT_EQ(times.size(), 5u) << "the questions of Task 1; the others have no times";
   EXPECT_EQ(times[0].at("n"), people * 10);
   EXPECT_DOUBLE_EQ(times[0].at("min").get<double>(), 1.5);
@@ -203,10 +204,10 @@ TEST(DescriptionOfTheReport, EachPictureOfTask1HasEveryMethodAndPerson) {
 // Names of methods with a level of effects are long; nothing may be drawn beyond the picture's edges.
 TEST(PageOfTheReport, PicturesHaveRoomForLongNames) {
   const std::string name = "LoRes, rather_long_name_of_foam_and_spray";
-  Json json = made();
-  for (Json& pair : json.at("task2").at("pairs")) pair["a"] = pair["b"] = name;
-  for (Json& one : json.at("task1").at("distributions")) one["method"] = name;
-  const auto html = report::results_page(json);
+  study::Json json = made();
+  for (study::Json& pair : json.at("task2").at("pairs")) pair["a"] = pair["b"] = name;
+  for (study::Json& one : json.at("task1").at("distributions")) one["method"] = name;
+  const auto html = study::report::results_page(json);
   const auto room = [&](const std::string& id, const std::string& mark) {
     const auto at = html.find(mark, html.find("id=\"" + id + "-title\""));
     return std::stod(html.substr(at + mark.size()));
@@ -231,14 +232,14 @@ TEST(PageOfTheReport, TheSolversRowHasTheSolversInterval) {
 }
 
 TEST(PageOfTheReport, EveryPairHasTheIntervalOfItsLocationOrAReason) {
-  for (const Json& pair : made().at("task1").at("comparisons")) {
-    const Json& ranks = pair.at("wilcoxon");
+  for (const study::Json& pair : made().at("task1").at("comparisons")) {
+    const study::Json& ranks = pair.at("wilcoxon");
     EXPECT_EQ(ranks.at("p"), ranks.at("p_exact"));
     EXPECT_EQ(ranks.at("method"), "exact");
     EXPECT_EQ(ranks.at("ci").size(), 2u);
     EXPECT_EQ(ranks.at("ci_reason"), "");
   }
-  for (const Json& all : made().at("task1").at("omnibus")) {
+  for (const study::Json& all : made().at("task1").at("omnibus")) {
     EXPECT_LE(all.at("anova").at("epsilon_hf"), 1);
     EXPECT_GE(all.at("anova").at("epsilon_hf_uncapped"), all.at("anova").at("epsilon_hf"));
   }
@@ -270,12 +271,13 @@ TEST(PageOfTheReport, TimingComesAfterTheResultsAndShowsFailuresAlone) {
   EXPECT_THAT(page(), Not(HasSubstr("id=\"timing-task1-title\""))) << "every showing passed";
   auto study = made_study::task1(6);
   study.sessions[2].trials[3].first.verdict = study::Verdict::Fail;
-  PlanInForce plan;
+  study::PlanInForce plan;
   plan.plan.resamples = 100;
-  const Json json = make_results({{study}, 0}, {"s.db", {TaskKind::Task1}, "", plan}).json;
+  const study::Json json =
+      study::make_results({{study}, 0}, {"s.db", {study::TaskKind::Task1}, "", plan}).json;
   EXPECT_EQ(json.at("timing_totals").at(0).at("fail"), 1);
   EXPECT_EQ(json.at("timing_totals").at(0).at("flawed_cells"), 1);
-  const auto html = report::results_page(json);
+  const auto html = study::report::results_page(json);
   const auto from = html.find("cells in which a showing was degraded or failed</caption>");
   ASSERT_NE(from, std::string::npos);
   const auto table = html.substr(from, html.find("</table>", from) - from);

@@ -9,7 +9,7 @@
 #include <regex>
 #include <set>
 
-#include "apps/stats/report/page.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
@@ -28,7 +28,9 @@ const OrderedJson& example() {
   return json;
 }
 
-html_reader::Page page_of(const OrderedJson& json) { return html_reader::read(report::results_page(json)); }
+html_reader::Page page_of(const OrderedJson& json) {
+  return html_reader::read(study::report::results_page(json));
+}
 
 /// Declarations of the style sheet for a selector: in the @media block that starts with `media`, or outside
 /// all blocks if it is empty.
@@ -59,7 +61,7 @@ std::string style_of(const std::string& html, const std::string& media, const st
 
 TEST(ReportLayout, AWideTableScrollsInABoxOfItsOwnAndAShadeShowsWhere) {
   std::map<std::string, std::size_t> n;
-  const std::string html = report::results_page(example());
+  const std::string html = study::report::results_page(example());
   const auto page = html_reader::read(html);
   for (const auto& element : page.elements)
     if (element.name == "table" || (element.name == "div" && element.attributes.contains("tabindex")))
@@ -107,7 +109,7 @@ TEST(ReportLayout, MethodsStandSideBySideHoweverLongTheirNames) {
   for (OrderedJson& one : json.at("task1").at("methods"))
     if (one == "Ours") one = name;
   for (OrderedJson& one : json.at("task1").at("scenes")) one = name;
-  const auto html = report::results_page(json);
+  const auto html = study::report::results_page(json);
   const double needed = 6.5 * static_cast<double>(name.size());
   for (const char* id : {"box-plot-realism", "person-lines-realism", "scene-lines-realism"})
     EXPECT_GT(picture_width(html, id), needed * 5 * 2) << id << ": five methods at two n_*";
@@ -116,7 +118,7 @@ TEST(ReportLayout, MethodsStandSideBySideHoweverLongTheirNames) {
 
 // In an earlier version stars touched the end of a bracket above them.
 TEST(ReportLayout, NoBracketRunsThroughTheStarsOfAnother) {
-  const std::string html = report::results_page(example());
+  const std::string html = study::report::results_page(example());
   const auto from = html.find("aria-labelledby=\"box-plot-realism");
   const std::string plot = html.substr(from, html.find("</svg>", from) - from);
   const std::regex bracket(R"re(d="M([0-9.]+),([0-9.]+)L\1,([0-9.]+)L([0-9.]+),\3L\4,\2")re");
@@ -136,13 +138,13 @@ TEST(ReportLayout, NoBracketRunsThroughTheStarsOfAnother) {
 }
 
 TEST(ReportLayout, PicturesOfShortNamesFitANarrowScreen) {
-  const std::string html = report::results_page(example());
+  const std::string html = study::report::results_page(example());
   for (const char* id : {"ratings-realism", "flow-pilot"})
     EXPECT_LE(picture_width(html, id), 500 - 2 * 11) << id;
 }
 
 TEST(ReportLayout, ScoresThatWereNotGivenAreNotListed) {
-  const std::string html = report::results_page(example());
+  const std::string html = study::report::results_page(example());
   int listed = 0, left_out = 0;
   const OrderedJson& questions = example().at("descriptives");
   for (std::size_t i = 0; i < questions.size(); ++i) {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "apps/stats/report/field.hpp"
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/tasks/results.hpp"
-#include "apps/stats/tasks/sickness_json.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/analysis/tasks/sickness_json.hpp"
+#include "libstudy/report/field.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
@@ -32,16 +32,18 @@ const OrderedJson& example() {
 /// Both tasks as the program computes them, and a pilot.
 const OrderedJson& made() {
   static const OrderedJson json = [] {
-    PlanInForce plan;
+    study::PlanInForce plan;
     plan.plan.resamples = 200;
     const auto pilot = testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7);
-    auto out =
-        make_results({.protocols = {pilot, made_study::task1(26), made_study::task2(26)},
-                      .withdrawn = 1,
-                      .about_people = made_study::about_people(26)},
-                     {"folder/study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
-            .json;
-    out["sickness"] = sickness_json(made_study::sickness(26), plan.plan);
+    auto out = study::make_results({.protocols = {pilot, made_study::task1(26), made_study::task2(26)},
+                                    .withdrawn = 1,
+                                    .about_people = made_study::about_people(26)},
+                                   {"folder/study.db",
+                                    {study::TaskKind::Pilot, study::TaskKind::Task1, study::TaskKind::Task2},
+                                    "",
+                                    plan})
+                   .json;
+    out["sickness"] = study::sickness_json(made_study::sickness(26), plan.plan);
     return out;
   }();
   return json;
@@ -52,7 +54,7 @@ TEST(IntervalsOfTheReport, ShowOnWhichSideOf0TheyLie) {
   const auto shown = [](double low, double high, int decimals) {
     const OrderedJson ci{low, high};
     std::string out;
-    const std::string html = "<!DOCTYPE html>" + report::interval(report::Field(ci), decimals);
+    const std::string html = "<!DOCTYPE html>" + study::report::interval(study::report::Field(ci), decimals);
     for (const auto& text : html_reader::read(html).texts) out += text.words;
     return out;
   };
@@ -68,7 +70,9 @@ bool holds(const std::string& html, const std::string& words) {
   return html.find(words) != std::string::npos;
 }
 
-html_reader::Page page_of(const OrderedJson& json) { return html_reader::read(report::results_page(json)); }
+html_reader::Page page_of(const OrderedJson& json) {
+  return html_reader::read(study::report::results_page(json));
+}
 
 std::size_t count_fields(const html_reader::Page& page) {
   std::size_t n = 0;
@@ -116,7 +120,7 @@ TEST(ReportPage, FiguresPrintNumbersOfTheJsonAndAxesOnly) {
 }
 
 TEST(ReportPage, ReachesForNothingOutside) {
-  const std::string html = report::results_page(made());
+  const std::string html = study::report::results_page(made());
   for (const char* word : {"http:", "https:", "//", "src=", "@import", "<script", "<link", "javascript",
                            "<iframe", "<img", ">nan", "NaN", ">null"})
     EXPECT_FALSE(holds(html, word)) << word;
@@ -204,7 +208,7 @@ TEST(ReportPage, ShowsWhyWhatIsNotGivenIsNotGiven) {
   test["reason"] = "fewer than two participants";
   json["pilot"] = {{"status", "failed"}, {"reason", "no contour at this level"}};
   json["task2"]["triads"] = {{"refused", "everybody answered one pair twice"}};
-  const std::string html = report::results_page(json);
+  const std::string html = study::report::results_page(json);
   for (const char* reason :
        {"never compared", "one answer only", "all ranks tie", "all differences are equal",
         "fewer than two participants", "no contour at this level", "everybody answered one pair twice"})
@@ -217,7 +221,7 @@ TEST(ReportPage, ATaskWithoutResultsSaysSo) {
   json.erase("task2");
   json["task1"] = {{"refused", "no answer counts"}};
   json.erase("hypotheses");
-  const std::string html = report::results_page(json);
+  const std::string html = study::report::results_page(json);
   EXPECT_TRUE(holds(html, "no answer counts"));
   EXPECT_FALSE(holds(html, "Task 2: preference"));
   EXPECT_NO_THROW(html_reader::read(html));
@@ -230,7 +234,7 @@ TEST(ReportPage, WordsOfTheStudyCannotBreakIt) {
   json["study"]["database"] = nasty;
   json["study"]["displays"] = {{nasty, 3}};
   json["task1"]["cells"][0]["method"] = nasty;
-  const std::string html = report::results_page(json);
+  const std::string html = study::report::results_page(json);
   EXPECT_FALSE(holds(html, "<script"));
   EXPECT_NO_THROW(html_reader::read(html));
 }
@@ -238,19 +242,19 @@ TEST(ReportPage, WordsOfTheStudyCannotBreakIt) {
 TEST(ReportPage, SimulatedAndTestDataAreNamedFirst) {
   auto json = made();
   json["study"]["protocols"][1]["test_data"] = true;
-  const std::string html = report::results_page(json);
+  const std::string html = study::report::results_page(json);
   EXPECT_LT(html.find("Simulated participants"), html.find("<h2"));
   EXPECT_LT(html.find("Test data."), html.find("<h2"));
 }
 
 TEST(ReportPage, OnlyWhatABundleHoldsIsCalledPreregistered) {
   auto json = example();
-  EXPECT_FALSE(holds(report::results_page(json), ">Preregistered<"));
+  EXPECT_FALSE(holds(study::report::results_page(json), ">Preregistered<"));
   json["preregistration"] = {{"sha256", "ab"},
                              {"tasks", {{"task1", true}, {"task2", false}}},
                              {"summary", "differs"},
                              {"differences", {"protocol task2 was not preregistered"}}};
-  const std::string html = report::results_page(json);
+  const std::string html = study::report::results_page(json);
   EXPECT_TRUE(holds(html, "protocol task2 was not preregistered"));
   std::size_t n = 0;
   for (auto at = html.find(">Preregistered<"); at != std::string::npos;
@@ -260,9 +264,9 @@ TEST(ReportPage, OnlyWhatABundleHoldsIsCalledPreregistered) {
 }
 
 OrderedJson results_of(const study::TaskProtocol& protocol) {
-  PlanInForce plan;
+  study::PlanInForce plan;
   plan.plan.resamples = 100;
-  return make_results({{protocol}, 0}, {"s.db", {TaskKind::Task1}, "", plan}).json;
+  return study::make_results({{protocol}, 0}, {"s.db", {study::TaskKind::Task1}, "", plan}).json;
 }
 
 TEST(ReportPage, EveryParticipantIsInOneBoxOfTheFlow) {
@@ -280,7 +284,7 @@ TEST(ReportPage, EveryParticipantIsInOneBoxOfTheFlow) {
   EXPECT_EQ(flow.at("no_answer"), 2);
   EXPECT_EQ(flow.at("excluded_participants"), 1);
   EXPECT_EQ(flow.at("analysed"), 3) << "one of them did not come back";
-  const auto html = report::results_page(json);
+  const auto html = study::report::results_page(json);
   for (const char* box : {"participants in them", "people without an answer to analyse",
                           "people left out by rule or hand", "participants analysed"})
     EXPECT_TRUE(holds(html, box)) << box;
@@ -298,8 +302,8 @@ TEST(ReportPage, TheBannerCountsSimulatedPeopleThatAreLeftOutToo) {
 }
 
 TEST(ReportPage, RefusesAnotherSchema) {
-  EXPECT_THROW(report::results_page({{"schema", "vip-results/2"}}), base::Error);
-  EXPECT_THROW(report::results_page(OrderedJson::array()), base::Error);
+  EXPECT_THROW(study::report::results_page({{"schema", "vip-results/2"}}), base::Error);
+  EXPECT_THROW(study::report::results_page(OrderedJson::array()), base::Error);
 }
 
 }  // namespace

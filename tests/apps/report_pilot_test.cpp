@@ -6,10 +6,10 @@
 #include <limits>
 #include <set>
 
-#include "apps/stats/ptpe/estimates_json.hpp"
-#include "apps/stats/ptpe/fit_text.hpp"
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "apps/stats/fit_text.hpp"
+#include "libstudy/analysis/ptpe/estimates_json.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/report/page.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
 #include "tests/apps/made_task_study.hpp"
@@ -25,18 +25,21 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using testing_pilot::simulated_pilot;
 
-Json results_of(const std::vector<study::TaskProtocol>& protocols, const stats::ExclusionRules& rules = {}) {
-  PlanInForce plan;
+study::Json results_of(const std::vector<study::TaskProtocol>& protocols,
+                       const stats::ExclusionRules& rules = {}) {
+  study::PlanInForce plan;
   plan.plan.exclusions = rules;
   plan.plan.resamples = 200;
-  return make_results({protocols, 0}, {"s.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
+  return study::make_results(
+             {protocols, 0},
+             {"s.db", {study::TaskKind::Pilot, study::TaskKind::Task1, study::TaskKind::Task2}, "", plan})
       .json;
 }
 
 /// The page's text without its tags.
-std::string words_of(const Json& json) {
+std::string words_of(const study::Json& json) {
   std::string out;
-  for (const auto& text : html_reader::read(report::results_page(json)).texts)
+  for (const auto& text : html_reader::read(study::report::results_page(json)).texts)
     if (!text.within("style")) out += text.words;
   return out;
 }
@@ -55,7 +58,7 @@ TEST(ReportPilot, WhatWasLeftOutByHandAndByRuleIsListed) {
   trials[5].excluded = "the phone rang";
   trials[9].first.verdict = study::Verdict::Fail;
   trials[9].first.reason = "cut after 8 s";
-  const Json json = results_of({pilot});
+  const study::Json json = results_of({pilot});
   EXPECT_EQ(json.at("flow").at("pilot").at("trials_excluded"), 2);
   EXPECT_EQ(json.at("pilot").at("n_ratings"), 8 * 21 - 2);
   const auto page = words_of(json);
@@ -69,8 +72,8 @@ TEST(ReportPilot, GazeDisplayFlowAndTimingArePrintedAsForTheTasks) {
   pilot.sessions[1].gaze_source = "tracked";
   pilot.sessions[2].trials[9].first.verdict = study::Verdict::Fail;
   pilot.sessions[3].state = "stopped";
-  const Json json = results_of({pilot, made_study::task1(6)});
-  const auto html = report::results_page(json);
+  const study::Json json = results_of({pilot, made_study::task1(6)});
+  const auto html = study::report::results_page(json);
   const auto page = words_of(json);
   EXPECT_THAT(page,
               HasSubstr("Sessions of Pilot with analysed answers by source of gaze: mouse: 7, tracked: 1; "
@@ -93,7 +96,7 @@ TEST(ReportPilot, GazeDisplayFlowAndTimingArePrintedAsForTheTasks) {
 TEST(ReportPilot, ThePapersTwoLevelsStandOnThePapersScaleAlone) {
   const auto levels = [](const study::TaskProtocol& pilot) {
     std::set<double> out;
-    const Json json = results_of({pilot});
+    const study::Json json = results_of({pilot});
     for (const auto& one : json.at("pilot").at("estimators")) out.insert(one.at("level").get<double>());
     return out;
   };
@@ -109,8 +112,8 @@ TEST(ReportPilot, WhoIsSimulatedHasNoTimes) {
   for (auto& session : pilot.sessions)
     for (auto& trial : session.trials) trial.answers[0].response_time_s = 0;
   const std::string why = "simulated participants take no time to answer";
-  const Json json = results_of({pilot});
-  const Json& times = json.at("response_times").at(0);
+  const study::Json json = results_of({pilot});
+  const study::Json& times = json.at("response_times").at(0);
   EXPECT_EQ(times.at("n"), 8 * 21);
   for (const char* figure : {"mean", "sd", "median", "q1", "q3", "min", "max"})
     EXPECT_TRUE(times.at(figure).is_null()) << figure;
@@ -126,7 +129,7 @@ TEST(ReportPilot, TheRulesOfTheTasksAreAppliedAndNamed) {
   pilot.sessions[1].catches = {{"attention", 2, 5}};
   stats::ExclusionRules rules;
   rules.straight_lining_answers = 8;
-  const Json json = results_of({pilot, made_study::task2(6)}, rules);
+  const study::Json json = results_of({pilot, made_study::task2(6)}, rules);
   EXPECT_EQ(json.at("pilot").at("n_participants"), 6);
   EXPECT_EQ(json.at("exclusions").at(0).at("rule"), "straight_lining");
   EXPECT_EQ(json.at("exclusions").at(1).at("rule"), "catch");
@@ -142,7 +145,7 @@ TEST(ReportPilot, APartOfWhichNothingIsLeftStillSaysWhy) {
     for (auto& trial : session.trials) trial.excluded = "the screen was off";
   auto task = made_study::task1(4);
   for (auto& session : task.sessions) session.catches = {{"attention", 2, 5}};
-  const Json json = results_of({pilot, task});
+  const study::Json json = results_of({pilot, task});
   EXPECT_EQ(json.at("exclusions").size(), 3 * 21 + 4u);
   EXPECT_EQ(json.at("flow").at("task1").at("excluded_participants"), 4);
   EXPECT_EQ(json.at("flow").at("pilot").at("excluded_participants"), 3);
@@ -159,7 +162,7 @@ TEST(ReportPilot, TheBannerNamesEveryObserverAndCountsEachPersonOnce) {
     task.sessions[i].participant = "p" + std::to_string(i + 4);  // p4 to p7 took part in the pilot
     task.sessions[i].observer = "frames:grain=4";
   }
-  const Json json = results_of({pilot, task});
+  const study::Json json = results_of({pilot, task});
   EXPECT_EQ(json.at("study").at("simulated"), 10);
   EXPECT_THAT(
       words_of(json),
@@ -177,7 +180,7 @@ TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
   test.sha256 = std::string(64, 'f');
   test.name = "rehearsal";
   for (auto& session : test.sessions) session.test_data = true;
-  const Json json = results_of({test, pilot_of_people()});
+  const study::Json json = results_of({test, pilot_of_people()});
   EXPECT_EQ(json.at("pilot").at("n_participants"), 8);
   EXPECT_THAT(
       words_of(json),
@@ -187,9 +190,9 @@ TEST(ReportPilot, AProtocolOfTestDataThatStepsBackIsNamed) {
 
 /// The text that vip-stats fit-ptpe prints for the pilot of these results.
 std::string terminal_of(const study::TaskProtocol& pilot) {
-  const auto data = collect_task({{pilot}, 0}, {TaskKind::Pilot, {}, {}});
+  const auto data = study::collect_task({{pilot}, 0}, {study::TaskKind::Pilot, {}, {}});
   ::testing::internal::CaptureStdout();
-  print_fit(fit_pilot(*data, 4, {200, 1, 0.95}));
+  print_fit(study::fit_pilot(*data, 4, {200, 1, 0.95}));
   return ::testing::internal::GetCapturedStdout();
 }
 
@@ -202,12 +205,12 @@ int count_of(const std::string& text, const std::string& words) {
 // No protocol shows more than 1000 frames/s, so an interval that reaches beyond has no upper bound.
 TEST(ReportPilot, AnIntervalWithoutUpperBoundSaysSoOnPageAndTerminal) {
   const auto pilot = simulated_pilot("ptpe:a=30,b=0.03,slope=0.04,noise=2", 6, 2);
-  Json json = results_of({pilot});
-  const auto page = html_reader::read(report::results_page(json));
+  study::Json json = results_of({pilot});
+  const auto page = html_reader::read(study::report::results_page(json));
   std::set<std::string> printed;
   for (const auto& text : page.texts) printed.insert(text.attribute("data-field"));
   int unbounded = 0, bounded = 0, on_terminal = 0;
-  const Json& bands = json.at("pilot").at("bands");
+  const study::Json& bands = json.at("pilot").at("bands");
   for (std::size_t i = 0; i < bands.size(); ++i) {
     for (const char* key : {"ci", "simultaneous_ci", "solver_ci"}) {
       if (!bands[i].at(key).is_array()) continue;
@@ -229,16 +232,18 @@ TEST(ReportPilot, AnIntervalWithoutUpperBoundSaysSoOnPageAndTerminal) {
 // The same for infinite ends; JSON cannot represent infinity.
 TEST(ReportPilot, AnInfiniteEndIsAWordInTheResultsAndSaidOnThePage) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  Json estimate;
-  add_estimate(estimate, {MainFit{24, 0.02}, MainSpread{{20, infinite}, {-infinite, 0.5}, 1, 1, false}});
-  EXPECT_EQ(estimate.at("a_ci"), Json({20, "Inf"}));
-  EXPECT_EQ(estimate.at("b_ci"), Json({"-Inf", 0.5}));
-  Json json = results_of({pilot_of_people()});
+  study::Json estimate;
+  study::add_estimate(
+      estimate, {study::MainFit{24, 0.02}, study::MainSpread{{20, infinite}, {-infinite, 0.5}, 1, 1, false}});
+  EXPECT_EQ(estimate.at("a_ci"), study::Json({20, "Inf"}));
+  EXPECT_EQ(estimate.at("b_ci"), study::Json({"-Inf", 0.5}));
+  study::Json json = results_of({pilot_of_people()});
   json.at("pilot").update(estimate);
   const auto page = words_of(json);
   EXPECT_EQ(count_of(page, "[20.00, no upper bound]"), 3) << "sentence, table and figure";
   EXPECT_EQ(count_of(page, "[\u2212\u221e, 0.5000]"), 3);
-  EXPECT_THAT(report_walk::wrong_fields(html_reader::read(report::results_page(json)), json), IsEmpty());
+  EXPECT_THAT(report_walk::wrong_fields(html_reader::read(study::report::results_page(json)), json),
+              IsEmpty());
 }
 
 }  // namespace

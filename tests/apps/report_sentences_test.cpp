@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
-#include "apps/stats/tasks/results.hpp"
-#include "apps/stats/tasks/sickness_json.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/analysis/tasks/sickness_json.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
@@ -29,26 +29,28 @@ using report_sentences::Case;
 using report_sentences::cases;
 
 /// A study with a pilot and both tasks, and something excluded of Task 1.
-const Json& whole_study() {
-  static const Json json = [] {
-    PlanInForce plan;
+const study::Json& whole_study() {
+  static const study::Json json = [] {
+    study::PlanInForce plan;
     plan.plan.resamples = 200;
     auto task1 = made_study::task1(16);
     task1.sessions[0].trials[2].excluded = "looked away";
-    auto out = make_results({.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 12, 7), task1,
-                                           made_study::task2(16)},
-                             .withdrawn = 1,
-                             .about_people = made_study::about_people(16)},
-                            {"study.db", {TaskKind::Pilot, TaskKind::Task1, TaskKind::Task2}, "", plan})
-                   .json;
-    out["sickness"] = sickness_json(made_study::sickness(16), plan.plan);
+    auto out =
+        study::make_results(
+            {.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 12, 7), task1,
+                           made_study::task2(16)},
+             .withdrawn = 1,
+             .about_people = made_study::about_people(16)},
+            {"study.db", {study::TaskKind::Pilot, study::TaskKind::Task1, study::TaskKind::Task2}, "", plan})
+            .json;
+    out["sickness"] = study::sickness_json(made_study::sickness(16), plan.plan);
     return out;
   }();
   return json;
 }
 
 /// Key of a row: rows with the same key print the same sentences.
-std::string kind_of(const Json& row) {
+std::string kind_of(const study::Json& row) {
   std::string kind;
   for (const char* key : {"task", "score", "question", "n_star", "level"})
     if (row.contains(key)) kind += row.at(key).dump() + " ";
@@ -56,21 +58,21 @@ std::string kind_of(const Json& row) {
 }
 
 /// Keeps two rows of each kind in tables of more than ten, so that a page is made in milliseconds.
-void shorten(Json& json) {
+void shorten(study::Json& json) {
   if (json.is_array() && json.size() > 10 && json.front().is_object()) {
     std::map<std::string, int> seen;
-    Json rows = Json::array();
-    for (Json& row : json)
+    study::Json rows = study::Json::array();
+    for (study::Json& row : json)
       if (++seen[kind_of(row)] <= 2) rows.push_back(std::move(row));
     json = std::move(rows);
   }
   if (!json.is_structured()) return;
-  for (Json& part : json) shorten(part);
+  for (study::Json& part : json) shorten(part);
 }
 
-const Json& short_study() {
-  static const Json json = [] {
-    Json out = whole_study();
+const study::Json& short_study() {
+  static const study::Json json = [] {
+    study::Json out = whole_study();
     shorten(out);
     return out;
   }();
@@ -80,7 +82,7 @@ const Json& short_study() {
 using Sentences = std::set<std::string>;
 
 /// The sentences on the page; none if the page is refused.
-Sentences sentences_on_page(const Json& json) {
+Sentences sentences_on_page(const study::Json& json) {
   Sentences out;
   try {
     for (const auto& block : blocks_of(json))
@@ -92,7 +94,7 @@ Sentences sentences_on_page(const Json& json) {
 
 /// The same, but with a cache for unchanged results: many cases change nothing before they make their
 /// sentence false.
-Sentences printed(const Json& json) {
+Sentences printed(const study::Json& json) {
   static const Sentences unchanged = sentences_on_page(short_study());
   return json == short_study() ? unchanged : sentences_on_page(json);
 }
@@ -101,7 +103,7 @@ bool matches(const Case& one, const std::string& sentence) {
   return fnmatch(one.pattern.c_str(), sentence.c_str(), 0) == 0;
 }
 
-bool prints(const Json& json, const Case& one) {
+bool prints(const study::Json& json, const Case& one) {
   const Sentences all = printed(json);
   return std::any_of(all.begin(), all.end(), [&](const auto& sentence) { return matches(one, sentence); });
 }
@@ -113,7 +115,7 @@ TEST(ReportSentences, TheShortStudyPrintsTheSentencesOfTheWholeOne) {
 
 TEST(ReportSentences, NoneIsPrintedWhereItWouldBeFalse) {
   for (const Case& one : cases()) {
-    Json json = short_study();
+    study::Json json = short_study();
     one.make_true(json);
     EXPECT_TRUE(prints(json, one)) << "never printed: " << one.pattern;
     one.make_false(json);
@@ -124,7 +126,7 @@ TEST(ReportSentences, NoneIsPrintedWhereItWouldBeFalse) {
 TEST(ReportSentences, EverySentenceHasSuchACase) {
   Sentences all = printed(short_study());
   for (const Case& one : cases()) {
-    Json json = short_study();
+    study::Json json = short_study();
     one.make_true(json);
     all.merge(printed(json));
     one.make_false(json);
@@ -141,7 +143,7 @@ TEST(ReportSentences, EverySentenceHasSuchACase) {
 }
 
 /// Changes a value to another one of the same type.
-void change(Json& value) {
+void change(study::Json& value) {
   if (value.is_boolean()) {
     value = !value.get<bool>();
   } else if (value.is_number()) {
@@ -159,8 +161,8 @@ TEST(ReportSentences, EveryValueQuotedIsTheResultsOwn) {
   for (const auto& block : all) {
     if (block.fields.empty() || !seen.insert(block.form).second) continue;
     for (const auto& field : block.fields) {
-      Json json = short_study();
-      Json& value = json.at(Json::json_pointer(field));
+      study::Json json = short_study();
+      study::Json& value = json.at(study::Json::json_pointer(field));
       if (field == "/schema" || value.is_array() || (value.is_string() && value.get<std::string>().empty()))
         continue;
       change(value);
@@ -176,12 +178,12 @@ TEST(ReportSentences, EveryValueQuotedIsTheResultsOwn) {
 // "unless another share stands beside them": intervals of equivalence and of H2 and H3 hold 90 %.
 TEST(ReportSentences, IntervalsOfAnotherShareSaySo) {
   std::size_t quoted = 0;
-  const Json& json = whole_study();
-  const auto page = html_reader::read(report::results_page(json));
+  const study::Json& json = whole_study();
+  const auto page = html_reader::read(study::report::results_page(json));
   std::set<std::string> said;
   for (const auto& text : page.texts) said.insert(text.attribute("data-field"));
   for (std::size_t h = 0; h < json.at("hypotheses").size(); ++h) {
-    const Json& tests = json.at("hypotheses")[h].at("tests");
+    const study::Json& tests = json.at("hypotheses")[h].at("tests");
     for (std::size_t t = 0; t < tests.size(); ++t) {
       if (tests[t].at("ci_confidence") == json.at("plan").at("confidence")) continue;
       ++quoted;

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "libstudy/store/journal_file.hpp"
-#include "libstudy/store/writer_lock.hpp"
+#include "libstudy/store/file/journal_file.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {

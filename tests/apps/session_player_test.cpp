@@ -43,9 +43,10 @@ class Played : public ::testing::Test {
     setup_.virtual_clock = true;
     setup_.clock = std::make_unique<study::VirtualClock>();
     setup_.display = std::make_unique<study::NullDisplay>();
-    RunOptions options;
+    study::RunOptions options;
     options.display = "none";
-    setup_.stimuli = std::make_unique<CellStimuli>(options, protocol_, stats::PtpeModel{}, Viewing{});
+    setup_.stimuli =
+        std::make_unique<study::CellStimuli>(options, protocol_, stats::PtpeModel{}, study::Viewing{});
     auto person = std::make_unique<Scripted>();
     person_ = person.get();
     person_->says = {{"age", study::test::score(40)}, {"remarks", study::test::words("")}};
@@ -79,7 +80,7 @@ class Played : public ::testing::Test {
 
   ::test::TemporaryFolder folder_;
   const study::Protocol protocol_ = consented();
-  SessionSetup setup_;
+  study::SessionSetup setup_;
   Scripted* person_ = nullptr;  ///< owned by setup_
   PlayOptions play_;
   std::string out_;  ///< what was printed

@@ -1,12 +1,12 @@
 /// vip-study run --setting: the cells that use the file's settings, refusals, and the record of the settings.
-#include "apps/study/session_settings.hpp"
+#include "libstudy/runner/session_settings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/study/cell_stimuli.hpp"
-#include "apps/study/run_options.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/runner/cell_stimuli.hpp"
+#include "libstudy/runner/run_options.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/measured_setting.hpp"
@@ -25,11 +25,11 @@ using ::testing::ThrowsMessage;
 
 /// A file for this method and n_*, with six projections.
 std::string setting_text(sim::MethodKind method, std::int64_t n_star, double frames_per_s = 60) {
-  auto out = test::measured_setting(usual_setting("SingleDam", method, n_star));
-  out.setting[SolverKnob::Rate] = frames_per_s;
-  out.setting[SolverKnob::Iterations] = 6;
-  out.setting[SolverKnob::Beta] = 0.9;
-  return format_setting_file(out);
+  auto out = test::measured_setting(sim::usual_setting("SingleDam", method, n_star));
+  out.setting[sim::SolverKnob::Rate] = frames_per_s;
+  out.setting[sim::SolverKnob::Iterations] = 6;
+  out.setting[sim::SolverKnob::Beta] = 0.9;
+  return sim::format_setting_file(out);
 }
 
 /// The pilot, which shows HiRes at 32k and steps of 1/60 s.
@@ -39,21 +39,21 @@ study::Protocol protocol_of(const std::string& from = "name", const std::string&
 }
 
 void refused(const std::vector<std::string>& texts, const char* why) {
-  EXPECT_THAT([&] { SessionSettings(texts, protocol_of(), "best.toml"); },
+  EXPECT_THAT([&] { study::SessionSettings(texts, protocol_of(), "best.toml"); },
               ThrowsMessage<base::Error>(AllOf(HasSubstr("best.toml"), HasSubstr(why))));
 }
 
 TEST(SessionSettings, HoldForTheCellsOfTheirMethodAndSize) {
   const std::string text = setting_text(sim::MethodKind::HiRes, 32 * 1024);
-  const SessionSettings settings({text}, protocol_of(), "best.toml");
+  const study::SessionSettings settings({text}, protocol_of(), "best.toml");
   const auto* file = settings.of({"any scene", "hires", "32k"});
   ASSERT_NE(file, nullptr);
-  EXPECT_EQ(file->setting[SolverKnob::Iterations], 6);
+  EXPECT_EQ(file->setting[sim::SolverKnob::Iterations], 6);
   EXPECT_EQ(settings.of({"any scene", "LoRes", "32k"}), nullptr);
   EXPECT_EQ(settings.of({"any scene", "HiRes", "16k"}), nullptr);
   EXPECT_THAT(settings.description(), AllOf(HasSubstr(base::sha256_hex(text)), HasSubstr("iterations=6")));
-  EXPECT_TRUE(SessionSettings().empty());
-  EXPECT_EQ(SessionSettings().description(), "");
+  EXPECT_TRUE(study::SessionSettings().empty());
+  EXPECT_EQ(study::SessionSettings().description(), "");
 }
 
 TEST(SessionSettings, WhatTheProtocolDoesNotShowIsRefused) {
@@ -66,8 +66,8 @@ TEST(SessionSettings, WhatTheProtocolDoesNotShowIsRefused) {
 }
 
 TEST(SessionSettings, NotesSayWhereTheFileIsFromAnotherScene) {
-  const SessionSettings settings({setting_text(sim::MethodKind::HiRes, 32 * 1024)}, protocol_of(),
-                                 "best.toml");
+  const study::SessionSettings settings({setting_text(sim::MethodKind::HiRes, 32 * 1024)}, protocol_of(),
+                                        "best.toml");
   const auto notes = settings.notes(protocol_of());
   ASSERT_THAT(notes, SizeIs(2));
   EXPECT_THAT(notes[0], HasSubstr("9.75 ms in 95 % of the frames"));
@@ -75,15 +75,15 @@ TEST(SessionSettings, NotesSayWhereTheFileIsFromAnotherScene) {
 }
 
 TEST(RunOptionsText, KeepsTheSettingsInFullAndNoticesAChange) {
-  RunOptions options;
+  study::RunOptions options;
   options.clock = "real";
   options.settings = {setting_text(sim::MethodKind::HiRes, 4096), setting_text(sim::MethodKind::Ours, 4096)};
-  const std::string text = format_run_options(options);
-  EXPECT_EQ(parse_run_options(text, "a.db"), options);
-  EXPECT_THAT([&] { parse_run_options(replaced(text, "iterations = 6", "iterations = 8"), "a.db"); },
+  const std::string text = study::format_run_options(options);
+  EXPECT_EQ(study::parse_run_options(text, "a.db"), options);
+  EXPECT_THAT([&] { study::parse_run_options(replaced(text, "iterations = 6", "iterations = 8"), "a.db"); },
               ThrowsMessage<base::Error>(HasSubstr("a.db")));
   options.settings.clear();
-  EXPECT_THAT(format_run_options(options), Not(HasSubstr("settings")));
+  EXPECT_THAT(study::format_run_options(options), Not(HasSubstr("settings")));
 }
 
 /// Two methods in a small scene that settles at once.
@@ -117,13 +117,14 @@ class SettingInStudy : public ::testing::Test {
 };
 
 TEST_F(SettingInStudy, TheFluidOfItsCellsRunsAtItsNumbersAndThatOfOthersDoesNot) {
-  RunOptions options;
+  study::RunOptions options;
   options.display = "headless";
   options.backend = "cpu";
   const auto protocol = study::read_protocol(protocol_);
-  CellStimuli stimuli(options, protocol, {}, {}, {}, SessionSettings({text_}, protocol, "best.toml"));
+  study::CellStimuli stimuli(options, protocol, {}, {}, {},
+                             study::SessionSettings({text_}, protocol, "best.toml"));
   for (const auto& cell : protocol.design.cells) {
-    auto& fluid = dynamic_cast<LiveFluid&>(stimuli.stimulus(cell));
+    auto& fluid = dynamic_cast<study::LiveFluid&>(stimuli.stimulus(cell));
     fluid.start(0);
     const bool its_own = cell.stimulus.method == "Ours-TSp";
     EXPECT_EQ(fluid.simulation().live_numbers().iterations, its_own ? 6 : 2) << cell.stimulus.method;

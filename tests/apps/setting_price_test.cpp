@@ -1,13 +1,13 @@
 /// Time and error of one setting in a sweep file.
-#include "apps/common/sweep/setting_price.hpp"
+#include "libstudy/sweep/setting_price.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "apps/common/named_scenes.hpp"
 #include "apps/view/options.hpp"
+#include "libsim/setting/named_scenes.hpp"
 #include "tests/apps/small_dam.hpp"
 #include "tests/apps/small_sweep.hpp"
 #include "tests/apps/table_test_support.hpp"
@@ -24,27 +24,27 @@ using ::testing::Not;
 using ::testing::SizeIs;
 
 const std::string& scene_sha256() {
-  static const std::string out = scenes_of("SingleDam").front().scene.sha256;
+  static const std::string out = sim::scenes_of("SingleDam").front().scene.sha256;
   return out;
 }
 
-std::string lines(const SettingPrices& prices) {
+std::string lines(const study::SettingPrices& prices) {
   std::string out;
-  for (const auto& line : in_words(prices)) out += line + "\n";
+  for (const auto& line : study::in_words(prices)) out += line + "\n";
   return out;
 }
 
 TEST(SettingPrice, IsTheRowOfExactlyThisSettingBesideHiRes) {
-  const auto tables = sweep_tables(small_sweep());
+  const auto tables = study::sweep_tables(small_sweep());
   ASSERT_THAT(tables.tables, SizeIs(1));
   EXPECT_EQ(tables.tables[0].plan.n_star, 512);
   EXPECT_EQ(tables.tables[0].plan.seconds, 2);
   auto setting = hires_at(512);
   setting.scene = "a name of no sweep";  // the file's hash identifies the scene
-  setting[SolverKnob::Iterations] = 8;
-  const auto prices = prices_of(tables, setting, scene_sha256());
+  setting[sim::SolverKnob::Iterations] = 8;
+  const auto prices = study::prices_of(tables, setting, scene_sha256());
   ASSERT_THAT(prices.found, SizeIs(1));
-  EXPECT_EQ(prices.found[0].row->setting[SolverKnob::Iterations], 8);
+  EXPECT_EQ(prices.found[0].row->setting[sim::SolverKnob::Iterations], 8);
   ASSERT_NE(prices.found[0].hires, nullptr);
   EXPECT_EQ(prices.found[0].hires->setting, hires_at(512));
   // The usual HiRes takes 10 to 17 ms, this one 14 to 21.
@@ -55,52 +55,54 @@ TEST(SettingPrice, IsTheRowOfExactlyThisSettingBesideHiRes) {
 }
 
 TEST(SettingPrice, HiResItselfIsWhatOthersAreHeldAgainst) {
-  const auto tables = sweep_tables(small_sweep());
-  EXPECT_THAT(lines(prices_of(tables, hires_at(512), scene_sha256())),
+  const auto tables = study::sweep_tables(small_sweep());
+  EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), scene_sha256())),
               AllOf(HasSubstr("which others are compared with"), Not(HasSubstr("times the time"))));
 }
 
 TEST(SettingPrice, SaysWhichKnobsDifferWhereNoRowIsTheSetting) {
-  const auto tables = sweep_tables(small_sweep());
+  const auto tables = study::sweep_tables(small_sweep());
   auto setting = hires_at(512);
-  setting[SolverKnob::Substeps] = 3;
-  EXPECT_EQ(lines(prices_of(tables, setting, scene_sha256())),
+  setting[sim::SolverKnob::Substeps] = 3;
+  EXPECT_EQ(lines(study::prices_of(tables, setting, scene_sha256())),
             "not measured: the sweep's nearest row of HiRes differs in substeps (here 3, there 0)\n");
-  setting[SolverKnob::Iterations] = 8;  // the row with 8 is nearer than the usual one
-  EXPECT_THAT(lines(prices_of(tables, setting, scene_sha256())), Not(HasSubstr("projections")));
-  EXPECT_EQ(lines(prices_of(tables, usual_setting("SingleDam", sim::MethodKind::LoRes, 512), scene_sha256())),
+  setting[sim::SolverKnob::Iterations] = 8;  // the row with 8 is nearer than the usual one
+  EXPECT_THAT(lines(study::prices_of(tables, setting, scene_sha256())), Not(HasSubstr("projections")));
+  EXPECT_EQ(lines(study::prices_of(tables, sim::usual_setting("SingleDam", sim::MethodKind::LoRes, 512),
+                                   scene_sha256())),
             "not measured: the sweep has no row of LoRes\n");
-  EXPECT_THAT(lines(prices_of(tables, hires_at(512), "beef")), HasSubstr("no table of this scene file"));
+  EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), "beef")),
+              HasSubstr("no table of this scene file"));
 }
 
 // Ours-TSp without a fixed beta: no row's beta is the one in use.
 TEST(SettingPrice, ABetaThatFollowsTheFrameRateIsNoRowsBeta) {
   auto cells = small_sweep();
-  auto accelerated = usual_setting("SingleDam", sim::MethodKind::OursTsp, 512);
-  accelerated[SolverKnob::Beta] = 0.7866;
+  auto accelerated = sim::usual_setting("SingleDam", sim::MethodKind::OursTsp, 512);
+  accelerated[sim::SolverKnob::Beta] = 0.7866;
   cells.push_back(test::stored(accelerated, 1, test::run_with(1.2, 10, 5)));
-  const auto tables = sweep_tables(cells);
-  EXPECT_THAT(prices_of(tables, accelerated, scene_sha256()).found, SizeIs(1));
+  const auto tables = study::sweep_tables(cells);
+  EXPECT_THAT(study::prices_of(tables, accelerated, scene_sha256()).found, SizeIs(1));
   auto live = accelerated;
-  live[SolverKnob::Beta] = std::numeric_limits<double>::quiet_NaN();
+  live[sim::SolverKnob::Beta] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(
-      lines(prices_of(tables, live, scene_sha256())),
+      lines(study::prices_of(tables, live, scene_sha256())),
       "not measured: the sweep's nearest row of Ours-TSp differs in beta (here following the frame rate, "
       "there 0.7866)\n");
 }
 
 TEST(SettingPrice, MachinesProgramsAndScenesStayApart) {
   auto cells = small_sweep();
-  const auto alone = lines(prices_of(sweep_tables(cells), hires_at(512), scene_sha256()));
+  const auto alone = lines(study::prices_of(study::sweep_tables(cells), hires_at(512), scene_sha256()));
   auto others = small_sweep();
   for (auto& cell : others) {
     cell.origin.machine = "another";
     for (auto& frame : cell.run.frames) frame.solve_ms *= 10;
   }
   cells.insert(cells.end(), others.begin(), others.end());
-  const auto tables = sweep_tables(cells);
+  const auto tables = study::sweep_tables(cells);
   ASSERT_THAT(tables.tables, SizeIs(2));
-  const auto both = lines(prices_of(tables, hires_at(512), scene_sha256()));
+  const auto both = lines(study::prices_of(tables, hires_at(512), scene_sha256()));
   EXPECT_THAT(both,
               AllOf(HasSubstr(alone), HasSubstr("135.00 ms a frame"), HasSubstr("measured on another")));
 }
@@ -108,43 +110,44 @@ TEST(SettingPrice, MachinesProgramsAndScenesStayApart) {
 TEST(SettingPrice, WhatMakesNoTableSaysWhy) {
   auto changed = small_sweep();
   for (auto& cell : changed) cell.origin.scene_sha256 = "feed";
-  auto tables = sweep_tables(changed);
+  auto tables = study::sweep_tables(changed);
   EXPECT_TRUE(tables.tables.empty());
   EXPECT_THAT(tables.left_out, ElementsAre(HasSubstr("another file than when the sweep ran")));
-  EXPECT_THAT(lines(prices_of(tables, hires_at(512), scene_sha256())), HasSubstr("another file"));
+  EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), scene_sha256())), HasSubstr("another file"));
   auto begun = small_sweep();
   begun.erase(begun.begin());
-  tables = sweep_tables(begun);
+  tables = study::sweep_tables(begun);
   EXPECT_TRUE(tables.tables.empty());
   EXPECT_THAT(tables.left_out, ElementsAre(HasSubstr("no finished reference")));
 }
 
 TEST(SettingPrice, OptionsGiveTheSettingThatTheyRun) {
-  const auto scene = scenes_of("SingleDam").front().scene;
+  const auto scene = sim::scenes_of("SingleDam").front().scene;
   for (const auto& method : sim::all_methods()) {
-    auto setting = usual_setting("SingleDam", method.kind, 512);
-    setting[SolverKnob::Iterations] = 7;
-    setting[SolverKnob::Substeps] = 3;
-    setting[SolverKnob::CoarseCycles] = 1;
-    setting[SolverKnob::Momentum] = 0.25;
-    setting[SolverKnob::Rate] = 90;
-    setting[SolverKnob::Levels] = 3;
-    setting[SolverKnob::Alpha] = 0.5;
-    setting[SolverKnob::Fovea] = 10;
-    setting[SolverKnob::Beta] = 0.67;
-    EXPECT_EQ(to_text(setting_of(scene, to_options(setting, sim::Backend::Cpu, 1))), to_text(setting));
+    auto setting = sim::usual_setting("SingleDam", method.kind, 512);
+    setting[sim::SolverKnob::Iterations] = 7;
+    setting[sim::SolverKnob::Substeps] = 3;
+    setting[sim::SolverKnob::CoarseCycles] = 1;
+    setting[sim::SolverKnob::Momentum] = 0.25;
+    setting[sim::SolverKnob::Rate] = 90;
+    setting[sim::SolverKnob::Levels] = 3;
+    setting[sim::SolverKnob::Alpha] = 0.5;
+    setting[sim::SolverKnob::Fovea] = 10;
+    setting[sim::SolverKnob::Beta] = 0.67;
+    EXPECT_EQ(sim::to_text(sim::setting_of(scene, sim::to_options(setting, sim::Backend::Cpu, 1))),
+              sim::to_text(setting));
   }
   sim::SimulationOptions usual;
   usual.method = sim::MethodKind::Ours;
   usual.n_star = 512;
-  EXPECT_EQ(to_text(setting_of(scene, usual)),
-            to_text(usual_setting("SingleDam", sim::MethodKind::Ours, 512)));
+  EXPECT_EQ(sim::to_text(sim::setting_of(scene, usual)),
+            sim::to_text(sim::usual_setting("SingleDam", sim::MethodKind::Ours, 512)));
   usual.method = sim::MethodKind::OursTsp;
-  EXPECT_TRUE(std::isnan(setting_of(scene, usual)[SolverKnob::Beta]));
+  EXPECT_TRUE(std::isnan(sim::setting_of(scene, usual)[sim::SolverKnob::Beta]));
 }
 
-std::string without_scene(const SolverSetting& setting) {
-  const std::string text = to_text(setting);
+std::string without_scene(const sim::SolverSetting& setting) {
+  const std::string text = sim::to_text(setting);
   return text.substr(text.find(' '));
 }
 
@@ -152,9 +155,9 @@ std::string without_scene(const SolverSetting& setting) {
 TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
   const ::test::TemporaryFolder folder;
   base::write_file_atomically(folder / "dam.toml", test::small_dam);
-  SettingFile file{usual_setting("SingleDam", sim::MethodKind::FovFluid, 64), {}};
-  file.setting[SolverKnob::Substeps] = 3;
-  file.setting[SolverKnob::Beta] = 0.9;
+  sim::SettingFile file{sim::usual_setting("SingleDam", sim::MethodKind::FovFluid, 64), {}};
+  file.setting[sim::SolverKnob::Substeps] = 3;
+  file.setting[sim::SolverKnob::Beta] = 0.9;
   file.measured = {.machine = "a",
                    .program = "b",
                    .scene_sha256 = "c",
@@ -169,7 +172,7 @@ TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
                    .error_high_pct = 1,
                    .seeds = 1,
                    .date_utc = "d"};
-  base::write_file_atomically(folder / "best.toml", format_setting_file(file));
+  base::write_file_atomically(folder / "best.toml", sim::format_setting_file(file));
   ViewOptions options;
   options.scene = folder / "dam.toml";
   options.backend = "cpu";
@@ -179,12 +182,12 @@ TEST(SettingInForce, IsTheFilesOrThatOfTheOptions) {
   options.method = "HiRes";  // like a choice in the panel
   const auto hires = prepare_fluid(options);
   EXPECT_EQ(hires.setting.method, sim::MethodKind::HiRes);
-  EXPECT_EQ(hires.setting[SolverKnob::Substeps], 0) << "the file's numbers hold no more";
+  EXPECT_EQ(hires.setting[sim::SolverKnob::Substeps], 0) << "the file's numbers hold no more";
   EXPECT_TRUE(price_lines(options, hires.setting, hires.scene).empty()) << "no sweep was given";
-  options.sweep = std::make_shared<const SweepTables>(sweep_tables(small_sweep()));
+  options.sweep = std::make_shared<const study::SweepTables>(study::sweep_tables(small_sweep()));
   EXPECT_THAT(price_lines(options, hires.setting, hires.scene),
               ElementsAre(HasSubstr("no table of this scene")));
-  const auto dam = scenes_of("SingleDam").front().scene;
+  const auto dam = sim::scenes_of("SingleDam").front().scene;
   EXPECT_THAT(price_lines(options, hires_at(512), dam), SizeIs(4));
   options.preset = "paper";
   EXPECT_THAT(price_lines(options, hires_at(512), dam), ElementsAre(HasSubstr("not the paper's")));

@@ -4,9 +4,9 @@
 
 #include <map>
 
-#include "apps/stats/report/page.hpp"
-#include "apps/stats/tasks/csv.hpp"
-#include "apps/stats/tasks/sickness_json.hpp"
+#include "libstudy/analysis/tasks/csv.hpp"
+#include "libstudy/analysis/tasks/sickness_json.hpp"
+#include "libstudy/report/page.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace apps {
@@ -53,13 +53,15 @@ std::vector<SicknessSession> three() {
           session("P03", {page(true, 2)}, {1, 13})};
 }
 
-const Json& score(const Json& sickness, std::size_t i) { return sickness.at(0)["ssq"]["scores"].at(i); }
+const study::Json& score(const study::Json& sickness, std::size_t i) {
+  return sickness.at(0)["ssq"]["scores"].at(i);
+}
 
 TEST(SicknessJson, DescribesAllAndComparesThoseWithBoth) {
-  const Json json = sickness_json(three(), quick_plan());
+  const study::Json json = study::sickness_json(three(), quick_plan());
   ASSERT_THAT(json, SizeIs(1));
   EXPECT_EQ(json[0]["participants"], 3);
-  const Json& total = score(json, 3);
+  const study::Json& total = score(json, 3);
   EXPECT_EQ(total["score"], "total");
   EXPECT_EQ(total["max"], 235.62);
   EXPECT_EQ(total["before"]["n"], 3);
@@ -72,7 +74,7 @@ TEST(SicknessJson, DescribesAllAndComparesThoseWithBoth) {
 }
 
 TEST(SicknessJson, FmsIsToldByBlockAndByAsking) {
-  const Json fms = sickness_json(three(), quick_plan())[0]["fms"];
+  const study::Json fms = study::sickness_json(three(), quick_plan())[0]["fms"];
   EXPECT_EQ(fms["answers"], 8);
   EXPECT_EQ(fms["peak"]["max"], 13);
   EXPECT_EQ(fms["mean"]["median"], 4);
@@ -88,7 +90,7 @@ TEST(SicknessJson, FmsIsToldByBlockAndByAsking) {
 TEST(SicknessJson, AMissingItemIsCountedAndEmptiesItsScales) {
   auto sessions = three();
   sessions[0].ssq[1].answers[6] = {};  // sweating
-  const Json json = sickness_json(sessions, quick_plan());
+  const study::Json json = study::sickness_json(sessions, quick_plan());
   EXPECT_EQ(json[0]["ssq"]["incomplete"], 1);
   EXPECT_EQ(score(json, 0)["change"]["n"], 1);
   EXPECT_EQ(score(json, 1)["change"]["n"], 2);
@@ -100,7 +102,7 @@ TEST(SicknessJson, VisitsOfOnePersonAreOneValue) {
   auto sessions = three();
   sessions.insert(sessions.begin() + 1, session("P01", {page(true, 1), page(false, 2)}, {}));
   sessions[1].visit = 2;
-  const Json json = sickness_json(sessions, quick_plan());
+  const study::Json json = study::sickness_json(sessions, quick_plan());
   EXPECT_EQ(score(json, 3)["change"]["n"], 2);
   EXPECT_NEAR(json[0]["scores"][0]["ssq_total_after"].get<double>(), 235.62 * 5 / 6, 1e-9);
 }
@@ -108,35 +110,36 @@ TEST(SicknessJson, VisitsOfOnePersonAreOneValue) {
 TEST(SicknessJson, TestDataAndSimulatedPeopleStepBack) {
   auto sessions = three();
   sessions[0].test_data = true;
-  EXPECT_EQ(sickness_json(sessions, quick_plan())[0]["participants"], 2);
+  EXPECT_EQ(study::sickness_json(sessions, quick_plan())[0]["participants"], 2);
   sessions[1].observer = "random";
-  const Json people = sickness_json(sessions, quick_plan());
+  const study::Json people = study::sickness_json(sessions, quick_plan());
   EXPECT_EQ(people[0]["participants"], 1);
   EXPECT_EQ(people[0]["simulated"], 0);
   for (SicknessSession& one : sessions) one.observer = "random";
-  EXPECT_EQ(sickness_json(sessions, quick_plan())[0]["simulated"], 2);
+  EXPECT_EQ(study::sickness_json(sessions, quick_plan())[0]["simulated"], 2);
 }
 
 TEST(SicknessJson, ProtocolsAreNeverPooled) {
   auto sessions = three();
   sessions[2].protocol_sha256 = std::string(64, '2');
-  EXPECT_THAT(sickness_json(sessions, quick_plan()), SizeIs(2));
-  EXPECT_THAT(sickness_json({}, quick_plan()), SizeIs(0));
+  EXPECT_THAT(study::sickness_json(sessions, quick_plan()), SizeIs(2));
+  EXPECT_THAT(study::sickness_json({}, quick_plan()), SizeIs(0));
 }
 
 TEST(SicknessTables, HoldEveryNumber) {
   auto plan = quick_plan();
   plan.confidence = 0.5;  // three people support no higher level
-  const Json json{{"timing", Json::array()},
-                  {"hypotheses", Json::array()},
-                  {"sensitivity", Json::array()},
-                  {"exclusions", Json::array()},
-                  {"sickness", sickness_json(three(), plan)}};
+  const study::Json json{{"timing", study::Json::array()},
+                         {"hypotheses", study::Json::array()},
+                         {"sensitivity", study::Json::array()},
+                         {"exclusions", study::Json::array()},
+                         {"sickness", study::sickness_json(three(), plan)}};
   std::map<std::string, std::string> files;
   const test::TemporaryFolder folder;
-  write_csv_folder(json, folder / "tables", [&](const std::filesystem::path& path, const std::string& bytes) {
-    files[path.filename().string()] = bytes;
-  });
+  study::write_csv_folder(json, folder / "tables",
+                          [&](const std::filesystem::path& path, const std::string& bytes) {
+                            files[path.filename().string()] = bytes;
+                          });
   EXPECT_THAT(files["sickness_ssq.csv"], HasSubstr("change_bca_low,change_bca_high"));
   EXPECT_THAT(files["sickness_ssq.csv"], HasSubstr("\r\ntask1_lab,total,Total,3.74,235.62,3,"));
   EXPECT_THAT(files["sickness_fms_blocks.csv"], HasSubstr("\r\ntask1_lab,ratings,3,"));
@@ -145,8 +148,8 @@ TEST(SicknessTables, HoldEveryNumber) {
 }
 
 std::string html_of(const std::vector<SicknessSession>& sessions) {
-  Json json{{"schema", "vip-results/1"}, {"sickness", sickness_json(sessions, quick_plan())}};
-  return report::results_page(json);
+  study::Json json{{"schema", "vip-results/1"}, {"sickness", study::sickness_json(sessions, quick_plan())}};
+  return study::report::results_page(json);
 }
 
 // A model answers within milliseconds; an earlier version printed 0.0 minutes for every rating.
@@ -154,7 +157,7 @@ TEST(SicknessSection, WhoIsSimulatedHasNoMinutes) {
   EXPECT_THAT(html_of(three()), HasSubstr("Minutes (median)"));
   auto sessions = three();
   for (auto& one : sessions) one.observer = "random";
-  EXPECT_TRUE(sickness_json(sessions, quick_plan())[0]["fms"]["times"][2]["minutes"].is_null());
+  EXPECT_TRUE(study::sickness_json(sessions, quick_plan())[0]["fms"]["times"][2]["minutes"].is_null());
   EXPECT_THAT(html_of(sessions), Not(HasSubstr("Minutes (median)")));
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "libstudy/observer/ptpe_observer.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 
 namespace testing_pilot {
 

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "apps/common/named_scenes.hpp"
-#include "apps/common/sweep/price_list.hpp"
+#include "libsim/setting/named_scenes.hpp"
+#include "libstudy/sweep/price_list.hpp"
 
 namespace apps::test {
 
 /// A run of two samples with these values.
-inline CellRun run_with(double front, double kinetic, double ms, double density = 0.001) {
-  CellRun out;
+inline study::CellRun run_with(double front, double kinetic, double ms, double density = 0.001) {
+  study::CellRun out;
   for (const double time : {0.1, 0.2}) {
-    WaterSample sample{.time_s = time, .front_m = front, .kinetic_j_kg = kinetic};
+    study::WaterSample sample{.time_s = time, .front_m = front, .kinetic_j_kg = kinetic};
     sample.centre_m[1] = front / 2;
     sample.density_error = density;
     sample.density_max = 1;
@@ -24,20 +24,20 @@ inline CellRun run_with(double front, double kinetic, double ms, double density 
 }
 
 /// Stored as run on "a machine" with SingleDam's file.
-inline StoredCell stored(const SolverSetting& setting, int seed, const CellRun& run) {
-  static const std::string sha256 = scenes_of("SingleDam").front().scene.sha256;
+inline study::StoredCell stored(const sim::SolverSetting& setting, int seed, const study::CellRun& run) {
+  static const std::string sha256 = sim::scenes_of("SingleDam").front().scene.sha256;
   return {{setting, seed}, {"a machine", "0.1.0 abc", sha256}, run};
 }
 
-inline SolverSetting hires_at(std::int64_t n_star) {
-  return usual_setting("SingleDam", sim::MethodKind::HiRes, n_star);
+inline sim::SolverSetting hires_at(std::int64_t n_star) {
+  return sim::usual_setting("SingleDam", sim::MethodKind::HiRes, n_star);
 }
 
 /// The reference with two seeds, HiRes with default settings and with twice the projections, two seeds each.
-inline std::vector<StoredCell> small_sweep(std::int64_t n_star = 512) {
-  const auto reference = reference_setting("SingleDam", n_star);
+inline std::vector<study::StoredCell> small_sweep(std::int64_t n_star = 512) {
+  const auto reference = study::reference_setting("SingleDam", n_star);
   auto eight = hires_at(n_star);
-  eight[SolverKnob::Iterations] = 8;
+  eight[sim::SolverKnob::Iterations] = 8;
   return {stored(reference, 1, run_with(1, 10, 100)),
           stored(reference, 2, run_with(1.01, 10, 100)),
           stored(hires_at(n_star), 1, run_with(1.2, 10, 10)),

@@ -1,4 +1,4 @@
-#include "apps/bench/stability_map.hpp"
+#include "libsim/measure/stability_map.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,42 +15,44 @@ using ::testing::Not;
 
 /// Two cases and two methods: one limit found, one case that fails at its own numbers, one that is not for
 /// LoRes.
-StabilityMap small_map() {
-  StabilityMap out{.cases = {"S1", "S9"},
-                   .methods = {"LoRes", "Ours"},
-                   .cells = {},
-                   .most = 4,
-                   .resolution = 1.2,
-                   .circumstances = "a machine, two cores; back end cpu"};
-  const auto add = [&](const char* id, const char* method, Knob knob, double usual, double limit, Reach reach,
-                       const char* failed) {
+measure::StabilityMap small_map() {
+  measure::StabilityMap out{.cases = {"S1", "S9"},
+                            .methods = {"LoRes", "Ours"},
+                            .cells = {},
+                            .most = 4,
+                            .resolution = 1.2,
+                            .circumstances = "a machine, two cores; back end cpu"};
+  const auto add = [&](const char* id, const char* method, measure::Knob knob, double usual, double limit,
+                       measure::Reach reach, const char* failed) {
     out.cells.push_back({id, "a title, with a comma", method, knob, "s", usual, limit, reach, failed});
   };
-  add("S1", "Ours", Knob::FrameStep, 1.0 / 60, 2.0 / 60, Reach::Found, "rho 1.3, stopped");
-  add("S1", "Ours", Knob::Iterations, 4, 2, Reach::Found, "height|lost");
-  add("S1", "Ours", Knob::Scale, 1, 4, Reach::AllPass, "");
-  for (const Knob knob : all_knobs) add("S9", "LoRes", knob, 1, 1, Reach::UsualFails, "flux 0.4 < 0.85");
-  for (const Knob knob : all_knobs) add("S9", "Ours", knob, 1, 1, Reach::Found, "too far");
+  add("S1", "Ours", measure::Knob::FrameStep, 1.0 / 60, 2.0 / 60, measure::Reach::Found, "rho 1.3, stopped");
+  add("S1", "Ours", measure::Knob::Iterations, 4, 2, measure::Reach::Found, "height|lost");
+  add("S1", "Ours", measure::Knob::Scale, 1, 4, measure::Reach::AllPass, "");
+  for (const measure::Knob knob : measure::all_knobs)
+    add("S9", "LoRes", knob, 1, 1, measure::Reach::UsualFails, "flux 0.4 < 0.85");
+  for (const measure::Knob knob : measure::all_knobs)
+    add("S9", "Ours", knob, 1, 1, measure::Reach::Found, "too far");
   return out;
 }
 
 TEST(StabilityMap, MarginsAreFactorsToTheUsual) {
   const auto map = small_map();
-  EXPECT_DOUBLE_EQ(margin_of(map.cells[0]), 2);
-  EXPECT_DOUBLE_EQ(margin_of(map.cells[1]), 2) << "half the iterations";
-  EXPECT_DOUBLE_EQ(margin_of(map.cells[2]), 4);
-  EXPECT_DOUBLE_EQ(margin_of(map.cells[3]), 0) << "fails at its own numbers";
+  EXPECT_DOUBLE_EQ(measure::margin_of(map.cells[0]), 2);
+  EXPECT_DOUBLE_EQ(measure::margin_of(map.cells[1]), 2) << "half the iterations";
+  EXPECT_DOUBLE_EQ(measure::margin_of(map.cells[2]), 4);
+  EXPECT_DOUBLE_EQ(measure::margin_of(map.cells[3]), 0) << "fails at its own numbers";
 }
 
 TEST(StabilityMap, CsvHasARowForEachNumberThatWasTurned) {
   const auto map = small_map();
-  const auto table = to_table(map);
+  const auto table = measure::to_table(map);
   ASSERT_EQ(table.rows.size(), 9u);
   for (const auto& row : table.rows) {
     ASSERT_EQ(row.size(), table.head.size());
     for (const auto& cell : row) EXPECT_THAT(cell, Not(HasSubstr(",")));
   }
-  const std::string csv = to_csv(table);
+  const std::string csv = figures::to_csv(table);
   EXPECT_THAT(csv,
               HasSubstr("S1,a title; with a comma,Ours,frame_step,s,0.01667,0.03333,2.000,found,rho 1.3; "
                         "stopped,4,1.2,a machine; two cores; back end cpu\n"));
@@ -59,7 +61,7 @@ TEST(StabilityMap, CsvHasARowForEachNumberThatWasTurned) {
 }
 
 TEST(StabilityMap, MarkdownHasARowForEachCaseAndMethod) {
-  const std::string text = to_markdown(small_map());
+  const std::string text = measure::to_markdown(small_map());
   EXPECT_THAT(text, HasSubstr("a machine, two cores; back end cpu"));
   EXPECT_THAT(text, HasSubstr("a factor of 1.2 at most"));
   EXPECT_THAT(text,
@@ -71,7 +73,7 @@ TEST(StabilityMap, MarkdownHasARowForEachCaseAndMethod) {
 }
 
 TEST(StabilityMap, PictureWritesEachValueInItsCell) {
-  const std::string svg = to_svg(small_map());
+  const std::string svg = measure::to_svg(small_map());
   for (const char* words :
        {">2.00<", ">2 of 4<", ">4.00+<", ">fails<", ">-<", ">Ours<", ">S9<", "Largest frame step",
         "does not apply", "fails at its own numbers", "a machine, two cores"})
@@ -87,13 +89,15 @@ TEST(StabilityMap, PictureWritesEachValueInItsCell) {
 
 TEST(StabilityMap, NamesTheEffectsOfTheWater) {
   auto map = small_map();
-  const std::string bare = to_svg(map);
+  const std::string bare = measure::to_svg(map);
   EXPECT_THAT(bare, Not(HasSubstr("effect")));
   map.effects = {"cohesion tension_n_m = 1000", "air_drag rate_per_s = 4"};
-  const std::string svg = to_svg(map);
+  const std::string svg = measure::to_svg(map);
   for (const auto& effect : map.effects) EXPECT_THAT(svg, HasSubstr("water with the effect " + effect));
-  EXPECT_THAT(to_csv(to_table(map)), HasSubstr("cpu; effect cohesion tension_n_m = 1000; effect air_drag"));
-  EXPECT_THAT(to_markdown(map), HasSubstr("cpu; effect cohesion tension_n_m = 1000; effect air_drag"));
+  EXPECT_THAT(figures::to_csv(measure::to_table(map)),
+              HasSubstr("cpu; effect cohesion tension_n_m = 1000; effect air_drag"));
+  EXPECT_THAT(measure::to_markdown(map),
+              HasSubstr("cpu; effect cohesion tension_n_m = 1000; effect air_drag"));
 }
 
 class StabilityE2e : public test::TableTest {};

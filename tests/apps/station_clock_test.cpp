@@ -2,12 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/stats/report/bundle_parts.hpp"
-#include "apps/stats/report/preregistration.hpp"
-#include "apps/stats/tasks/results.hpp"
 #include "apps/study/station_warnings.hpp"
-#include "libstudy/store/merge.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/preregistration/bundle_parts.hpp"
+#include "libstudy/preregistration/preregistration.hpp"
+#include "libstudy/store/merge/merge.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/utc.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/libstudy/study_fixture.hpp"
@@ -80,24 +80,25 @@ TEST(StationClock, TheOrderOfRowsIsKeptWithTheSessionAndSurvivesAMerge) {
 /// Compares Task 1 with a bundle frozen now; one session's clock showed `told` after rows of `not_before`.
 base::Json compared(const std::string& told, const std::string& not_before) {
   const ::test::TemporaryFolder folder;
-  report::BundleRequest request;
+  study::report::BundleRequest request;
   request.protocols = {"protocols/task1.toml"};
   request.plan.resamples = 200;
-  report::freeze_bundle(request, folder / "bundle");
-  const auto bundle = report::read_bundle(folder / "bundle");
+  study::report::freeze_bundle(request, folder / "bundle");
+  const auto bundle = study::report::read_bundle(folder / "bundle");
   auto task = made_study::task1(12);
   const auto protocol = study::read_protocol(base::resource("protocols/task1.toml"));
   task.sha256 = protocol.sha256;
   for (auto& session : task.sessions) session.first_answer_utc = "2999-12-31T00:00:00Z";
   task.sessions[7].first_answer_utc = told;
   task.sessions[7].not_before_utc = not_before;
-  const auto results = make_results({{task}, 0}, {"study.db", {TaskKind::Task1}, "", bundle.plan}).json;
+  const auto results =
+      study::make_results({{task}, 0}, {"study.db", {study::TaskKind::Task1}, "", bundle.plan}).json;
   study::ProtocolRow row;
   row.name = protocol.name;
   row.version = protocol.version;
   row.sha256 = protocol.sha256;
   row.text = protocol.text;
-  return report::compare_with_bundle(bundle, {row}, results);
+  return study::report::compare_with_bundle(bundle, {row}, results);
 }
 
 TEST(StationClock, WhereAnImpossibleTimeFollowsLaterRowsTheOrderDecides) {
@@ -116,7 +117,7 @@ TEST(StationClock, AFirstAnswerThatIsNoPersonsSaysSo) {
                           {"first_answer_utc", "2026-04-01T00:00:00Z"},
                           {"simulated", simulated},
                           {"test_data", test_data}};
-    return std::string(report::time_json("2026-05-01T00:00:00Z", used).at("text"));
+    return std::string(study::report::time_json("2026-05-01T00:00:00Z", used).at("text"));
   };
   const std::string given =
       "The bundle was not frozen before the first answer of Own design, given 2026-04-01T00:00:00Z";

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/temporary_folder.hpp"

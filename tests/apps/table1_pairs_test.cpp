@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "apps/bench/cell_scores.hpp"
-#include "apps/bench/checkpoint_file.hpp"
+#include "libsim/measure/cell_scores.hpp"
+#include "libsim/measure/checkpoint_file.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/table_test_support.hpp"
 
@@ -31,8 +31,8 @@ std::string error_of(const std::function<void()>& act) {
   return "no error";
 }
 
-Checkpoint small_checkpoint() {
-  Checkpoint out;
+measure::Checkpoint small_checkpoint() {
+  measure::Checkpoint out;
   out.frame = 60;
   out.state = {{0, 0, 0.1F, 0.2F, 0.3F, 1, 2, 3}, {1, 2, -0.0F, 1e-30F, 4, 5, 6, 7}};
   out.seen.width = 2;
@@ -46,20 +46,20 @@ Checkpoint small_checkpoint() {
 
 class CheckpointFile : public ::testing::Test {
  protected:
-  CheckpointFile() { write_checkpoint(folder_.path(), of_, checkpoint_); }
+  CheckpointFile() { measure::write_checkpoint(folder_.path(), of_, checkpoint_); }
 
-  std::string error(const CheckpointOf& of) const {
-    return error_of([&] { read_checkpoint(folder_.path(), of); });
+  std::string error(const measure::CheckpointOf& of) const {
+    return error_of([&] { measure::read_checkpoint(folder_.path(), of); });
   }
-  std::string path() const { return folder_ / checkpoint_name(of_); }
+  std::string path() const { return folder_ / measure::checkpoint_name(of_); }
 
   const ::test::TemporaryFolder folder_{::test::memory_folder()};
-  const Checkpoint checkpoint_ = small_checkpoint();
-  const CheckpointOf of_{"Pond", std::string(64, 'a'), 64, 60, {2, 1}};
+  const measure::Checkpoint checkpoint_ = small_checkpoint();
+  const measure::CheckpointOf of_{"Pond", std::string(64, 'a'), 64, 60, {2, 1}};
 };
 
 TEST_F(CheckpointFile, ComesBackBitForBit) {
-  const Checkpoint back = read_checkpoint(folder_.path(), of_);
+  const measure::Checkpoint back = measure::read_checkpoint(folder_.path(), of_);
   EXPECT_EQ(back.frame, 60);
   ASSERT_EQ(back.state.size(), 2u);
   const sim::ParticleState& last = back.state[1];
@@ -71,17 +71,18 @@ TEST_F(CheckpointFile, ComesBackBitForBit) {
   EXPECT_EQ(back.seen.depth, checkpoint_.seen.depth);
   EXPECT_EQ(back.seen.front, checkpoint_.seen.front);
   EXPECT_EQ(back.seen.normal, checkpoint_.seen.normal);
-  EXPECT_EQ(checkpoint_digest(back), checkpoint_digest(checkpoint_));
-  Checkpoint other = checkpoint_;
+  EXPECT_EQ(measure::checkpoint_digest(back), measure::checkpoint_digest(checkpoint_));
+  measure::Checkpoint other = checkpoint_;
   other.state[1].vz_m_s = std::nextafter(other.state[1].vz_m_s, 9.0F);
-  EXPECT_NE(checkpoint_digest(other), checkpoint_digest(checkpoint_));
+  EXPECT_NE(measure::checkpoint_digest(other), measure::checkpoint_digest(checkpoint_));
   other = checkpoint_;
   other.seen.depth[0] = 2;
-  EXPECT_NE(checkpoint_digest(other), checkpoint_digest(checkpoint_)) << "the picture is part of the start";
+  EXPECT_NE(measure::checkpoint_digest(other), measure::checkpoint_digest(checkpoint_))
+      << "the picture is part of the start";
 }
 
 TEST_F(CheckpointFile, SaysWhatIsMissingOrOfSomethingElse) {
-  CheckpointOf other = of_;
+  measure::CheckpointOf other = of_;
   other.frame = 120;
   EXPECT_THAT(error(other), AllOf(HasSubstr("Pond_64_f120.checkpoint: is not there"), HasSubstr("mend: ")));
   other = of_;
@@ -92,7 +93,7 @@ TEST_F(CheckpointFile, SaysWhatIsMissingOrOfSomethingElse) {
   EXPECT_THAT(error(other), HasSubstr("has picture 2x1, this run has 4x1"));
   other = of_;
   other.n_star = 128;
-  std::filesystem::copy_file(path(), folder_ / checkpoint_name(other));
+  std::filesystem::copy_file(path(), folder_ / measure::checkpoint_name(other));
   EXPECT_THAT(error(other), HasSubstr("has n_star 64, this run has 128"));
 }
 
@@ -111,14 +112,14 @@ TEST_F(CheckpointFile, RefusesWhatIsDamaged) {
 }
 
 /// Two checkpoints with two gaze points, two repeats each; only LoRes.
-ScoreBlock block_of(const std::vector<double>& values) {
-  ScoreBlock out{"Pond", "1k", sim::Preset::Tuned, {}};
+measure::ScoreBlock block_of(const std::vector<double>& values) {
+  measure::ScoreBlock out{"Pond", "1k", sim::Preset::Tuned, {}};
   out.checkpoints = {60, 120};
   out.starts = {"abc", "def"};
   out.gazes = 2;
-  MethodScores scores;
+  measure::MethodScores scores;
   scores.method = sim::MethodKind::LoRes;
-  for (const Metric metric : still_metrics) {
+  for (const measure::Metric metric : measure::still_metrics) {
     scores.of(metric).repeats = 2;
     for (const double value : values) scores.of(metric).cells.push_back({value, 5000});
   }
@@ -129,9 +130,9 @@ ScoreBlock block_of(const std::vector<double>& values) {
 class PairedCells : public ::testing::Test {
  protected:
   std::string path() const { return folder_ / "then.csv"; }
-  CellScores written(const ScoreBlock& block) const {
-    base::write_file_atomically(path(), to_csv(cell_rows({block})));
-    return read_cells(path());
+  measure::CellScores written(const measure::ScoreBlock& block) const {
+    base::write_file_atomically(path(), figures::to_csv(measure::cell_rows({block})));
+    return measure::read_cells(path());
   }
   const ::test::TemporaryFolder folder_;
 };
@@ -154,13 +155,13 @@ TEST_F(PairedCells, ReadBackToTheSameBits) {
 TEST_F(PairedCells, ChangeIsTheMeanOverPairsOfCheckpointAndGaze) {
   const auto then = written(block_of({10, 10, 20, 20, 30, 30, infinite, 40}));
   const auto now = block_of({11, 12, 23, infinite, 36, 36, 41, unknown});
-  const auto table = change_rows({now}, then);
-  ASSERT_EQ(table.rows.size(), still_metrics.size());
+  const auto table = measure::change_rows({now}, then);
+  ASSERT_EQ(table.rows.size(), measure::still_metrics.size());
   // s of 1.5, 3, 6 is 2.29129; t(0.975, 2) = 4.30265.
   EXPECT_EQ(table.rows[2], (std::vector<std::string>{"Pond", "1k", "tuned", "LoRes", "psnr_overall", "3.500",
                                                      "-2.192", "9.192", "3"}));
   const auto itself =
-      change_rows({block_of({1, 2, 3, 4, 5, 6, 7, 8})}, written(block_of({1, 2, 3, 4, 5, 6, 7, 8})));
+      measure::change_rows({block_of({1, 2, 3, 4, 5, 6, 7, 8})}, written(block_of({1, 2, 3, 4, 5, 6, 7, 8})));
   EXPECT_EQ(itself.rows[0][5], "0.000");
   EXPECT_EQ(itself.rows[0][6], "0.000");
   EXPECT_EQ(itself.rows[0][8], "4");
@@ -169,29 +170,29 @@ TEST_F(PairedCells, ChangeIsTheMeanOverPairsOfCheckpointAndGaze) {
 TEST_F(PairedCells, WhatHasNoPairIsCountedAndNamed) {
   const auto block = block_of({1, 2, 3, 4, 5, 6, 7, 8});
   const auto then = written(block);
-  EXPECT_NO_THROW(check_paired({block}, then, "then.csv"));
+  EXPECT_NO_THROW(measure::check_paired({block}, then, "then.csv"));
   auto fewer = block;
   fewer.checkpoints = {60};
-  EXPECT_THAT(error_of([&] { check_paired({fewer}, then, "then.csv"); }),
+  EXPECT_THAT(error_of([&] { measure::check_paired({fewer}, then, "then.csv"); }),
               AllOf(StartsWith("--paired-with then.csv: 4 pictures in it are not in this run"),
                     HasSubstr("the first: Pond 1k tuned LoRes, checkpoint 120 (start def), gaze 1, repeat 1"),
                     HasSubstr("mend: ")));
   auto more = block;
   more.gazes = 3;
-  EXPECT_THAT(error_of([&] { check_paired({more}, then, "then.csv"); }),
+  EXPECT_THAT(error_of([&] { measure::check_paired({more}, then, "then.csv"); }),
               HasSubstr("4 pictures of this run are not in it, the first: Pond 1k tuned LoRes, checkpoint 60 "
                         "(start abc), gaze 3, repeat 1"));
   auto other_water = block;
   other_water.starts[0] = "xyz";
-  EXPECT_THAT(error_of([&] { check_paired({other_water}, then, "then.csv"); }),
+  EXPECT_THAT(error_of([&] { measure::check_paired({other_water}, then, "then.csv"); }),
               AllOf(HasSubstr("4 pictures of this run"), HasSubstr("; 4 pictures in it")));
 }
 
 TEST_F(PairedCells, FilesThatHoldNoPicturesAreRefusedByLine) {
-  const std::string csv = to_csv(cell_rows({block_of({1, 2, 3, 4, 5, 6, 7, 8})}));
+  const std::string csv = figures::to_csv(measure::cell_rows({block_of({1, 2, 3, 4, 5, 6, 7, 8})}));
   const auto refused = [&](const std::string& text) {
     base::write_file_atomically(path(), text);
-    return error_of([&] { read_cells(path()); });
+    return error_of([&] { measure::read_cells(path()); });
   };
   EXPECT_THAT(refused("scene,method\n"), HasSubstr("is no table of single pictures"));
   EXPECT_THAT(refused(csv + "Pond,1k,tuned,LoRes,x,abc,1,1,1,1,1,1,1\n"),
@@ -223,7 +224,7 @@ TEST_F(Table1PairsE2e, AStoredRunIsReadAgainBitForBit) {
   EXPECT_EQ(then, base::read_file(path("now.csv"), 1 << 16));
   EXPECT_EQ(rows("then.csv").size(), 2u * 2 * 2 * 5);
   const auto change = rows("t1_change.csv");
-  ASSERT_EQ(change.size(), 5 * still_metrics.size());
+  ASSERT_EQ(change.size(), 5 * measure::still_metrics.size());
   for (const auto& row : change) {
     if (row.at("groups") == "0") continue;
     EXPECT_EQ(std::stod(row.at("now_minus_then")), 0) << row.at("method") << row.at("metric");

@@ -6,18 +6,18 @@
 #include <limits>
 #include <set>
 
-#include "apps/bench/checkpoint.hpp"
-#include "apps/bench/contact_sheet.hpp"
-#include "apps/bench/masks.hpp"
-#include "apps/bench/scores.hpp"
-#include "apps/common/fluid_picture.hpp"
+#include "libsim/measure/checkpoint.hpp"
+#include "libsim/measure/contact_sheet.hpp"
+#include "libsim/measure/masks.hpp"
+#include "libsim/measure/scores.hpp"
+#include "libsim/render/fluid_picture.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "stats/base/error.hpp"
 
 namespace {
 
-using apps::Mask;
-using apps::Metric;
+using measure::Mask;
+using measure::Metric;
 using Method = sim::MethodKind;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -26,27 +26,27 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 TEST(Table1Gazes, AreTheScenesOwnNearestInTimeFirst) {
   const auto dam = sim::read_scene("data/scenes/single_dam.toml");
   using Points = std::vector<sim::Vec3d>;
-  EXPECT_EQ(apps::gaze_points(dam, 120, 3),
+  EXPECT_EQ(measure::gaze_points(dam, 120, 3),
             (Points{dam.gaze[2].point_m, dam.gaze[1].point_m, dam.gaze[3].point_m}));
   // The key of frame 60 starts its jump there; frame 60 still looks at the previous point.
-  EXPECT_EQ(apps::gaze_points(dam, 60, 2), (Points{dam.gaze[0].point_m, dam.gaze[1].point_m}));
+  EXPECT_EQ(measure::gaze_points(dam, 60, 2), (Points{dam.gaze[0].point_m, dam.gaze[1].point_m}));
   // Faucet lists one point twice.
   const auto faucet = sim::read_scene("data/scenes/faucet.toml");
   for (const int frame : faucet.checkpoints) {
-    const auto points = apps::gaze_points(faucet, frame, 3);
+    const auto points = measure::gaze_points(faucet, frame, 3);
     EXPECT_EQ(points[0], sim::gaze_point(faucet, frame));
     EXPECT_EQ((std::set<sim::Vec3d>(points.begin(), points.end()).size()), 3u);
   }
-  EXPECT_THROW(apps::gaze_points(faucet, 40, 4), base::Error);
+  EXPECT_THROW(measure::gaze_points(faucet, 40, 4), base::Error);
 }
 
 TEST(Table1Starts, MoveByOneUlpAndByNothingElse) {
   std::vector<sim::ParticleState> state;
   for (int i = 0; i < 4000; ++i)
     state.push_back({i, 0, 1.5F + 1e-3F * static_cast<float>(i), 0.25F, 7, 1, 2, 3});
-  EXPECT_EQ(apps::perturbed(state, 0)[17].x_m, state[17].x_m);
-  const auto first = apps::perturbed(state, 1), again = apps::perturbed(state, 1);
-  const auto second = apps::perturbed(state, 2);
+  EXPECT_EQ(measure::perturbed(state, 0)[17].x_m, state[17].x_m);
+  const auto first = measure::perturbed(state, 1), again = measure::perturbed(state, 1);
+  const auto second = measure::perturbed(state, 2);
   int up = 0, equal = 0;
   for (std::size_t i = 0; i < state.size(); ++i) {
     const float x = state[i].x_m;
@@ -67,8 +67,8 @@ TEST(Table1Starts, TargetsGoById) {
   std::vector<sim::ParticleSaliency> values(2);
   values[0].target = 2;
   values[1].target = 1;
-  EXPECT_EQ(apps::targets_by_id(state, {8, 3}, values), (std::vector<std::uint8_t>{1, 2}));
-  EXPECT_THROW(apps::targets_by_id(state, {8, 4}, values), base::Error);
+  EXPECT_EQ(measure::targets_by_id(state, {8, 3}, values), (std::vector<std::uint8_t>{1, 2}));
+  EXPECT_THROW(measure::targets_by_id(state, {8, 4}, values), base::Error);
 }
 
 TEST(Table1Masks, TheFoveaIsAConeRoundTheGaze) {
@@ -77,13 +77,13 @@ TEST(Table1Masks, TheFoveaIsAConeRoundTheGaze) {
   camera.target_m = {0, 0, 0};
   const auto view = sim::make_view(camera, 400, 300);
   const double px_per_slope = 150 / std::tan(75.0 / 2 * 0.017453292519943295);
-  const auto centre = apps::fovea_mask(view, apps::gaze_at(camera, camera.target_m), 7.5);
+  const auto centre = measure::fovea_mask(view, sim::gaze_at(camera, camera.target_m), 7.5);
   const double radius = px_per_slope * std::tan(7.5 * 0.017453292519943295);
-  EXPECT_NEAR(static_cast<double>(apps::pixels_of(centre)), 3.14159265 * radius * radius, 60);
+  EXPECT_NEAR(static_cast<double>(measure::pixels_of(centre)), 3.14159265 * radius * radius, 60);
   EXPECT_TRUE(centre[150 * 400 + 200]);
   EXPECT_FALSE(centre[150 * 400 + 240]);
   // Up in the world is up in the picture, whose first row is the top.
-  const auto above = apps::fovea_mask(view, apps::gaze_at(camera, {0, 2, 0}), 7.5);
+  const auto above = measure::fovea_mask(view, sim::gaze_at(camera, {0, 2, 0}), 7.5);
   const auto row = static_cast<std::size_t>(150 - 0.4 * px_per_slope);
   EXPECT_TRUE(above[row * 400 + 200]);
   EXPECT_FALSE(above[(299 - row) * 400 + 200]);
@@ -103,20 +103,20 @@ TEST(Table1Masks, TheSalientFifthIsRankedByFAndLeavesTheFoveaOut) {
     by_id[static_cast<std::size_t>(9 - i)] = static_cast<float>(i);  // F rises along x
   }
   by_id[static_cast<std::size_t>(ids[4])] = std::nanf("");
-  const auto salient = apps::salient_mask(picture, ids, by_id, Mask(50, 0));
+  const auto salient = measure::salient_mask(picture, ids, by_id, Mask(50, 0));
   for (std::size_t p = 0; p < 50; ++p) EXPECT_EQ(salient[p], p == 48 || p == 49) << p;
   Mask fovea(50, 0);
   fovea[49] = 1;
-  EXPECT_EQ(apps::pixels_of(apps::salient_mask(picture, ids, by_id, fovea)), 1u);
+  EXPECT_EQ(measure::pixels_of(measure::salient_mask(picture, ids, by_id, fovea)), 1u);
   picture.front.assign(50, sim::GBuffer::no_particle);
-  EXPECT_EQ(apps::pixels_of(apps::salient_mask(picture, ids, by_id, fovea)), 0u) << "no fluid";
+  EXPECT_EQ(measure::pixels_of(measure::salient_mask(picture, ids, by_id, fovea)), 0u) << "no fluid";
 }
 
 TEST(Table1Masks, FluidGrowsByThreePixels) {
   Mask a(20 * 12, 0), b(20 * 12, 0);
   a[5 * 20 + 4] = 1;
   b[0] = 1;
-  const auto grown = apps::grown_union(a, b, 20, 12);
+  const auto grown = measure::grown_union(a, b, 20, 12);
   for (int y = 0; y < 12; ++y) {
     for (int x = 0; x < 20; ++x) {
       const bool near_a = std::abs(y - 5) <= 3 && std::abs(x - 4) <= 3;
@@ -126,12 +126,12 @@ TEST(Table1Masks, FluidGrowsByThreePixels) {
 }
 
 /// One block with PSNR@overall and PSNR@fov of three methods; two groups of two repeats.
-apps::ScoreBlock block_of(const std::vector<double>& lores, const std::vector<double>& fov,
-                          const std::vector<double>& ours) {
-  apps::ScoreBlock out{"Pond", "1k", sim::Preset::Tuned, {}};
+measure::ScoreBlock block_of(const std::vector<double>& lores, const std::vector<double>& fov,
+                             const std::vector<double>& ours) {
+  measure::ScoreBlock out{"Pond", "1k", sim::Preset::Tuned, {}};
   for (const auto& [method, values] :
        {std::pair{Method::LoRes, lores}, {Method::FovFluid, fov}, {Method::Ours, ours}}) {
-    apps::MethodScores scores;
+    measure::MethodScores scores;
     scores.method = method;
     for (const Metric metric : {Metric::PsnrOverall, Metric::PsnrFov}) {
       auto& series = scores.of(metric);
@@ -144,9 +144,9 @@ apps::ScoreBlock block_of(const std::vector<double>& lores, const std::vector<do
 }
 
 TEST(Table1Scores, LeaveEqualPicturesAndSmallMasksOutOfTheMeans) {
-  const auto rows =
-      apps::score_rows({block_of({20, 22, 30, 32}, {infinite, 40, unknown, 50}, {infinite, infinite, 1, 1})})
-          .rows;
+  const auto rows = measure::score_rows(
+                        {block_of({20, 22, 30, 32}, {infinite, 40, unknown, 50}, {infinite, infinite, 1, 1})})
+                        .rows;
   const auto row = [&](const std::string& method) {
     for (const auto& each : rows) {
       if (each[2] == method && each[4] == "psnr_overall") return each;
@@ -161,14 +161,14 @@ TEST(Table1Scores, LeaveEqualPicturesAndSmallMasksOutOfTheMeans) {
   EXPECT_EQ(row("FovFluid")[10], "1");
   EXPECT_EQ(row("FovFluid")[11], "1");
   EXPECT_EQ(row("Ours")[8], "1") << "a group of equal pictures";
-  const auto same = apps::score_rows({block_of({infinite, infinite, infinite, infinite}, {}, {})}).rows;
+  const auto same = measure::score_rows({block_of({infinite, infinite, infinite, infinite}, {}, {})}).rows;
   EXPECT_EQ(same[0][5], "inf");
   EXPECT_EQ(same[0][6], "-");
 }
 
-std::string verdict_of(const apps::ScoreBlock& block, const std::string& metric,
+std::string verdict_of(const measure::ScoreBlock& block, const std::string& metric,
                        const std::string& difference) {
-  for (const auto& row : apps::paired_rows({block}).rows) {
+  for (const auto& row : measure::paired_rows({block}).rows) {
     if (row[3] == metric && row[4] == difference) return row[9];
   }
   return "no row";
@@ -191,7 +191,7 @@ TEST(Table1Scores, AnOrderBreaksBeyondItsBound) {
 
 TEST(Table1Scores, PairsAreTakenCellByCell) {
   // Means of 25 and 26, but one side lacks its second group.
-  const auto rows = apps::paired_rows({block_of({20, 20, 30, 30}, {21, 21, infinite, 31}, {})}).rows;
+  const auto rows = measure::paired_rows({block_of({20, 20, 30, 30}, {21, 21, infinite, 31}, {})}).rows;
   EXPECT_EQ(rows[0][4], "FovFluid - LoRes");
   EXPECT_EQ(rows[0][5], "1.000");
   EXPECT_EQ(rows[0][8], "2");
@@ -199,7 +199,7 @@ TEST(Table1Scores, PairsAreTakenCellByCell) {
 
 TEST(Table1Pictures, StandSideBySide) {
   const auto plain = [](std::uint8_t value) { return sim::Image{2, 1, std::vector<std::uint8_t>(8, value)}; };
-  const auto sheet = apps::contact_sheet({{plain(1), plain(2)}, {plain(3), plain(4)}});
+  const auto sheet = measure::contact_sheet({{plain(1), plain(2)}, {plain(3), plain(4)}});
   EXPECT_EQ(sheet.width, 4);
   EXPECT_EQ(sheet.height, 2);
   std::vector<std::uint8_t> expected;

@@ -1,13 +1,13 @@
 /// Selection of the data of Task 1 and Task 2 for the analysis.
 
-#include "apps/stats/data/task_data.hpp"
+#include "libstudy/analysis/task_data.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/stats/tasks/data_json.hpp"
-#include "apps/stats/tasks/sensitivity.hpp"
-#include "apps/stats/tasks/task1_results.hpp"
+#include "libstudy/analysis/tasks/data_json.hpp"
+#include "libstudy/analysis/tasks/sensitivity.hpp"
+#include "libstudy/analysis/tasks/task1_results.hpp"
 #include "tests/apps/made_task_study.hpp"
 
 namespace apps {
@@ -20,9 +20,9 @@ using ::testing::SizeIs;
 
 study::TaskStudy of(const study::TaskProtocol& protocol) { return {{protocol}, 0}; }
 
-TaskData select(const study::TaskStudy& study, TaskKind task = TaskKind::Task1,
-                const stats::AnalysisPlan& plan = {}) {
-  return select_task(study, {task, "", plan}).value();
+study::TaskData select(const study::TaskStudy& study, study::TaskKind task = study::TaskKind::Task1,
+                       const stats::AnalysisPlan& plan = {}) {
+  return study::select_task(study, {task, "", plan}).value();
 }
 
 TEST(TaskData, EverythingOfAWholeStudy) {
@@ -35,7 +35,7 @@ TEST(TaskData, EverythingOfAWholeStudy) {
   EXPECT_EQ(data.flow.analysed, 12);
   EXPECT_EQ(data.flow.trials_analysed, 120);
   EXPECT_THAT(data.gaze_problem(), IsEmpty());
-  EXPECT_THAT(select(of(made_study::task2(12)), TaskKind::Task2).choices, SizeIs(120));
+  EXPECT_THAT(select(of(made_study::task2(12)), study::TaskKind::Task2).choices, SizeIs(120));
 }
 
 TEST(TaskData, WhoIsPlannedAloneHasNotStarted) {
@@ -45,7 +45,7 @@ TEST(TaskData, WhoIsPlannedAloneHasNotStarted) {
     session.state = i < 11 ? "planned" : "open";
     for (auto& trial : session.trials) trial.answers.clear();
   }
-  const Json flow = flow_json(select(of(protocol)).flow);
+  const study::Json flow = study::flow_json(select(of(protocol)).flow);
   EXPECT_EQ(flow.at("planned"), 2);
   EXPECT_EQ(flow.at("started"), 10);
   EXPECT_EQ(flow.at("open"), 1);
@@ -55,7 +55,7 @@ TEST(TaskData, WhoIsPlannedAloneHasNotStarted) {
 TEST(TaskData, WhoAnsweredASideQuestionAloneWasNotLeftOut) {
   auto protocol = made_study::task2(12);
   for (auto& trial : protocol.sessions[0].trials) trial.answers = {{"fms", 3}};
-  const auto flow = select(of(protocol), TaskKind::Task2).flow;
+  const auto flow = select(of(protocol), study::TaskKind::Task2).flow;
   EXPECT_EQ(flow.no_answer, 1);
   EXPECT_EQ(flow.excluded_participants, 0);
   EXPECT_EQ(flow.analysed, 11);
@@ -89,11 +89,11 @@ TEST(TaskData, SeveralProtocolsAreNeverPooled) {
   auto other = made_study::task1(4);
   other.sha256 = std::string(64, 'f');
   const study::TaskStudy study{{made_study::task1(12), other, made_study::task2(3)}, 0};
-  const auto refused = select_task(study, {TaskKind::Task1, "", {}});
+  const auto refused = study::select_task(study, {study::TaskKind::Task1, "", {}});
   EXPECT_THAT(refused.reason(), HasSubstr("several protocols are never pooled"));
-  EXPECT_EQ(select_task(study, {TaskKind::Task1, "ff", {}})->flow.analysed, 4);
-  EXPECT_EQ(select_task(study, {TaskKind::Task2, "", {}})->flow.analysed, 3);
-  EXPECT_THAT(select_task(study, {TaskKind::Task1, "aa", {}}).reason(), HasSubstr("aa"));
+  EXPECT_EQ(study::select_task(study, {study::TaskKind::Task1, "ff", {}})->flow.analysed, 4);
+  EXPECT_EQ(study::select_task(study, {study::TaskKind::Task2, "", {}})->flow.analysed, 3);
+  EXPECT_THAT(study::select_task(study, {study::TaskKind::Task1, "aa", {}}).reason(), HasSubstr("aa"));
 }
 
 TEST(TaskData, AProtocolOfTestDataStepsBack) {
@@ -129,7 +129,7 @@ TEST(TaskData, FailedTimingAndTheExperimenterTakeTrialsOut) {
   protocol.sessions[1].trials[7].excluded = "looked away";
   protocol.sessions[2].trials[0].excluded = study::interrupted_reason;
   for (auto& answer : protocol.sessions[2].trials[0].answers) answer.score.reset();
-  const auto data = select(of(protocol), TaskKind::Task2);
+  const auto data = select(of(protocol), study::TaskKind::Task2);
   ASSERT_THAT(data.exclusions, SizeIs(3));
   EXPECT_EQ(data.exclusions[0].reason, "timing verdict fail: 40 frames late");
   EXPECT_EQ(data.exclusions[1].rule, "experimenter");
@@ -151,7 +151,7 @@ TEST(TaskData, TimingTellsWhatTheSolverWentByWhereItWasMeasured) {
     }
   }
   bool found = false;
-  for (const Json& cell : timing_json(select(of(protocol)))) {
+  for (const study::Json& cell : study::timing_json(select(of(protocol)))) {
     if (cell["method"] != "Ours-TSp") {
       EXPECT_TRUE(cell["active_fraction"].is_null() && cell["tau_fps"].is_null()) << cell;
     } else if (!cell["tau_fps"].is_null()) {
@@ -169,7 +169,7 @@ TEST(TaskData, NoRuleSeesMethodsOrScenes) {
   protocol.sessions[0].trials[3].first.verdict = study::Verdict::Fail;
   for (auto& trial : protocol.sessions[1].trials) trial.answers[0].score = 4;
   protocol.sessions[2].catches = {{"attention", 2, 5}};
-  const auto list = [](const TaskData& data) {
+  const auto list = [](const study::TaskData& data) {
     std::vector<std::string> lines;
     for (const auto& one : data.exclusions)
       lines.push_back(one.participant + " " + std::to_string(one.position) + " " + one.rule + " " +
@@ -178,7 +178,7 @@ TEST(TaskData, NoRuleSeesMethodsOrScenes) {
   };
   stats::AnalysisPlan plan;
   plan.exclusions.straight_lining_answers = 8;
-  const auto before = list(select(of(protocol), TaskKind::Task1, plan));
+  const auto before = list(select(of(protocol), study::TaskKind::Task1, plan));
   ASSERT_THAT(before, SizeIs(3));
   for (auto& session : protocol.sessions) {
     for (auto& trial : session.trials) {
@@ -188,7 +188,7 @@ TEST(TaskData, NoRuleSeesMethodsOrScenes) {
       trial.first.what.n_star = trial.first.what.n_star == "16k" ? "32k" : "16k";
     }
   }
-  EXPECT_EQ(list(select(of(protocol), TaskKind::Task1, plan)), before);
+  EXPECT_EQ(list(select(of(protocol), study::TaskKind::Task1, plan)), before);
 }
 
 TEST(TaskData, VisitsOfOnePersonAreOneParticipant) {
@@ -199,7 +199,7 @@ TEST(TaskData, VisitsOfOnePersonAreOneParticipant) {
   const auto data = select(of(protocol));
   EXPECT_THAT(data.participants, SizeIs(6));
   EXPECT_THAT(data.reports, SizeIs(70));
-  const auto tables = score_tables(data, {});
+  const auto tables = study::score_tables(data, {});
   const auto mean =
       0.5 * (*protocol.sessions[0].trials[0].answers[0].score + *second.trials[0].answers[0].score);
   EXPECT_EQ(tables[0].column(0, 0)[0], mean);
@@ -210,7 +210,7 @@ TEST(TaskData, TwoVisitsOfTask2AreRefusedInTheTestOnly) {
   auto second = made_study::task2(6, "tracked", 9).sessions[0];
   second.visit = 2;
   protocol.sessions.push_back(second);
-  const auto data = select(of(protocol), TaskKind::Task2);
+  const auto data = select(of(protocol), study::TaskKind::Task2);
   EXPECT_THAT(data.choices, SizeIs(70));
   EXPECT_FALSE(stats::count_preferences(data.choices, 5, {}).at(0).test);
 }
@@ -219,7 +219,7 @@ TEST(TaskData, AScoreThatLacksAnItemIsMissing) {
   auto protocol = made_study::task1(3);
   protocol.sessions[0].trials[0].answers[2].score.reset();  // unrealism
   const auto data = select(of(protocol));
-  const auto tables = score_tables(data, {});
+  const auto tables = study::score_tables(data, {});
   ASSERT_THAT(tables, SizeIs(3));
   EXPECT_TRUE(std::isnan(tables[1].column(0, 0)[0]));
   EXPECT_FALSE(std::isnan(tables[2].column(0, 0)[0])) << "the score without unrealism does not need it";
@@ -238,7 +238,7 @@ TEST(TaskData, GazeThatWasNotTrackedIsNamed) {
 }
 
 TEST(TaskData, NothingToAnalyseIsAReason) {
-  EXPECT_THAT(select_task({}, {TaskKind::Task1, "", {}}).reason(), HasSubstr("no protocol"));
+  EXPECT_THAT(study::select_task({}, {study::TaskKind::Task1, "", {}}).reason(), HasSubstr("no protocol"));
   auto silent = made_study::task1(2);
   for (auto& session : silent.sessions) {
     session.state = "not eligible";
@@ -246,14 +246,15 @@ TEST(TaskData, NothingToAnalyseIsAReason) {
       for (auto& answer : trial.answers) answer.score.reset();
     }
   }
-  EXPECT_THAT(select_task(of(silent), {TaskKind::Task1, "", {}}).reason(), HasSubstr("no answer counts"));
+  EXPECT_THAT(study::select_task(of(silent), {study::TaskKind::Task1, "", {}}).reason(),
+              HasSubstr("no answer counts"));
   auto other = made_study::task1(2);
   other.questions.erase(other.questions.begin());
-  EXPECT_THAT(select_task(of(other), {TaskKind::Task1, "", {}}).reason(), HasSubstr("realism"));
+  EXPECT_THAT(study::select_task(of(other), {study::TaskKind::Task1, "", {}}).reason(), HasSubstr("realism"));
 }
 
 /// Entry of a sensitivity analysis by its id; null when there is none.
-Json variant(const Json& list, const std::string& id) {
+study::Json variant(const study::Json& list, const std::string& id) {
   for (const auto& one : list) {
     if (one.at("id") == id) return one;
   }
@@ -265,10 +266,10 @@ TEST(Sensitivity, TellsWhichVerdictsAnExclusionMakes) {
   protocol.sessions[3].gaze_source = "none";
   for (auto& trial : protocol.sessions[0].trials) trial.answers[0].score = 1;
   const auto study = of(protocol);
-  TaskSelection selection{TaskKind::Task1, "", {}};
+  study::TaskSelection selection{study::TaskKind::Task1, "", {}};
   selection.plan.exclusions.straight_lining_answers = 8;
-  const auto data = select_task(study, selection).value();
-  const auto list = sensitivity_json(study, selection, data, task1_verdicts(data, {}));
+  const auto data = study::select_task(study, selection).value();
+  const auto list = study::sensitivity_json(study, selection, data, study::task1_verdicts(data, {}));
   EXPECT_EQ(variant(list, "planned").at("participants"), 25);
   EXPECT_THAT(variant(list, "planned").at("changed"), IsEmpty());
   EXPECT_EQ(variant(list, "no_exclusions").at("participants"), 26);
@@ -282,9 +283,9 @@ TEST(Sensitivity, PoolsBlocksWhereAveragingMatters) {
   auto protocol = made_study::task1(12);
   for (auto& trial : protocol.sessions[0].trials) trial.first.what.n_star = "16k";
   const auto study = of(protocol);
-  const TaskSelection selection{TaskKind::Task1, "", {}};
-  const auto data = select_task(study, selection).value();
-  const auto list = sensitivity_json(study, selection, data, task1_verdicts(data, {}));
+  const study::TaskSelection selection{study::TaskKind::Task1, "", {}};
+  const auto data = study::select_task(study, selection).value();
+  const auto list = study::sensitivity_json(study, selection, data, study::task1_verdicts(data, {}));
   const auto pooled = variant(list, "blocks_pooled");
   EXPECT_EQ(pooled.at("participants"), 24);
   EXPECT_EQ(pooled.at("hypotheses")[0].at("tests")[0].at("n"), 13);

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "apps/stats/tasks/csv.hpp"
-#include "apps/stats/tasks/results.hpp"
+#include "libstudy/analysis/tasks/csv.hpp"
+#include "libstudy/analysis/tasks/results.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/inference/adjust.hpp"
@@ -22,23 +22,25 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-PlanInForce quick_plan() {
-  PlanInForce plan;
+study::PlanInForce quick_plan() {
+  study::PlanInForce plan;
   plan.plan.resamples = 200;
   return plan;
 }
 
-Json results_of(const study::TaskStudy& study, const PlanInForce& plan = quick_plan()) {
-  return make_results(study, {"folder/study.db", {TaskKind::Task1, TaskKind::Task2}, "", plan}).json;
+study::Json results_of(const study::TaskStudy& study, const study::PlanInForce& plan = quick_plan()) {
+  return study::make_results(study,
+                             {"folder/study.db", {study::TaskKind::Task1, study::TaskKind::Task2}, "", plan})
+      .json;
 }
 
-const Json& whole_study() {
-  static const Json json = results_of({{made_study::task1(26), made_study::task2(26)}, 1});
+const study::Json& whole_study() {
+  static const study::Json json = results_of({{made_study::task1(26), made_study::task2(26)}, 1});
   return json;
 }
 
 /// Dotted names of all fields; a list counts as its first element.
-void names_of(const Json& json, const std::string& prefix, std::set<std::string>& names) {
+void names_of(const study::Json& json, const std::string& prefix, std::set<std::string>& names) {
   if (json.is_array() && !json.empty() && json[0].is_object()) return names_of(json[0], prefix + "[]", names);
   if (!json.is_object()) return;
   for (const auto& [key, value] : json.items()) {
@@ -49,7 +51,7 @@ void names_of(const Json& json, const std::string& prefix, std::set<std::string>
 
 /// Names of the example's parts that the made study has too, without counts that are keyed by words of the
 /// data and without fields that depend on the answers.
-std::set<std::string> names_to_compare(const Json& json) {
+std::set<std::string> names_to_compare(const study::Json& json) {
   std::set<std::string> all, out;
   names_of(json, "", all);
   for (const auto& name : all) {
@@ -67,7 +69,7 @@ std::set<std::string> names_to_compare(const Json& json) {
 // scripts/results_example.sh makes the example again.
 TEST(TaskResults, TheExampleHasTheFieldsOfTodaysResults) {
   const std::string text = base::read_file(std::string(VIP_TEST_DIR) + "/apps/results_example.json", 1 << 24);
-  EXPECT_EQ(names_to_compare(Json::parse(text)), names_to_compare(whole_study()));
+  EXPECT_EQ(names_to_compare(study::Json::parse(text)), names_to_compare(whole_study()));
 }
 
 TEST(TaskResults, NoNumberIsNaNInDisguise) {
@@ -82,7 +84,7 @@ TEST(TaskResults, NoNumberIsNaNInDisguise) {
 }
 
 TEST(TaskResults, FamiliesAndTasksAreComplete) {
-  const Json& json = whole_study();
+  const study::Json& json = whole_study();
   EXPECT_EQ(json.at("schema"), "vip-results/1");
   EXPECT_EQ(json.at("study").at("database"), "study.db");
   EXPECT_EQ(json.at("flow").at("task1").at("withdrawn"), 1);
@@ -191,8 +193,9 @@ TEST(TaskResults, ErrorsOfTheBradleyTerryModelKnowPeople) {
 }
 
 TEST(TaskResults, PartsThatTheStudyLacksAreAbsent) {
-  const auto results = make_results({{made_study::task2(8)}, 0},
-                                    {"s.db", {TaskKind::Task1, TaskKind::Task2}, "", quick_plan()});
+  const auto results =
+      study::make_results({{made_study::task2(8)}, 0},
+                          {"s.db", {study::TaskKind::Task1, study::TaskKind::Task2}, "", quick_plan()});
   EXPECT_FALSE(results.json.contains("task1"));
   EXPECT_TRUE(results.json.contains("task2"));
   ASSERT_EQ(results.missing.size(), 1u);
@@ -226,10 +229,10 @@ TEST(TaskResults, TwoPeopleAndOneMethodMissingGiveReasonsNotNumbers) {
 }
 
 TEST(TaskCsv, FlattensQuotesAndLeavesMissingEmpty) {
-  const auto list = Json::parse(R"([
+  const auto list = study::Json::parse(R"([
     {"name": "a, b", "p": 0.25, "welch": {"t": 1.5}, "ci": [1, "Inf"], "values": [1, 2, 3], "holds": true},
     {"name": "say \"x\"", "p": null, "welch": {"refused": "no"}, "ci": null, "values": [], "holds": false}])");
-  EXPECT_EQ(csv_text(list),
+  EXPECT_EQ(study::csv_text(list),
             "name,p,welch_t,ci_low,ci_high,holds,welch_refused\r\n"
             "\"a, b\",0.25,1.5,1,Inf,1,\r\n"
             "\"say \"\"x\"\"\",,,,,0,no\r\n");
@@ -237,7 +240,7 @@ TEST(TaskCsv, FlattensQuotesAndLeavesMissingEmpty) {
 
 TEST(TaskCsv, EveryNumberIsTheJsons) {
   const TemporaryFolder folder;
-  write_csv_folder(whole_study(), folder.path(), base::write_file_atomically);
+  study::write_csv_folder(whole_study(), folder.path(), base::write_file_atomically);
   std::istringstream text(base::read_file(folder / "task2_pairs.csv", 1 << 20));
   std::string header, line;
   std::getline(text, header);
@@ -257,7 +260,7 @@ TEST(TaskCsv, EveryNumberIsTheJsons) {
 TEST(TaskCsv, AnEmptyListOfExclusionsHasItsColumns) {
   const TemporaryFolder folder;
   ASSERT_THAT(whole_study().at("exclusions"), IsEmpty());
-  write_csv_folder(whole_study(), folder.path(), base::write_file_atomically);
+  study::write_csv_folder(whole_study(), folder.path(), base::write_file_atomically);
   EXPECT_EQ(base::read_file(folder / "exclusions.csv", 1 << 20),
             "task,participant,visit,position,rule,reason,actor,answers\r\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "task1_retest.csv"));
@@ -279,9 +282,9 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
   plan.seed = 77;
   plan.levels = {{"satisfaction", 4}, {"smoothness", 1.5}};
   plan.pilot = {.exclude_reverse_coders = true, .model_drift = false, .model_lapses = true};
-  base::write_file_atomically(folder / "plan.toml", format_plan(plan, {std::string(64, '1')}));
-  const auto read = read_plan(folder / "plan.toml");
-  EXPECT_EQ(format_plan(read.plan, read.protocols), format_plan(plan, {std::string(64, '1')}));
+  base::write_file_atomically(folder / "plan.toml", study::format_plan(plan, {std::string(64, '1')}));
+  const auto read = study::read_plan(folder / "plan.toml");
+  EXPECT_EQ(study::format_plan(read.plan, read.protocols), study::format_plan(plan, {std::string(64, '1')}));
   EXPECT_EQ(read.plan.alpha, 0.01);
   EXPECT_EQ(read.plan.decision, stats::DecisionRule::Holm);
   EXPECT_EQ(read.plan.directional, stats::Directional::All);
@@ -300,7 +303,7 @@ TEST(AnalysisPlan, ReadsBackWhatItWrites) {
 stats::AnalysisPlan plan_of(const std::string& text) {
   const TemporaryFolder folder;
   base::write_file_atomically(folder / "plan.toml", text);
-  return read_plan(folder / "plan.toml").plan;
+  return study::read_plan(folder / "plan.toml").plan;
 }
 
 // A bundle's plan names its protocols; a plan from before these keys existed was frozen under Holm.
@@ -315,27 +318,27 @@ TEST(AnalysisPlan, AFrozenPlanWithoutADecisionRuleIsOneUnderHolm) {
   EXPECT_EQ(frozen.directional, stats::Directional::H2H3H6);
   EXPECT_EQ(frozen.tests, stats::ScoreTests::Paired);
   EXPECT_EQ(frozen.exclusions.straight_lining_answers, 8);
-  const auto again = plan_of(format_plan(frozen, {}));
+  const auto again = plan_of(study::format_plan(frozen, {}));
   EXPECT_EQ(again.decision, stats::DecisionRule::Holm);
   EXPECT_EQ(again.directional, stats::Directional::H2H3H6);
-  const auto today = plan_of(format_plan({}, {"ab"}));
+  const auto today = plan_of(study::format_plan({}, {"ab"}));
   EXPECT_EQ(today.decision, stats::DecisionRule::IntersectionUnion);
   EXPECT_EQ(today.directional, stats::Directional::None);
 }
 
 TEST(AnalysisPlan, IsPreregisteredForItsProtocolsOnly) {
-  PlanInForce plan = quick_plan();
-  EXPECT_EQ(plan_json(plan, {std::string(64, '1')}).at("preregistered"), false);
+  study::PlanInForce plan = quick_plan();
+  EXPECT_EQ(study::plan_json(plan, {std::string(64, '1')}).at("preregistered"), false);
   plan.protocols = {std::string(64, '1')};
-  EXPECT_EQ(plan_json(plan, {std::string(64, '1')}).at("preregistered"), true);
-  EXPECT_EQ(plan_json(plan, {std::string(64, '1'), std::string(64, '2')}).at("preregistered"), false);
+  EXPECT_EQ(study::plan_json(plan, {std::string(64, '1')}).at("preregistered"), true);
+  EXPECT_EQ(study::plan_json(plan, {std::string(64, '1'), std::string(64, '2')}).at("preregistered"), false);
 }
 
 TEST(AnalysisPlan, MistakesAreNamedWithTheirPlace) {
   const TemporaryFolder folder;
   const auto refuse = [&](const std::string& text, const std::string& what) {
     base::write_file_atomically(folder / "plan.toml", text);
-    EXPECT_THAT([&] { read_plan(folder / "plan.toml"); },
+    EXPECT_THAT([&] { study::read_plan(folder / "plan.toml"); },
                 ThrowsMessage<base::Error>(testing::AllOf(HasSubstr("plan.toml:"), HasSubstr(what))));
   };
   refuse("format = 1\nalpha = 0.6\n", "alpha");

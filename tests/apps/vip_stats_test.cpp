@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/stats/ptpe/pilot_fit.hpp"
+#include "libstudy/analysis/ptpe/pilot_fit.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "libstudy/store/store.hpp"
-#include "libstudy/store/task_answers.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/pilot_database.hpp"
@@ -50,8 +50,8 @@ TEST(VipStatsE2e, FitsADatabaseAndWritesAllThreeFiles) {
                                  " --json " + at("fit.json") + " --svg " + at("heat.svg") + " --seed 3");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
   const auto data =
-      apps::select_task(study::read_tasks(folder / "study.db"), {apps::TaskKind::Pilot, {}, {}});
-  const auto fit = apps::fit_pilot(*data, 4, {2000, 3, 0.95});
+      study::select_task(study::read_tasks(folder / "study.db"), {study::TaskKind::Pilot, {}, {}});
+  const auto fit = study::fit_pilot(*data, 4, {2000, 3, 0.95});
   const auto json = read_json(folder / "fit.json");
   EXPECT_EQ(json.at("status"), "ok");
   EXPECT_EQ(json.at("n_participants"), 6);

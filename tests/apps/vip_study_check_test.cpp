@@ -7,9 +7,9 @@
 #include <fstream>
 #include <string>
 
-#include "apps/study/check/measured_check.hpp"
-#include "apps/study/check/refresh_check.hpp"
-#include "apps/study/check/session_outline.hpp"
+#include "libstudy/check/measured_check.hpp"
+#include "libstudy/check/refresh_check.hpp"
+#include "libstudy/check/session_outline.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/process.hpp"
@@ -120,10 +120,10 @@ TEST(VipStudyCheckE2e, AMethodThatIsNotThereIsNamed) {
 TEST(VipStudyCheckE2e, EveryShippedProtocolIsSound) {
   for (const auto& entry : std::filesystem::directory_iterator(base::resource("protocols"))) {
     const auto protocol = study::read_protocol(entry.path());
-    const auto outline = apps::outline_session(protocol);
+    const auto outline = study::outline_session(protocol);
     EXPECT_GT(outline.trials, 0);
     EXPECT_LT(outline.session_s.least, outline.session_s.most);
-    EXPECT_LE(apps::check_balance(protocol).even_below, protocol.participants);
+    EXPECT_LE(study::check_balance(protocol).even_below, protocol.participants);
   }
 }
 
@@ -135,7 +135,7 @@ TEST(VipStudyReferenceE2e, PrintsThePageInDocs) {
 
 TEST(SessionOutline, TasksLastAsThePaperSays) {
   const auto minutes = [](const char* name) {
-    const auto span = apps::outline_session(shipped(name)).session_s;
+    const auto span = study::outline_session(shipped(name)).session_s;
     return std::pair(span.least / 60, span.most / 60);
   };
   const auto [task1_least, task1_most] = minutes("task1");
@@ -151,44 +151,44 @@ TEST(SessionOutline, TasksLastAsThePaperSays) {
 
 TEST(SessionOutline, BalanceNamesTheNextEvenNumbers) {
   auto protocol = shipped("task1");
-  auto balance = apps::check_balance(protocol);
+  auto balance = study::check_balance(protocol);
   EXPECT_EQ(balance.sequences, 12);
   EXPECT_EQ(balance.least, 2);
   EXPECT_EQ(balance.most, 3);
   EXPECT_EQ(balance.even_below, 24);
   EXPECT_EQ(balance.even_above, 36);
   protocol.participants = 24;
-  balance = apps::check_balance(protocol);
+  balance = study::check_balance(protocol);
   EXPECT_EQ(balance.most, 2);
   EXPECT_EQ(balance.even_above, 24);
   protocol.participants = 5;
-  EXPECT_EQ(apps::check_balance(protocol).least, 0);
-  EXPECT_EQ(apps::check_balance(protocol).even_below, 0);
+  EXPECT_EQ(study::check_balance(protocol).least, 0);
+  EXPECT_EQ(study::check_balance(protocol).even_below, 0);
   protocol.design.order = study::TrialOrder::Williams;
-  EXPECT_EQ(apps::check_balance(protocol).even, 120);
+  EXPECT_EQ(study::check_balance(protocol).even, 120);
 
   auto pairs = shipped("task2");
-  EXPECT_EQ(apps::check_balance(pairs).even, 6);
-  EXPECT_EQ(apps::check_balance(pairs).interval_difference, 1);
+  EXPECT_EQ(study::check_balance(pairs).even, 6);
+  EXPECT_EQ(study::check_balance(pairs).interval_difference, 1);
   EXPECT_THAT(
-      apps::describe_balance(pairs, apps::check_balance(pairs)),
+      study::describe_balance(pairs, study::check_balance(pairs)),
       ::testing::HasSubstr("the numbers of times that the two orders of a pair come differ by at most 1"));
   pairs.participants = 30;
-  EXPECT_EQ(apps::check_balance(pairs).interval_difference, 0);
-  EXPECT_THAT(apps::describe_balance(pairs, apps::check_balance(pairs)),
+  EXPECT_EQ(study::check_balance(pairs).interval_difference, 0);
+  EXPECT_THAT(study::describe_balance(pairs, study::check_balance(pairs)),
               ::testing::AllOf(::testing::HasSubstr("is met by 10 of them"),
                                ::testing::HasSubstr("the two orders of a pair come equally often")));
-  EXPECT_EQ(apps::check_balance(shipped("ptpe_pilot")).even, 1);
+  EXPECT_EQ(study::check_balance(shipped("ptpe_pilot")).even, 1);
 }
 
 /// Every step takes 1 / fps seconds, half of it for drawing.
-apps::StepTimes steps_at(double fps, std::size_t steps = 60) {
+study::StepTimes steps_at(double fps, std::size_t steps = 60) {
   return {std::vector<double>(steps, 0.5 / fps), std::vector<double>(steps, 0.5 / fps)};
 }
 
 /// Each cell is measured separately.
-std::vector<apps::MeasuredStimulus> all_at(const study::Protocol& protocol, double fps) {
-  std::vector<apps::MeasuredStimulus> out;
+std::vector<study::MeasuredStimulus> all_at(const study::Protocol& protocol, double fps) {
+  std::vector<study::MeasuredStimulus> out;
   for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
     const bool temporal = protocol.design.cells[i].stimulus.method == "Ours-TSp";
     out.push_back({{static_cast<int>(i)}, temporal, steps_at(fps)});
@@ -196,10 +196,10 @@ std::vector<apps::MeasuredStimulus> all_at(const study::Protocol& protocol, doub
   return out;
 }
 
-apps::MeasuredReport judged(const study::Protocol& protocol,
-                            const std::vector<apps::MeasuredStimulus>& measured) {
-  return apps::judge_measured(protocol, measured, 90,
-                              [](const auto&) { return std::vector<std::int64_t>(); });
+study::MeasuredReport judged(const study::Protocol& protocol,
+                             const std::vector<study::MeasuredStimulus>& measured) {
+  return study::judge_measured(protocol, measured, 90,
+                               [](const auto&) { return std::vector<std::int64_t>(); });
 }
 
 study::Protocol native_task1() {
@@ -242,12 +242,12 @@ TEST(MeasuredCheck, SlowMachinesAreNamedWithTheirRates) {
 
 TEST(RefreshCheck, CellsOfEqualMomentsAreOneSetting) {
   const auto protocol = shipped("task1");
-  const auto settings = apps::checked_settings(protocol);
+  const auto settings = study::checked_settings(protocol);
   EXPECT_EQ(settings.size(), 29u);  // two cells of LoRes have equal moments
   std::size_t cells = 0;
   for (const auto& one : settings) cells += one.cells.size();
   EXPECT_EQ(cells, 30u);
-  EXPECT_TRUE(apps::checked_settings(native_task1()).empty());
+  EXPECT_TRUE(study::checked_settings(native_task1()).empty());
 }
 
 }  // namespace

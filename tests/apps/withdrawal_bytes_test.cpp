@@ -6,10 +6,10 @@
 #include <cstring>
 #include <sstream>
 
-#include "libstudy/store/backups.hpp"
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/export_folder.hpp"
-#include "libstudy/store/journal_file.hpp"
+#include "libstudy/store/export/export_folder.hpp"
+#include "libstudy/store/file/backups.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/journal_file.hpp"
 #include "libstudy/store/personal.hpp"
 #include "stats/base/new_file.hpp"
 #include "tests/apps/study_test_support.hpp"

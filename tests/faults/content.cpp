@@ -4,8 +4,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/personal.hpp"
-#include "libstudy/store/sqlite.hpp"
 #include "stats/base/file.hpp"
 
 namespace faults {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "tests/faults/invariants.hpp"
 
 namespace faults {

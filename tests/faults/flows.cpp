@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"

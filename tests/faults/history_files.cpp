@@ -1,8 +1,8 @@
 /// Commands of a history that work on whole databases.
 #include <algorithm>
 
-#include "libstudy/store/merge.hpp"
-#include "libstudy/store/salvage.hpp"
+#include "libstudy/store/merge/merge.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "tests/faults/history_run.hpp"
 
 namespace faults {

@@ -2,11 +2,11 @@
 
 #include <iterator>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
 #include "libstudy/store/permissions.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 
 namespace faults {

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "tests/faults/crash_states.hpp"
 #include "tests/faults/crashes.hpp"
 

@@ -9,8 +9,8 @@
 #include <exception>
 #include <stdexcept>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/schema.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/schema.hpp"
 
 namespace faults {
 

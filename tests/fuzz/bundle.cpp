@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/stats/report/preregistration.hpp"
+#include "libstudy/preregistration/preregistration.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"
@@ -20,7 +20,7 @@ constexpr const char* names[] = {"about.json", "hypotheses.json", "plan.toml", "
 /// A bundle and the frozen content of its files.
 struct Frozen {
   Frozen() {
-    apps::report::freeze_bundle({{base::resource("protocols/task2.toml")}, {}, {}}, path);
+    study::report::freeze_bundle({{base::resource("protocols/task2.toml")}, {}, {}}, path);
     for (const char* name : names) files[name] = base::read_file(path / name, 1 << 20);
     protocol = study::read_protocol(base::resource("protocols/task2.toml")).sha256;
   }
@@ -53,14 +53,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
           manifest.replace(manifest.find(before), before.size(), base::sha256_hex(bytes)));
   }
   fuzz::attempt([&] {
-    const auto bundle = apps::report::read_bundle(frozen.path);
+    const auto bundle = study::report::read_bundle(frozen.path);
     const Json results{{"study",
                         {{"protocols", Json::array({{{"task", "task2"},
                                                      {"title", "Task 2"},
                                                      {"sha256", frozen.protocol},
                                                      {"first_answer_utc", "2026-01-31T12:00:00Z"}}})}}},
                        {"hypotheses", Json::array()}};
-    apps::report::compare_with_bundle(bundle, {}, results);
+    study::report::compare_with_bundle(bundle, {}, results);
   });
   return 0;
 }

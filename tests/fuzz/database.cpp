@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "libstudy/store/sickness.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/sickness.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "libstudy/store/store.hpp"
-#include "libstudy/store/task_answers.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/fuzz/attempt.hpp"

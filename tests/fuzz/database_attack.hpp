@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/permissions.hpp"
-#include "libstudy/store/salvage.hpp"
-#include "libstudy/store/sickness.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/sickness.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/read/task_answers.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/store.hpp"
-#include "libstudy/store/task_answers.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

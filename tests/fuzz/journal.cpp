@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/salvage.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"

@@ -1,6 +1,6 @@
 /// Any bytes as a run's options in a database: refused with base::Error, or read so that they write and read
 /// back the same.
-#include "apps/study/run_options.hpp"
+#include "libstudy/runner/run_options.hpp"
 
 #include <cstdint>
 #include <cstdlib>
@@ -9,8 +9,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::attempt([&] {
-    const auto options = apps::parse_run_options({reinterpret_cast<const char*>(data), size}, "fuzz.db");
-    if (apps::parse_run_options(apps::format_run_options(options), "again") != options) std::abort();
+    const auto options = study::parse_run_options({reinterpret_cast<const char*>(data), size}, "fuzz.db");
+    if (study::parse_run_options(study::format_run_options(options), "again") != options) std::abort();
   });
   return 0;
 }

@@ -7,7 +7,7 @@
 #include <epoxy/glx.h>
 
 #define XR_USE_PLATFORM_XLIB
-#include "apps/common/headset/openxr.hpp"
+#include "libstudy/headset/openxr.hpp"
 #undef Always
 #undef Bool
 #undef None

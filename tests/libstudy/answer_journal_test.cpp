@@ -11,7 +11,7 @@
 #include <fstream>
 #include <set>
 
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"

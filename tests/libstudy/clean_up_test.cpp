@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/backups.hpp"
-#include "libstudy/store/beside.hpp"
 #include "libstudy/store/chores.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/file/backups.hpp"
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"

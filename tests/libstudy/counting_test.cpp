@@ -4,11 +4,11 @@
 
 #include <map>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
-#include "libstudy/store/status.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "tests/common/tables.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 

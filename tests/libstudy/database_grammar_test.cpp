@@ -5,9 +5,9 @@
 
 #include <random>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
-#include "libstudy/store/schema.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/schema.hpp"
 #include "tests/fuzz/database_attack.hpp"
 #include "tests/libstudy/hostile_files.hpp"
 #include "tests/libstudy/journal_fixture.hpp"

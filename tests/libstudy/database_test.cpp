@@ -1,12 +1,12 @@
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/merge.hpp"
-#include "libstudy/store/salvage.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/merge/merge.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"

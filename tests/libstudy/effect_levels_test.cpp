@@ -5,12 +5,12 @@
 
 #include <set>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/salvage.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/read/task_answers.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/store.hpp"
-#include "libstudy/store/task_answers.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 #include "tests/libstudy/plan_fixture.hpp"
 #include "tests/libstudy/study_fixture.hpp"

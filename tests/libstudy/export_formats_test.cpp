@@ -8,9 +8,9 @@
 #include <set>
 #include <sstream>
 
-#include "libstudy/store/export_bids.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
 #include "libstudy/store/export_labels.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
 #include "tests/libstudy/study_fixture.hpp"

@@ -6,9 +6,9 @@
 
 #include <random>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study {

@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/merge.hpp"
-#include "libstudy/store/salvage.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/merge/merge.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 

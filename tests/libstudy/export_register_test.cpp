@@ -9,11 +9,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/killed.hpp"

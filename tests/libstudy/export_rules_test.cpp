@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
 #include "tests/common/bids_rules.hpp"
 #include "tests/common/psych_ds_rules.hpp"
 #include "tests/libstudy/gaze_fixture.hpp"

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/export_csv.hpp"
+#include "libstudy/store/export/export_csv.hpp"
 #include "libstudy/store/export_register.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 

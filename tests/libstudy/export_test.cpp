@@ -1,4 +1,4 @@
-#include "libstudy/store/export_csv.hpp"
+#include "libstudy/store/export/export_csv.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/tables.hpp"
 #include "tests/libstudy/study_fixture.hpp"

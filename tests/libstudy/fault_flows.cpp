@@ -5,12 +5,12 @@
 #include <unistd.h>
 
 #include "libstudy/session/interruptions.hpp"
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/permissions.hpp"
-#include "libstudy/store/salvage.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 #include "tests/libstudy/session_fixture.hpp"

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <functional>
 
-#include "libstudy/store/journal_file.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/file/journal_file.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/fault_flows.hpp"
 #include "tests/libstudy/fault_vfs.hpp"

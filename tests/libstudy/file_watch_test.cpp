@@ -1,5 +1,5 @@
 /// A database that is deleted, replaced or overwritten while a session writes it.
-#include "libstudy/store/file_watch.hpp"
+#include "libstudy/store/file/file_watch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 
 #include <functional>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 

@@ -5,7 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
 #include "stats/base/json.hpp"
 #include "tests/common/bids_rules.hpp"
 #include "tests/libstudy/headset_fixture.hpp"

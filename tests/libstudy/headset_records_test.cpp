@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/permissions.hpp"
-#include "libstudy/store/salvage.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"

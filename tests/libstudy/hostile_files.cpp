@@ -6,7 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study::test {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libstudy/store/answer_journal.hpp"
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study::test {

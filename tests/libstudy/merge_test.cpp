@@ -1,4 +1,4 @@
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/merge/merge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <map>
 
 #include "libstudy/store/personal.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"

@@ -10,10 +10,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/fault_vfs.hpp"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/open_session.hpp"
 #include "tests/libstudy/study_fixture.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study::test {

@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "libstudy/store/merge.hpp"
-#include "libstudy/store/merge_parts.hpp"
+#include "libstudy/store/merge/merge.hpp"
+#include "libstudy/store/merge/merge_parts.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "libstudy/store/refusals.hpp"
 #include "tests/libstudy/permission_fixture.hpp"

@@ -4,9 +4,9 @@
 
 #include <zlib.h>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
 #include "stats/base/json.hpp"
 #include "tests/libstudy/permission_fixture.hpp"
 

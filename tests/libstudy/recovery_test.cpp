@@ -11,8 +11,8 @@
 
 #include <functional>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/journal_file.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/file/journal_file.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/file.hpp"

@@ -1,12 +1,12 @@
 /// Solver settings and frame costs, from a session's record to its readers.
-#include "libstudy/store/run_settings.hpp"
+#include "libstudy/store/read/run_settings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/frame_costs.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/read/frame_costs.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 

@@ -1,4 +1,4 @@
-#include "libstudy/store/salvage.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/journal_fixture.hpp"

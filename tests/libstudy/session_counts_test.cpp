@@ -1,5 +1,5 @@
 /// The summary at the end of a session reports what the database holds.
-#include "libstudy/store/session_counts.hpp"
+#include "libstudy/store/read/session_counts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

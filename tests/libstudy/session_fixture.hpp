@@ -13,7 +13,7 @@
 #include "libstudy/display/null.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/session/session.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study::test {

@@ -11,7 +11,7 @@
 #include "libstudy/display/null.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/session/frame_journal.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/libstudy/session_fixture.hpp"

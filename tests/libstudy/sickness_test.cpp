@@ -1,5 +1,5 @@
 /// SSQ and FMS from the database to the exports.
-#include "libstudy/store/sickness.hpp"
+#include "libstudy/store/read/sickness.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <set>
 #include <sstream>
 
-#include "libstudy/store/export_bids.hpp"
-#include "libstudy/store/export_csv.hpp"
-#include "libstudy/store/export_psych_ds.hpp"
-#include "libstudy/store/sickness_table.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
+#include "libstudy/store/export/sickness_table.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
 #include "tests/libstudy/study_fixture.hpp"

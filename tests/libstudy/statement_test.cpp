@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 
 namespace study {
 namespace {

@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/plan_fixture.hpp"
 #include "tests/libstudy/study_fixture.hpp"

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/status.hpp"
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/read/status.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/open_session.hpp"
 #include "tests/libstudy/study_fixture.hpp"

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/open_session.hpp"
 #include "tests/libstudy/study_fixture.hpp"

@@ -1,4 +1,4 @@
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

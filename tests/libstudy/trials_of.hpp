@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/store/task_answers.hpp"
+#include "libstudy/store/read/task_answers.hpp"
 
 namespace study::test {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "libstudy/store/database.hpp"
+#include "libstudy/store/file/database.hpp"
 
 namespace study::test {
 

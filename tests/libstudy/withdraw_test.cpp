@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "libstudy/store/personal.hpp"
-#include "libstudy/store/status.hpp"
+#include "libstudy/store/read/status.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 #include "tests/libstudy/trials_of.hpp"

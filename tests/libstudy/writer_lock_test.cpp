@@ -1,5 +1,5 @@
 /// One writer at a time creates, locks and removes a database; only its owner may read its files.
-#include "libstudy/store/writer_lock.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <array>
 #include <utility>
 
-#include "libstudy/store/database.hpp"
-#include "libstudy/store/merge.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/merge/merge.hpp"
 #include "stats/base/error.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 

@@ -1,5 +1,5 @@
 /// The experimenter's mirror window of a headset, on a virtual screen.
-#include "apps/common/window/headset_mirror.hpp"
+#include "libstudy/window/headset_mirror.hpp"
 
 #include <array>
 #include <cstdint>
@@ -7,9 +7,9 @@
 #include <sstream>
 #include <thread>
 
-#include "apps/common/headset/mirror_picture.hpp"
+#include "libstudy/headset/mirror_picture.hpp"
 #include "libstudy/pacing/pacer.hpp"
-#include "libstudy/store/sqlite.hpp"
+#include "libstudy/store/file/sqlite.hpp"
 #include "stats/base/error.hpp"
 #include "tests/apps/headset_runs.hpp"
 #include "tests/apps/study_test_support.hpp"
@@ -49,7 +49,7 @@ class TwoColours final : public study::Stimulus {
 
 class HeadsetMirrorGl : public test::HeadsetRuns {
  protected:
-  static constexpr int side = MirrorPicture::side_px;
+  static constexpr int side = study::MirrorPicture::side_px;
 
   HeadsetMirrorGl() {
     glXMakeCurrent(screen_.binding().xDisplay, 0, nullptr);  // the headset has its own context
@@ -61,9 +61,10 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
   }
 
   /// 20 Hz, so that a busy machine does not disturb the test.
-  HeadsetDisplay& start(const std::string& profile = "") {
+  study::HeadsetDisplay& start(const std::string& profile = "") {
     use_here("size=32x32;clock=real;rates=20;rate=20;" + profile);
-    display_.emplace(SlotDrive::Thread, HeadsetChoice{.page_width_px = 64, .page_height_px = 64});
+    display_.emplace(study::SlotDrive::Thread,
+                     study::HeadsetChoice{.page_width_px = 64, .page_height_px = 64});
     return *display_;
   }
   void open(bool reveal) { mirror_.emplace(*display_, reveal); }
@@ -74,20 +75,20 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
 
   /// Shows a yellow page of 20 degrees straight ahead of the head.
   void show_page() {
-    HeadsetDisplay& display = *display_;
+    study::HeadsetDisplay& display = *display_;
     const sim::Offscreen& page = display.page();
     constexpr std::array<float, 4> colour{1, 1, 0, 1};
     glClearNamedFramebufferfv(page.framebuffer(), GL_COLOR, 0, colour.data());
-    HeadsetPage place;
+    study::HeadsetPage place;
     for (int i = 0; i < 50 && !place.pose.valid(); ++i) {
-      for (const HeadsetRecord& record : display.next_records()) place.pose = record.input.head;
+      for (const study::HeadsetRecord& record : display.next_records()) place.pose = record.input.head;
     }
     place.pose.place_m[2] -= 2;  // the head looks along -z
     place.width_m = place.height_m = 2 * 2 * 0.17633F;
     display.show_page(place);
   }
   void show_stimulus() {
-    HeadsetClock clock(*display_);
+    study::HeadsetClock clock(*display_);
     display_->render(stimulus_);
     display_->present(display_->first_onset(clock.now_ns()), clock);
   }
@@ -121,8 +122,8 @@ class HeadsetMirrorGl : public test::HeadsetRuns {
   }
 
   const simulated::XScreen screen_{std::to_string(side) + "x" + std::to_string(side)};
-  std::optional<HeadsetDisplay> display_;
-  std::optional<HeadsetMirror> mirror_;
+  std::optional<study::HeadsetDisplay> display_;
+  std::optional<study::HeadsetMirror> mirror_;
   TwoColours stimulus_;
 };
 
@@ -182,7 +183,7 @@ TEST_F(HeadsetMirrorGl, SlotsAreMetWithTheMirrorAsWithout) {
     const int frames = count("frame "), before = count("starved");  // the log continues from earlier starts
     start("hash=1");
     if (mirrored) open(true);
-    HeadsetClock clock(*display_);
+    study::HeadsetClock clock(*display_);
     study::play_trial(std::vector<std::int64_t>(30, 100'000'000), {}, stimulus_, *display_, clock,
                       {.late_after_ns = 500'000, .overrun_ns = 5'000'000'000}, {});
     display_->clear();

@@ -9,18 +9,18 @@
 #include <cstdio>
 #include <memory>
 
-#include "apps/bench/accuracy/accuracy_page.hpp"
-#include "apps/bench/accuracy/budget.hpp"
-#include "apps/bench/accuracy/machine_lock.hpp"
-#include "apps/bench/accuracy/run_cell.hpp"
 #include "apps/bench/commands.hpp"
-#include "apps/bench/timed_run.hpp"
-#include "apps/common/named_scenes.hpp"
 #include "apps/common/options.hpp"
-#include "apps/common/program.hpp"
+#include "libsim/measure/timed_run.hpp"
+#include "libsim/setting/named_scenes.hpp"
+#include "libstudy/sweep/run/accuracy_page.hpp"
+#include "libstudy/sweep/run/budget.hpp"
+#include "libstudy/sweep/run/machine_lock.hpp"
+#include "libstudy/sweep/run/run_cell.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/program.hpp"
+#include "stats/base/progress.hpp"
 
 namespace apps {
 
@@ -34,7 +34,7 @@ struct AccuracyOptions {
   std::string budget, error = "centre", kept = "240x135";
   std::string of_method, of_n_star;
   double of_rate = 0;
-  std::optional<PictureSize> size;
+  std::optional<base::PictureSize> size;
   double seconds = 2;
   int seeds = 2, front_seeds = 0;
   bool quick = false, list = false, table_only = false;
@@ -44,24 +44,24 @@ struct AccuracyOptions {
 /// Parses "240x135"; empty for "none".
 std::string kept_size(const std::string& words) {
   if (words == "none") return "";
-  const auto size = parse_picture_size(words, "--pictures");
+  const auto size = base::parse_picture_size(words, "--pictures");
   if (std::min(size.width, size.height) < 32)
     throw base::Error("--pictures " + words, "is too small to be compared",
                       "use 32 px a side or more, or none");
-  return size_words(size);
+  return base::size_words(size);
 }
 
 /// Rounds to 1/30 s, the interval of measurements, so that runs at all rates end with one.
 double whole_samples(double seconds) { return std::round(30 * seconds) / 30; }
 
-SweepPlan plan_of(const AccuracyOptions& options) {
-  SweepPlan out{.scene = options.scene,
-                .n_star = sim::parse_n_star(options.n_star),
-                .seconds = whole_samples(options.seconds),
-                .seeds = options.seeds,
-                .size = options.size ? size_words(*options.size) : "",
-                .kept = kept_size(options.kept),
-                .quick = options.quick};
+study::SweepPlan plan_of(const AccuracyOptions& options) {
+  study::SweepPlan out{.scene = options.scene,
+                       .n_star = sim::parse_n_star(options.n_star),
+                       .seconds = whole_samples(options.seconds),
+                       .seeds = options.seeds,
+                       .size = options.size ? base::size_words(*options.size) : "",
+                       .kept = kept_size(options.kept),
+                       .quick = options.quick};
   if (out.quick) out.n_star = std::min<std::int64_t>(out.n_star, 256);
   if (out.quick) out.seconds = std::min(out.seconds, 0.5);
   if (!out.quick && out.n_star < 256) {
@@ -72,37 +72,41 @@ SweepPlan plan_of(const AccuracyOptions& options) {
 }
 
 struct Job {
-  CellScene scene;
-  SweepPlan plan;
-  SweepOrigin origin;
+  sim::CellScene scene;
+  study::SweepPlan plan;
+  study::SweepOrigin origin;
   sim::Backend backend;
-  std::vector<SweepCell> cells;
-  std::string key(const SweepCell& cell) const { return key_of(cell, origin.scene_sha256, origin.program); }
+  std::vector<study::SweepCell> cells;
+  std::string key(const study::SweepCell& cell) const {
+    return study::key_of(cell, origin.scene_sha256, origin.program);
+  }
 };
 
 /// The part of the environment that affects times.
 std::string machine(sim::Backend backend) {
   const std::string device = sim::device_name(backend);
-  return fmt::format("{}; {}, {} threads", processor(), device.empty() ? "cpu" : device,
+  return fmt::format("{}; {}, {} threads", measure::processor(), device.empty() ? "cpu" : device,
                      omp_get_max_threads());
 }
 
 Job job_of(const AccuracyOptions& options) {
   if (options.scene == "all")
     throw base::Error("--scene all", "is more than one sweep", "name one scene; a file may hold several");
-  Job out{scenes_of(options.scene).front(), plan_of(options), {}, sim::choose_backend(options.backend), {}};
+  Job out{
+      sim::scenes_of(options.scene).front(), plan_of(options), {}, sim::choose_backend(options.backend), {}};
   out.origin = {machine(out.backend), base::program_words(), out.scene.scene.sha256};
-  out.cells = cells_of(out.plan);
+  out.cells = study::cells_of(out.plan);
   return out;
 }
 
-StoredCell run(const Job& job, const SweepCell& cell) {
-  const MachineLock alone;
-  return {cell, job.origin, run_cell(cell, job.scene.scene, job.backend)};
+study::StoredCell run(const Job& job, const study::SweepCell& cell) {
+  const study::MachineLock alone;
+  return {cell, job.origin, study::run_cell(cell, job.scene.scene, job.backend)};
 }
 
 void print_list(const Job& job) {
-  for (const auto& cell : job.cells) std::printf("%s %s\n", job.key(cell).c_str(), to_text(cell).c_str());
+  for (const auto& cell : job.cells)
+    std::printf("%s %s\n", job.key(cell).c_str(), study::to_text(cell).c_str());
 }
 
 void run_one(const Job& job, const AccuracyOptions& options) {
@@ -112,18 +116,18 @@ void run_one(const Job& job, const AccuracyOptions& options) {
     throw base::Error("--cell " + options.cell, "is no cell of this sweep",
                       "copy one from --list, given with the same program and options");
   }
-  SweepFile file(options.out, Open::Create);
+  study::SweepFile file(options.out, Open::Create);
   if (!file.keys(job.origin.machine).contains(options.cell)) file.add(run(job, *found));
 }
 
 /// Stores each finished cell, so that an interrupted run can continue.
-void run_missing(const Job& job, SweepFile& file, const std::vector<SweepCell>& cells) {
+void run_missing(const Job& job, study::SweepFile& file, const std::vector<study::SweepCell>& cells) {
   const auto done = file.keys(job.origin.machine);
-  std::vector<SweepCell> missing;
+  std::vector<study::SweepCell> missing;
   for (const auto& cell : cells)
     if (!done.contains(job.key(cell))) missing.push_back(cell);
   if (missing.empty()) return;
-  Progress progress("cells", missing.size());
+  base::Progress progress("cells", missing.size());
   std::size_t finished = 0;
   for (const auto& cell : missing) {
     file.add(run(job, cell));
@@ -132,7 +136,7 @@ void run_missing(const Job& job, SweepFile& file, const std::vector<SweepCell>& 
 }
 
 /// Reports missing cells, including those that only another machine has run: tables and choices lack them.
-void tell_missing(const Job& job, SweepFile& file) {
+void tell_missing(const Job& job, study::SweepFile& file) {
   const auto done = file.keys(job.origin.machine);
   const auto there = std::count_if(job.cells.begin(), job.cells.end(),
                                    [&](const auto& cell) { return done.contains(job.key(cell)); });
@@ -140,33 +144,35 @@ void tell_missing(const Job& job, SweepFile& file) {
     std::printf("%td of the sweep's %zu cells are there\n", there, job.cells.size());
 }
 
-PriceList prices_of(const Job& job, SweepFile& file) {
-  return price_list(file.cells(), job.plan, job.origin, job.scene.scene.tank_size_m[0]);
+study::PriceList prices_of(const Job& job, study::SweepFile& file) {
+  return study::price_list(file.cells(), job.plan, job.origin, job.scene.scene.tank_size_m[0]);
 }
 
-void write_tables(const Job& job, SweepFile& file, const AccuracyOptions& options) {
+void write_tables(const Job& job, study::SweepFile& file, const AccuracyOptions& options) {
   const auto list = prices_of(job, file);
-  std::printf("%s", to_markdown(list).c_str());
-  if (!options.csv.empty()) base::write_file_atomically(options.csv, to_csv(setting_table(list)));
-  if (!options.prices_csv.empty()) base::write_file_atomically(options.prices_csv, to_csv(price_table(list)));
-  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, to_markdown(list));
-  if (!options.html.empty()) base::write_file_atomically(options.html, accuracy_page(list, job.plan));
+  std::printf("%s", study::to_markdown(list).c_str());
+  if (!options.csv.empty())
+    base::write_file_atomically(options.csv, figures::to_csv(study::setting_table(list)));
+  if (!options.prices_csv.empty())
+    base::write_file_atomically(options.prices_csv, figures::to_csv(study::price_table(list)));
+  if (!options.markdown.empty()) base::write_file_atomically(options.markdown, study::to_markdown(list));
+  if (!options.html.empty()) base::write_file_atomically(options.html, study::accuracy_page(list, job.plan));
 }
 
 /// Chooses a setting; candidates are run again.
 void run_budget(const Job& job, const AccuracyOptions& options) {
-  BudgetRequest request{job.plan, parse_budget(options.budget), parse_sweep_error(options.error),
-                        job.scene.scene.tank_size_m[0]};
+  study::BudgetRequest request{job.plan, study::parse_budget(options.budget),
+                               study::parse_sweep_error(options.error), job.scene.scene.tank_size_m[0]};
   if (!options.of_method.empty()) request.method = sim::parse_method(options.of_method);
   if (!options.of_n_star.empty()) request.n_star = sim::parse_n_star(options.of_n_star);
   if (options.of_rate > 0) request.frames_per_s = options.of_rate;
-  SweepFile file(options.database, Open::Read);
+  study::SweepFile file(options.database, Open::Read);
   tell_missing(job, file);
-  const auto choice = choose_setting(
-      file.cells(), job.origin, request, [&](const SweepCell& cell) { return run(job, cell); },
+  const auto choice = study::choose_setting(
+      file.cells(), job.origin, request, [&](const study::SweepCell& cell) { return run(job, cell); },
       [](const std::string& words) { std::printf("%s\n", words.c_str()); });
-  base::write_file_atomically(options.out, format_setting_file(choice));
-  std::printf("%s: %s\n", options.out.c_str(), describe(choice).c_str());
+  base::write_file_atomically(options.out, sim::format_setting_file(choice));
+  std::printf("%s: %s\n", options.out.c_str(), sim::describe(choice).c_str());
 }
 
 void run_accuracy(const AccuracyOptions& options) {
@@ -182,21 +188,22 @@ void run_accuracy(const AccuracyOptions& options) {
   if (!options.cell.empty()) return run_one(job, options);
   if (options.database.empty()) throw base::Error("--db", "is missing", "name the file that keeps the sweep");
   if (!options.budget.empty()) return run_budget(job, options);
-  SweepFile file(options.database, options.table_only ? Open::Read : Open::Create);
+  study::SweepFile file(options.database, options.table_only ? Open::Read : Open::Create);
   if (options.table_only) {
     tell_missing(job, file);
   } else {
     run_missing(job, file, job.cells);
     if (options.front_seeds > 0)
-      run_missing(job, file, more_seeds_of_fronts(prices_of(job, file), job.plan, options.front_seeds));
+      run_missing(job, file,
+                  study::more_seeds_of_fronts(prices_of(job, file), job.plan, options.front_seeds));
   }
   write_tables(job, file, options);
 }
 
 void merge_shards(const AccuracyOptions& options) {
   // Checks all files before merging the first.
-  for (const auto& shard : options.shards) SweepFile(shard, Open::Read);
-  SweepFile file(options.database, Open::Create);
+  for (const auto& shard : options.shards) study::SweepFile(shard, Open::Read);
+  study::SweepFile file(options.database, Open::Create);
   std::int64_t added = 0;
   for (const auto& shard : options.shards) added += file.merge(shard);
   std::printf("%s: %lld cells added from %zu files\n", options.database.c_str(),
@@ -256,7 +263,7 @@ void add_accuracy_command(CLI::App& app) {
       ->add_option("--error", options->error,
                    "Error to minimise: front, centre, kinetic, density; picture, fovea, salient, ssim, flip, "
                    "film or flicker")
-      ->check(CLI::IsMember(sweep_error_names()))
+      ->check(CLI::IsMember(study::sweep_error_names()))
       ->capture_default_str()
       ->needs(budget);
   command->add_option("--of-method", options->of_method, "Choose among settings of this method")

@@ -6,17 +6,17 @@
 #include <cstdio>
 #include <string>
 
-#include "apps/common/fluid_picture.hpp"
-#include "apps/common/window/glfw_window.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
 #include "apps/view/window/panel.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
+#include "libsim/render/fluid_picture.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
 #include "libsim/render/png.hpp"
 #include "libsim/scene/gaze.hpp"
+#include "libstudy/window/glfw_window.hpp"
 #include "stats/base/error.hpp"
 
 namespace apps {
@@ -43,7 +43,7 @@ struct Running {
         painter(prepared.scene, prepared.finest_spacing_m) {}
 
   PreparedFluid prepared;
-  FluidPicture picture;
+  sim::FluidPicture picture;
   OverlayPainter painter;
   stats::FpsWindow fps{30};
   bool timed = false;   ///< its passes are timed
@@ -89,7 +89,7 @@ class Viewer {
   void save_screenshot(int width, int height);
 
   ViewOptions running_;  ///< the options of the running fluid
-  GlfwWindow window_;
+  study::GlfwWindow window_;
   Panel panel_;
   Controls controls_;
   Figures figures_;
@@ -213,22 +213,22 @@ void Viewer::follow_choices() {
   controls_.alpha = numbers.alpha;
   controls_.iterations = numbers.iterations;
   running_ = controls_.chosen;
-  SolverSetting& setting = fluid_->prepared.setting;
-  setting[SolverKnob::Alpha] = numbers.alpha;
-  setting[SolverKnob::Iterations] = numbers.iterations;
+  sim::SolverSetting& setting = fluid_->prepared.setting;
+  setting[sim::SolverKnob::Alpha] = numbers.alpha;
+  setting[sim::SolverKnob::Iterations] = numbers.iterations;
   figures_.price = price_lines(running_, setting, fluid_->prepared.scene);
 }
 
 void Viewer::step(const sim::View& view) {
   const PreparedFluid& prepared = fluid_->prepared;
-  sim::Gaze gaze = gaze_at(
+  sim::Gaze gaze = sim::gaze_at(
       prepared.camera, sim::gaze_point(prepared.scene, sim::scene_frame(prepared.scene, figures_.frame + 1,
                                                                         prepared.frame_dt_s)));
   if (controls_.mouse_gaze) {
     // If the mouse is over the panel or outside the window, the gaze counts as lost.
     double x = 0, y = 0;
     const bool looks = window_.mouse(x, y) && !panel_.has_mouse();
-    gaze = looks ? gaze_through(view, x, y) : sim::Gaze{};
+    gaze = looks ? sim::gaze_through(view, x, y) : sim::Gaze{};
   }
   fluid_->picture.look(*prepared.fluid, view, gaze);
   prepared.fluid->step_frame();

@@ -1,0 +1,28 @@
+#pragma once
+/// Makes all bakes of a protocol; keeps valid ones and replaces invalid ones.
+
+#include <filesystem>
+#include <functional>
+
+#include "libstudy/stimulus/bakes/bake_plan.hpp"
+
+namespace apps {
+
+struct ProtocolBakes {
+  std::string file;  ///< of the protocol
+  std::filesystem::path folder;
+  study::SessionLook look;
+  bool pictures = false;  ///< store pictures too
+};
+
+/// Upper bound of a bake's size, bytes, from the particles and pixels of its header; ignores max_particles.
+std::uint64_t most_bytes(const sim::BakeHeader& header);
+
+/// Makes the bakes of plan_bakes() in `folder`, which is made if missing; prints on stdout which bakes it
+/// keeps, makes and leaves out. An existing bake is read completely and kept if it holds the wanted fluid and
+/// was made by this version and renderer. `stop` is called before each frame and may throw to end the work:
+/// complete bakes stay. base::Error: nothing can be baked, too little disk space, errors of write_bake().
+void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& request,
+                   const std::function<void()>& stop);
+
+}  // namespace apps

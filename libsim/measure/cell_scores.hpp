@@ -1,0 +1,51 @@
+#pragma once
+/// The scores of Table 1 per picture, and their change since another run.
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "libsim/measure/scores.hpp"
+
+namespace measure {
+
+/// Metrics of one picture against HiRes.
+inline constexpr std::array still_metrics{Metric::PsnrFov, Metric::PsnrSalient, Metric::PsnrOverall,
+                                          Metric::PsnrFluid, Metric::SsimStatic};
+
+/// One picture of Table 1.
+struct CellKey {
+  std::string scene, n_star, preset, method;
+  int checkpoint = 0;  ///< frame
+  std::string start;   ///< checkpoint_digest: pictures from different starts are not compared
+  int gaze = 0;        ///< from 1, in the order of gaze_points
+  int repeat = 0;      ///< from 1
+  friend bool operator<(const CellKey& a, const CellKey& b) {
+    const auto order = [](const CellKey& k) {
+      return std::tie(k.scene, k.n_star, k.preset, k.method, k.checkpoint, k.start, k.gaze, k.repeat);
+    };
+    return order(a) < order(b);
+  }
+};
+/// One value per metric of still_metrics: infinite if the pictures are equal, NaN if the mask is too small.
+using CellValues = std::array<double, still_metrics.size()>;
+using CellScores = std::map<CellKey, CellValues>;
+
+/// One row per picture; its values read back to the same bits. A block without values gives no rows.
+figures::TextTable cell_rows(const std::vector<ScoreBlock>& blocks);
+
+/// Reads the CSV of cell_rows(). base::Error at the file and its line.
+CellScores read_cells(const std::filesystem::path& path);
+
+/// base::Error unless the pictures of the blocks are exactly those of `then`. The starts of the blocks must
+/// be known; their values are not used. `path` is the file's.
+void check_paired(const std::vector<ScoreBlock>& blocks, const CellScores& then, const std::string& path);
+
+/// Mean of now - then with its 95 % interval (Student's t over pairs of checkpoint and gaze point, repeats
+/// averaged first), one row per scene, method and metric. Uses only pictures with two finite values.
+figures::TextTable change_rows(const std::vector<ScoreBlock>& now, const CellScores& then);
+
+}  // namespace measure

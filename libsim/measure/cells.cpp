@@ -1,0 +1,65 @@
+#include "libsim/measure/cells.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "libsim/ptpe/tolerance_switch.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace measure {
+
+namespace {
+
+std::vector<std::string> split(const std::string& words, char by) {
+  std::vector<std::string> out;
+  std::istringstream stream(words);
+  for (std::string word; std::getline(stream, word, by);) out.push_back(word);
+  return out;
+}
+
+bool read_number(const std::string& text, double& value) {
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && rest == end && std::isfinite(value);
+}
+
+/// tau of a cell in the paper's Table 2.
+double paper_tau(const std::string& scene, const std::string& n_star, sim::MethodKind method) {
+  const auto path = base::resource("data/paper/table2_performance.csv");
+  const auto lines = split(base::read_file(path, 1 << 16), '\n');
+  for (const auto& line : lines) {
+    const auto cell = split(line, ',');
+    double tau = 0;
+    if (cell.size() < 8 || cell[0] != scene || cell[1] + "k" != n_star || cell[2] != sim::method_name(method))
+      continue;
+    if (read_number(cell[7], tau)) return tau;
+  }
+  throw base::Error(
+      "--tau table2",
+      "the paper's table holds no tau for " + scene + ", " + n_star + ", " + sim::method_name(method),
+      "use --tau fixed:-6, or n_* 16k or 32k");
+}
+
+}  // namespace
+
+std::vector<CellSize> sizes_of(const std::string& words) {
+  std::vector<CellSize> out;
+  for (const auto& word : split(words, ',')) out.push_back({word, sim::parse_n_star(word)});
+  if (out.empty()) throw base::Error("--n-star", "names no size", "write for example 16k,32k");
+  return out;
+}
+
+std::vector<sim::Preset> presets_of(const std::string& word) {
+  if (word == "both") return {sim::Preset::Paper, sim::Preset::Tuned};
+  return {sim::parse_preset(word)};
+}
+
+std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
+                             sim::MethodKind method) {
+  if (word == "table2") return paper_tau(scene, n_star, method);
+  return sim::parse_tau(word);
+}
+
+}  // namespace measure

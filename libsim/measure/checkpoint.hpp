@@ -1,0 +1,34 @@
+#pragma once
+/// Starts of Table 1's runs: HiRes at a checkpoint, seen from several gaze points, perturbed by an ulp, and
+/// coarsened to each method's targets.
+
+#include <cstdint>
+#include <vector>
+
+#include "libsim/view/gbuffer.hpp"
+#include "libsim/simulation.hpp"
+
+namespace measure {
+
+/// HiRes at one frame of its run.
+struct Checkpoint {
+  int frame = 0;
+  std::vector<sim::ParticleState> state;  ///< ordered by id
+  sim::GBuffer seen;                      ///< its picture
+};
+
+/// `count` different gaze points at a frame: the scene's own gaze at that frame, then the points of its other
+/// keys, nearest in time first, ties to the earlier one. base::Error if the scene names fewer.
+std::vector<sim::Vec3d> gaze_points(const sim::Scene& scene, int frame, int count);
+
+/// Moves each coordinate one ulp (at most 2^-23 of its magnitude) up or down; the direction depends only on
+/// id, axis and repeat. Repeat 0 is the state itself.
+std::vector<sim::ParticleState> perturbed(const std::vector<sim::ParticleState>& state, int repeat);
+
+/// The target of each particle of a state ordered by id: values[i] belongs to ids[i]. base::Error if a
+/// particle has none.
+std::vector<std::uint8_t> targets_by_id(const std::vector<sim::ParticleState>& state,
+                                        const std::vector<int>& ids,
+                                        const std::vector<sim::ParticleSaliency>& values);
+
+}  // namespace measure

@@ -1,0 +1,31 @@
+#pragma once
+/// Pictures of the five methods side by side, as in Fig. 7 and 8 of the paper.
+
+#include <filesystem>
+#include <future>
+#include <vector>
+
+#include "libsim/render/png.hpp"
+
+namespace measure {
+
+/// One column per method: its picture above the same picture painted by level.
+struct SheetColumn {
+  sim::Image picture, levels;
+};
+
+/// Joins columns of equal size, left to right.
+sim::Image contact_sheet(const std::vector<SheetColumn>& columns);
+
+/// Writes PNG files on its own threads, because compression takes longer than drawing. finish() throws the
+/// errors and must be called.
+class SheetWriter {
+ public:
+  void write(std::filesystem::path path, sim::Image image);
+  void finish();
+
+ private:
+  std::vector<std::future<void>> pending_;
+};
+
+}  // namespace measure

@@ -1,0 +1,46 @@
+#pragma once
+/// A camera that watches a run frame by frame and supplies pictures to the image metrics.
+
+#include <cstdint>
+#include <vector>
+
+#include "libsim/measure/render_timer.hpp"
+#include "libsim/render/fluid_picture.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "libsim/render/rgb_picture.hpp"
+
+namespace measure {
+
+/// Needs a current context at every call and when it is destroyed.
+class Onlooker {
+ public:
+  Onlooker(const sim::Scene& scene, const base::PictureSize& size);
+
+  const sim::View& view() const { return view_; }
+  const sim::Camera& camera() const { return camera_; }
+  /// Call it before another run; see FluidPicture::begin.
+  void begin(const sim::GBuffer* seen) { picture_.begin(seen); }
+  /// Passes the gaze to a method that uses it and, if the method uses pictures, the last picture.
+  void look(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m);
+  /// Calls look() if the method uses it, advances by a frame, and draws if asked to or if the method uses
+  /// pictures.
+  void step(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m, bool draw);
+  void draw(sim::Simulation& fluid) { picture_.draw(fluid, view_, target_.framebuffer()); }
+
+  // Data of the last picture drawn.
+  sim::Image image() const { return target_.read(); }
+  sim::Picture picture() const { return sim::without_alpha(image()); }
+  sim::GBuffer gbuffer() const { return picture_.renderer().read_gbuffer(); }
+  /// Mask of fluid pixels: 1, else 0; row 0 is the top.
+  std::vector<std::uint8_t> fluid_mask() const;
+  /// The last picture with the water painted by level. `finest_spacing_m` is 2 r_*.
+  sim::Image painted_by_level(sim::Simulation& fluid, double finest_spacing_m);
+
+ private:
+  sim::Camera camera_;
+  sim::View view_;
+  sim::Offscreen target_;
+  sim::FluidPicture picture_;
+};
+
+}  // namespace measure

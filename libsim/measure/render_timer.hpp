@@ -1,0 +1,47 @@
+#pragma once
+/// Renders the fluid of a benchmark and times it separately from the solver.
+
+#include <memory>
+#include <string>
+
+#include "libsim/render/gl_context.hpp"
+#include "libsim/scene/scene.hpp"
+#include "libsim/simulation.hpp"
+#include "stats/base/json.hpp"
+#include "stats/base/picture_size.hpp"
+
+namespace measure {
+
+/// Draws an off-screen picture of a scene and times it. The context stays current on this thread.
+class RenderTimer {
+ public:
+  /// `views`: 1, or 2 side by side, 64 mm apart. base::Error for a size that the driver refuses.
+  RenderTimer(sim::GlContext context, const sim::Scene& scene, const base::PictureSize& size, int views);
+  ~RenderTimer();
+
+  /// Milliseconds of one picture; each part ends when the device is idle.
+  struct Times {
+    double transfer = 0;  ///< from the solver's particles to the GL buffer
+    double render = 0;    ///< from the draw call to the finished picture
+  };
+  /// Draws untimed pictures first, because the driver compiles at the first draw.
+  void warm_up(sim::Simulation& fluid);
+  /// Call it when the solver is idle.
+  Times draw(sim::Simulation& fluid);
+  /// Call it before a frame, as a live session does: passes the first view, a gaze at its middle and the last
+  /// picture to the fluid.
+  void look(sim::Simulation& fluid);
+
+  /// Keys render_ms_median, _p95, _p99, the same for transfer_ms, passes, ... over all pictures since
+  /// warm_up(); null before the first.
+  base::Json figures() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Prints RenderTimer::figures() as lines of a table.
+void print_render_figures(const base::Json& figures);
+
+}  // namespace measure

@@ -1,0 +1,48 @@
+#pragma once
+/// The stability map: the safety margin of each hard case, by method and changed number.
+
+#include <string>
+#include <vector>
+
+#include "libsim/measure/cells.hpp"
+#include "libsim/measure/limit_search.hpp"
+
+namespace measure {
+
+enum class Knob { FrameStep, Iterations, Scale };
+inline constexpr Knob all_knobs[] = {Knob::FrameStep, Knob::Iterations, Knob::Scale};
+const char* knob_name(Knob knob);  ///< as in the CSV: "frame_step", "iterations", "scale"
+
+/// One case under one method with one number changed.
+struct MapCell {
+  std::string case_id, title, method;
+  Knob knob{};
+  std::string of;    ///< unit of the number: "s", "projections a substep", "30 m/s of the jet"
+  double usual = 0;  ///< the case's own number
+  double limit = 0;  ///< the farthest value that passed
+  Reach reach = Reach::Found;
+  std::string failed;  ///< what failed beyond the limit, or at the usual number
+};
+
+/// limit / usual, or usual / limit if the limit is a minimum; 0 if the usual number fails.
+double margin_of(const MapCell& cell);
+
+struct StabilityMap {
+  std::vector<std::string> cases;    ///< ids, top to bottom
+  std::vector<std::string> methods;  ///< left to right
+  std::vector<MapCell> cells;        ///< a case and method without cells: not applicable
+  double most = 0;                   ///< largest factor tried
+  double resolution = 0;             ///< largest factor between what passed and what failed
+  std::string circumstances;         ///< machine, back end, size, seed
+  /// Effects of the water, each as text; with effects, a case fails only by its stability criteria.
+  std::vector<std::string> effects = {};
+};
+
+/// One row per cell.
+figures::TextTable to_table(const StabilityMap& map);
+/// A paragraph on the measurement, and one row per case and method.
+std::string to_markdown(const StabilityMap& map);
+/// Cases by methods, one panel per knob, each cell with its value.
+std::string to_svg(const StabilityMap& map);
+
+}  // namespace measure

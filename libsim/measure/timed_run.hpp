@@ -1,0 +1,58 @@
+#pragma once
+/// Helpers of the commands that time one fluid.
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <string>
+
+#include "libsim/simulation.hpp"
+
+namespace measure {
+
+/// Makes the scene at frame 0, from the stored settled state if there is one; shows the settling as a
+/// progress line.
+std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::SimulationOptions options);
+
+/// Processor and cores; the operating system does not affect the numbers.
+std::string processor();
+
+/// Density error averaged over states spread over the run, so that no single calm or wild moment decides.
+struct Accuracy {
+  double error_mean = 0;
+  double density_max = 0;
+  double neighbours_mean = 0;
+  double listed_mean = 0;
+  int samples = 0;
+  void add(const sim::FrameReport& report) {
+    ++samples;
+    error_mean += (report.density_error_mean - error_mean) / samples;
+    neighbours_mean += (report.neighbours_mean - neighbours_mean) / samples;
+    listed_mean += (report.listed_mean - listed_mean) / samples;
+    density_max = std::max(density_max, report.density_max);
+  }
+};
+
+/// Number of frames between measurements: about ten per run. Water is denser in the frame in which levels
+/// change than before the next change, so the interval is chosen to sample all frames of that period nearly
+/// equally.
+inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& readings) {
+  const int turn = sim::traits_of(method).adaptive() ? std::max(1, readings.levels_period_frames) : 1;
+  int out = std::max(1, frames / 10);
+  while (std::gcd(out, turn) > 1) ++out;
+  return out;
+}
+
+/// Substeps over all frames.
+struct Substeps {
+  int taken = 0, most = 0;
+  int bound = 0;  ///< frames whose fastest particle asked for more substeps than allowed
+  void add(sim::SubstepCount count) {
+    taken += count.taken;
+    most = std::max(most, count.taken);
+    bound += count.wished > count.taken;
+  }
+  double mean(int frames) const { return static_cast<double>(taken) / frames; }
+};
+
+}  // namespace measure

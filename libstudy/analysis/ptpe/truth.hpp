@@ -1,0 +1,31 @@
+#pragma once
+/// Compares a fit with the parameters of simulated participants.
+
+#include <string>
+
+#include "libstudy/analysis/ptpe/pilot_fit.hpp"
+#include "stats/base/json.hpp"
+#include "stats/ptpe/ptpe.hpp"
+
+namespace study {
+
+/// For each interval of the main estimate: true if it covers the true value.
+struct Recovery {
+  stats::PtpeModel truth;
+  bool a_held = false, b_held = false;
+};
+
+/// a and b of an observer, spelt as for vip-study run: "ptpe:a=24,b=0.02". base::Error otherwise.
+stats::PtpeModel parse_truth(const std::string& observer);
+
+/// base::Error if the fit's level is not the middle of the scale, which is the level of an observer's curve.
+void check_comparable(const PilotFit& fit, const std::string& observer);
+
+/// Requires fit.ok().
+Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth);
+
+/// Two lines for the console, and the same for fit.json.
+std::string format_recovery(const PilotFit& fit, const Recovery& recovery);
+base::Json recovery_json(const Recovery& recovery);
+
+}  // namespace study

@@ -1,0 +1,15 @@
+#pragma once
+/// H1 to H6 in the results (docs/report.md).
+
+#include <vector>
+
+#include "libstudy/analysis/json_parts.hpp"
+#include "stats/analysis/hypotheses.hpp"
+
+namespace study {
+
+Json hypothesis_json(const stats::Hypothesis& hypothesis);
+/// Only the fields that a sensitivity analysis shows.
+Json hypothesis_outline_json(const stats::Hypothesis& hypothesis);
+
+}  // namespace study

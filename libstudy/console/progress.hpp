@@ -1,0 +1,22 @@
+#pragma once
+/// Estimates the remaining duration of a session.
+
+#include <span>
+
+#include "libstudy/protocol/protocol.hpp"
+#include "libstudy/store/store.hpp"
+
+namespace study {
+
+/// Expected duration of a unit, s: its block's times, 3.5 words per second for reading, 5 s for each question
+/// with choices, 10 s for a number and 30 s for text. A simulated person reads and answers at once.
+/// showing_s: duration of a showing of each cell of the design here; empty: as planned.
+double expected_s(const Protocol& protocol, const OpenUnit& unit, bool person = true,
+                  std::span<const double> showing_s = {});
+double expected_s(const Protocol& protocol, std::span<const OpenUnit> units, bool person = true,
+                  std::span<const double> showing_s = {});
+
+/// Estimate of the bytes that the units add to a database: 64 bytes per frame and 4 KiB per unit.
+std::uint64_t expected_bytes(const Protocol& protocol, std::span<const OpenUnit> units);
+
+}  // namespace study

@@ -1,0 +1,46 @@
+#pragma once
+/// Reads HeadsetInput through OpenXR's actions.
+
+#include <memory>
+#include <vector>
+
+#include "libstudy/headset/input.hpp"
+#include "libstudy/headset/runtime_clock.hpp"
+#include "libstudy/headset/session_handle.hpp"
+
+namespace study {
+
+/// Made once per session, in the specification's order: actions, suggested bindings, attachment, spaces.
+/// Afterwards the actions are synchronised while the session is focused.
+class Actions {
+ public:
+  Actions(const SessionHandle& session, RuntimeClock& clock, bool eye_gaze);
+  ~Actions();
+  Actions(const Actions&) = delete;
+  Actions& operator=(const Actions&) = delete;
+
+  /// Reads gaze and hands at `time` in `world`; call while focused.
+  void read(const Space& world, XrTime time, HeadsetInput& out);
+
+ private:
+  void make_actions(bool eye_gaze);
+  void suggest(bool eye_gaze) const;
+  void attach() const;
+  bool sync() const;
+  XrActionStateGetInfo ask(XrAction action, XrPath hand = XR_NULL_PATH) const;
+  bool is_active(XrAction pose, XrPath hand = XR_NULL_PATH) const;
+  XrActionStateBoolean read_button(XrAction action) const;
+  std::optional<HeadsetGaze> read_gaze(const Space& world, XrTime time);
+  HeadsetHands read_hands(const Space& world, XrTime time) const;
+
+  const SessionHandle& session_;
+  RuntimeClock& clock_;
+  std::array<XrPath, 2> hands_{};
+  XrActionSet set_ = XR_NULL_HANDLE;
+  XrAction gaze_ = XR_NULL_HANDLE, select_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
+           aim_ = XR_NULL_HANDLE;
+  std::vector<Space> aims_;
+  std::unique_ptr<Space> gaze_space_;
+};
+
+}  // namespace study

@@ -1,0 +1,253 @@
+#include "libstudy/headset/headset_display.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <thread>
+#include <utility>
+
+#include "libstudy/pacing/nominal_refresh.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr std::chrono::seconds most_idle_waiting{30};
+/// Number of slots within which a worn headset should be ready, and a rate should settle.
+constexpr int most_slots = 3000;
+
+/// Relative tolerance of a rate.
+constexpr double same_rate = 0.02;
+bool near_rate(double a_hz, double b_hz) { return std::abs(a_hz - b_hz) <= same_rate * b_hz; }
+
+const char* rate_problem(const HeadsetRules& rules) {
+  return rules.refresh_hz ? "it does not go to the protocol's refresh_hz"
+                          : "its predicted times show no steady rate";
+}
+constexpr const char* rate_mend = "choose that refresh rate, and a fixed one, in the headset's software";
+
+HeadsetChoice with_rate(HeadsetChoice choice, const HeadsetRules& rules) {
+  choice.refresh_hz = rules.refresh_hz;
+  return choice;
+}
+
+/// Why a picture is not seen in a state other than focused.
+CutCause cause_of(HeadsetState state) {
+  if (state == HeadsetState::LossPending) return CutCause::SessionLost;
+  return state == HeadsetState::Visible ? CutCause::Focus : CutCause::TakenOff;
+}
+
+/// Widens both eyes' fields of view by a margin.
+void widen(EyeViews& views, double margin_deg) {
+  constexpr float most = 1.55f;  // rad; a plane cannot reach a right angle
+  const auto margin = static_cast<float>(margin_deg * std::numbers::pi / 180);
+  for (HeadsetEye& eye : views) {
+    eye.fov.left = std::max(eye.fov.left - margin, -most);
+    eye.fov.right = std::min(eye.fov.right + margin, most);
+    eye.fov.up = std::min(eye.fov.up + margin, most);
+    eye.fov.down = std::max(eye.fov.down - margin, -most);
+  }
+}
+
+}  // namespace
+
+HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, const HeadsetRules& rules)
+    : rules_(rules), loop_(with_rate(choice, rules), drive), slots_by_thread_(drive == SlotDrive::Thread) {
+  await([this] { return focused(); }, "nobody wears it, or another program has its focus",
+        "put it on, and close what lies before this program");
+  await([this] { return (refresh_hz_ = met_hz().value_or(0)) > 0; }, rate_problem(rules), rate_mend);
+  if (drive == SlotDrive::Caller) check_time_stands_still();
+  spoilt_.reset();  // a requested rate has come
+}
+
+/// The settled rate as schedules count it, if it meets the rules; none otherwise.
+std::optional<double> HeadsetDisplay::met_hz() const {
+  const auto [reported_hz, measured_hz] = facts().rate;
+  if (!measured_hz || (rules_.refresh_hz && !near_rate(*measured_hz, *rules_.refresh_hz))) return {};
+  return nominal_refresh(*measured_hz, reported_hz.value_or(0));
+}
+
+/// Accepts a new session once its rate is known, because trials are compiled for a rate.
+void HeadsetDisplay::settle_new_session() {
+  const auto hz = met_hz();
+  if (!hz) {
+    if (facts().last.index > most_slots) throw base::Error("headset", rate_problem(rules_), rate_mend);
+    return;
+  }
+  new_session_ = false;
+  news_.emplace_back("a session was made anew");
+  if (near_rate(*hz, refresh_hz_)) return;
+  refresh_hz_ = *hz;
+  note_cut(spoilt_, CutCause::Rate);
+}
+
+/// Refuses a runtime whose time runs on by itself: it would drop slots while the program computes.
+void HeadsetDisplay::check_time_stands_still() {
+  turn();
+  const std::int64_t before_ns = facts().last.predicted_ns;
+  std::this_thread::sleep_for(std::chrono::nanoseconds(5 * loop_.period_ns()));
+  turn();
+  if (facts().last.predicted_ns - before_ns > 3 * loop_.period_ns())
+    throw base::Error("--clock virtual", "the headset's time does not wait for the program",
+                      "use --clock real");
+}
+
+void HeadsetDisplay::await(const std::function<bool()>& ready, const char* problem, const char* mend) {
+  const auto since = std::chrono::steady_clock::now();
+  for (int slots = 0; !ready(); ++slots) {
+    if (slots > most_slots || std::chrono::steady_clock::now() - since > most_idle_waiting)
+      throw base::Error("headset", problem, mend);
+    turn();
+  }
+}
+
+std::string HeadsetDisplay::description() const {
+  return session().description + ", " + sim::gl_description();
+}
+
+TimingGrade HeadsetDisplay::grade() const {
+  return facts().trusted ? TimingGrade::Compositor : TimingGrade::CpuSubmit;
+}
+
+double HeadsetDisplay::measured_hz() const { return facts().rate.measured_hz.value_or(refresh_hz_); }
+
+std::int64_t HeadsetDisplay::first_onset(std::int64_t earliest_ns) const {
+  const std::int64_t period_ns = loop_.period_ns(), next_ns = loop_.next_ns();
+  const std::int64_t ahead_ns = std::max<std::int64_t>(0, earliest_ns - next_ns) + lead_ns();
+  return next_ns + (ahead_ns + period_ns - 1) / period_ns * period_ns;
+}
+
+/// How long before its slot a picture is drawn.
+std::int64_t HeadsetDisplay::lead_ns() const {
+  return slots_by_thread_ ? draw_ns_ + draw_ns_ / 2 + loop_.period_ns() : 0;
+}
+
+/// Processes the session's events.
+void HeadsetDisplay::poll_requests() {
+  using Kind = HeadsetEvent::Kind;
+  for (const HeadsetEvent& event : loop_.take_events()) {
+    const bool state = event.kind == Kind::State;
+    if (state && event.state == HeadsetState::Exiting)
+      throw base::Error("headset", "its software asked the program to leave",
+                        "vip-study resume continues a session");
+    if (event.kind == Kind::RuntimeEnds)
+      throw base::Error("headset", "its software ends",
+                        "start it again; vip-study resume continues a session");
+    if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
+    new_session_ |= event.kind == Kind::Lost;
+    if (event.kind == Kind::Lost && playing_) note_cut(spoilt_, CutCause::SessionLost);
+    if (event.kind == Kind::Refresh && !new_session_) {
+      refresh_hz_ = nominal_refresh(event.to_hz);
+      // Also between pictures: the current trial uses the intervals of the old rate.
+      note_cut(spoilt_, CutCause::Rate);
+    }
+    if (state && event.state != HeadsetState::Focused && playing_) note_cut(spoilt_, cause_of(event.state));
+  }
+  const auto unseen = loop_.take_unseen();
+  if (unseen && playing_) note_cut(spoilt_, *unseen);
+  if (new_session_) settle_new_session();
+}
+
+void HeadsetDisplay::turn() {
+  loop_.turn();
+  poll_requests();
+}
+
+void HeadsetDisplay::turn_until(std::int64_t deadline_ns) {
+  while (loop_.next_ns() < deadline_ns - loop_.period_ns() / 2) turn();
+}
+
+void HeadsetDisplay::share_records() {
+  const auto news = loop_.take_records();
+  for (auto* all : {&for_pages_, &for_record_}) {
+    if (all->size() + news.size() > FrameLoop::most_records)
+      all->erase(all->begin(), all->begin() + static_cast<std::ptrdiff_t>(all->size() / 2));
+    all->insert(all->end(), news.begin(), news.end());
+  }
+}
+
+std::vector<HeadsetRecord> HeadsetDisplay::take_records() {
+  share_records();
+  return std::exchange(for_pages_, {});
+}
+
+std::vector<HeadsetRecord> HeadsetDisplay::take_for_record() {
+  share_records();
+  return std::exchange(for_record_, {});
+}
+
+std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
+  turn();
+  return take_records();
+}
+
+/// Draws both eyes into the canvas, as they will be at at_ns; none if their poses are unknown.
+std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
+  const auto begun = std::chrono::steady_clock::now();
+  const sim::Offscreen& canvas = loop_.canvas();  // taken first: if the world moves now, it is never shown
+  EyeViews views = loop_.views_at(at_ns);
+  if (!can_be_shown(views)) return {};
+  widen(views, rules_.hold_margin_deg);
+  const std::array<EyeView, 2> eyes{study_view(views[0], 0, rules_.world_scale),
+                                    study_view(views[1], views[0].width_px, rules_.world_scale)};
+  pending_->draw({canvas.framebuffer(), canvas.width(), canvas.height(), eyes});
+  const bool in_head = rules_.hold == Hold::HeadLocked;
+  const HeldViews from{in_head ? loop_.views_in_head(at_ns) : views, in_head};
+  if (!slots_by_thread_) return from;
+  glFinish();
+  const std::chrono::nanoseconds taken = std::chrono::steady_clock::now() - begun;
+  draw_ns_ = std::max<std::int64_t>(taken.count(), draw_ns_ - draw_ns_ / 8);
+  return from;
+}
+
+void HeadsetDisplay::render(Stimulus& stimulus) {
+  pending_ = &stimulus;
+  if (playing_) return;
+  if (!focused()) note_cut(spoilt_, cause_of(new_session_ ? HeadsetState::LossPending : facts().state));
+  // The first picture of a presentation takes longest, and its time tells how early the others must start.
+  if (slots_by_thread_) draw(loop_.next_ns());
+}
+
+PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, Clock& clock) {
+  playing_ = true;
+  clock.wait_until(scheduled_ns - lead_ns());
+  const auto from = spoilt_ ? std::nullopt : draw(scheduled_ns);
+  PresentTimes times;
+  times.submitted_ns = slots_by_thread_ ? RealClock().now_ns() : scheduled_ns;
+  if (from) {
+    times.predicted_display_ns = loop_.show(*from, scheduled_ns).predicted_ns;
+  } else {
+    clock.wait_until(scheduled_ns);
+    poll_requests();
+    if (!spoilt_) spoilt_ = new_session_ ? CutCause::SessionLost : CutCause::Pose;
+    times.predicted_display_ns = scheduled_ns;
+  }
+  poll_requests();
+  return times;
+}
+
+void HeadsetDisplay::hold(std::int64_t until_ns, Clock&) {
+  if (rules_.hold != Hold::State || !playing_) return;
+  // A picture that cannot be drawn in time would delay the next one.
+  while (!spoilt_ && loop_.next_ns() < until_ns - lead_ns() - loop_.period_ns() / 2) {
+    const std::int64_t at_ns = loop_.next_ns() + draw_ns_;
+    const auto from = draw(at_ns);
+    if (!from) return;
+    loop_.show(*from, at_ns);
+    poll_requests();
+  }
+}
+
+void HeadsetDisplay::clear() {
+  loop_.clear();
+  playing_ = false;
+}
+
+std::optional<CutCause> HeadsetDisplay::take_spoilt() { return std::exchange(spoilt_, {}); }
+
+}  // namespace study

@@ -1,0 +1,131 @@
+#include "libstudy/headset/headset_targets.hpp"
+
+#include <epoxy/gl.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+/// About the distance at which the lenses of headsets focus.
+constexpr double distance_m = 2;
+constexpr double size_deg = 1, dot_share = 0.2;
+/// If check() takes longer, another page was shown and read.
+constexpr std::int64_t most_checking_ns = 200'000'000;
+constexpr int most_turns = 200;  ///< to find a head with a known pose
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+using Turn = std::array<float, 4>;
+
+Turn multiply(const Turn& a, const Turn& b) {
+  return {a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
+          a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+          a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
+          a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]};
+}
+
+float half_sin(double degrees) { return static_cast<float>(std::sin(radians(degrees) / 2)); }
+float half_cos(double degrees) { return static_cast<float>(std::cos(radians(degrees) / 2)); }
+
+TargetSample sample_of(const HeadsetRecord& record, const HeadsetPose& target) {
+  TargetSample sample;
+  if (!record.input.gaze || !record.input.gaze->ray.turn_valid) return sample;
+  const HeadsetPose& ray = record.input.gaze->ray;
+  const auto& from = ray.place_valid ? ray.place_m : record.input.head.place_m;
+  const auto along = direction_of(ray);
+  sample.valid = ray.place_valid || record.input.head.place_valid;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sample.gaze[k] = static_cast<double>(along[k]);
+    sample.target[k] = static_cast<double>(target.place_m[k] - from[k]);
+  }
+  return sample;
+}
+
+}  // namespace
+
+HeadsetPage target_page(const HeadsetPose& head, double azimuth_deg, double elevation_deg) {
+  HeadsetPage page;
+  page.pose = head;
+  const Turn yaw{0, half_sin(-azimuth_deg), 0, half_cos(azimuth_deg)};
+  const Turn pitch{half_sin(elevation_deg), 0, 0, half_cos(elevation_deg)};
+  page.pose.turn = multiply(head.turn, multiply(yaw, pitch));
+  const auto ahead = direction_of(page.pose);
+  for (std::size_t k = 0; k < 3; ++k) page.pose.place_m[k] += static_cast<float>(distance_m) * ahead[k];
+  page.width_m = page.height_m = static_cast<float>(2 * distance_m * std::tan(radians(size_deg) / 2));
+  return page;
+}
+
+void HeadsetTargets::begin() {
+  display_.take_for_record();
+  for (int turn = 0; turn < most_turns; ++turn) {
+    display_.turn();
+    for (const HeadsetRecord& record : display_.take_for_record()) {
+      if (!record.input.head.valid()) continue;
+      middle_ = record.input.head;
+      world_ = record.world;
+      return;
+    }
+  }
+  throw base::Error("headset", "it does not report where the head is",
+                    "check its tracking, and continue with vip-study resume");
+}
+
+/// White, with a black dot in the middle.
+void HeadsetTargets::draw() {
+  const sim::Offscreen& page = display_.page();
+  const float white[4] = {1, 1, 1, 1}, black[4] = {0, 0, 0, 1};
+  glClearNamedFramebufferfv(page.framebuffer(), GL_COLOR, 0, white);
+  const int width = std::max(1, static_cast<int>(dot_share * page.width()));
+  const int height = std::max(1, static_cast<int>(dot_share * page.height()));
+  glEnable(GL_SCISSOR_TEST);
+  glScissor((page.width() - width) / 2, (page.height() - height) / 2, width, height);
+  glClearNamedFramebufferfv(page.framebuffer(), GL_COLOR, 0, black);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+std::vector<TargetSample> HeadsetTargets::look_at(double azimuth_deg, double elevation_deg, double settle_s,
+                                                  double sample_s, const std::function<void()>& check) {
+  // Repeats if the target was not seen: another page was in front, the headset was off, or the world moved.
+  for (;;) {
+    if (world_ != display_.facts().world && display_.focused()) begin();
+    const HeadsetPage page = target_page(middle_, azimuth_deg, elevation_deg);
+    if (auto samples = look_once(page, settle_s, sample_s, check)) return *samples;
+  }
+}
+
+std::optional<std::vector<TargetSample>> HeadsetTargets::look_once(const HeadsetPage& page, double settle_s,
+                                                                   double sample_s,
+                                                                   const std::function<void()>& check) {
+  draw();
+  display_.show_page(page);
+  const std::int64_t from_ns = display_.now_ns() + std::llround(1e9 * settle_s);
+  const std::int64_t until_ns = from_ns + std::llround(1e9 * sample_s);
+  display_.take_for_record();
+  std::vector<TargetSample> samples;
+  std::int64_t last_ns = 0;
+  while (display_.now_ns() < until_ns) {
+    const std::int64_t before_ns = display_.now_ns();
+    if (check) check();
+    const bool moved = display_.facts().world != world_;
+    if (display_.now_ns() - before_ns > most_checking_ns || moved || !display_.focused()) {
+      display_.turn();
+      return {};
+    }
+    display_.turn();
+    for (const HeadsetRecord& record : display_.take_for_record()) {
+      if (record.slot.predicted_ns < from_ns) continue;
+      const auto sampled_ns = record.input.gaze ? record.input.gaze->sampled_ns : std::nullopt;
+      if (sampled_ns && *sampled_ns <= last_ns) continue;  // the same sample again
+      last_ns = sampled_ns.value_or(last_ns);
+      samples.push_back(sample_of(record, page.pose));
+    }
+  }
+  return samples;
+}
+
+}  // namespace study

@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+#include <vector>
+/// Targets for the validation of a headset's eye tracker, shown on its page at fixed places of the world.
+
+#include "libstudy/display/gaze_targets.hpp"
+#include "libstudy/headset/headset_display.hpp"
+
+namespace study {
+
+/// Needs a display with a page and an eye tracker, which must outlive it.
+class HeadsetTargets final : public GazeTargets {
+ public:
+  explicit HeadsetTargets(HeadsetDisplay& display) : display_(display) {}
+
+  void begin() override;
+  std::vector<TargetSample> look_at(double azimuth_deg, double elevation_deg, double settle_s,
+                                    double sample_s, const std::function<void()>& check) override;
+  void end() override { display_.hide_page(); }
+
+ private:
+  void draw();
+  /// None if the target was not visible all the time.
+  std::optional<std::vector<TargetSample>> look_once(const HeadsetPage& page, double settle_s,
+                                                     double sample_s, const std::function<void()>& check);
+
+  HeadsetDisplay& display_;
+  HeadsetPose middle_;  ///< the head's pose at begin(), or after the world's origin moved
+  int world_ = 0;       ///< number of the world of middle_
+};
+
+/// The page for a target at these angles from straight ahead of a head, facing the head.
+HeadsetPage target_page(const HeadsetPose& head, double azimuth_deg, double elevation_deg);
+
+}  // namespace study

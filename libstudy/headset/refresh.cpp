@@ -1,0 +1,42 @@
+#include "libstudy/headset/refresh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/base/error.hpp"
+
+namespace study {
+
+RefreshControl::RefreshControl(const SessionHandle& session) : session_(session) {
+  if (!session.xr().has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
+  constexpr const char* call = "xrEnumerateDisplayRefreshRatesFB";
+  for (const float rate : read_array<float>(call, 0.0f, [&](auto capacity, auto*count, auto*values) {
+         return session.attempt<PFN_xrEnumerateDisplayRefreshRatesFB>(call, session.get(), capacity, count,
+                                                                      values);
+       }))
+    rates_.push_back(static_cast<double>(rate));
+  std::sort(rates_.begin(), rates_.end());
+}
+
+std::optional<double> RefreshControl::reported_hz() const {
+  if (rates_.size() < 2) return {};
+  float rate = 0;
+  session_.call<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB", session_.get(), &rate);
+  return static_cast<double>(rate);
+}
+
+void RefreshControl::request(double hz) const {
+  // Rates are listed as 32-bit floats, so 71.928 from a file is compared with a tolerance.
+  const auto found =
+      std::find_if(rates_.begin(), rates_.end(), [&](double rate) { return std::abs(rate - hz) < 0.01; });
+  if (found == rates_.end()) {
+    throw base::Error("headset", fmt::format("{:g} Hz is not one of its refresh rates", hz),
+                      "vip-study headset lists them");
+  }
+  session_.call<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB", session_.get(),
+                                                   static_cast<float>(*found));
+}
+
+}  // namespace study

@@ -1,0 +1,27 @@
+#pragma once
+/// Reads and changes the display's refresh rate through XR_FB_display_refresh_rate.
+
+#include <optional>
+#include <vector>
+
+#include "libstudy/headset/session_handle.hpp"
+
+namespace study {
+
+class RefreshControl {
+ public:
+  explicit RefreshControl(const SessionHandle& session);
+  /// Hz, ascending; empty: not reported.
+  const std::vector<double>& rates() const { return rates_; }
+  /// The current rate. None unless several rates are listed: some runtimes that list one rate report another.
+  std::optional<double> reported_hz() const;
+  /// Asks for a listed rate; the display may take it later, or never. base::Error for a rate that is not
+  /// listed.
+  void request(double hz) const;
+
+ private:
+  const SessionHandle& session_;
+  std::vector<double> rates_;
+};
+
+}  // namespace study

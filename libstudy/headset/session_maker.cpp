@@ -1,0 +1,45 @@
+#include "libstudy/headset/session_maker.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+constexpr std::chrono::milliseconds system_wait{200};
+constexpr const char* mend = "see the log of the headset's software; vip-study resume continues a session";
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+std::unique_ptr<HeadsetSession> SessionMaker::make(std::int64_t earliest_ns) {
+  choice_.earliest_ns = earliest_ns;
+  if (made_ == most_sessions) throw base::Error("headset", "session after session is lost", mend);
+  return made_++ == 0 ? std::make_unique<HeadsetSession>(gl_, choice_) : make_anew();
+}
+
+std::unique_ptr<HeadsetSession> SessionMaker::make_anew() const {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(choice_.patience_s);
+  for (;;) {
+    try {
+      return std::make_unique<HeadsetSession>(gl_, choice_);
+    } catch (const base::Error& error) {
+      if (std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::sleep_for(system_wait);
+        continue;
+      }
+      throw base::Error("headset",
+                        fmt::format("its session was lost, and within {:g} s none could be made anew ({})",
+                                    choice_.patience_s, first_line(error.what())),
+                        mend);
+    }
+  }
+}
+
+}  // namespace study

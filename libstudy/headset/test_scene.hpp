@@ -1,0 +1,41 @@
+#pragma once
+/// A scene for checking that a headset displays correctly.
+
+#include <array>
+
+#include "libsim/render/gl_program.hpp"
+#include "libstudy/headset/views.hpp"
+
+namespace study {
+
+/// A disc that faces +z, in the headset's world.
+struct TestDisc {
+  std::array<float, 3> middle_m;
+  float radius_m;
+  std::array<float, 3> paint;  ///< sRGB, [0, 1]
+};
+/// At 0.5, 1 and 2 m, each four degrees wide: red left, green in the middle, blue right.
+const std::array<TestDisc, 3>& test_discs();
+
+/// An upright strip of 256 greys, level 0 at the left.
+struct TestRamp {
+  float left_m = -0.6f, right_m = 0.6f, down_m = -0.6f, up_m = -0.3f, z_m = -1.5f;
+};
+
+/// The discs, the ramp, and an infinitely distant yellow line at eye level. Needs a current context.
+class TestScene {
+ public:
+  TestScene();
+  ~TestScene();
+  TestScene(const TestScene&) = delete;
+  TestScene& operator=(const TestScene&) = delete;
+  /// Draws the eye's view, with sRGB values, into the part of a framebuffer that starts at x_px and has the
+  /// eye's size.
+  void draw(const HeadsetEye& eye, unsigned framebuffer, int x_px) const;
+
+ private:
+  sim::GlProgram program_;
+  unsigned vertices_ = 0;
+};
+
+}  // namespace study

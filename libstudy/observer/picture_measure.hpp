@@ -1,0 +1,23 @@
+#pragma once
+/// Computes study::PictureFeatures from pictures.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "libstudy/observer/picture_features.hpp"
+
+namespace study {
+
+/// Luminance in [0, 1] and the mask of fluid pixels; both of size width x height, any row order.
+struct MeasuredPicture {
+  int width = 0, height = 0;
+  std::vector<float> luminance;
+  std::vector<std::uint8_t> fluid;  ///< 1: fluid
+};
+
+/// Features of three successive pictures of equal size; granularity is of the middle one. (x, y) is the gaze
+/// point, px. Both features are 0 if fewer than 100 pixels show fluid.
+PictureFeatures measure_pictures(const std::array<MeasuredPicture, 3>& pictures, double x_px, double y_px);
+
+}  // namespace study

@@ -1,0 +1,68 @@
+#pragma once
+/// The screens between stimuli: pages, pauses and the stop dialog. One instance per session.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libstudy/pages/gui/page_surface.hpp"
+#include "libstudy/pages/gui/page_view.hpp"
+#include "libstudy/pages/words.hpp"
+#include "libstudy/session/session.hpp"
+
+namespace study {
+
+/// All calls on the surface's thread. `clock` is the session's; surface and clock must outlive this.
+class Pages {
+ public:
+  Pages(PageSurface& surface, const std::string& language, const Clock& clock);
+
+  /// Shows a page until it is confirmed. A request to stop opens the stop dialog; request() reports its
+  /// result.
+  std::vector<TimedAnswer> run_page(PageText text, std::span<const Question> questions, double least_s,
+                                    const Check& check);
+  /// Asks for one of two; true if the first was chosen.
+  bool choose_first(const DeskChoice& choice, const Check& check);
+  /// Shows black until until_ns, with the words and the time left if there are words.
+  void wait(const PauseWords& words, std::int64_t until_ns, const Check& check);
+  /// Shows the words on black, without a time, until `over` returns true.
+  void show_words(const PauseWords& words, const std::function<bool()>& over, const Check& check);
+  /// The session is over (true) or another one begins (false). Once over, requests to stop are ignored.
+  void set_over(bool over);
+
+  /// Polled by the session: returns the request of `others`, or the end of the session if the participant
+  /// chose it. A request to stop during a stimulus opens the dialog here; then the session ends or the trial
+  /// is shown again. A trial is also shown again if its stimulus could not be seen, as soon as it can.
+  Request request(const std::function<Request()>& others);
+
+  const DeskWords& words() const { return words_; }
+  std::int64_t now_ns() const { return clock_.now_ns(); }
+  /// Text of the first page on how to answer and to stop.
+  std::string beginning() const { return surface_.beginning(words_); }
+
+ private:
+  bool handle_events(PageState& state, PageView& view);
+  void draw(PageView& view, PageState& state);
+  /// Opens the stop dialog; true if the participant wants to stop.
+  bool ask_to_stop(const Check& check);
+  /// Asks for one of two on a page above others; none: closed by another request to stop.
+  std::optional<bool> ask_first(const DeskChoice& choice, const char* layer, const Check& check);
+  /// Waits a moment and processes input; true if the stop dialog was opened.
+  bool look_up(double wait_s, const Check& check);
+  std::string corner() const;
+  /// Waits until the surface can be seen or others request the end.
+  Request wait_while_unseen(const std::function<Request()>& others);
+
+  PageSurface& surface_;
+  const DeskWords& words_;
+  const Clock& clock_;
+  bool in_page_ = false;  ///< a page is shown, which handles requests to stop
+  bool stop_requested_ = false;
+  bool over_ = false;  ///< see set_over()
+  bool away_ = false;  ///< the last request was a cut because the surface was unseen; it may still be
+};
+
+}  // namespace study

@@ -1,0 +1,39 @@
+#include "libstudy/pages/headset/answer_ways.hpp"
+
+#include <sstream>
+
+#include "stats/base/error.hpp"
+
+namespace study {
+
+const char* const usual_answer_ways = "ray,stick,keyboard";
+
+AnswerWays parse_answer_ways(const std::string& words) {
+  AnswerWays ways;
+  std::istringstream all(words);
+  const std::string known = "use ray, stick, dwell and keyboard with commas between";
+  for (std::string word; std::getline(all, word, ',');) {
+    bool* const way = word == "ray"        ? &ways.ray
+                      : word == "stick"    ? &ways.stick
+                      : word == "dwell"    ? &ways.dwell
+                      : word == "keyboard" ? &ways.keyboard
+                                           : nullptr;
+    if (!way) throw base::Error("--answer", "'" + word + "' is not known", known);
+    *way = true;
+  }
+  if (!ways.ray && !ways.stick && !ways.dwell && !ways.keyboard)
+    throw base::Error("--answer", "names nothing to answer with", known);
+  if (ways.ray && ways.dwell)
+    throw base::Error("--answer", "ray and dwell both point", "name one of them, such as dwell,keyboard");
+  return ways;
+}
+
+void check_keys_are_free(const std::string& words, bool console) {
+  if (!console) return;
+  const AnswerWays ways = parse_answer_ways(words.empty() ? usual_answer_ways : words);
+  if (!ways.ray && !ways.stick && !ways.dwell)
+    throw base::Error("--answer keyboard", "the console uses the terminal's keys",
+                      "add another way to answer, or leave --console out");
+}
+
+}  // namespace study

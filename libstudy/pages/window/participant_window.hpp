@@ -1,0 +1,75 @@
+#pragma once
+/// The participant's window as a surface of pages. One per session.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libstudy/pages/gui/page_surface.hpp"
+#include "libstudy/pages/window/gamepad.hpp"
+#include "libstudy/pages/window/mirror_window.hpp"
+#include "libstudy/window/glfw_window.hpp"
+
+namespace study {
+
+struct ParticipantWindowOptions {
+  int width_px = 0, height_px = 0;  ///< 0: the whole monitor
+  int monitor = 0;
+  PageCharacters characters{};  ///< of its pages
+};
+
+/// All calls on the thread that made it. Esc opens the stop dialog. A minimised window counts as unseen.
+class ParticipantWindow final : public PageSurface {
+ public:
+  /// base::Error if there is no display or no OpenGL 4.5 on it.
+  explicit ParticipantWindow(const ParticipantWindowOptions& options);
+
+  Gui& gui() override { return gui_; }
+  /// base::Error if the window was closed or the display is gone; study::Stopped if it was closed after the
+  /// session was over.
+  void poll(double wait_s) override;
+  std::vector<PageEvent> take_events() override;
+  void forget_input() override;
+  void show() override;
+  void show_black() override;
+  void show_cursor(bool shown) override;
+  std::optional<CutCause> take_unseen() override {
+    return window_.take_minimised() ? std::optional(CutCause::Minimised) : std::nullopt;
+  }
+  bool unseen() const override { return window_.minimised(); }
+  void set_over(bool over) override { over_ = over; }
+
+  /// Opens a mirror of the participant's pages for the experimenter; stimuli are black in it unless `reveal`.
+  /// base::Error as MirrorWindow.
+  void open_mirror(bool reveal);
+  /// Copies the picture of a stimulus, just presented from this framebuffer object, to a revealing mirror.
+  void mirror(unsigned framebuffer);
+
+  GlfwWindow& window() { return window_; }
+  /// Size at the start, px; it must not change.
+  GlfwWindow::Size size() const { return size_; }
+  /// Position of the mouse, px from the lower left corner; none if outside.
+  std::optional<std::pair<double, double>> mouse() const;
+
+ private:
+  /// Connects the window's mouse and keys to Dear ImGui; made after the Gui, destroyed before it.
+  struct Backend {
+    explicit Backend(GLFWwindow* window);
+    ~Backend();
+    Backend(const Backend&) = delete;
+    Backend& operator=(const Backend&) = delete;
+  };
+
+  GlfwWindow window_;
+  GlfwWindow::Size size_;
+  Gui gui_;
+  Backend backend_;
+  Gamepad gamepad_;
+  bool over_ = false;  ///< see set_over()
+  std::unique_ptr<MirrorWindow> mirror_;
+  bool mirror_reveals_ = false;
+};
+
+}  // namespace study

@@ -1,0 +1,140 @@
+#include "libstudy/preregistration/bundle_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "libstudy/analysis/claims.hpp"
+#include "libstudy/analysis/plan_file.hpp"
+#include "stats/base/file.hpp"
+#include "stats/figures/svg.hpp"
+
+namespace study::report {
+
+namespace {
+
+using Json = base::Json;
+
+std::string hypothesis_text(const Json& hypothesis) {
+  std::string out = hypothesis.at("id").get<std::string>() + " (" + hypothesis.at("kind").get<std::string>() +
+                    "). " + hypothesis.at("title").get<std::string>() +
+                    "\n  Rule: " + hypothesis.at("rule").get<std::string>() +
+                    "; alpha = " + svg::number(hypothesis.at("alpha").get<double>(), 3) + ".\n";
+  for (const Json& test : hypothesis.at("tests")) {
+    out += "  - " + test.at("label").get<std::string>();
+    if (test.at("margin").is_number()) out += ", margin " + svg::number(test.at("margin").get<double>(), 3);
+    out += "\n";
+  }
+  return out;
+}
+
+/// The text, with a line for each curve.
+std::string curves_text(const Protocol& protocol, const stats::AnalysisPlan& plan) {
+  std::string out;
+  for (const auto& question : curve_questions(protocol)) {
+    out += "- " + protocol.name + ": the curve of question " + question.id + " is fitted at level " +
+           fmt::format("{}", plan.levels.at(question.id)) + " of its scale, " +
+           std::to_string(question.scale_min) + " to " + std::to_string(question.scale_max) + "\n";
+  }
+  return out;
+}
+
+/// True if a protocol's session has a block of this kind.
+bool has_block(const Protocol& protocol, BlockKind kind) {
+  return std::any_of(protocol.blocks.begin(), protocol.blocks.end(),
+                     [&](const Block& block) { return block.kind == kind; });
+}
+
+/// The largest possible difference of two ratings of a trial.
+int widest_scale(const Protocol& protocol) {
+  int out = 0;
+  for (const auto& [block, question] : all_questions(protocol))
+    if (traits_of(question->kind).rated() && !is_sickness(*question))
+      out = std::max(out, question->scale_max - question->scale_min);
+  return out;
+}
+
+/// Keys of the plan that can have no effect, and why.
+std::map<std::string, std::string> idle_rules(const std::vector<Protocol>& protocols,
+                                              const stats::AnalysisPlan& plan) {
+  const auto none = [&](auto holds) { return std::none_of(protocols.begin(), protocols.end(), holds); };
+  std::map<std::string, std::string> out;
+  if (none([](const auto& one) { return compares_scores(one, {}); }))
+    out["realism"] = "no ratings of realism compare methods";
+  if (none([](const auto& one) { return compares_scores(one, items_without_unrealism); }))
+    out["sickness"] = "no ratings of cybersickness compare methods";
+  if (none([](const auto& one) { return one.design.timing != TimingSource::Native; }))
+    out["timing"] = "without a schedule there is no verdict";
+  if (none([](const auto& one) { return has_block(one, BlockKind::Catch); }))
+    out["min_catch_correct"] = "there are no catch pages";
+  const auto again = [](const auto& one) { return has_block(one, BlockKind::Repeat); };
+  if (none([&](const auto& one) { return again(one) && one.design.pairs; }))
+    out["min_repeat_agreement"] = "no pair is shown again";
+  if (none([&](const auto& one) { return again(one) && !one.design.pairs; }))
+    out["max_repeat_difference"] = "no rated stimulus is shown again";
+  else if (none([&](const auto& one) {
+             return again(one) && !one.design.pairs &&
+                    plan.exclusions.max_repeat_difference.value_or(0) < widest_scale(one);
+           }))
+    out["max_repeat_difference"] = "no two ratings can differ by more";
+  return out;
+}
+
+}  // namespace
+
+std::string frozen_plan(const std::vector<Protocol>& protocols, const stats::AnalysisPlan& plan) {
+  std::vector<std::string> hashes;
+  for (const auto& protocol : protocols) hashes.push_back(protocol.sha256);
+  const auto idle = idle_rules(protocols, plan);
+  std::istringstream lines(format_plan(plan, hashes));
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    const auto found = idle.find(line.substr(0, line.find(" = ")));
+    if (found != idle.end()) {
+      const std::string rule = line.substr(0, line.find("  "));
+      line = "# cannot act, as " + found->second + ": " + rule;
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
+Json fixed_part(const Json& hypothesis) {
+  Json out, tests = Json::array();
+  for (const char* key : {"id", "title", "task", "kind", "family", "alpha", "rule"})
+    out[key] = hypothesis.at(key);
+  for (const Json& test : hypothesis.at("tests"))
+    tests.push_back({{"label", test.at("label")},
+                     {"a", test.at("a")},
+                     {"b", test.at("b")},
+                     {"margin", test.at("margin")}});
+  out["tests"] = tests;
+  return out;
+}
+
+std::string bundle_text(const std::vector<Protocol>& protocols, const stats::AnalysisPlan& plan,
+                        const Json& hypotheses, const std::vector<std::string>& untested, bool with_power,
+                        const std::string& frozen_utc) {
+  std::string out =
+      "Preregistration, frozen " + frozen_utc + " with ViP-Lab " + base::version() + "\n\nProtocols\n";
+  for (const auto& protocol : protocols)
+    out += "- " + protocol.name + " version " + protocol.version + ", " +
+           std::to_string(protocol.participants) + " participants planned\n  SHA-256 " + protocol.sha256 +
+           "\n";
+  out += "\nHypotheses\n";
+  for (const Json& hypothesis : hypotheses) out += hypothesis_text(hypothesis);
+  if (hypotheses.empty()) out += "None.\n";
+  for (const std::string& one : untested) out += "- Not tested: " + one + ".\n";
+  std::string curves;
+  for (const auto& protocol : protocols) curves += curves_text(protocol, plan);
+  if (!curves.empty()) out += "\nCurves\n" + curves;
+  out += "\nMargins, level, exclusion rules and seed (plan.toml)\n" + frozen_plan(protocols, plan);
+  if (with_power) out += "\nPower: power.json\n";
+  return out +
+         "\nTo check this folder: sha256sum -c MANIFEST.sha256\nThe bundle's hash is the SHA-256 of "
+         "MANIFEST.sha256: deposit it where its date can be proved.\n";
+}
+
+}  // namespace study::report

@@ -1,0 +1,91 @@
+#include <algorithm>
+
+#include "libstudy/report/html.hpp"
+#include "libstudy/report/sections.hpp"
+
+namespace study::report {
+
+namespace {
+
+/// Protocols of all parts for which `holds` is true, each once: "Pilot (ptpe_pilot, version 1.0)".
+template <class Holds>
+std::vector<std::string> parts_where(const Field& root, Holds holds) {
+  std::vector<std::string> out, seen;
+  for (const Field& document : documents(root)) {
+    for (const Field& protocol : document["study"]["protocols"].entries()) {
+      const std::string& sha256 = protocol["sha256"].words();
+      if (!holds(protocol) || std::find(seen.begin(), seen.end(), sha256) != seen.end()) continue;
+      seen.push_back(sha256);
+      out.push_back(words(protocol["title"]) + " (" + words(protocol["name"]) + ", version " +
+                    words(protocol["version"]) + ")");
+    }
+  }
+  return out;
+}
+
+/// Observer models of all parts, each once.
+std::string observers(const Field& root) {
+  std::string out;
+  std::vector<std::string> seen;
+  for (const Field& document : documents(root)) {
+    for (const Field& observer : document["study"]["observers"].entries()) {
+      if (std::find(seen.begin(), seen.end(), observer.words()) != seen.end()) continue;
+      seen.push_back(observer.words());
+      out += (out.empty() ? "" : ", ") + words(observer);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string enumerated(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return out;
+}
+
+std::vector<Field> documents(const Field& root) {
+  std::vector<Field> out{root};
+  for (const Field& one : root["apart"].entries()) out.push_back(one);
+  return out;
+}
+
+namespace {
+
+/// Warnings before any number: incomplete, test or simulated data.
+std::string banners(const Field& root) {
+  const Field study = root["study"];
+  std::string out;
+  if (study["incomplete"].exists())
+    out += "<p class=\"warning\"><strong>Incomplete.</strong> " + words(study["incomplete"]) +
+           ": the database lacks them, and so do these results.</p>\n";
+  const auto test = parts_where(root, [](const Field& protocol) { return protocol["test_data"].yes(); });
+  if (!test.empty())
+    out += "<p class=\"warning\"><strong>Test data.</strong> There are no other data of " + enumerated(test) +
+           ": these results say nothing about people.</p>\n";
+  const auto simulated =
+      parts_where(root, [](const Field& protocol) { return protocol["simulated"].number() > 0; });
+  if (!simulated.empty())
+    out += "<p class=\"warning\"><strong>Simulated participants: " + count(study["simulated_people"]) +
+           "</strong> (" + observers(root) + "). All answers of " + enumerated(simulated) +
+           " come from a model: they say nothing about people.</p>\n";
+  return out;
+}
+
+}  // namespace
+
+std::string head_section(const Field& root) {
+  const Field study = root["study"];
+  std::string names;
+  for (const std::string& one : parts_where(root, [](const Field&) { return true; }))
+    names += (names.empty() ? "" : ", ") + one;
+  return "<h1>Results of " + (study["database"].words().empty() ? "a study" : words(study["database"])) +
+         "</h1>\n" +
+         paragraph((names.empty() ? "" : "Parts: " + names + ". ") +
+                   (root["date_utc"].exists() ? "Computed " + words(root["date_utc"]) + "." : "")) +
+         banners(root);
+}
+
+}  // namespace study::report

@@ -1,0 +1,229 @@
+#include "libstudy/runner/session_setup.hpp"
+
+#include "libsim/ptpe/ptpe_file.hpp"
+#include "libsim/solver/settled_state.hpp"
+#include "libstudy/display/null.hpp"
+#include "libstudy/headset/headset_recorder.hpp"
+#include "libstudy/headset/headset_targets.hpp"
+#include "libstudy/pages/gui/page_fonts.hpp"
+#include "libstudy/pages/headset/headset_person.hpp"
+#include "libstudy/stimulus/cell_features.hpp"
+#include "libstudy/stimulus/headless_display.hpp"
+#include "stats/base/error.hpp"
+
+namespace study {
+
+namespace {
+
+[[noreturn]] void unknown(const std::string& option, const std::string& word, const std::string& known) {
+  throw base::Error(option, "'" + word + "' is not known", "use " + known);
+}
+
+std::unique_ptr<Clock> make_clock(const std::string& word) {
+  if (word == "virtual") return std::make_unique<VirtualClock>();
+  if (word == "real") return std::make_unique<RealClock>();
+  unknown("--clock", word, "real or virtual");
+}
+
+void check_together(const RunOptions& options, const Protocol& protocol) {
+  if (!options.answer.empty() && (options.display != "openxr" || !options.observer.empty()))
+    throw base::Error("--answer", "is for a person in a headset", "leave it out, or use --display openxr");
+  if (options.gaze == "head" && options.display != "openxr")
+    throw base::Error("--gaze head", "needs a headset", "use --gaze fixed, or --display openxr");
+  if (options.gaze == "tracked" && options.display == "openxr" && !asks_gaze(protocol))
+    throw base::Error(
+        "--gaze tracked", "is read only with consent, and the protocol does not ask for it",
+        std::string("ask ") + gaze_question + " on its page of kind consent, or use --gaze head");
+  const bool shows_pages = options.display == "window" || options.display == "openxr";
+  if (options.observer.empty() && !shows_pages)
+    throw base::Error("--display " + options.display, "shows nothing to a person",
+                      "use --display window, or name an --observer");
+  if (options.observer.empty() && options.display == "window" && options.clock != "real")
+    throw base::Error("--clock virtual", "does not wait for a person", "use --clock real");
+  if (options.display == "window" && options.clock != "real")
+    throw base::Error("--clock virtual", "does not wait for a window", "use --clock real");
+  if (options.gaze == "mouse" && options.display != "window")
+    throw base::Error("--gaze mouse", "needs a window", "use --gaze fixed, or --display window");
+  if (options.gaze == "tracked" && options.display != "openxr" && options.observer.empty())
+    throw base::Error("--gaze tracked", "needs an eye tracker, and only a headset's can be read",
+                      "use --gaze fixed or mouse; with an --observer, tracked is allowed");
+  if (protocol.fixation && options.display != "none" && options.gaze != "fixed")
+    throw base::Error("--gaze " + options.gaze, "contradicts gaze = \"fixation\" of the protocol",
+                      "use --gaze fixed, or gaze = \"free\" in the protocol");
+  if (protocol.design.timing == TimingSource::Native && options.clock == "virtual")
+    throw base::Error(protocol.name, "has timing = \"native\", and time stands still on the virtual clock",
+                      "use --clock real");
+}
+
+std::unique_ptr<Display> make_display(const RunOptions& options) {
+  if (options.display == "none") return std::make_unique<NullDisplay>();
+  StimulusChoice choice;
+  if (!std::filesystem::is_directory(options.bake)) choice.bake = options.bake;
+  return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
+}
+
+/// Refuses bakes with pictures; called before anything is written.
+void refuse_pictures(const SessionBakes& bakes, const Protocol& protocol) {
+  for (const Cell& cell : protocol.design.cells) {
+    const FoundBake* bake = bakes.of(cell);
+    if (bake && bake->header.has_pictures()) {
+      throw base::Error(bake->path.string(), "holds pictures, which would look flat in a headset",
+                        "bake particles for a headset: vip-study bake without --pictures or --keep pictures");
+    }
+  }
+}
+
+/// Requests the eye tracker for --gaze tracked; it is not read before a participant allows it. Its validation
+/// targets need a page.
+HeadsetChoice with_gaze(HeadsetChoice choice, const RunOptions& options) {
+  constexpr int target_px = 128;
+  if (options.gaze != "tracked") return choice;
+  choice.eye_gaze = true;
+  if (choice.page_width_px == 0) choice.page_width_px = choice.page_height_px = target_px;
+  return choice;
+}
+
+/// Sets up the headset's recording and the gaze that the fluid follows.
+void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionSetup& setup,
+                    Viewing& viewing) {
+  const bool tracked = options.gaze == "tracked";
+  if (tracked && !display.session().eye_gaze)
+    throw base::Error("--gaze tracked", "the headset's software offers no eye tracker",
+                      "switch eye tracking on in the headset's software, or use --gaze head");
+  const auto recorder =
+      std::make_shared<HeadsetRecorder>(display, tracked ? GazeOrigin::Tracker : GazeOrigin::Head);
+  setup.slots = recorder;
+  if (tracked) setup.targets = std::make_unique<HeadsetTargets>(display);
+  if (!tracked && options.gaze != "head") return;
+  setup.gaze = recorder;
+  viewing.ray = [recorder] { return recorder->ray(); };
+}
+
+/// Sets up the headset as display; its slots drive the clock.
+void take_headset(const RunOptions& options, const Protocol& protocol, SessionSetup& setup,
+                  Viewing& viewing) {
+  const bool person = options.observer.empty();
+  const AnswerWays ways = parse_answer_ways(options.answer.empty() ? usual_answer_ways : options.answer);
+  const SlotDrive drive = setup.virtual_clock ? SlotDrive::Caller : SlotDrive::Thread;
+  const HeadsetChoice choice = with_gaze(person ? choice_for_person(ways) : HeadsetChoice{}, options);
+  auto headset = std::make_unique<HeadsetDisplay>(drive, choice, protocol.headset);
+  record_headset(options, *headset, setup, viewing);
+  setup.clock = std::make_unique<HeadsetClock>(*headset);
+  setup.request = [display = headset.get()](const std::function<Request()>& others) -> Request {
+    auto spoilt = display->take_spoilt();
+    if (!spoilt) return others();
+    display->clear();
+    do {
+      if (others() == Request::Stop) return Request::Stop;
+      display->turn();  // at least once: a frame may be reported unseen before its cause
+    } while (!display->focused());
+    if (const auto more = display->take_spoilt()) note_cut(spoilt, *more);  // with nothing shown
+    return *spoilt;
+  };
+  if (person) {
+    HeadsetPerson parts = make_headset_person(*headset, ways, protocol, *setup.clock);
+    setup.participant = std::move(parts.participant);
+    setup.request = std::move(parts.request);
+    setup.idle = std::move(parts.idle);
+    setup.listen = std::move(parts.listen);
+  }
+  setup.open_mirror = [display = headset.get(), mirror = std::shared_ptr<void>()](bool reveal) mutable {
+    mirror = open_headset_mirror(*display, reveal);
+  };
+  setup.display = std::move(headset);
+}
+
+/// Measures live pictures before the session; without live pictures, uses the table.
+std::unique_ptr<FeatureSource> make_features(const RunOptions& options, const Protocol& protocol,
+                                             const CellStimuli& stimuli) {
+  const bool looks = options.observer.find("frames") != std::string::npos;
+  if (!looks || options.display == "none" || !options.bake.empty()) return std::make_unique<FeatureTable>();
+  auto features = std::make_unique<CellFeatures>(
+      sim::default_cache_folder(), [&stimuli](const Cell& cell) { return stimuli.choice_of(cell); });
+  features->measure(protocol);
+  return features;
+}
+
+/// The tau of a scheduled cell uses the protocol's kind of mean, so the model must have the same kind.
+stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place,
+                          const Protocol& protocol) {
+  if (!ptpe) return {};
+  const stats::PtpeModel model = sim::parse_ptpe_file(*ptpe, place).model;
+  if (protocol.design.timing != TimingSource::Native && model.mean != protocol.pacing.mean) {
+    throw base::Error(place,
+                      "was fitted to another mean of the frame rate than protocol '" + protocol.name +
+                          "' sets (pacing.mean)",
+                      "fit it again from a pilot of that mean, or change pacing.mean of the protocol");
+  }
+  return model;
+}
+
+}  // namespace
+
+bool asks_gaze(const Protocol& protocol) {
+  const auto all = all_questions(protocol);
+  return std::any_of(all.begin(), all.end(),
+                     [](const auto& entry) { return entry.second->id == gaze_question; });
+}
+
+std::string SessionSetup::departure() const {
+  std::string out = stimuli->bakes().departure();
+  for (const FramedScene& one : scenes) {
+    if (!one.departure.empty()) out += (out.empty() ? "" : ", ") + one.departure;
+  }
+  return out;
+}
+
+SessionSetup make_session_setup(const RunOptions& options, const Protocol& protocol,
+                                const std::optional<std::string>& ptpe, const std::string& ptpe_place,
+                                const std::string& setting_place) {
+  check_together(options, protocol);
+  if (options.observer.empty()) check_pages(protocol);
+  SessionSettings settings(options.settings, protocol, setting_place);
+  SessionSetup setup;
+  setup.virtual_clock = options.clock == "virtual";
+  setup.clock = make_clock(options.clock);
+  Viewing viewing = screen_viewing(options.screen_width_mm, options.viewing_distance_mm,
+                                   protocol.true_angle && options.display != "none");
+  base::PictureSize size{options.width_px, options.height_px};
+  if (options.display == "window") {
+    WindowParts window = make_window_parts(options, protocol);
+    setup.display = std::move(window.display);
+    setup.participant = std::move(window.person);
+    if (options.gaze == "mouse") {
+      viewing.gaze = window.gaze;
+      setup.gaze = std::move(window.mouse);
+    }
+    setup.request = std::move(window.request);
+    setup.idle = std::move(window.idle);
+    setup.open_mirror = std::move(window.open_mirror);
+    setup.poll = std::move(window.poll);
+    setup.screen = window.screen;
+    size = window.size;
+  } else if (options.display == "openxr") {
+    take_headset(options, protocol, setup, viewing);
+  } else {
+    setup.display = make_display(options);
+  }
+  const stats::PtpeModel model = model_of(ptpe, ptpe_place, protocol);
+  SessionLook look{{}, size};
+  look.common.model = model;
+  look.common.viewing = viewing;
+  SessionBakes bakes(options.bake, protocol, look);
+  if (options.display == "openxr") {
+    refuse_pictures(bakes, protocol);
+  } else if (options.display != "none") {
+    setup.scenes = frame_scenes(protocol, viewing, size, bakes, sim::gl_description());
+  }
+  check_visible(setup.scenes);
+  check_one_picture(protocol, setup.scenes);
+  setup.stimuli = std::make_unique<CellStimuli>(options, protocol, model, std::move(viewing),
+                                                std::move(bakes), std::move(settings));
+  if (!options.observer.empty()) {
+    setup.features = make_features(options, protocol, *setup.stimuli);
+    setup.participant = make_observer(options.observer, *setup.features);
+  }
+  return setup;
+}
+
+}  // namespace study

@@ -1,0 +1,162 @@
+#include "libstudy/stimulus/bakes/session_bakes.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::shared_ptr<const FoundBake> open_bake(const fs::path& path) {
+  const sim::BakeReader bake(path);
+  return std::make_shared<FoundBake>(FoundBake{path, bake.header(), bake.content_hash()});
+}
+
+std::string stimulus_words(const StimulusSpec& what) {
+  return fs::path(what.scene).stem().string() + " " + what.n_star + " " + what.method +
+         (what.effects.empty() ? "" : " " + what.effects);
+}
+
+bool shows(const PlannedStimulus& planned, const Cell& cell) {
+  if (planned.what != cell.stimulus) return false;
+  return !planned.rate || (planned.rate->mean == cell.setting.mean && planned.rate->sd == cell.setting.sd);
+}
+
+/// The order to compare a bake with. If the protocol gives no rate for tau, no rate of a bake can match. A
+/// bake may hold pictures or particles.
+BakeOrder order_for(const Protocol& protocol, const PlannedStimulus& one, const SessionLook& look,
+                    const sim::BakeHeader& found) {
+  BakeOrder order = order_of(protocol, one, look);
+  order.pictures = found.has_pictures();
+  if (!one.rate) order.fluid.fixed_rate = sim::FrameRate{};
+  return order;
+}
+
+void check_one_stimulus(const std::vector<PlannedStimulus>& plan, const fs::path& bake) {
+  for (const PlannedStimulus& one : plan) {
+    if (one.what == plan.front().what) continue;
+    throw base::Error("--stimulus " + bake.string(),
+                      "shows one scene, method, n_* and set of effects, but the protocol names several",
+                      "bake them all: vip-study bake --protocol FILE --out FOLDER, then vip-study run "
+                      "--stimulus FOLDER; or "
+                      "run the protocol live");
+  }
+}
+
+/// Options of `vip-study bake` that match this session.
+std::string bake_options(const SessionLook& look) {
+  std::string out = "--size " + std::to_string(look.size.width) + "x" + std::to_string(look.size.height);
+  if (look.common.viewing.visual_angle_deg) out += " --screen-width-mm and --viewing-distance-mm as here";
+  return out;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 6;
+  const std::vector<std::string> first(
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())));
+  return base::joined(first) +
+         (names.size() > most ? ", and " + std::to_string(names.size() - most) + " more" : "");
+}
+
+}  // namespace
+
+SessionBakes::SessionBakes(const fs::path& path, const Protocol& protocol, const SessionLook& look)
+    : path_(path), options_(bake_options(look)) {
+  if (path.empty()) return;
+  for (PlannedStimulus& one : plan_bakes(protocol)) sources_.push_back({std::move(one), {}});
+  fs::is_directory(path) ? use_folder(protocol, look) : use_file(protocol, look);
+}
+
+void SessionBakes::use_file(const Protocol& protocol, const SessionLook& look) {
+  check_one_stimulus(plan_bakes(protocol), path_);
+  const auto bake = open_bake(path_);
+  std::vector<std::string> departures;
+  for (Source& source : sources_) {
+    source.bake = bake;
+    sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look, bake->header));
+    wanted.frame_count = std::min(wanted.frame_count, bake->header.frame_count);  // at_end does the rest
+    wanted.frame_dt_s = bake->header.frame_dt_s;                                  // make_stimulus() checks it
+    for (const std::string& one : fluid_departures(bake->header, wanted)) {
+      if (std::find(departures.begin(), departures.end(), one) == departures.end()) departures.push_back(one);
+    }
+  }
+  if (sim::traits_of(sim::parse_method(bake->header.method)).adaptive() && !protocol.fixation)
+    departures.emplace_back("a gaze fixed before the session instead of the participant's");
+  departure_ = base::joined(departures);
+}
+
+void SessionBakes::use_folder(const Protocol& protocol, const SessionLook& look) {
+  bool any = false;
+  for (Source& source : sources_) {
+    if (source.planned.file.empty() || !fs::exists(path_ / source.planned.file)) continue;
+    const auto bake = open_bake(path_ / source.planned.file);
+    const sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look, bake->header));
+    std::vector<std::string> departures = fluid_departures(bake->header, wanted);
+    if (source.planned.adaptive) {
+      for (std::string& one : view_departures(bake->header, wanted)) departures.push_back(std::move(one));
+    }
+    if (!departures.empty())
+      throw base::Error(
+          bake->path.string(), "holds " + base::joined(departures),
+          "make it again: vip-study bake --protocol FILE --out " + path_.string() + " " + options_);
+    source.bake = bake;
+    any = true;
+  }
+  if (!any)
+    throw base::Error("--stimulus " + path_.string(), "holds no bake of this protocol",
+                      "make them: vip-study bake --protocol FILE --out " + path_.string() + " " + options_);
+}
+
+const FoundBake* SessionBakes::of(const Cell& cell) const {
+  for (const Source& source : sources_) {
+    if (shows(source.planned, cell)) return source.bake.get();
+  }
+  return nullptr;
+}
+
+bool SessionBakes::whole() const {
+  return !sources_.empty() &&
+         std::all_of(sources_.begin(), sources_.end(), [](const Source& one) { return one.bake != nullptr; });
+}
+
+std::vector<std::string> SessionBakes::notes(const std::string& protocol_file) const {
+  if (!fs::is_directory(path_)) return {};
+  std::vector<std::string> baked, missing;
+  std::map<std::string, std::vector<std::string>> live;
+  for (const Source& source : sources_) {
+    const std::string name = stimulus_words(source.planned.what);
+    if (source.bake) {
+      baked.push_back(name);
+    } else if (source.planned.live.empty()) {
+      missing.push_back(name);
+    } else {
+      live[source.planned.live].push_back(name);
+    }
+  }
+  std::vector<std::string> out{std::to_string(baked.size()) + " stimuli are baked: " + listed(baked)};
+  for (const auto& [why, names] : live)
+    out.push_back(std::to_string(names.size()) + " run live, " + why + ": " + listed(names));
+  if (!missing.empty())
+    out.push_back(std::to_string(missing.size()) + " have no bake and run live: " + listed(missing) +
+                  "; to make them: vip-study bake --protocol " + protocol_file + " --out " + path_.string() +
+                  " " + options_);
+  return out;
+}
+
+std::string SessionBakes::description() const {
+  if (!fs::is_directory(path_)) return "";
+  std::string out;
+  for (const Source& source : sources_) {
+    out += (out.empty() ? "" : "; ") + stimulus_words(source.planned.what);
+    if (source.planned.rate) out += " at " + setting_name(*source.planned.rate);
+    out += source.bake ? " bake " + source.bake->hash + " on " + source.bake->header.backend : " live";
+  }
+  return out;
+}
+
+}  // namespace study

@@ -1,0 +1,39 @@
+#pragma once
+/// A display without a screen: draws real frames into framebuffers of a headless GL context.
+
+#include <array>
+
+#include "libsim/render/gl_context.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "libstudy/display/stimulus.hpp"
+
+namespace study {
+
+/// Double buffered. Use it on the thread that made it; first destroy stimuli that drew on it.
+class HeadlessDisplay final : public Display {
+ public:
+  /// With only_copies, software GL draws on the calling thread alone: this is enough for baked pictures, and
+  /// no frame waits until a helper thread wakes up. Mesa's $LP_NUM_THREADS, when set, has priority.
+  /// base::Error for no OpenGL 4.5 or a size out of range.
+  HeadlessDisplay(int width_px, int height_px, bool only_copies = false);
+
+  std::string description() const override;
+  TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
+  double refresh_hz() const override { return 0; }
+  /// Draws into the back buffer and waits until the device has finished.
+  void render(Stimulus& stimulus) override;
+  /// Swaps the buffers. No drawing is pending, so submitted and done times differ only by the check.
+  PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override;
+
+  /// The picture in the front buffer.
+  sim::Image read() const { return buffers_[front_].read(); }
+  int width_px() const { return buffers_[0].width(); }
+  int height_px() const { return buffers_[0].height(); }
+
+ private:
+  sim::GlContext context_;
+  std::array<sim::Offscreen, 2> buffers_;
+  std::size_t front_ = 0;
+};
+
+}  // namespace study

@@ -1,0 +1,187 @@
+/// Gaze in BIDS 1.11. An eye recording states the eye and the screen; the mouse and the head's direction are
+/// not eyes, so they are exported as behaviour.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "libstudy/store/export/bids_writer.hpp"
+
+namespace study::bids {
+
+using sqlite::Connection;
+using sqlite::Statement;
+
+namespace {
+
+constexpr const char* as_share = "1";
+
+struct Samples {
+  Table rows;
+  std::vector<std::int64_t> times_ns;
+  bool rays = false;  ///< true: angles in a headset's head frame; false: points of a screen
+};
+
+const std::vector<std::string> screen_columns{"timestamp", "x_coordinate", "y_coordinate", "valid"};
+const std::vector<std::string> ray_columns{"timestamp", "x_coordinate", "y_coordinate", "valid",
+                                           "tracked",   "picture_x",    "picture_y"};
+
+/// Azimuth and elevation of a direction, degrees; n/a if it is missing.
+std::pair<std::string, std::string> angles_of(const Statement& row, int column) {
+  if (row.is_null(column)) return {"n/a", "n/a"};
+  const double x = row.real(column), y = row.real(column + 1), z = row.real(column + 2);
+  const double degree = std::numbers::pi / 180;
+  return {number_text(std::atan2(x, -z) / degree), number_text(std::atan2(y, std::hypot(x, z)) / degree)};
+}
+
+Samples samples_of(Connection& database, std::int64_t session, const std::string& source) {
+  const auto onsets = onsets_of(database, session);
+  Statement row(database,
+                "SELECT presentation_id, sampled_ns, x, y, valid, tracked, direction_x, direction_y, "
+                "direction_z FROM gaze JOIN presentation USING (presentation_id) JOIN trial USING (trial_id) "
+                "WHERE session_id = ? AND source = ? ORDER BY presentation_id, sample_index");
+  Statement any(database,
+                "SELECT 1 FROM gaze JOIN presentation USING (presentation_id) JOIN trial USING (trial_id) "
+                "WHERE session_id = ? AND source = ? AND tracked IS NOT NULL LIMIT 1");
+  Samples samples;
+  samples.rays = source == "head" || any.bind_all(session, source).step();
+  samples.rows.push_back(samples.rays ? ray_columns : screen_columns);
+  for (row.bind_all(session, source); row.step();) {
+    const std::int64_t at_ns = onsets.at(row.integer(0)) + row.integer(1);
+    samples.times_ns.push_back(at_ns);
+    const std::string x = field(row, 2), y = field(row, 3), valid = field(row, 4);
+    if (samples.rays) {
+      const auto [azimuth, elevation] = angles_of(row, 6);
+      samples.rows.push_back({seconds(at_ns), azimuth, elevation, valid, field(row, 5), x, y});
+    } else {
+      samples.rows.push_back({seconds(at_ns), x, y, valid});
+    }
+  }
+  return samples;
+}
+
+/// Adds the tracker's accuracy in the last passed validation.
+void add_validation(Connection& database, std::int64_t session, Json& json) {
+  Statement row(
+      database,
+      "SELECT avg(accuracy_deg), max(accuracy_deg) FROM gaze_validation WHERE session_id = ?1 AND "
+      "validation = (SELECT max(validation) FROM gaze_validation WHERE session_id = ?1 AND passed)");
+  row.bind_all(session);
+  if (!row.step() || row.is_null(0)) return;
+  json["AverageCalibrationError"] = row.real(0);
+  json["MaximalCalibrationError"] = row.real(1);
+  json["CalibrationUnit"] = "deg";
+}
+
+Json columns(const std::string& what) {
+  return {
+      {"timestamp", described("when the sample came, on the time scale of the events' onset; between two "
+                              "stimuli nothing is recorded",
+                              "s")},
+      {"x_coordinate", described(what + " from the left edge, as a share of the picture's width", as_share)},
+      {"y_coordinate", described(what + " from the top edge, as a share of the picture's height", as_share)},
+      {"valid", described("1: the gaze point is known; 0: it is not, as in a blink or off the picture")}};
+}
+
+Json ray_columns_meaning() {
+  Json json = columns("gaze");
+  json["x_coordinate"] =
+      described("azimuth of the gaze in the head's frame, from straight ahead to the right", "deg");
+  json["y_coordinate"] =
+      described("elevation of the gaze in the head's frame, from straight ahead up", "deg");
+  json["tracked"] = described("1: of the tracker's usual quality; 0: sub-nominal, a guess of the runtime");
+  json["picture_x"] =
+      described("gaze from the left edge of the left eye's picture, as a share of its width", as_share);
+  json["picture_y"] =
+      described("gaze from the top edge of the left eye's picture, as a share of its height", as_share);
+  return json;
+}
+
+void write_eye(Connection& database, const Samples& samples, const LabelledSession& session, Writer& writer) {
+  const double hz = rate_hz(database, session.id, samples.times_ns);
+  if (hz == 0) return;  // a BIDS recording needs a rate; the CSV export has the samples
+  const std::string name = stem_of(session) + "_recording-eye1_physio";
+  writer.compressed_table(name + ".tsv.gz", samples.rows);
+  Json json{{"PhysioType", "eyetrack"},
+            {"RecordedEye", "cyclopean"},
+            {"SampleCoordinateSystem", samples.rays ? "eye-in-head" : "gaze-on-screen"},
+            {"SamplingFrequency", hz},
+            {"StartTime", static_cast<double>(samples.times_ns.front()) / 1e9},
+            {"Columns", samples.rows.front()}};
+  add_validation(database, session.id, json);
+  json.update(samples.rays ? ray_columns_meaning() : columns("gaze"));
+  writer.json(name + ".json", json);
+}
+
+void write_mouse(const Samples& samples, const std::string& stem, Writer& writer) {
+  const std::string name = stem + "_acq-mouse_beh";
+  writer.table(name + ".tsv", samples.rows);
+  Json json{{"Description",
+             "the pointer of the mouse over the picture, at the start of each stimulus and whenever "
+             "it moved. No eye was recorded: people often look where the mouse is not"}};
+  json.update(columns("pointer"));
+  writer.json(name + ".json", json);
+}
+
+/// Writes the head's direction; its position is in the motion recording.
+void write_head(const Samples& samples, const std::string& stem, Writer& writer) {
+  const std::string name = stem + "_acq-head_beh";
+  Table rows;  // the angles of the straight-ahead direction
+  for (const auto& row : samples.rows) rows.push_back({row[0], row[5], row[6], row[3], row[4]});
+  rows.front() = {"timestamp", "x_coordinate", "y_coordinate", "valid", "tracked"};
+  writer.table(name + ".tsv", rows);
+  Json json{
+      {"Description",
+       "where the direction of the head met the left eye's picture in each slot of the headset: the fluid "
+       "followed it in the eyes' stead. No eye was recorded: people often look beside it"}};
+  json.update(columns("direction of the head"));
+  json["tracked"] = described("1: the head's turn was measured; 0: a guess of the runtime, or not valid");
+  writer.json(name + ".json", json);
+}
+
+}  // namespace
+
+/// Onset of each presentation of a session since its first stimulus.
+std::map<std::int64_t, std::int64_t> onsets_of(Connection& database, std::int64_t session) {
+  Statement row(database,
+                "SELECT presentation_id, start_ns, end_ns FROM presentation JOIN trial USING (trial_id) "
+                "WHERE session_id = ? ORDER BY presentation_id");
+  SessionTime time;
+  std::map<std::int64_t, std::int64_t> onsets;
+  for (row.bind_all(session); row.step();) {
+    std::optional<std::int64_t> end_ns;
+    if (!row.is_null(2)) end_ns = row.integer(2);
+    onsets[row.integer(0)] = time.onset_of(row.integer(1), end_ns);
+  }
+  return onsets;
+}
+
+/// Rate by the median interval, since nothing is recorded between stimuli. A single sample has no interval:
+/// the display's rate is used. 0 if that is unknown too.
+double rate_hz(Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns) {
+  std::vector<std::int64_t> gaps;
+  for (std::size_t i = 1; i < times_ns.size(); ++i) {
+    if (times_ns[i] > times_ns[i - 1]) gaps.push_back(times_ns[i] - times_ns[i - 1]);
+  }
+  if (gaps.empty()) {
+    Statement row(database,
+                  "SELECT coalesce((SELECT coalesce(refresh_measured_hz, refresh_told_hz) FROM headset WHERE "
+                  "session_id = ?1 ORDER BY headset_id DESC LIMIT 1), refresh_hz, 0) FROM session WHERE "
+                  "session_id = ?1");
+    return row.bind_all(session).step() ? row.real(0) : 0;
+  }
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return 1e9 / static_cast<double>(*middle);
+}
+
+void write_gaze(Connection& database, const LabelledSession& session, Writer& writer) {
+  const Samples eye = samples_of(database, session.id, "tracker");
+  if (!eye.times_ns.empty()) write_eye(database, eye, session, writer);
+  const Samples mouse = samples_of(database, session.id, "mouse");
+  if (!mouse.times_ns.empty()) write_mouse(mouse, stem_of(session), writer);
+  const Samples head = samples_of(database, session.id, "head");
+  if (!head.times_ns.empty()) write_head(head, stem_of(session), writer);
+}
+
+}  // namespace study::bids

@@ -1,0 +1,153 @@
+#include "libstudy/store/export/export_psych_ds.hpp"
+
+#include <array>
+#include <map>
+#include <set>
+#include <span>
+
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/sickness_table.hpp"
+#include "libstudy/store/export_labels.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/read/run_settings.hpp"
+#include "stats/base/file.hpp"
+#include "stats/base/json.hpp"
+#include "stats/base/new_file.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using Json = base::Json;
+using sqlite::Connection;
+
+namespace {
+
+constexpr std::array page_columns{
+    RatingColumn{"participant", "session", "session", "participant"},
+    RatingColumn{"visit", "session", "session", "visit"},
+    RatingColumn{"test_data", "session", "session", "test_data"},
+    RatingColumn{"unit_position", "unit", "unit", "position"},
+    RatingColumn{"block", "unit", "unit", "block"},
+    RatingColumn{"block_kind", "unit", "unit", "kind"},
+    RatingColumn{"question", "question", "question", "code"},
+    RatingColumn{"score", "response", "response", "score"},
+    RatingColumn{"response_time_s", "response", "response", "response_time_s"},
+    RatingColumn{"input", "response", "response", "input"},
+};
+
+std::string pages_sql(std::int64_t session) {
+  std::string list;
+  for (const RatingColumn& column : page_columns)
+    list +=
+        (list.empty() ? "" : ", ") + std::string(column.from) + '.' + column.column + " AS " + column.name;
+  return "SELECT " + list +
+         " FROM response JOIN unit USING (unit_id) JOIN session USING (session_id) "
+         "JOIN question USING (question_id) WHERE unit.trial_id IS NULL AND session.session_id = " +
+         std::to_string(session) + " ORDER BY response.response_id";
+}
+
+bool is_psych_ds_export(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder / "data", ignored)) return false;
+  const fs::path description = folder / description_file;
+  if (!fs::is_regular_file(description, ignored) || fs::file_size(description, ignored) > 1u << 24)
+    return false;
+  const auto json = base::parse_json(base::read_file(description, 1u << 24));
+  return json.is_object() && json.contains("creator") && json["creator"] == "vip-study";
+}
+
+bool is_psych_ds_name(const std::string& name) {
+  return name == description_file || name == "README.md" || name.starts_with("data/study-") ||
+         name.starts_with("materials/setting_");
+}
+
+constexpr ExportKind psych_ds_kind{"psych-ds", is_psych_ds_export, is_psych_ds_name};
+
+/// Each column of the files, once; two files may share one. `scored`: the sessions of the export.
+Json variables(Connection& database, std::span<const SicknessSession> scored) {
+  std::map<std::string, std::string> meanings;
+  for (const RatingColumn& column : rating_columns())
+    meanings.emplace(column.name, meaning_of(database, column).meaning);
+  for (const RatingColumn& column : page_columns)
+    meanings.emplace(column.name, meaning_of(database, column).meaning);
+  for (const SicknessTable& table : sickness_tables(scored)) {
+    if (table.rows.empty()) continue;  // no file: Psych-DS refuses variables without one
+    for (const SicknessColumn& column : table.columns) meanings.emplace(column.name, column.meaning);
+  }
+  Json list = Json::array();
+  for (const auto& [name, meaning] : meanings)
+    list.push_back({{"@type", "PropertyValue"}, {"name", name}, {"description", meaning}});
+  return list;
+}
+
+/// The tables of one session that have rows.
+void write_scores(const SicknessSession& session, const std::string& stem, const ExportDraft& draft,
+                  std::vector<ExportedFile>& files) {
+  for (const SicknessTable& table : sickness_tables({&session, 1})) {
+    std::string label = table.name;
+    std::erase(label, '_');
+    const std::string name = stem + "_description-" + label + "_data.csv";
+    if (!table.rows.empty()) files.push_back({name, write_sickness(table, draft, name)});
+  }
+}
+
+void write_description(Connection& database, std::span<const SicknessSession> scored,
+                       const AboutDataSet& about, const ExportDraft& draft) {
+  const std::string simulated = about.simulated.empty() ? "" : ". " + about.simulated;
+  const Json json{{"@context", "https://schema.org/"},
+                  {"@type", "Dataset"},
+                  {"name", about.name},
+                  {"description", "Ratings of real-time fluid at controlled frame rates" + simulated},
+                  {"creator", "vip-study"},
+                  {"version", base::version()},
+                  {"variableMeasured", variables(database, scored)}};
+  write_file(draft, description_file, json.dump(2) + "\n");
+  write_file(
+      draft, "README.md",
+      "# Ratings of real-time fluid\n\nOne file for each session in data/; dataset_description.json says "
+      "what each column means. Empty: not known.\n\n" +
+          (about.simulated.empty() ? "" : about.simulated + "\n\n") + "In every column, " +
+          formula_guard_meaning + ".\n");
+}
+
+}  // namespace
+
+PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
+  open_study(study);  // refuses a damaged file before anything is written to it
+  label_everybody(study.path);
+  const auto database = open_to_export(study);
+  database->execute("BEGIN");
+  const auto sessions = shared_sessions(*database);
+  const SharingCount people = count_sharing(*database);
+  const auto sickness = read_sickness(*database);
+  std::vector<SicknessSession> scored;
+  ExportDraft draft({study.path, psych_ds_kind, people_of(sessions), Readers::AsUmask}, folder);
+  std::vector<ExportedFile> files;
+  std::set<std::string> named;
+  base::make_folder_of(draft.path() / "data" / "of sessions");
+  for (const LabelledSession& session : sessions) {
+    const std::string stem =
+        "data/study-" + session.protocol + "_subject-" + session.subject + "_session-" + session.session;
+    const std::string ratings = stem + "_data.csv", pages = stem + "_description-pages_data.csv";
+    const std::string condition = "session.session_id = " + std::to_string(session.id);
+    files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
+    files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
+    for (const RunSetting& setting : run_settings(*database, session.id)) {
+      // Tools ignore files there, which are not data.
+      const std::string name = "materials/" + setting_file_name(setting);
+      if (named.insert(name).second) write_file(draft, name, setting.text);
+    }
+    for (const SicknessSession& one : sickness) {
+      if (one.id != session.id) continue;
+      write_scores(one, stem, draft, files);
+      scored.push_back(one);
+    }
+  }
+  write_description(*database, scored, about_data_set(*database, sessions), draft);
+  database->execute("COMMIT");
+  draft.put_in_place();
+  return {std::move(files), people};
+}
+
+}  // namespace study

@@ -1,0 +1,241 @@
+#include "libstudy/store/file/database.hpp"
+
+#include <sqlite3.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <string_view>
+#include <utility>
+
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/file/foreign_log.hpp"
+#include "libstudy/store/file/page_file.hpp"
+#include "libstudy/store/file/private_file.hpp"
+#include "libstudy/store/file/schema.hpp"
+#include "libstudy/store/file/snapshot.hpp"
+#include "stats/base/durable.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using sqlite::Connection;
+using sqlite::Open;
+
+namespace {
+
+constexpr std::array step_files{"001_initial.sql",  "002_blocks.sql",   "003_permissions.sql",
+                                "004_counting.sql", "005_headsets.sql", "006_effects.sql",
+                                "007_promises.sql"};
+constexpr std::size_t max_sql_bytes = 1 << 20;
+
+struct Identity {
+  std::int64_t application = 0;
+  std::int64_t version = 0;
+  bool empty = true;
+};
+
+Identity identify(Connection& database) {
+  return {database.integer("PRAGMA application_id"), database.integer("PRAGMA user_version"),
+          database.integer("SELECT EXISTS (SELECT 1 FROM sqlite_schema)") == 0};
+}
+
+/// A power cut in the first transaction leaves arbitrary bytes and a journal that makes the file empty again.
+bool was_empty_before(const fs::path& journal) {
+  // The head of a rollback journal (sqlite.org/fileformat.html, section 3): 8 bytes of magic; at byte 16, the
+  // number of pages that the file had.
+  std::ifstream file(journal, std::ios::binary);
+  std::string head(20, '\0');
+  return file.read(head.data(), 20) && head.starts_with(salvaging::rollback_magic) &&
+         salvaging::u32(head, 16) == 0;
+}
+
+/// Throws unless the database is ours, or blank if one may be made, and not newer than the program.
+void recognise(const fs::path& path, const Identity& found, Open how, std::size_t newest) {
+  const bool blank = found.empty && found.application == 0 && found.version == 0;
+  if (blank && how == Open::Create) return;
+  if (holds_nothing(path)) {
+    throw base::Error(path.string(),
+                      "holds nothing: it is empty, or the command that was making it was cut off",
+                      "run that command (vip-study run or merge) again: it creates the file");
+  }
+  if (found.application != database_application_id) {
+    throw base::Error(path.string(), "is not a database of vip-study",
+                      "name the file that vip-study run wrote, or a new file");
+  }
+  if (found.version > static_cast<std::int64_t>(newest)) {
+    throw base::Error(path.string(),
+                      "was written by a newer program (schema " + std::to_string(found.version) +
+                          ", this program knows " + std::to_string(newest) + ")",
+                      "use the newer vip-study; the file was left as it is");
+  }
+}
+
+bool has_bytes(const fs::path& path) {
+  std::error_code ignored;
+  const auto bytes = fs::file_size(path, ignored);
+  return !ignored && bytes > 0;
+}
+
+/// Throws if the file's own first bytes are not ours, before SQLite uses its log or journal. They are ours
+/// from the first commit on, which is never in a log.
+void recognise_header(Connection& database, Open how, std::size_t newest) {
+  const std::string head = database.header();
+  if (head.empty() && how == Open::Create) return;
+  const fs::path journal = database.path().string() + "-journal";
+  Identity found{0, 0, false};
+  if (head.size() == salvaging::header_bytes && head.starts_with(salvaging::database_magic)) {
+    found.application = salvaging::u32(head, salvaging::application_at);
+    found.version = salvaging::u32(head, salvaging::version_at);
+    // SQLite can tell whether there are tables, but not while a journal is to be rolled back first.
+    found.empty = !has_bytes(journal);
+  }
+  if (how == Open::Create && was_empty_before(journal)) return;
+  recognise(database.path(), found, how, newest);
+}
+
+/// The backup is complete or missing: a kill leaves a draft, which the next upgrade removes.
+void back_up(Connection& database, std::int64_t version) {
+  const std::string path = database.path().string(), draft = path + ".bak.tmp",
+                    copy = path + ".v" + std::to_string(version) + "-" + base::utc_now() + ".bak";
+  std::error_code failed;
+  fs::remove(draft, failed);
+  if (!create_private(draft)) throw base::Error(draft, "is in the way", "move it away and try again");
+  try {
+    sqlite::Statement(database, "VACUUM INTO ?").bind_all(draft).run();
+    base::sync_file(draft);
+    if (!base::rename_durably(draft, copy))
+      throw base::Error(copy, std::string("cannot be put in place: ") + std::strerror(errno),
+                        "check the disk and try again");
+  } catch (...) {
+    fs::remove(draft, failed);
+    throw;
+  }
+}
+
+/// Sets a random number that identifies this database in its log (foreign_log.hpp).
+void give_identity(Connection& database) {
+  if (database.integer("PRAGMA schema_version") >= first_identity) return;
+  std::mt19937 chance{std::random_device()()};
+  const std::int64_t number = std::uniform_int_distribution<std::int64_t>(first_identity, 1 << 30)(chance);
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);  // it protects the number
+  database.execute("PRAGMA schema_version = " + std::to_string(number));
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+}
+
+/// A step may recreate tables, so that references dangle until it ends: checks them before the commit.
+void take_step(Connection& database, const SchemaSteps& steps, std::size_t version) {
+  sqlite::Transaction transaction(database);
+  database.execute(steps.at(version - 1));
+  if (sqlite::Statement lost(database, "PRAGMA foreign_key_check"); lost.step()) {
+    throw base::Error(
+        database.path().string(),
+        "cannot be upgraded: a row of " + lost.text(0) + " refers to a missing row of " + lost.text(2),
+        "restore a backup of it; the file was left as it is");
+  }
+  database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
+  database.execute("PRAGMA user_version = " + std::to_string(version));
+  if (version == steps.size()) give_identity(database);
+  transaction.commit();
+}
+
+/// An upgraded copy of an older database; the file is unchanged.
+std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps) {
+  auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
+  copy->copy_from(database);
+  upgrade(*copy, steps);
+  copy->execute("PRAGMA query_only = ON");
+  copy->seal();
+  return copy;
+}
+
+std::unique_ptr<Connection> to_read(std::unique_ptr<Connection> database, const SchemaSteps& steps,
+                                    std::int64_t version) {
+  if (version < static_cast<std::int64_t>(steps.size())) return upgraded_copy(*database, steps);
+  database->execute("PRAGMA foreign_keys = ON; PRAGMA query_only = ON");
+  database->seal();
+  return database;
+}
+
+std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const SchemaSteps& steps,
+                                     std::int64_t version, std::int64_t max_pages) {
+  const fs::path& path = database->path();
+  for (const char* part : {"", "-wal", "-shm", "-journal"}) make_private(path.string() + part);
+  database->execute("PRAGMA synchronous = FULL");
+  if (max_pages > 0) database->limit_pages(max_pages);
+  if (version > 0 && version < static_cast<std::int64_t>(steps.size())) back_up(*database, version);
+  upgrade(*database, steps);
+  if (database->text("PRAGMA journal_mode = WAL") != "wal") {
+    throw base::Error(path.string(), "cannot keep a write-ahead log here",
+                      "put the database on a local disk");
+  }
+  database->watch();
+  database->mark_commits();
+  database->seal();
+  return database;
+}
+
+}  // namespace
+
+bool holds_nothing(const fs::path& path) {
+  if (!has_bytes(path)) return true;
+  if (!was_empty_before(path.string() + "-journal")) return false;
+  // Such a journal beside a database with more than its first step belongs to another file.
+  std::string head(salvaging::header_bytes, '\0');
+  const bool whole = bool(std::ifstream(path, std::ios::binary).read(head.data(), salvaging::header_bytes));
+  return !whole || !head.starts_with(salvaging::database_magic) ||
+         salvaging::u32(head, salvaging::application_at) != database_application_id ||
+         salvaging::u32(head, salvaging::version_at) <= 1;
+}
+
+SchemaSteps read_schema_steps() {
+  SchemaSteps steps;
+  for (const char* file : step_files) {
+    steps.push_back(
+        base::read_file(base::resource(std::string("libstudy/store/sql/") + file), max_sql_bytes));
+  }
+  return steps;
+}
+
+void upgrade(Connection& database, const SchemaSteps& steps) {
+  // This pragma has no effect within a transaction.
+  database.execute("PRAGMA foreign_keys = OFF");
+  for (auto step = static_cast<std::size_t>(database.integer("PRAGMA user_version")); step < steps.size();
+       ++step)
+    take_step(database, steps, step + 1);
+  database.execute("PRAGMA foreign_keys = ON");
+}
+
+std::unique_ptr<Connection> make_temporary_database(const fs::path& shown, const SchemaSteps& steps) {
+  auto database = std::make_unique<Connection>(shown, sqlite::Temporary{});
+  upgrade(*database, steps);
+  return database;
+}
+
+std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const SchemaSteps& steps,
+                                          std::int64_t max_pages, const sqlite::Waiting& waiting) {
+  const fs::path path = real_file(given);
+  auto database = std::make_unique<Connection>(path, how);
+  database->wait_with(waiting);
+  recognise_header(*database, how, steps.size());
+  // A reader changes nothing; a writer first compares the log with the journal of answers (AnswerJournal).
+  database->keep_log(has_bytes(path.string() + "-wal"));
+  database->distrust();
+  if (how == Open::Read && !database->can_read()) {
+    database = snapshot(path);
+    database->distrust();
+  }
+  const Identity found = identify(*database);
+  recognise(path, found, how, steps.size());
+  check_schema(*database, steps, found.version);
+  database->recognise();
+  database->check_integrity();
+  if (how == Open::Read) return to_read(std::move(database), steps, found.version);
+  return to_write(std::move(database), steps, found.version, max_pages);
+}
+
+}  // namespace study

@@ -1,0 +1,97 @@
+#pragma once
+/// Reads the pages of a database file and its log directly, without SQLite. The format:
+/// https://www.sqlite.org/fileformat2.html
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace study::salvaging {
+
+/// The first bytes of a database and of a rollback journal, and offsets in a database's header (sections 1.3
+/// and 3 of the format).
+inline constexpr std::string_view database_magic("SQLite format 3\0", 16);
+inline constexpr std::string_view rollback_magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+/// header_bytes: of the first page, before the usual content of a page.
+inline constexpr std::size_t header_bytes = 100, version_at = 60, application_at = 68;
+
+std::uint64_t big_endian(std::string_view bytes);
+/// Four bytes as a number; 0 past the end.
+std::uint32_t u32(std::string_view bytes, std::size_t at);
+
+/// A file; a missing one reads as empty. base::Error if it cannot be read.
+class File {
+ public:
+  explicit File(const std::filesystem::path& path);
+  ~File();
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  std::size_t size() const { return size_; }
+  /// Shorter at the end of the file. A sector that the disk cannot read gives zeros.
+  std::string read(std::size_t at, std::size_t count) const;
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::filesystem::path path_;
+  int fd_;
+  std::size_t size_ = 0;
+};
+
+/// Index of the pages in a log as of its last commit.
+class Log {
+ public:
+  explicit Log(const std::filesystem::path& path);
+
+  /// 0 if there is no log.
+  std::size_t page_bytes() const { return page_bytes_; }
+  std::size_t page_count() const { return page_count_; }
+  bool holds(std::size_t page) const { return places_.contains(page); }
+  bool is_empty() const { return commits_ == 0; }
+  std::size_t commits() const { return commits_; }
+  /// The first 100 bytes of page 1 from each commit that wrote it, in order.
+  std::vector<std::string> heads() const;
+  /// Reads a page for which holds() is true.
+  std::string read(std::size_t page) const { return file_.read(places_.at(page), page_bytes_); }
+
+ private:
+  bool read_header(std::string_view head);
+  void read_frames(std::string_view head);
+
+  File file_;
+  bool big_ = false;
+  std::uint32_t first_ = 0, second_ = 0;  // running checksums
+  std::size_t page_bytes_ = 0, page_count_ = 0, commits_ = 0;
+  std::map<std::size_t, std::size_t> places_;
+  std::vector<std::size_t> first_pages_;  // position of each version of page 1
+};
+
+/// The pages of a database; those in its log "<path>-wal" replace older ones. Numbers count from 1.
+class Pages {
+ public:
+  /// `use_log` false: ignores the log, e.g. because it belongs to another database.
+  explicit Pages(const std::filesystem::path& path, bool use_log = true);
+
+  std::size_t count() const { return count_; }
+  /// Bytes of a page that can hold cells.
+  std::size_t usable() const { return page_bytes_ - reserved_; }
+  /// True if the free list, which the first page begins, has the page.
+  bool is_free(std::size_t page) const { return free_.contains(page); }
+  std::string read(std::size_t page) const;
+
+ private:
+  void find_free(std::size_t trunk);
+
+  File file_;
+  Log log_;
+  std::size_t page_bytes_ = 0, count_ = 0, reserved_ = 0;
+  std::set<std::size_t> free_;
+};
+
+}  // namespace study::salvaging

@@ -1,0 +1,163 @@
+#include "libstudy/store/merge/merge.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/file/beside.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
+#include "libstudy/store/merge/merge_parts.hpp"
+#include "libstudy/store/open_study.hpp"
+#include "libstudy/store/refusals.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using merging::Content;
+using merging::SessionCopy;
+using sqlite::Connection;
+using sqlite::Open;
+using sqlite::Statement;
+
+namespace {
+
+/// A person in `into` before the merge.
+struct Resident {
+  std::string person, participant;
+  Stock stock;
+};
+
+std::vector<Resident> residents_of(Connection& database) {
+  std::vector<Resident> residents;
+  Statement row(database, "SELECT DISTINCT person, participant FROM session ORDER BY participant");
+  while (row.step()) residents.push_back({row.text(0), row.text(1), {}});
+  for (Resident& resident : residents) resident.stock = take_stock(database, resident.person);
+  return residents;
+}
+
+/// Each file once, and not `into` itself.
+std::vector<fs::path> distinct(const std::vector<fs::path>& sources, const fs::path& into) {
+  std::set<fs::path> known{fs::weakly_canonical(into)};
+  std::vector<fs::path> out;
+  for (const fs::path& source : sources) {
+    if (known.insert(fs::weakly_canonical(source)).second) out.push_back(source);
+  }
+  return out;
+}
+
+Content read_all(const std::vector<fs::path>& sources, const fs::path& into, bool incomplete) {
+  Content content;
+  std::vector<fs::path> paths = distinct(sources, into);
+  if (!holds_nothing(into)) paths.push_back(into);
+  for (const fs::path& path : paths) {
+    auto source = open_study({path, incomplete && path != into}).database;
+    source->execute("BEGIN");  // a consistent state, even during a session
+    merging::add_source(content, std::move(source));
+  }
+  return content;
+}
+
+Merge sum_up(Connection& result, const Content& content, const std::vector<SessionCopy>& chosen,
+             const std::map<std::string, std::string>& names) {
+  Merge merge;
+  merge.sessions = static_cast<std::int64_t>(chosen.size());
+  const auto stand =
+      std::count_if(content.copies.begin(), content.copies.end(),
+                    [&](const SessionCopy& copy) { return !content.tombstones.contains(copy.person); });
+  merge.recognised = stand - merge.sessions;
+  std::set<std::string> renamed;
+  for (const SessionCopy& copy : chosen) {
+    if (copy.test_data) ++merge.test_sessions;
+    const std::string& name = names.at(copy.person);
+    if (name != copy.code)
+      renamed.insert(copy.code + " of station '" + base::shortened(copy.station) + "' is " + name);
+  }
+  merge.renamed.assign(renamed.begin(), renamed.end());
+  for (const auto& [person, stone] : content.tombstones) merge.withdrawn.push_back(names.at(person));
+  std::sort(merge.withdrawn.begin(), merge.withdrawn.end());
+  Statement row(result,
+                "SELECT name || ' ' || version FROM protocol WHERE test_data = 0 GROUP BY name, version "
+                "HAVING count(*) > 1 ORDER BY 1");
+  while (row.step()) merge.namesakes.push_back(base::shortened(row.text(0)));
+  merge.balance = read_balance(result);
+  merge.station_troubles = merging::station_troubles(content);
+  return merge;
+}
+
+/// Copies the open chores of an earlier merge or withdrawal first, because they use the codes of that time.
+void carry_chores_over(Connection& into, Connection& result) {
+  Statement row(into, "SELECT kind, batch, person, participant, renamed FROM chore ORDER BY chore_id");
+  Statement insert(result,
+                   "INSERT INTO chore (kind, batch, person, participant, renamed) VALUES (?,?,?,?,?)");
+  while (row.step()) {
+    for (int i = 0; i < row.columns(); ++i) insert.bind_from(i, row, i);
+    insert.run();
+  }
+}
+
+/// Plans chores for the files beside `into`: deletes people who withdrew and changes codes there too.
+void plan_chores(Connection& result, const std::vector<Resident>& residents,
+                 const std::map<std::string, std::string>& names, const Content& content, Merge& merge) {
+  sqlite::Transaction transaction(result);
+  ChorePlan plan(result);
+  std::map<std::string, ChorePlan::Rename> renamed;
+  for (const Resident& resident : residents) {
+    if (content.tombstones.contains(resident.person)) {
+      plan.forget(resident.person, resident.participant);
+      merge.buried.emplace_back(resident.participant, resident.stock);
+    } else if (const auto& name = names.at(resident.person); name != resident.participant) {
+      renamed[resident.person] = {resident.participant, name};
+    }
+  }
+  plan.rename(renamed);
+  plan.rewrite();
+  transaction.commit();
+}
+
+/// Adds backups and exports of `into` that hold gaze that was deleted here by a refusal at another station.
+void name_refused(Connection& into, const std::set<std::string>& had_gaze, CleanUp& beside) {
+  std::set<std::string> deleted;
+  for (const std::string& person : people_without_gaze(into)) {
+    if (had_gaze.contains(person)) deleted.insert(person);
+  }
+  for (std::string& line : name_gaze_elsewhere(into, deleted)) beside.left.push_back(std::move(line));
+}
+
+}  // namespace
+
+Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool incomplete) {
+  const fs::path into = real_file(given);
+  WriterLock lock(into, Open::Create);
+  Content content = read_all(sources, into, incomplete);
+  const auto chosen = merging::choose_sessions(content);
+  const auto names = merging::name_people(content);
+  const auto result = make_temporary_database(into);
+  merging::write_union(content, chosen, names, *result);
+  Merge merge = sum_up(*result, content, chosen, names);
+  content.sources.clear();  // into itself may be among them
+
+  const auto target = open_database(into, Open::Create, read_schema_steps());
+  carry_chores_over(*target, *result);
+  plan_chores(*result, residents_of(*target), names, content, merge);
+  std::vector<std::string> withdrawn;
+  for (const auto& [person, stone] : content.tombstones) withdrawn.push_back(person);
+  prepare_rewrite(*target, withdrawn);
+  const std::set<std::string> had_gaze = people_with_gaze(*target);
+  target->execute("PRAGMA secure_delete = ON");
+  // Exports can be registered despite the writer's lock: also takes those of this moment.
+  target->copy_from(*result, [&] {
+    Connection standing(into, Open::Read);
+    sqlite::Transaction transaction(*result);
+    merging::add_exports(standing, *result);
+    transaction.commit();
+  });
+  lock.keep();
+  merge.beside = clean_up_all(*target);
+  name_refused(*target, had_gaze, merge.beside);
+  return merge;
+}
+
+}  // namespace study

@@ -1,0 +1,155 @@
+/// Reads the sources of a merge and chooses the copy of each session that counts.
+#include <algorithm>
+#include <tuple>
+
+#include "libstudy/store/merge/merge_parts.hpp"
+#include "libstudy/store/permissions.hpp"
+#include "stats/base/error.hpp"
+
+namespace study::merging {
+
+using sqlite::Connection;
+using sqlite::Statement;
+
+namespace {
+
+constexpr const char* merged_sessions_sql =
+    "SELECT s.session_id, s.uid, s.person, s.code, s.station, r.uid, r.started_utc, p.sha256, s.visit, "
+    "s.test_data, (SELECT count(*) FROM event e WHERE e.session_id = s.session_id AND e.kind <> ?1), "
+    "(SELECT count(*) FROM frame JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
+    "WHERE t.session_id = s.session_id), "
+    "(SELECT count(*) FROM presentation q JOIN trial t USING (trial_id) WHERE t.session_id = s.session_id "
+    "AND q.state = 'played'), s.station_number, s.station_count, "
+    "s.test_data = p.test_data AND s.state IN ('open', 'done', 'stopped'), "
+    "(SELECT count(*) FROM gaze JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
+    "WHERE t.session_id = s.session_id) + "
+    "(SELECT count(*) FROM head JOIN presentation USING (presentation_id) JOIN trial t USING (trial_id) "
+    "WHERE t.session_id = s.session_id) + "
+    "(SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id) "
+    "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
+
+/// Without permission changes, which may happen in any copy: add_permissions() joins them.
+std::vector<std::string> log_of(Connection& source, std::int64_t session) {
+  Statement row(source,
+                "SELECT utc || ' ' || coalesce(clock_ns, '') || ' ' || kind || ' ' || detail FROM event "
+                "WHERE session_id = ? AND kind <> ? ORDER BY event_id");
+  row.bind_all(session, permission_event);
+  std::vector<std::string> log;
+  while (row.step()) log.push_back(row.text(0));
+  return log;
+}
+
+/// Of equally far copies, prefers the one that still has its gaze; refused gaze is omitted from the union
+/// anyway (drop_unallowed_gaze).
+bool less_far(const SessionCopy& a, const SessionCopy& b) {
+  return std::tie(a.events, a.frames, a.played, a.gaze) < std::tie(b.events, b.frames, b.played, b.gaze);
+}
+
+/// Each log entry is one commit, so the copy with the shorter log is the earlier one.
+void check_earlier(Content& content, const SessionCopy& earlier, const SessionCopy& later) {
+  const auto before = log_of(*content.sources[earlier.source], earlier.id);
+  const auto after = log_of(*content.sources[later.source], later.id);
+  if (before.size() <= after.size() && std::equal(before.begin(), before.end(), after.begin())) return;
+  throw base::Error(content.sources[later.source]->path().string(),
+                    "participant " + later.code + ", visit " + std::to_string(later.visit) +
+                        ", continued differently in a copy, " +
+                        content.sources[earlier.source]->path().string(),
+                    "decide which of the two counts, and leave the other database out");
+}
+
+void check_visits(Content& content, const std::vector<SessionCopy>& chosen) {
+  std::map<std::tuple<std::string, std::string, int>, const SessionCopy*> visits;
+  for (const SessionCopy& copy : chosen) {
+    const auto [other, fresh] = visits.try_emplace({copy.person, copy.protocol_sha256, copy.visit}, &copy);
+    if (fresh) continue;
+    throw base::Error(content.sources[copy.source]->path().string(),
+                      "participant " + copy.code + " has visit " + std::to_string(copy.visit) +
+                          " of the same protocol a second time in " +
+                          content.sources[other->second->source]->path().string(),
+                      "decide which of the two counts, and leave the other database out");
+  }
+}
+
+/// Rows of a table without row numbers are identified by their reference.
+std::string dangling_row(Connection& source, const std::string& table, const std::string& parent,
+                         std::int64_t foreign_key) {
+  Statement link(source, "SELECT \"from\" FROM pragma_foreign_key_list(?) WHERE id = ?");
+  if (!link.bind_all(table, foreign_key).step()) return "a row of " + table;
+  const std::string column = link.text(0);
+  Statement lost(source, "SELECT " + column + " FROM " + table + " WHERE " + column + " NOT IN (SELECT " +
+                             column + " FROM " + parent + ") LIMIT 1");
+  return "a row of " + table + " with " + column + " " + (lost.step() ? lost.text(0) : "");
+}
+
+/// Rows without a parent would be lost in the union, or make it fail.
+void check_references(Connection& source) {
+  Statement lost(source, "PRAGMA foreign_key_check");
+  if (!lost.step()) return;
+  const std::string table = lost.text(0), parent = lost.text(2);
+  const std::string row = lost.is_null(1) ? dangling_row(source, table, parent, lost.integer(3))
+                                          : "row " + lost.text(1) + " of " + table;
+  throw base::Error(source.path().string(), row + " refers to a missing row of " + parent,
+                    "make a sound copy with vip-study salvage, or leave this database out");
+}
+
+}  // namespace
+
+void add_source(Content& content, std::unique_ptr<Connection> source) {
+  check_references(*source);
+  const std::size_t index = content.sources.size();
+  Statement row(*source, merged_sessions_sql);
+  for (row.bind_all(permission_event); row.step();) {
+    SessionCopy copy;
+    copy.source = index;
+    copy.id = row.integer(0);
+    copy.uid = row.text(1);
+    copy.person = row.text(2);
+    copy.code = row.text(3);
+    copy.station = row.text(4);
+    copy.run_uid = row.text(5);
+    copy.planned_utc = row.text(6);
+    copy.protocol_sha256 = row.text(7);
+    copy.visit = static_cast<int>(row.integer(8));
+    copy.test_data = row.integer(9) != 0;
+    copy.events = row.integer(10);
+    copy.frames = row.integer(11);
+    copy.played = row.integer(12);
+    if (!row.is_null(13))
+      copy.station_number =
+          StationNumber{static_cast<int>(row.integer(13)), static_cast<int>(row.integer(14))};
+    copy.counts = row.integer(15) != 0;
+    copy.gaze = row.integer(16);
+    content.copies.push_back(std::move(copy));
+  }
+  Statement stone(*source, "SELECT person, code, station, withdrawn_utc FROM tombstone");
+  while (stone.step()) {
+    const Tombstone found{stone.text(0), stone.text(1), stone.text(2), stone.text(3)};
+    const auto key = [](const Tombstone& t) { return std::tie(t.withdrawn_utc, t.station); };
+    const auto [known, fresh] = content.tombstones.try_emplace(found.person, found);
+    if (!fresh && key(found) < key(known->second)) known->second = found;
+  }
+  content.sources.push_back(std::move(source));
+}
+
+std::vector<SessionCopy> choose_sessions(Content& content) {
+  std::map<std::string, SessionCopy> furthest;
+  for (const SessionCopy& copy : content.copies) {
+    if (content.tombstones.contains(copy.person)) continue;
+    const auto [known, fresh] = furthest.try_emplace(copy.uid, copy);
+    if (fresh) continue;
+    const bool later = less_far(known->second, copy);
+    check_earlier(content, later ? known->second : copy, later ? copy : known->second);
+    if (later) known->second = copy;
+  }
+  std::vector<SessionCopy> chosen;
+  for (auto& [uid, copy] : furthest) chosen.push_back(std::move(copy));
+  const auto key = [](const SessionCopy& c) {
+    return std::tie(c.planned_utc, c.run_uid, c.code, c.visit, c.uid);
+  };
+  std::sort(chosen.begin(), chosen.end(),
+            [&](const SessionCopy& a, const SessionCopy& b) { return key(a) < key(b); });
+  check_visits(content, chosen);
+  return chosen;
+}
+
+}  // namespace study::merging

@@ -1,0 +1,246 @@
+#include "libstudy/store/salvage/salvage.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include "libstudy/store/answer_journal.hpp"
+#include "libstudy/store/file/database.hpp"
+#include "libstudy/store/file/foreign_log.hpp"
+#include "libstudy/store/file/page_file.hpp"
+#include "libstudy/store/file/schema.hpp"
+#include "libstudy/store/file/writer_lock.hpp"
+#include "libstudy/store/refusals.hpp"
+#include "libstudy/store/salvage/earlier_shapes.hpp"
+#include "libstudy/store/salvage/salvage_rows.hpp"
+#include "stats/base/durable.hpp"
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "stats/base/new_file.hpp"
+
+namespace study {
+
+namespace fs = std::filesystem;
+using salvaging::EarlierShape;
+using salvaging::RowsByTable;
+using salvaging::Shape;
+using salvaging::Values;
+using sqlite::Connection;
+using sqlite::Open;
+using sqlite::Statement;
+
+namespace {
+
+/// A folder beside the result, readable by its owner only and deleted in the end.
+class Workplace {
+ public:
+  explicit Workplace(const fs::path& into) : path_(into.string() + ".salvage-XXXXXX") {
+    base::make_folder_of(into);
+    if (!::mkdtemp(path_.data())) {
+      throw base::Error(into.string(), std::string("cannot be made: ") + std::strerror(errno),
+                        "name a file in a folder that you may write to");
+    }
+  }
+  ~Workplace() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+  fs::path operator/(const char* name) const { return fs::path(path_) / name; }
+
+ private:
+  std::string path_;
+};
+
+void refuse(const fs::path& into) {
+  for (const fs::path& path : {into, journal_beside(into), fs::path(into.string() + "-wal")}) {
+    std::error_code ignored;
+    if (fs::symlink_status(path, ignored).type() != fs::file_type::not_found)
+      throw base::Error(path.string(), "exists", "name a new file for --into");
+  }
+}
+
+void copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (!fs::is_regular_file(from, error)) return;
+  fs::copy_file(from, to, error);
+  if (error)
+    throw base::Error(from.string(), "cannot be copied: " + error.message(), "check the disk and its room");
+}
+
+/// Locks the damaged file while it is read, if it exists and is writable: otherwise a writing program could
+/// mix two states in the salvage.
+std::unique_ptr<WriterLock> lock_out_writers(const fs::path& database) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(database, ignored) || ::access(database.c_str(), W_OK) != 0) return {};
+  return std::make_unique<WriterLock>(database);
+}
+
+/// The rows of our tables from a copy that has other parts too.
+std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
+                                                       std::vector<std::string>& left_out) {
+  Connection foreign(copied, Open::Write);
+  foreign.distrust(sqlite::Work::Any);
+  const SchemaSteps steps = read_schema_steps();
+  auto own = without_foreign_parts(foreign, steps, foreign.integer("PRAGMA user_version"), left_out);
+  upgrade(*own, steps);
+  return own;
+}
+
+/// A copy of the database as SQLite reads it; null if it is damaged or not a database.
+std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path& copied, bool use_log,
+                                       std::vector<std::string>& left_out) {
+  for (const std::string beside : {"", "-wal", "-journal"})
+    if (use_log || beside.empty()) copy(database.string() + beside, copied.string() + beside);
+  std::vector<std::string> parts;
+  try {
+    std::unique_ptr<Connection> sound;
+    try {
+      sound = open_database(copied, Open::Write, read_schema_steps());
+    } catch (const ForeignSchema&) {
+      sound = open_without_foreign_parts(copied, parts);
+    }
+    if (Statement lost(*sound, "PRAGMA foreign_key_check"); lost.step()) return {};
+    left_out.insert(left_out.end(), parts.begin(), parts.end());
+    return sound;
+  } catch (const base::Error&) {
+    return {};
+  }
+}
+
+/// False, and noted in `told`, if the log or journal beside the database belongs to another one.
+bool may_use_log(const fs::path& database, Salvage& told) {
+  const auto foreign =
+      foreign_log(database, [&] { return salvaging::File(database).read(0, salvaging::header_bytes); });
+  if (foreign) told.left_out.push_back(foreign->file.filename().string() + ", which " + foreign->problem);
+  return !foreign;
+}
+
+using Take = std::function<void(const Shape&, Values)>;
+
+void read_sound(Connection& database, const std::vector<Shape>& shapes, bool large, const Take& take) {
+  for (const Shape& shape : shapes) {
+    if (salvaging::is_large(shape.table) != large) continue;
+    for (Statement row(database, "SELECT * FROM " + shape.table); row.step();) {
+      Values values(shape.columns.size());
+      for (int i = 0; i < row.columns(); ++i) {
+        auto& value = values[static_cast<std::size_t>(i)];
+        if (row.is_text(i))
+          value = row.text(i);
+        else if (row.is_real(i))
+          value = row.real(i);
+        else if (!row.is_null(i))
+          value = row.integer(i);
+      }
+      take(shape, std::move(values));
+    }
+  }
+}
+
+/// The damaged files to read page by page.
+struct Damaged {
+  const fs::path& database;
+  bool use_log;
+};
+
+/// Reads the rows of the large tables, or of all others.
+void read_rows(Connection* sound, const Damaged& damaged, const std::vector<Shape>& shapes,
+               const std::vector<EarlierShape>& earlier, bool large, const Take& take) {
+  if (sound) return read_sound(*sound, shapes, large, take);
+  std::vector<Shape> all = shapes;
+  for (const auto& one : earlier) all.push_back(one.shape);
+  const auto take_row = [&](const Shape& shape, Values values) {
+    if (salvaging::is_large(shape.table) != large) return;
+    const auto index = static_cast<std::size_t>(&shape - all.data());
+    if (index < shapes.size()) return take(shape, std::move(values));
+    const auto& before = earlier[index - shapes.size()];
+    take(shapes[before.now], salvaging::as_now(before, values));
+  };
+  salvaging::scan_pages(damaged.database, all, take_row, damaged.use_log);
+}
+
+void fill(Connection& target, Connection* sound, const Damaged& damaged, const JournalContent& journal,
+          Salvage& told) {
+  sqlite::Transaction transaction(target);
+  const auto shapes = salvaging::shapes_of(target);
+  const auto earlier = sound ? std::vector<EarlierShape>() : salvaging::earlier_shapes(shapes);
+  RowsByTable rows;
+  read_rows(sound, damaged, shapes, earlier, false,
+            [&](const Shape& shape, Values values) { rows[shape.table].push_back(std::move(values)); });
+  salvaging::Rebuild rebuild(target, journal, told);
+  rebuild.take(std::move(rows));
+  read_rows(sound, damaged, shapes, earlier, true,
+            [&](const Shape& shape, const Values& values) { rebuild.take_large(shape, values); });
+  drop_unallowed_gaze(target);  // rows may be older than a refusal
+  rebuild.sum_up();
+  Statement(target, "INSERT INTO event (utc, kind, detail) VALUES (?, 'salvaged', ?)")
+      .bind_all(base::utc_now(), std::to_string(told.answers_database) + " answers from the database, " +
+                                     std::to_string(told.answers_journal) + " from its journal alone")
+      .run();
+  transaction.commit();
+}
+
+void check(Connection& made) {
+  const std::string found = made.text("PRAGMA integrity_check(1)");
+  Statement lost(made, "PRAGMA foreign_key_check");
+  if (found == "ok" && !lost.step()) return;
+  throw base::Error(made.path().string(), "was rebuilt and is not sound: " + found,
+                    "report this with the damaged file");
+}
+
+/// Only the file is put in place, and closing it would not report a log that could not be copied back.
+void leave_no_log(Connection& made) {
+  made.unwatch();
+  if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
+  throw base::Error(made.path().string(), "its log cannot be copied back into it",
+                    "free space on the disk, and run the command again");
+}
+
+/// link() fails if the target exists.
+void put_in_place(const fs::path& made, const fs::path& into) {
+  if (::chmod(made.c_str(), 0600) == 0 && ::link(made.c_str(), into.c_str()) == 0)
+    return base::sync_folder_of(into);
+  throw base::Error(into.string(), std::string("cannot be put in place: ") + std::strerror(errno),
+                    "name a new file for --into, on a disk with room");
+}
+
+}  // namespace
+
+Salvage salvage(const fs::path& database, const fs::path& into) {
+  refuse(into);
+  const auto lock = lock_out_writers(database);
+  const JournalContent journal = read_journal(journal_beside(database));
+  const Workplace workplace(into);
+  Salvage told;
+  const Damaged damaged{database, may_use_log(database, told)};
+  const auto sound = open_sound(database, workplace / "copy.db", damaged.use_log, told.left_out);
+  told.sound = sound != nullptr;
+  told.journal = journal.exists;
+  told.unreadable = journal.unreadable;
+  const fs::path made = workplace / "made.db";
+  {
+    const auto target = open_database(made, Open::Create, read_schema_steps());
+    fill(*target, sound.get(), damaged, journal, told);
+    if (told.sessions == 0 && told.withdrawn.empty()) {
+      throw base::Error(database.string(),
+                        "nothing of a study was found in it" +
+                            std::string(journal.exists ? ", nor in its journal of answers"
+                                                       : ", and there is no journal of answers beside it"),
+                        "restore a backup of it or of " + journal_beside(database).string() +
+                            ", from which a lost database can be rebuilt");
+    }
+    check(*target);
+    leave_no_log(*target);
+  }
+  put_in_place(made, into);
+  const auto finished = open_database(into, Open::Write, read_schema_steps());
+  rewrite_journal(*finished);
+  return told;
+}
+
+}  // namespace study

@@ -1,0 +1,210 @@
+#include "libstudy/store/salvage/salvage_rows.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+
+namespace study::salvaging {
+
+using journal::Row;
+using journal::Table;
+using sqlite::Connection;
+using sqlite::Statement;
+
+namespace {
+
+std::size_t index_of(const Shape& shape, const std::string& column) {
+  const auto found = std::find_if(shape.columns.begin(), shape.columns.end(),
+                                  [&](const Shape::Column& c) { return c.name == column; });
+  return static_cast<std::size_t>(found - shape.columns.begin());
+}
+
+/// The column of an optional reference: without that parent, a row of this table is still useful; nullptr:
+/// none.
+const char* without_which(const std::string& table) {
+  if (table == "event") return "presentation_id";
+  return table == "presentation" ? "framing_id" : nullptr;
+}
+
+std::string text_of(const Shape& shape, const Values& values, const std::string& column) {
+  const std::size_t index = index_of(shape, column);
+  if (index == values.size()) return {};
+  const auto* text = std::get_if<std::string>(&values[index]);
+  return text ? *text : std::string();
+}
+
+void bind(Statement& statement, int index, const Value& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value))
+    statement.bind_at(index, *whole);
+  else if (const auto* real = std::get_if<double>(&value))
+    statement.bind_at(index, *real);
+  else if (const auto* text = std::get_if<std::string>(&value))
+    statement.bind_at(index, *text);
+  else
+    statement.bind_at(index, std::nullopt);
+}
+
+/// If a row is found twice, one is an old copy. Columns of a row are filled over time, so prefers the fuller
+/// one.
+void fuller_first(std::vector<Values>& rows) {
+  const auto empty = [](const Values& row) {
+    return std::count_if(row.begin(), row.end(), [](const Value& v) { return v.index() == 0; });
+  };
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](const Values& a, const Values& b) { return empty(a) < empty(b); });
+}
+
+/// The column that identifies a row across copies of the database.
+const char* identity_of(const Table& table) {
+  const std::string name = table.name;
+  if (name == "protocol") return "sha256";
+  return name == "run" || name == "session" ? "uid" : nullptr;
+}
+
+bool is_response(const Table& table) { return table.name == std::string("response"); }
+
+}  // namespace
+
+bool is_large(const std::string& table) {
+  constexpr std::array names{"frame", "slot", "head", "gaze", "gaze_validation"};
+  return std::find(names.begin(), names.end(), table) != names.end();
+}
+
+Rebuild::Rebuild(Connection& target, const JournalContent& journal, Salvage& told)
+    : target_(target), journal_(journal), told_(told), shapes_(shapes_of(target)) {
+  withdrawn_.insert(journal.forgotten.begin(), journal.forgotten.end());
+}
+
+const Shape& Rebuild::shape_of(const std::string& table) const {
+  return *std::find_if(shapes_.begin(), shapes_.end(),
+                       [&](const Shape& shape) { return shape.table == table; });
+}
+
+void Rebuild::take(RowsByTable rows) {
+  std::int64_t last = 0;
+  for (const Values& row : rows["event"]) last = std::max(last, std::get<std::int64_t>(row[0]));
+  journal_is_newer_ = last_event(journal_.kept) >= last;
+  // Tombstones first, before rows of people who withdrew.
+  std::vector<std::string> order{"tombstone"};
+  for (const Table& table : journal::tables()) {
+    if (table.name != order.front()) order.emplace_back(table.name);
+  }
+  order.insert(order.end(), {"export", "export_person"});
+  for (const std::string& name : order) {
+    take_table(shape_of(name), std::move(rows[name]));
+    if (const Table* table = journal::find_table(name)) {
+      take_journal(*table, journal_.kept, false);
+      take_journal(*table, journal_.pending, true);
+    }
+    if (name == "tombstone") {
+      for (Statement row(target_, "SELECT person FROM tombstone"); row.step();)
+        withdrawn_.insert(row.text(0));
+    }
+    if (name == "trial" || name == "unit") complete_plans(name == "unit");
+  }
+}
+
+Rebuild::Inserted Rebuild::insert(const Shape& shape, const Values& values) {
+  auto known = inserts_.find(shape.table);
+  if (known == inserts_.end()) {
+    std::string places;
+    for (std::size_t i = 0; i < shape.columns.size(); ++i) places += places.empty() ? "?" : ", ?";
+    known = inserts_
+                .emplace(shape.table, Statement(target_, "INSERT OR IGNORE INTO " + shape.table +
+                                                             " VALUES (" + places + ") RETURNING 1"))
+                .first;
+  }
+  Statement& statement = known->second;
+  for (std::size_t i = 0; i < values.size(); ++i) bind(statement, static_cast<int>(i), values[i]);
+  try {
+    const bool done = statement.step();
+    statement.reset();
+    return done ? Inserted::Yes : Inserted::There;
+  } catch (const base::Error&) {
+    const int code = sqlite3_extended_errcode(target_.handle());
+    if ((code & 0xff) != SQLITE_CONSTRAINT) throw;
+    return code == SQLITE_CONSTRAINT_FOREIGNKEY ? Inserted::NoParent : Inserted::There;
+  }
+}
+
+void Rebuild::take_table(const Shape& shape, std::vector<Values> rows) {
+  fuller_first(rows);
+  for (Values& row : rows) {
+    if (shape.table == "session" && withdrew(text_of(shape, row, "person"))) continue;
+    Inserted done = insert(shape, row);
+    const char* const spared = without_which(shape.table);
+    if (done == Inserted::NoParent && spared) {
+      row[index_of(shape, spared)] = std::monostate();
+      done = insert(shape, row);
+    }
+    if (done == Inserted::NoParent && withdrawn_.empty()) ++told_.rows_lost[shape.table];
+    if (done == Inserted::Yes && shape.table == "response") ++told_.answers_database;
+  }
+}
+
+void Rebuild::take_journal(const Table& table, const JournalRows& rows, bool under_way) {
+  for (auto at = rows.lower_bound({&table, ""}); at != rows.end() && at->first.first == &table; ++at) {
+    const Row& row = at->second;
+    if (table.name == std::string("session") && withdrew(journal::column(row, "person"))) {
+      Statement(target_, "INSERT OR IGNORE INTO tombstone VALUES (?,?,?,?,?)")
+          .bind_all(journal::column(row, "person"), journal::column(row, "participant"),
+                    journal::column(row, "code"), journal::column(row, "station"), base::utc_now())
+          .run();
+    } else if (const auto now = journal::stands_as(target_, row)) {
+      take_known(row, *now);
+    } else if (journal::put(target_, row, journal::Put::Insert)) {
+      if (is_response(table)) ++told_.answers_journal;
+      if (is_response(table) && under_way) ++told_.answers_under_way;
+    } else if (withdrawn_.empty()) {
+      ++told_.rows_lost[table.name];
+    }
+  }
+}
+
+void Rebuild::take_known(const Row& row, const Row& now) {
+  if (now.line == row.line) return;
+  const char* identity = identity_of(*row.table);
+  if (identity && journal::column(row, identity) != journal::column(now, identity)) {
+    throw base::Error("the database",
+                      "and its journal of answers are of different studies: " + std::string(row.table->name) +
+                          " " + row.key + " is " + journal::column(now, identity) + " in one and " +
+                          journal::column(row, identity) + " in the other",
+                      "move one of the two away; vip-study salvage rebuilds each by itself");
+  }
+  if (is_response(*row.table))
+    told_.different.push_back("in the database " + now.line + ", in the journal " + row.line);
+  else if (journal_is_newer_ && row.table->name != std::string("event"))
+    journal::put(target_, row, journal::Put::Replace);
+}
+
+void Rebuild::take_large(const Shape& shape, const Values& values) {
+  const Inserted done = insert(shape, values);
+  if (done == Inserted::NoParent && withdrawn_.empty()) ++told_.rows_lost[shape.table];
+}
+
+void Rebuild::sum_up() {
+  told_.sessions = target_.integer("SELECT count(*) FROM session");
+  told_.frames = target_.integer("SELECT count(*) FROM frame");
+  told_.frames_lost = target_.integer(
+      "SELECT coalesce(sum(max(0, p.frames - (SELECT count(*) FROM frame f WHERE f.presentation_id = "
+      "p.presentation_id))), 0) FROM presentation p WHERE p.state = 'played'");
+  // A page between two groups has the name of their block but asks nothing.
+  Statement lost(target_,
+                 "SELECT s.participant, count(*) FROM unit u JOIN session s USING (session_id) "
+                 "JOIN ask a ON a.protocol_id = s.protocol_id AND a.block = u.block "
+                 "JOIN question q ON q.question_id = a.question_id AND q.personal = 0 "
+                 "LEFT JOIN trial t ON t.trial_id = u.trial_id WHERE u.state = 'done' AND t.excluded IS NULL "
+                 "AND (u.trial_id IS NOT NULL OR u.kind NOT IN ('practice', 'stimulus', 'repeat', 'catch')) "
+                 "AND NOT EXISTS (SELECT 1 FROM response r WHERE r.unit_id = u.unit_id "
+                 "AND r.question_id = q.question_id) GROUP BY s.participant");
+  while (lost.step()) told_.answers_lost[lost.text(0)] = lost.integer(1);
+  for (Statement row(target_, "SELECT participant FROM tombstone ORDER BY 1"); row.step();)
+    told_.withdrawn.push_back(row.text(0));
+}
+
+}  // namespace study::salvaging

@@ -1,0 +1,16 @@
+#pragma once
+/// Runs one cell of a sweep.
+
+#include <vector>
+
+#include "libstudy/sweep/cell_run.hpp"
+#include "libstudy/sweep/matrix.hpp"
+
+namespace study {
+
+WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water);
+
+/// base::Error if the simulation becomes unstable. Measurements are made between frames, outside the timing.
+CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend);
+
+}  // namespace study

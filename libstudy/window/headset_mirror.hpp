@@ -1,0 +1,40 @@
+#pragma once
+/// A window that shows the experimenter the view of a person in a headset.
+
+#include <chrono>
+#include <condition_variable>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "libstudy/headset/headset_display.hpp"
+
+namespace study {
+
+/// Shows the middle of the left eye's view, about ten times a second, or less often if drawing is slow. Its
+/// own thread draws it in a context that shares the headset's pictures, reads it back and shows it: the
+/// window has a separate context, because the headset's OpenGL may be on another display or device. Slots and
+/// the session's thread never wait for it.
+class HeadsetMirror {
+ public:
+  /// Call it on the display's thread; the display must outlive it. reveal: shows stimuli too; otherwise they
+  /// are black. base::Error if no window can be opened.
+  HeadsetMirror(HeadsetDisplay& display, bool reveal);
+  ~HeadsetMirror();
+  HeadsetMirror(const HeadsetMirror&) = delete;
+  HeadsetMirror& operator=(const HeadsetMirror&) = delete;
+
+ private:
+  void run(std::promise<void> opened);
+  bool wait(std::chrono::steady_clock::duration time);
+
+  HeadsetDisplay& display_;
+  bool reveal_;
+  sim::GlContext pictures_;  ///< current only while a picture is taken
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool over_ = false;
+  std::thread thread_;
+};
+
+}  // namespace study

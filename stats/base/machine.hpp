@@ -1,0 +1,13 @@
+#pragma once
+/// The station's description for a session's record.
+
+#include <string>
+
+namespace base {
+
+/// Operating system, processor and number of cores; no name of the machine or its user.
+std::string describe_machine();
+/// Name and offset of the local time zone, e.g. "CET +0100".
+std::string local_time_zone();
+
+}  // namespace base

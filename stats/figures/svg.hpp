@@ -1,0 +1,63 @@
+#pragma once
+/// Parts of SVG as text, shared by the figures of all programs.
+
+#include <string>
+#include <string_view>
+
+namespace svg {
+
+/// A point in pixels, y downwards.
+struct Point {
+  double x = 0, y = 0;
+};
+
+/// Okabe and Ito's colours (2008), which people with any common form of colour vision can distinguish.
+/// Figures never rely on colour alone.
+namespace colour {
+inline constexpr const char* orange = "#e69f00";
+inline constexpr const char* sky = "#56b4e9";
+inline constexpr const char* green = "#009e73";
+inline constexpr const char* yellow = "#f0e442";
+inline constexpr const char* blue = "#0072b2";
+inline constexpr const char* vermilion = "#d55e00";
+inline constexpr const char* purple = "#cc79a7";
+inline constexpr const char* grey = "#999999";
+}  // namespace colour
+
+/// `value` with a fixed number of decimals; never "-0.00".
+std::string number(double value, int decimals = 2);
+/// Escapes free text for use between tags and in attributes, in SVG and in HTML. Control characters, which
+/// XML does not allow, become spaces.
+std::string escaped(std::string_view raw);
+/// ` name="value"`, escaped; several can be concatenated.
+std::string attribute(std::string_view name, std::string_view value);
+
+/// Elements; `attributes` are added as written. `words` are escaped here.
+std::string text(Point at, std::string_view words, const std::string& attributes = "");
+/// As text(), with markup such as tspans, inserted as written.
+std::string marked_text(Point at, const std::string& markup, const std::string& attributes = "");
+std::string line(Point from, Point to, const std::string& attributes);
+/// Any two opposite corners, in any order.
+std::string rectangle(Point corner, Point opposite, const std::string& attributes);
+std::string circle(Point centre, double radius, const std::string& attributes);
+std::string path(const std::string& moves, const std::string& attributes);
+/// "M" or "L" with a point, for path().
+std::string move(char command, Point to);
+/// An X of the given half width.
+std::string cross(Point centre, double reach, const std::string& attributes);
+
+/// A whole picture. `id` is the prefix of the ids inside it, so that several pictures can share a page.
+struct Picture {
+  double width = 0, height = 0;
+  std::string id = {};
+  std::string title = {};        ///< in a few words, read aloud first
+  std::string description = {};  ///< describes the picture for readers who cannot see it
+  std::string definitions = {};  ///< patterns and clip paths
+  std::string body = {};
+};
+/// As an element of an HTML page, which needs no namespace.
+std::string element(const Picture& picture);
+/// As a file of its own.
+std::string document(const Picture& picture);
+
+}  // namespace svg
