@@ -3,6 +3,7 @@
 # usage: scripts/setup.sh [PART ...]     without a part: all of them
 #   build    what builds and runs the programs
 #   tests    what the tests need besides
+#   slow     what tests of the label slow need besides
 #   sweeps   Snakemake, for scripts/sweep.smk and its tests
 set -euo pipefail
 
@@ -18,20 +19,21 @@ build=(
   # type of the participant's window; other fonts of the system are found by fontconfig
   fonts-dejavu-core libfontconfig-dev
 )
-tests=(libgtest-dev libgmock-dev sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy
-  debootstrap dpkg-dev file)  # for scripts/package.sh
+tests=(libgtest-dev libgmock-dev sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy)
+slow=(debootstrap dpkg-dev file)  # for scripts/package.sh
 # For the BIDS validator (scripts/validate_bids.sh); an npm from elsewhere will do.
-command -v npm >/dev/null || tests+=(nodejs npm)
+command -v npm >/dev/null || slow+=(nodejs npm)
 sweeps=(snakemake)
 
 packages=()
-[ $# -gt 0 ] || set -- build tests sweeps
+[ $# -gt 0 ] || set -- build tests slow sweeps
 for part in "$@"; do
   case "$part" in
     build) packages+=("${build[@]}") ;;
     tests) packages+=("${tests[@]}") ;;
+    slow) packages+=("${slow[@]}") ;;
     sweeps) packages+=("${sweeps[@]}") ;;
-    *) echo "setup: no part is called '$part'; the parts are build, tests and sweeps." >&2; exit 2 ;;
+    *) echo "setup: no part is called '$part'; the parts are build, tests, slow and sweeps." >&2; exit 2 ;;
   esac
 done
 

@@ -9,7 +9,7 @@
 #include "apps/common/options.hpp"
 #include "libsim/measure/cells.hpp"
 #include "libsim/measure/effects_cost.hpp"
-#include "libsim/measure/effects_levels_run.hpp"
+#include "libsim/measure/effects_levels.hpp"
 #include "libsim/measure/timed_run.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "libsim/simulation.hpp"
@@ -135,7 +135,7 @@ void run_effects(const EffectsOptions& options) {
   tell(options, run, measure::run_levels(measure::level_variants_of(scene), runs));
 }
 
-constexpr const char* columns_help =
+constexpr const char* effects_columns_help =
     "A row for the bare scene, for each of its effects alone (with what it needs), for all, and for all\n"
     "with coefficients of 0. Their fluids step in turn, with the same number of substeps: the least that all "
     "the\n"
@@ -158,7 +158,7 @@ constexpr const char* columns_help =
 void add_effects_command(CLI::App& app) {
   auto options = std::make_shared<EffectsOptions>();
   auto* command = app.add_subcommand("effects", "What each of a scene's effects adds to a frame");
-  command->footer(columns_help);
+  command->footer(effects_columns_help);
   command->add_option("scene", options->scene, "Scene file that lists effects")->capture_default_str();
   command
       ->add_option("--n-star", options->n_star,

@@ -4,17 +4,17 @@
 #include <numeric>
 #include <optional>
 
-#include "apps/bench/account_json.hpp"
 #include "apps/bench/frame.hpp"
 #include "libsim/exec/bandwidth.hpp"
 #include "libsim/measure/cells.hpp"
-#include "libsim/measure/effect_books.hpp"
 #include "libsim/measure/launch_table.hpp"
 #include "libsim/measure/render_timer.hpp"
 #include "libsim/measure/timed_run.hpp"
+#include "libsim/particles/divergence.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "libsim/simulation.hpp"
+#include "libstudy/display/stimulus.hpp"
 #include "libstudy/stimulus/fluid_stimulus.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -25,6 +25,42 @@
 namespace apps {
 
 namespace {
+
+/// The account with the names of the database's columns. frame: counted from the opening of the gate. Null if
+/// not measured.
+base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
+  base::Json out{{"frame", frame}, {"particles", facts.particles_by_level}};
+  const auto t = facts.tolerance.value_or(study::FrameTolerance{});
+  const bool known = facts.tolerance.has_value();
+  out["active_fraction"] = known ? base::Json(t.active_fraction) : base::Json();
+  out["tau_fps"] = t.tau_fps;
+  out["beta"] = known ? base::Json(t.beta) : base::Json();
+  out["mu_fps"] = t.mu_fps;
+  out["delta_fps"] = t.delta_fps;
+  if (const auto& met = facts.guards) {
+    out["guards"] = {{"speed_limited", met->speed_limited},
+                     {"coincident_pairs", met->coincident_pairs},
+                     {"not_finite", met->not_finite},
+                     {"neighbours_dropped", met->neighbours_dropped},
+                     {"wall_projected", met->wall_projected},
+                     {"nozzle_waited", met->nozzle_waited},
+                     {"saliency_not_finite", met->saliency_not_finite},
+                     {"gaze_lost", met->gaze_lost}};
+  }
+  return out;
+}
+
+/// Null if the run did not diverge.
+base::Json divergence_json(const std::optional<sim::Divergence>& divergence) {
+  if (!divergence) return {};
+  base::Json out{{"frame", divergence->frame},
+                 {"particle", divergence->particle},
+                 {"cause", sim::in_words(divergence->cause)},
+                 {"count", divergence->count},
+                 {"in_words", sim::in_words(*divergence)}};
+  if (const auto& at = divergence->where_m) out["where_m"] = *at;
+  return out;
+}
 
 std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const FrameOptions& options) {
   sim::SimulationOptions out = options.fluid;

@@ -99,7 +99,7 @@ void run_growth(const GrowthOptions& options) {
   if (!options.svg.empty()) base::write_file_atomically(options.svg, measure::to_svg(run, rows, growth));
 }
 
-constexpr const char* columns_help =
+constexpr const char* growth_columns_help =
     "A substep's milliseconds are a frame's wall time, with one wait at its end, over its substeps; no\n"
     "picture is drawn, and saliency sees none. exponent is the least-squares slope of log(ms_substep_mean)\n"
     "over log(particles_mean), exponent_se its standard error (- with two sizes). column_bytes_per_particle\n"
@@ -113,7 +113,7 @@ constexpr const char* columns_help =
 void add_growth_command(CLI::App& app) {
   auto options = std::make_shared<GrowthOptions>();
   auto* command = app.add_subcommand("growth", "How the milliseconds of a substep grow with the particles");
-  command->footer(columns_help);
+  command->footer(growth_columns_help);
   command->add_option("scene", options->scene, "Scene file")->capture_default_str();
   command
       ->add_option("--n-star", options->n_star,

@@ -12,7 +12,7 @@
 #include "apps/bench/commands.hpp"
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
-#include "libsim/measure/pass_table.hpp"
+#include "libsim/measure/render_timer.hpp"
 #include "libsim/simulation.hpp"
 #include "libstudy/headset/headset_session.hpp"
 #include "libstudy/headset/system.hpp"

@@ -183,7 +183,7 @@ const std::vector<std::string> head{"scene",        "n_star",         "method", 
                                     "ms_read_back", "picture_by",     "fps_sd",       "tau",
                                     "speedup"};
 
-constexpr const char* columns_help =
+constexpr const char* table2_columns_help =
     "ms_median is a frame: step and rendering. ms_step_mean and ms_step_p99 are the wall time of a step:\n"
     "the hand-over of the picture to saliency (ms_read_back is its mean), the step, and one wait at its\n"
     "end. speedup is HiRes' ms_step_mean over the method's. The parts, ms_saliency to ms_solve, are means\n"
@@ -272,7 +272,7 @@ void add_table2_command(CLI::App& app) {
   auto options = std::make_shared<Table2Options>();
   auto* command =
       app.add_subcommand("table2", "The paper's Table 2: particles, milliseconds by part, speed-up");
-  command->footer(columns_help);
+  command->footer(table2_columns_help);
   add_table_options(*command, *options);
   command->add_option("--ptpe", options->ptpe, ptpe_help);
   add_count(*command, "--frames", options->frames, 2, 100000, "Frames of a cell");

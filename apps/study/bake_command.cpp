@@ -10,7 +10,6 @@
 #include "libsim/ptpe/ptpe_file.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
 #include "libstudy/runner/session_framing.hpp"
-#include "libstudy/stimulus/bakes/read_whole.hpp"
 #include "libstudy/stimulus/bakes/write_bake.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <map>
 
-#include "libstudy/stimulus/bakes/read_whole.hpp"
 #include "libstudy/stimulus/bakes/write_bake.hpp"
 #include "stats/base/duration.hpp"
 #include "stats/base/error.hpp"

@@ -1,32 +1,28 @@
 #pragma once
-/// Prints the result of a clean-up after a withdrawal or a merge.
+/// Withdrawals by the commands, and what is printed after a withdrawal or a merge.
 
-#include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "libstudy/store/chores.hpp"
+#include "libstudy/store/study_file.hpp"
 
 namespace apps {
 
-inline void print_list(const char* title, const std::vector<std::string>& lines) {
-  if (lines.empty()) return;
-  std::printf("%s\n", title);
-  for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
-}
+void print_list(const char* title, const std::vector<std::string>& lines);
 
 /// Prints what is missing in a study that is read with --incomplete.
-inline void print_lacking(const std::filesystem::path& database, const std::string& lacking) {
-  if (!lacking.empty()) std::printf("%s is incomplete: %s\n", database.c_str(), lacking.c_str());
-}
+void print_lacking(const std::filesystem::path& database, const std::string& lacking);
 
-inline void print_clean_up(const study::CleanUp& done) {
-  for (const auto& path : done.cleaned) {
-    std::error_code ignored;
-    const bool stands = std::filesystem::exists(path, ignored);
-    std::printf(stands ? "cleaned as well: %s\n" : "deleted, make it again: %s\n", path.c_str());
-  }
-  print_list("Still left:", done.left);
-}
+/// Prints the result of a clean-up.
+void print_clean_up(const study::CleanUp& done);
+
+/// Withdraws, and prints all that was deleted. base::Error if something could not be deleted.
+void withdraw_and_tell(const std::filesystem::path& database, const std::string& participant);
+
+/// base::Error if a requested withdrawal is still to be done, so that none of that person's data go into an
+/// export.
+void check_no_withdrawal_is_due(const study::StudyFile& study);
 
 }  // namespace apps

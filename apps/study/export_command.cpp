@@ -6,7 +6,6 @@
 #include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "apps/study/withdrawal.hpp"
 #include "libstudy/store/export/export_bids.hpp"
 #include "libstudy/store/export/export_csv.hpp"
 #include "libstudy/store/export/export_psych_ds.hpp"

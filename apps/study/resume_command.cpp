@@ -11,7 +11,7 @@
 #include "apps/study/station_warnings.hpp"
 #include "libstudy/pages/headset/answer_ways.hpp"
 #include "libstudy/session/interruptions.hpp"
-#include "libstudy/stimulus/bakes/moved_bakes.hpp"
+#include "libstudy/stimulus/bakes/session_bakes.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/machine.hpp"

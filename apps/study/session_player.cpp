@@ -10,8 +10,8 @@
 #include <functional>
 #include <optional>
 
+#include "apps/study/clean_up.hpp"
 #include "apps/study/station_warnings.hpp"
-#include "apps/study/withdrawal.hpp"
 #include "libstudy/console/certificate.hpp"
 #include "libstudy/console/console.hpp"
 #include "libstudy/console/progress.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "apps/common/options.hpp"
+#include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
-#include "apps/study/withdrawal.hpp"
 #include "libstudy/console/database_place.hpp"
 #include "stats/base/error.hpp"
 

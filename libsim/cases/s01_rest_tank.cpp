@@ -10,7 +10,7 @@ namespace sim::cases {
 
 namespace {
 
-Outcome run(const Setting& setting) {
+Outcome run_s01(const Setting& setting) {
   const bool small = setting.size == Size::Small;
   const double spacing = start_spacing(setting.method);
   const double height = spacing * std::max(1.0, std::round(20 * setting.scale));
@@ -52,7 +52,7 @@ HardCase rest_tank() {
           .scaled = "20 layers",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s01};
 }
 
 }  // namespace sim::cases

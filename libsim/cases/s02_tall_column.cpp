@@ -9,7 +9,7 @@ namespace sim::cases {
 
 namespace {
 
-Outcome run(const Setting& setting) {
+Outcome run_s02(const Setting& setting) {
   const double height = even_layers(80 * setting.scale);
   Scene scene = tank({10 * d, 2 * height, 10 * d}, {10 * d, height, 10 * d});
   SimulationOptions options = options_of(setting);
@@ -54,7 +54,7 @@ HardCase tall_column() {
       .scaled = "80 layers",
       .frame_dt_s = 1.0 / 60,
       .iterations = 4,
-      .run = run};
+      .run = run_s02};
 }
 
 }  // namespace sim::cases

@@ -18,7 +18,7 @@ double height_of_coarse(const State& state) {
   return sum / count;
 }
 
-Outcome run(const Setting& setting) {
+Outcome run_s03(const Setting& setting) {
   const double height = even_layers(8 * setting.scale);
   Scene scene = tank({12 * d, 4 * height, 12 * d}, {12 * d, 2 * height, 12 * d});
   State start = block(MethodKind::LoRes, {0, 0, 0}, {12 * d, height, 12 * d});
@@ -49,7 +49,7 @@ HardCase mass_interface() {
           .scaled = "8 layers of each",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s03};
 }
 
 }  // namespace sim::cases

@@ -50,7 +50,7 @@ void follow(Outcome& out, const std::string& what, const Setting& setting, Scene
   if (found.stopped && !out.stopped) out.stopped = found.stopped;
 }
 
-Outcome run(const Setting& setting) {
+Outcome run_s07(const Setting& setting) {
   const double size = (setting.size == Size::Small ? 1 : 2) * d;
   const double spin = 2 * setting.scale;  // rad/s
   const bool levels = traits_of(setting.method).adaptive();
@@ -101,7 +101,7 @@ HardCase tension() {
           .scaled = "2 rad/s of the square",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s07};
 }
 
 }  // namespace sim::cases

@@ -16,7 +16,7 @@ double drift(const State& state) {
   return sum / mass(state);
 }
 
-Outcome run(const Setting& setting) {
+Outcome run_s09(const Setting& setting) {
   // A bar of 6 m x 1.2 m x 1.2 m, 1 m before a wall, without gravity.
   constexpr double length = 40 * d, gap = 1, width = 8 * d;
   const double speed = 30 * setting.scale;
@@ -58,7 +58,7 @@ HardCase jet() {
           .scaled = "30 m/s of the jet",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s09};
 }
 
 }  // namespace sim::cases

@@ -27,7 +27,7 @@ double covered_m2(const State& state, double above_m) {
   return static_cast<double>(std::count(covered.begin(), covered.end(), 1)) * cell * cell;
 }
 
-Outcome run(const Setting& setting) {
+Outcome run_s10(const Setting& setting) {
   const Pool& pool = settled_pool(setting.backend);
   const Vec3d gaze{1.2, 0.6, 1.2};
   Outcome out;
@@ -79,7 +79,7 @@ HardCase thin_sheet() {
           .scaled = "",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s10};
 }
 
 }  // namespace sim::cases

@@ -146,7 +146,7 @@ Outcome slosh(const Setting& setting, bool with_wedge) {
   return watch.outcome(findings);
 }
 
-Outcome run(const Setting& setting) { return slosh(setting, false); }
+Outcome run_s11(const Setting& setting) { return slosh(setting, false); }
 Outcome run_with_wedge(const Setting& setting) { return slosh(setting, true); }
 
 }  // namespace
@@ -160,7 +160,7 @@ HardCase corners() {
           .scaled = "2 m/s of the kicks",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s11};
 }
 
 HardCase wedge() {

@@ -12,7 +12,7 @@ namespace sim::cases {
 
 namespace {
 
-Outcome run(const Setting& setting) {
+Outcome run_s12(const Setting& setting) {
   Outcome out;
   // Three cells of 1.1 h from the origin.
   constexpr double corner = 3 * 1.1 * 2 * d;
@@ -61,7 +61,7 @@ HardCase coincident() {
           .scaled = "",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s12};
 }
 
 }  // namespace sim::cases

@@ -39,7 +39,7 @@ Fovea fovea_at(const Simulation& fluid, const Scene& scene, const Vec3d& point) 
   return out;
 }
 
-Outcome run(const Setting& setting) {
+Outcome run_s21(const Setting& setting) {
   const Pool& pool = settled_pool(setting.backend);
   const Vec3d left{1.2, 0.6, 1.2}, right{3.6, 0.6, 1.2};
   SimulationOptions options = options_of(setting);
@@ -96,7 +96,7 @@ HardCase gaze() {
       .scaled = "",
       .frame_dt_s = 1.0 / 60,
       .iterations = 4,
-      .run = run};
+      .run = run_s21};
 }
 
 }  // namespace sim::cases

@@ -16,7 +16,7 @@ double energy(const State& state) {
   return gravity * centre_height(state) * mass(state) + kinetic_energy(state);
 }
 
-Outcome run(const Setting& setting) {
+Outcome run_s23(const Setting& setting) {
   Scene scene = read_scene(base::resource("data/scenes/peers_dam.toml"));
   scene.fill_max_m[1] *= setting.scale;
   SimulationOptions options = options_of(setting);
@@ -46,7 +46,7 @@ HardCase energy_of_a_dam() {
           .scaled = "1 m of the dam's height",
           .frame_dt_s = 1.0 / 120,
           .iterations = 4,
-          .run = run};
+          .run = run_s23};
 }
 
 }  // namespace sim::cases

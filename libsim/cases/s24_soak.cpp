@@ -23,7 +23,7 @@ double resident_mib() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
-Outcome run(const Setting& setting) {
+Outcome run_s24(const Setting& setting) {
   const bool small = setting.size == Size::Small;
   Scene scene = read_scene(base::resource("data/scenes/faucet.toml"));
   scene.settle_frames = 20;
@@ -87,7 +87,7 @@ HardCase soak() {
           .scaled = "16 m/s of the nozzle",
           .frame_dt_s = 1.0 / 60,
           .iterations = 4,
-          .run = run};
+          .run = run_s24};
 }
 
 }  // namespace sim::cases

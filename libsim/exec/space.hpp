@@ -11,12 +11,34 @@
 #include <utility>
 #include <vector>
 
-#include "libsim/exec/atomics.hpp"
-#include "libsim/exec/lanes.hpp"
-#include "libsim/exec/launch_timer.hpp"
-#include "libsim/exec/rough.hpp"
+#include "libsim/exec/function.hpp"
+#include "libsim/exec/launch_time.hpp"
 
 namespace sim::SIM_BACKEND {
+
+/// Switches the profile of this back end on (discarding earlier measurements) or off.
+void profile_launches(bool on);
+/// One entry per label, longest first; waits for all launched work.
+std::vector<LaunchTime> launch_times();
+
+/// Timer around each launch; off unless a bench switches it on.
+class LaunchTimer {
+ public:
+  explicit LaunchTimer(const char* label) {
+    if (on) begin(label);
+  }
+  ~LaunchTimer() {
+    if (on) end();
+  }
+  LaunchTimer(const LaunchTimer&) = delete;
+  LaunchTimer& operator=(const LaunchTimer&) = delete;
+
+ private:
+  friend void profile_launches(bool);
+  static void begin(const char* label);
+  static void end();
+  static bool on;
+};
 
 /// Memory of the back end. Errors (out of memory, device lost) are base::Error.
 void* allocate(std::size_t bytes);

@@ -1,4 +1,4 @@
-#include "libsim/foam/emission.hpp"
+#include "libsim/foam/motion.hpp"
 
 #include "libsim/foam/water_round.hpp"
 

@@ -1,4 +1,4 @@
-#include "libsim/foam/meeting.hpp"
+#include "libsim/foam/foam_pool.hpp"
 
 namespace sim::SIM_BACKEND {
 

@@ -7,7 +7,6 @@
 #include "libsim/methods/level_turns.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
-#include "libsim/particles/free_ids.hpp"
 #include "libsim/particles/particles.hpp"
 
 namespace sim::SIM_BACKEND {

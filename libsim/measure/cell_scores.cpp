@@ -18,7 +18,7 @@ constexpr std::size_t key_columns = 8;
 
 const MetricTraits& traits_of(Metric metric) { return all_metrics()[static_cast<std::size_t>(metric)]; }
 
-std::vector<std::string> head() {
+std::vector<std::string> score_head() {
   std::vector<std::string> out{"scene",      "n_star", "preset", "method",
                                "checkpoint", "start",  "gaze",   "repeat"};
   for (const Metric metric : still_metrics) out.emplace_back(traits_of(metric).name);
@@ -52,13 +52,6 @@ std::string exact(double value) {
   return base::shortest(value);
 }
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> out;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
-  return out;
-}
-
 template <class Number>
 bool reads(const std::string& text, Number& value) {
   const char* end = text.data() + text.size();
@@ -83,7 +76,7 @@ std::string told(const std::vector<CellKey>& keys, const std::string& what) {
 }  // namespace
 
 figures::TextTable cell_rows(const std::vector<ScoreBlock>& blocks) {
-  figures::TextTable out{head(), {}};
+  figures::TextTable out{score_head(), {}};
   for (const auto& block : blocks) {
     for (const auto& scores : block.methods) {
       const auto keys = keys_of(block, scores);
@@ -110,14 +103,14 @@ CellScores read_cells(const std::filesystem::path& path) {
   std::istringstream lines(base::read_file(path, most_bytes));
   std::string line;
   std::getline(lines, line);
-  if (split(line) != head())
+  if (figures::split(line) != score_head())
     throw base::Error(path.string(), "is no table of single pictures", "give a file that --cells wrote");
   CellScores out;
   for (int number = 2; std::getline(lines, line); ++number) {
     CellKey key;
     CellValues values{};
     const std::string place = path.string() + ":" + std::to_string(number);
-    if (!reads_row(split(line), key, values))
+    if (!reads_row(figures::split(line), key, values))
       throw base::Error(place, "is no row of a picture", "write the file again with --cells");
     if (!out.emplace(key, values).second)
       throw base::Error(place, "names a picture a second time: " + in_words(key),

@@ -12,13 +12,6 @@ namespace measure {
 
 namespace {
 
-std::vector<std::string> split(const std::string& words, char by) {
-  std::vector<std::string> out;
-  std::istringstream stream(words);
-  for (std::string word; std::getline(stream, word, by);) out.push_back(word);
-  return out;
-}
-
 bool read_number(const std::string& text, double& value) {
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
@@ -28,9 +21,9 @@ bool read_number(const std::string& text, double& value) {
 /// tau of a cell in the paper's Table 2.
 double paper_tau(const std::string& scene, const std::string& n_star, sim::MethodKind method) {
   const auto path = base::resource("data/paper/table2_performance.csv");
-  const auto lines = split(base::read_file(path, 1 << 16), '\n');
+  const auto lines = figures::split(base::read_file(path, 1 << 16), '\n');
   for (const auto& line : lines) {
-    const auto cell = split(line, ',');
+    const auto cell = figures::split(line);
     double tau = 0;
     if (cell.size() < 8 || cell[0] != scene || cell[1] + "k" != n_star || cell[2] != sim::method_name(method))
       continue;
@@ -46,7 +39,7 @@ double paper_tau(const std::string& scene, const std::string& n_star, sim::Metho
 
 std::vector<CellSize> sizes_of(const std::string& words) {
   std::vector<CellSize> out;
-  for (const auto& word : split(words, ',')) out.push_back({word, sim::parse_n_star(word)});
+  for (const auto& word : figures::split(words)) out.push_back({word, sim::parse_n_star(word)});
   if (out.empty()) throw base::Error("--n-star", "names no size", "write for example 16k,32k");
   return out;
 }

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view magic = "ViP-Lab checkpoint 1\n";  // change the number with the layout
-constexpr std::size_t most_bytes = std::size_t{4} << 30;
+constexpr std::size_t most_file_bytes = std::size_t{4} << 30;
 constexpr std::size_t shown_digits = 12;
 constexpr int packing = 1;  // the fastest level is enough: most of a file is pixels without water
 static_assert(std::is_trivially_copyable_v<sim::ParticleState> && sizeof(sim::ParticleState) == 32);
@@ -89,7 +89,7 @@ Checkpoint read_checkpoint(const fs::path& folder, const CheckpointOf& of) {
     throw base::Error(path.string(), "is not there",
                       "store it with --checkpoints-to and the same scene, n_* and checkpoints");
   }
-  const std::string bytes = base::read_file(path, most_bytes);
+  const std::string bytes = base::read_file(path, most_file_bytes);
   std::string_view rest = bytes;
   if (!rest.starts_with(magic)) {
     throw base::Error(path.string(), "is not a checkpoint that this program reads",
@@ -107,7 +107,7 @@ Checkpoint read_checkpoint(const fs::path& folder, const CheckpointOf& of) {
 
   sim::ByteReader reader(bytes_of(rest), path.string());
   const auto particles = reader.get<std::uint64_t>(), size = reader.get<std::uint64_t>();
-  if (size > most_bytes || particles > size / sizeof(sim::ParticleState)) damaged(path);
+  if (size > most_file_bytes || particles > size / sizeof(sim::ParticleState)) damaged(path);
   sim::Bytes body;
   sim::unpack(reader, size, body);
   Checkpoint out;

@@ -1,4 +1,4 @@
-#include "libsim/measure/checkpoint_source.hpp"
+#include "libsim/measure/table1.hpp"
 
 #include <algorithm>
 

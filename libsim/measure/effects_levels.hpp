@@ -6,6 +6,8 @@
 
 #include "libsim/measure/effects_cost.hpp"
 #include "libsim/scene/scene.hpp"
+#include "libsim/simulation.hpp"
+#include "stats/base/picture_size.hpp"
 
 namespace measure {
 
@@ -31,6 +33,17 @@ struct LevelCost {
   /// Over all pictures; PSNR is infinite if they are equal.
   double psnr_db = 0, ssim = 0, flip_percent = 0;
 };
+
+struct LevelRuns {
+  sim::SimulationOptions choice;
+  int warm_up = 0, frames = 1;
+  base::PictureSize size;
+};
+
+/// All variants start from one settled state, look at the scene's gaze point, step in turn with each pass
+/// timed, and are drawn at four instants, the last of which is the last frame. base::Error for a method with
+/// one level.
+std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, const LevelRuns& runs);
 
 /// One row per variant, each effect's rows together: the added time is relative to the first row, the saved
 /// time is a share of the effect's own passes in the second row.

@@ -1,4 +1,4 @@
-#include "libsim/measure/film.hpp"
+#include "libsim/measure/table1.hpp"
 
 #include <functional>
 

@@ -7,7 +7,7 @@
 #include "libsim/measure/render_timer.hpp"
 #include "libsim/render/fluid_picture.hpp"
 #include "libsim/render/offscreen.hpp"
-#include "libsim/render/rgb_picture.hpp"
+#include "libsim/render/png.hpp"
 
 namespace measure {
 

@@ -15,22 +15,16 @@ namespace measure {
 
 namespace {
 
-constexpr std::size_t most_bytes = 1 << 20;
+constexpr std::size_t most_table_bytes = 1 << 20;
 constexpr const char* head =
     "program,solver,particles,dt_s,iterations,backend,threads,ms_a_step,density_error_percent,source";
 constexpr std::size_t columns = 10;
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> out;
-  std::istringstream stream(line + ",");  // so that an empty last cell counts
-  for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
-  return out;
-}
-
 /// Reads the cells of one line; stops with the name of the first wrong one.
 class Cells {
  public:
-  Cells(std::string place, const std::string& line) : place_(std::move(place)), cells_(split(line)) {
+  Cells(std::string place, const std::string& line)
+      : place_(std::move(place)), cells_(figures::split(line + ",")) {  // an empty last cell counts
     if (cells_.size() != columns)
       fail("has " + std::to_string(cells_.size()) + " cells where " + std::to_string(columns) + " belong");
   }
@@ -116,7 +110,7 @@ bool on_our_machine(const std::vector<PeerRow>& peers, const std::string& machin
 }  // namespace
 
 std::vector<PeerRow> read_peers(const std::filesystem::path& path) {
-  std::istringstream lines(base::read_file(path, most_bytes));
+  std::istringstream lines(base::read_file(path, most_table_bytes));
   std::string line;
   std::getline(lines, line);
   if (line != head)

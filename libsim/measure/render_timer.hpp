@@ -1,9 +1,13 @@
 #pragma once
-/// Renders the fluid of a benchmark and times it separately from the solver.
+/// Renders the fluid of a benchmark and times it separately from the solver, and the renderer's passes over
+/// many pictures.
 
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libsim/simulation.hpp"
@@ -11,6 +15,26 @@
 #include "stats/base/picture_size.hpp"
 
 namespace measure {
+
+/// Milliseconds of each pass per picture.
+class PassTable {
+ public:
+  void add(std::span<const sim::PassTime> picture);
+  void clear() { passes_.clear(); }
+  bool empty() const { return passes_.empty(); }
+  /// A JSON object with the median of each pass.
+  base::Json figures() const;
+
+ private:
+  struct Pass {
+    std::string name;
+    std::vector<double> ms;
+  };
+  std::vector<Pass> passes_;
+};
+
+/// Prints PassTable::figures(), the longest pass first, and their sum.
+void print_passes(const base::Json& figures);
 
 /// Draws an off-screen picture of a scene and times it. The context stays current on this thread.
 class RenderTimer {

@@ -1,6 +1,10 @@
 #include "libsim/measure/stability_map.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "stats/figures/svg.hpp"
 
 namespace measure {
 
@@ -96,6 +100,132 @@ std::string to_markdown(const StabilityMap& map) {
          " were tried. Between what passed and what failed lies a factor of " +
          figures::shortest(map.resolution) +
          " at most, or one iteration. + says that all that was tried passed.\n\n" + to_markdown(table);
+}
+
+namespace {
+
+using svg::Point;
+
+constexpr double left_px = 52, top_px = 88, cell_px = 66, row_px = 24, gap_px = 22, line_px = 14;
+
+/// Shades of one blue, darker with a larger margin; their lightness differs enough for any colour vision.
+struct Shade {
+  double from;  ///< margin
+  const char* fill;
+  const char* ink;
+  const char* words;
+};
+constexpr Shade shades[] = {{1, "#eff3ff", "black", "under 1.25"},
+                            {1.25, "#bdd7e7", "black", "1.25 to 1.5"},
+                            {1.5, "#6baed6", "black", "1.5 to 2"},
+                            {2, "#2171b5", "white", "2 to 3"},
+                            {3, "#08306b", "white", "3 and more"}};
+constexpr Shade fails{0, svg::colour::vermilion, "white", "fails at its own numbers"};
+constexpr Shade absent{0, "#bbbbbb", "black", "does not apply"};
+
+const Shade& shade_of(double margin) {
+  const Shade* out = &shades[0];
+  for (const Shade& one : shades) {
+    if (margin >= one.from - 1e-9) out = &one;
+  }
+  return *out;
+}
+
+const char* heading(Knob knob) {
+  switch (knob) {
+    case Knob::FrameStep:
+      return "Largest frame step";
+    case Knob::Iterations:
+      return "Fewest iterations";
+    case Knob::Scale:
+      return "Largest speed or size";
+  }
+  return "";
+}
+const char* heading_unit(Knob knob) {
+  return knob == Knob::Iterations ? "number, of the case's own" : "times the case's own";
+}
+
+std::string value_of(const MapCell& cell) {
+  if (cell.reach == Reach::UsualFails) return "fails";
+  if (cell.knob == Knob::Iterations)
+    return figures::number(cell.limit, 0) + " of " + figures::number(cell.usual, 0);
+  return figures::number(margin_of(cell), 2) + (cell.reach == Reach::AllPass ? "+" : "");
+}
+
+std::string box(Point at, double width, const Shade& shade, const std::string& words) {
+  return svg::rectangle(at, {at.x + width, at.y + row_px},
+                        svg::attribute("fill", shade.fill) + " stroke=\"white\" stroke-width=\"1\"") +
+         svg::text({at.x + width / 2, at.y + row_px - 8}, words,
+                   svg::attribute("fill", shade.ink) + " text-anchor=\"middle\"");
+}
+
+std::string panel(const StabilityMap& map, Knob knob, double left) {
+  std::string out = svg::text({left, top_px - 44}, heading(knob), "font-size=\"13\" font-weight=\"bold\"") +
+                    svg::text({left, top_px - 29}, heading_unit(knob));
+  for (std::size_t m = 0; m < map.methods.size(); ++m) {
+    const double x = left + cell_px * static_cast<double>(m);
+    out += svg::text({x + cell_px / 2, top_px - 8}, map.methods[m], "text-anchor=\"middle\"");
+    for (std::size_t c = 0; c < map.cases.size(); ++c) {
+      const Point at{x, top_px + row_px * static_cast<double>(c)};
+      const auto cell = std::find_if(map.cells.begin(), map.cells.end(), [&](const MapCell& one) {
+        return one.case_id == map.cases[c] && one.method == map.methods[m] && one.knob == knob;
+      });
+      if (cell == map.cells.end()) {
+        out += box(at, cell_px, absent, "-");
+      } else {
+        const bool broken = cell->reach == Reach::UsualFails;
+        out += box(at, cell_px, broken ? fails : shade_of(margin_of(*cell)), value_of(*cell));
+      }
+    }
+  }
+  return out;
+}
+
+std::string legend(double top) {
+  constexpr double width = 92;
+  std::string out = svg::text({8, top - 6}, "margin to the default, as a factor");
+  double x = 8;
+  for (const Shade& shade : shades) {
+    out += box({x, top}, width, shade, shade.words);
+    x += width + 4;
+  }
+  out += box({x, top}, 1.8 * width, fails, fails.words);
+  return out + box({x + 1.8 * width + 4, top}, 1.2 * width, absent, absent.words);
+}
+
+}  // namespace
+
+std::string to_svg(const StabilityMap& map) {
+  const double panel_px = cell_px * static_cast<double>(map.methods.size());
+  const double rows_end = top_px + row_px * static_cast<double>(map.cases.size());
+  svg::Picture picture{.id = "stability", .title = "Stability map"};
+  picture.width = std::max(left_px + 3 * panel_px + 2 * gap_px + 8, 820.0);
+  picture.height = rows_end + 88 + line_px * static_cast<double>(map.effects.size());
+  picture.description =
+      "Hard cases by methods in three panels: how far the frame step, the iterations and the speed or size "
+      "may be turned before the case fails.";
+  picture.body = svg::text({8, 22}, "How far each hard case is from failing", "font-size=\"15\"") +
+                 "<g font-size=\"11\">\n";
+  for (std::size_t c = 0; c < map.cases.size(); ++c) {
+    const double y = top_px + row_px * static_cast<double>(c) + row_px - 8;
+    picture.body += svg::text({left_px - 8, y}, map.cases[c], "text-anchor=\"end\" font-weight=\"bold\"");
+  }
+  double left = left_px;
+  for (const Knob knob : all_knobs) {
+    picture.body += panel(map, knob, left);
+    left += panel_px + gap_px;
+  }
+  picture.body += legend(rows_end + 30);
+  picture.body +=
+      svg::text({8, rows_end + 76}, map.circumstances + "; factors up to " + figures::shortest(map.most) +
+                                        ", resolution " + figures::shortest(map.resolution) +
+                                        "; + : all that was tried passed");
+  double line = rows_end + 76;
+  for (const std::string& effect : map.effects)
+    picture.body += svg::text({8, line += line_px}, "water with the effect " + effect);
+  picture.body += "</g>\n";
+  return svg::document(picture);
 }
 
 }  // namespace measure

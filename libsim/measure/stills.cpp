@@ -1,11 +1,11 @@
-#include "libsim/measure/stills.hpp"
+#include "libsim/measure/table1.hpp"
 
 #include <fmt/core.h>
+
 #include <algorithm>
 
 #include "libsim/levels/coarsen.hpp"
 #include "libsim/measure/checkpoint_file.hpp"
-#include "libsim/measure/checkpoint_source.hpp"
 #include "libsim/measure/masks.hpp"
 #include "libsim/measure/onlooker.hpp"
 #include "libsim/scene/fill.hpp"

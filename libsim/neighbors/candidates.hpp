@@ -7,7 +7,7 @@
 #include <bit>
 #include <vector>
 
-#include "libsim/neighbors/cell_table.hpp"
+#include "libsim/neighbors/grid.hpp"
 
 namespace sim::SIM_BACKEND {
 

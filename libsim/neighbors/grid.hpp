@@ -1,10 +1,112 @@
 #pragma once
-/// Orders the particles by (mass level, cell, id) with a counting sort over a table of bounded size.
+/// Cells over the tank for the neighbour search: one grid per mass level, all in one table that holds the
+/// first particle of each cell. The outermost cells of a grid hold everything beyond them, so that far
+/// positions cost no memory and no pair is lost.
 
-#include "libsim/neighbors/cell_table.hpp"
+#include "libsim/particles/cells.hpp"
+#include "libsim/particles/particles.hpp"
 
 namespace sim::SIM_BACKEND {
 
+/// Particles i with begin <= i < end.
+struct IndexRange {
+  int begin, end;
+};
+
+/// The grid of one level. Cells lie in lines along x; lines are ordered along z, then along y.
+struct LevelCells {
+  float support;    ///< h of its particles, m
+  float edge;       ///< along y and z, m
+  float inverse;    ///< 1 / edge
+  float inverse_x;  ///< the same along x, where cells may be shorter
+  int nx, ny, nz;
+  int first;  ///< index of its first cell in the table
+
+  SIM_FN int size() const { return nx * ny * nz; }
+  /// The cell of a position relative to the low corner, as an index within this grid.
+  SIM_FN int of(Vec3 at) const { return (along(at.y, ny) * nz + along(at.z, nz)) * nx + along_x(at.x); }
+  /// The cell along y or z at distance `x` from the low corner: 1 .. count - 2 inside the domain.
+  SIM_FN int along(float x, int count) const { return floor_within(x * inverse, -1, count - 2) + 1; }
+  SIM_FN int along_x(float x) const { return floor_within(x * inverse_x, -1, nx - 2) + 1; }
+  /// x clamped to the nominal outer sides of the outermost cells.
+  SIM_FN float nominal(float x, int count) const {
+    return at_most(at_least(x, -edge), static_cast<float>(count - 1) * edge);
+  }
+  /// Upper bound on the distance of x, a nominal position, from the slab of a cell along y or z.
+  SIM_FN float gap(float x, int cell) const {
+    const float low = static_cast<float>(cell - 1) * edge - x;
+    return at_least(at_least(low, -(low + edge)), 0.0f);
+  }
+};
+
+/// The table in the form that kernels use.
+struct CellTable {
+  LevelCells level[LevelSupports::most];
+  int levels;        ///< in use
+  Vec3 low;          ///< corner of the domain
+  const int* begin;  ///< index of each cell's first particle; one more entry with the number of particles
+  /// Blocks as wide as the reach of any pair, and a bit mask of the levels that particles of a block can
+  /// meet: most of the water has one or two. nullptr if unknown (Grid::finds_met).
+  LevelCells blocks;
+  const std::uint8_t* met;
+
+  SIM_FN int cell(int l, Vec4 p) const { return level[l].first + level[l].of(xyz(p) - low); }
+  /// True if a particle can have neighbours of this level.
+  SIM_FN bool meets(Vec4 p, int l) const {
+    if (met) return met[blocks.of(xyz(p) - low)] >> l & 1;
+    return begin[level[l].first] < begin[level[l].first + level[l].size()];
+  }
+
+  /// The search window of a particle in the grid of one level: lines of cells from (first_y, first_z) to
+  /// (last_y, last_z). `at`: relative to the low corner.
+  struct Window {
+    Vec3 at;  ///< y and z are nominal
+    float reach;
+    int first_y, last_y, first_z, last_z;
+  };
+  /// The window that contains all particles within margin x (h + h_other) / 2.
+  SIM_FN Window window(const LevelCells& grid, Vec4 self, float margin) const {
+    const Vec3 at = xyz(self) - low;
+    // Larger than the rounding errors of positions, distances and cells.
+    const float reach = 1.0001f * (0.5f * margin * (self.w + grid.support)) +
+                        1e-6f * (fabsf(at.x) + fabsf(at.y) + fabsf(at.z));
+    return {{at.x, grid.nominal(at.y, grid.ny), grid.nominal(at.z, grid.nz)},
+            reach,
+            grid.along(at.y - reach, grid.ny),
+            grid.along(at.y + reach, grid.ny),
+            grid.along(at.z - reach, grid.nz),
+            grid.along(at.z + reach, grid.nz)};
+  }
+  /// The particles of one line that can be within the reach.
+  SIM_FN IndexRange line(const LevelCells& grid, const Window& look, int y, int z) const {
+    const float dy = grid.gap(look.at.y, y);
+    const float dz = grid.gap(look.at.z, z);
+    const float left = look.reach * look.reach - dy * dy - dz * dz;
+    if (!(left > 0)) return {0, 0};
+    const float half = rough_root(left);
+    const int cell = grid.first + (y * grid.nz + z) * grid.nx;
+    return {begin[cell + grid.along_x(look.at.x - half)], begin[cell + grid.along_x(look.at.x + half) + 1]};
+  }
+
+  /// Calls visit(begin, end) for runs of particles, in ascending order, that contain the particle itself and
+  /// all within margin x (h + h_other) / 2 of it.
+  template <class Visit>
+  SIM_FN void around(Vec4 self, float margin, Visit visit) const {
+    for (int l = 0; l < levels; ++l) {
+      if (!meets(self, l)) continue;
+      const LevelCells& grid = level[l];
+      const Window look = window(grid, self, margin);
+      for (int y = look.first_y; y <= look.last_y; ++y) {
+        for (int z = look.first_z; z <= look.last_z; ++z) {
+          const IndexRange run = line(grid, look, y, z);
+          if (run.begin < run.end) visit(run.begin, run.end);
+        }
+      }
+    }
+  }
+};
+
+/// Orders the particles by (mass level, cell, id) with a counting sort over a table of bounded size.
 class Grid {
  public:
   /// Sorts particles of one support by the cell of their predicted positions and permutes their columns. The

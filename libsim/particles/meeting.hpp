@@ -2,9 +2,9 @@
 /// Contacts between rigid bodies: a substep of all bodies in one block of threads.
 
 #include "libsim/exec/one_block.hpp"
-#include "libsim/particles/body_drive.hpp"
 #include "libsim/particles/contact.hpp"
 #include "libsim/particles/contact_rows.hpp"
+#include "libsim/particles/free_body.hpp"
 
 namespace sim::SIM_BACKEND {
 

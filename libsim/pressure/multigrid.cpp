@@ -1,9 +1,201 @@
-#include "libsim/pressure/small_grids.hpp"
+#include "libsim/pressure/multigrid.hpp"
+
+#include "libsim/exec/one_block.hpp"
+#include "libsim/pressure/grid_passes.hpp"
 
 namespace sim::SIM_BACKEND {
 
+namespace {
+
 /// The coarsest grid has at most this many cells along its longest side.
 constexpr int coarsest_side = 2;
+
+// V-cycles over grids that are small enough for one block, in its shared memory.
+
+constexpr int coarsest_sweeps = 4;
+/// A grid of at most this many cells is processed by one warp.
+constexpr int one_warp_cells = 64;
+
+/// A fluid cell's position, in the scratch memory.
+struct CellPlace {
+  std::uint16_t x, y, z;
+};
+
+/// List of the few fluid cells of one grid, so that passes skip the others. Cells of the first colour are at
+/// the front, those of the second at the back.
+struct FluidCells {
+  CellBlock block;
+  CellPlace* place;
+  int* count;  ///< per colour
+
+  SIM_FN int size() const { return count[0] + count[1]; }
+  SIM_FN int nth(int colour, int k) const { return colour == 0 ? k : block.size() - 1 - k; }
+  template <class F>
+  SIM_FN void visit(int at, const F& f) const {
+    const Place p{place[at].x, place[at].y, place[at].z};
+    f.cell(p, block.index(p.x, p.y, p.z));
+  }
+};
+
+/// Calls f.cell for the fluid cells of one colour, or of both.
+template <class F>
+struct OfColour {
+  FluidCells cells;
+  int colour;
+  F f;
+  SIM_FN void operator()(int k) const { cells.visit(cells.nth(colour, k), f); }
+};
+template <class F>
+struct OfBoth {
+  FluidCells cells;
+  F f;
+  SIM_FN void operator()(int k) const {
+    const int first = cells.count[0];
+    cells.visit(k < first ? k : cells.nth(1, k - first), f);
+  }
+};
+
+/// Lists a grid's fluid cells, in any order, with q = 0 everywhere.
+struct ListFluid {
+  GridView grid;
+  FluidCells to;
+  SIM_FN void operator()(int i) const {
+    grid.q[i] = 0;
+    if (grid.kind[i] != CellKind::Fluid) return;
+    const auto [x, y, z] = place_of(grid.block, i);
+    const int colour = (x + y + z) & 1;
+    to.place[to.nth(colour, atomic_next(to.count + colour))] = {
+        static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(z)};
+  }
+};
+
+/// Copies kinds and sources of the first small grid into the block's memory.
+struct Load {
+  GridView from, to;
+  SIM_FN void operator()(int i) const {
+    to.kind[i] = from.kind[i];
+    to.source[i] = from.source[i];
+  }
+};
+/// Copies q of the first small grid back.
+struct Store {
+  GridView from, to;
+  SIM_FN void operator()(int i) const { to.q[i] = from.q[i]; }
+};
+struct Nothing {
+  int* count;
+  SIM_FN void operator()(int i) const { count[i] = 0; }
+};
+
+/// V-cycles over the grids from the first one that is small enough for one block down to the coarsest. All
+/// values are in the block's scratch memory.
+struct SmallGrids {
+  static constexpr int most = 16;
+  struct Grid {
+    CellBlock block;
+    int scale, begin;  ///< edge in finest cells; index of its first cell
+  };
+  GridView outside;  ///< the first grid in global memory
+  Grid grid[most];
+  int count;
+  int cells;  ///< of all grids
+  int few;    ///< index of the first grid for one warp, at most the last grid
+  int cycles;
+
+  static constexpr std::size_t cell_bytes = 3 * sizeof(float) + sizeof(CellPlace) + sizeof(CellKind);
+  std::size_t bytes() const { return counts_bytes + static_cast<std::size_t>(cells) * cell_bytes; }
+  static constexpr std::size_t counts_bytes = 2 * most * sizeof(int);
+
+  /// The steps of a V-cycle over the grids in scratch memory. Layout: counts, then q, sources and diagonals,
+  /// then cell positions, then kinds.
+  struct InRoom {
+    const SmallGrids& grids;
+    unsigned char* room;
+
+    SIM_FN int* counts() const { return reinterpret_cast<int*>(room); }
+    SIM_FN float* values() const { return reinterpret_cast<float*>(room + counts_bytes); }
+    SIM_FN CellPlace* places() const { return reinterpret_cast<CellPlace*>(values() + 3 * grids.cells); }
+    SIM_FN GridView view(int level) const {
+      const Grid& at = grids.grid[level];
+      GridView out = grids.outside;
+      out.block = at.block;
+      out.scale = at.scale;
+      out.kind = reinterpret_cast<CellKind*>(places() + grids.cells) + at.begin;
+      out.q = values() + at.begin;
+      out.source = out.q + grids.cells;
+      out.diagonal = out.source + grids.cells;
+      return out;
+    }
+    SIM_FN FluidCells fluid(int level) const {
+      const Grid& at = grids.grid[level];
+      return {at.block, places() + at.begin, counts() + 2 * level};
+    }
+    template <class Threads>
+    SIM_FN void smooth(Threads threads, int level, int first_colour) const {
+      const GridView at = view(level);
+      const FluidCells cells = fluid(level);
+      for (int half = 0; half < 2; ++half) {
+        const int colour = half == 0 ? first_colour : 1 - first_colour;
+        const Smooth pass{at, colour, at.scale == 1};
+        threads.each(cells.count[colour], OfColour<Smooth>{cells, colour, pass});
+      }
+    }
+    template <class Threads>
+    SIM_FN void descend(Threads threads, int from, int to) const {
+      for (int level = from; level < to; ++level) {
+        smooth(threads, level, 0);
+        const GridView fine = view(level);
+        const FluidCells cells = fluid(level + 1);
+        const Restrict pass{fine, view(level + 1), fine.scale == 1};
+        threads.each(cells.size(), OfBoth<Restrict>{cells, pass});
+      }
+    }
+    template <class Threads>
+    SIM_FN void ascend(Threads threads, int from, int to) const {
+      for (int level = from - 1; level >= to; --level) {
+        const GridView fine = view(level);
+        const FluidCells cells = fluid(level);
+        const Prolong pass{fine, view(level + 1), fine.scale == 1};
+        threads.each(cells.size(), OfBoth<Prolong>{cells, pass});
+        smooth(threads, level, 1);
+      }
+    }
+    template <class Threads>
+    SIM_FN void solve_few(Threads threads) const {
+      const int last = grids.count - 1;
+      descend(threads, grids.few, last);
+      for (int sweep = 0; sweep < coarsest_sweeps; ++sweep) smooth(threads, last, 0);
+      ascend(threads, last, grids.few);
+    }
+    template <class Block>
+    SIM_FN void prepare(Block block) const {
+      block.spread(2 * grids.count, Nothing{counts()});
+      block.each(view(0).block.size(), Load{grids.outside, view(0)});
+      for (int level = 1; level < grids.count; ++level)
+        block.each(view(level).block.size(), Coarsen{view(level - 1), view(level)});
+      for (int level = 0; level < grids.count; ++level)
+        block.spread(view(level).block.size(), ListFluid{view(level), fluid(level)});
+      block.wait();
+      for (int level = 0; level < grids.count; ++level)
+        block.spread(fluid(level).size(), OfBoth<Weigh>{fluid(level), {view(level)}});
+      block.wait();
+    }
+  };
+
+  template <class Block>
+  SIM_FN void operator()(Block block, unsigned char* room) const {
+    const InRoom here{*this, room};
+    here.prepare(block);
+    for (int c = 0; c < cycles; ++c) {
+      here.descend(block, 0, few);
+      block.by_one_warp([&](auto warp) { here.solve_few(warp); });
+      here.ascend(block, few, 0);
+    }
+    block.each(grid[0].block.size(), Store{here.view(0), outside});
+  }
+};
+
+}  // namespace
 
 void Multigrid::fit(CellBlock finest, Vec3 conductance) {
   conductance_ = conductance;

@@ -68,4 +68,14 @@ Image read_png(const std::filesystem::path& path) {
   return png_of(base::read_file(path, max_file_bytes), path.string());
 }
 
+Picture without_alpha(const Image& image) {
+  Picture out{image.width, image.height, {}};
+  const std::size_t pixels = image.rgba.size() / 4;
+  out.rgb.resize(3 * pixels);
+  for (std::size_t p = 0; p < pixels; ++p) {
+    for (std::size_t c = 0; c < 3; ++c) out.rgb[3 * p + c] = image.rgba[4 * p + c];
+  }
+  return out;
+}
+
 }  // namespace sim

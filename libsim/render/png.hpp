@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "stats/image/image.hpp"
+
 namespace sim {
 
 /// sRGB, 8 bits per channel, RGBA; row 0 is the top.
@@ -28,5 +30,14 @@ void write_png(const std::filesystem::path& path, const Image& image);
 
 /// png_of a file. Errors (base::Error): also a missing file.
 Image read_png(const std::filesystem::path& path);
+
+/// A picture in the format of the image metrics; row 0 is the top.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+  stats::ImageView view() const { return {width, height, rgb}; }
+};
+/// The colours of an RGBA picture.
+Picture without_alpha(const Image& image);
 
 }  // namespace sim

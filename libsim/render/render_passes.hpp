@@ -12,7 +12,6 @@
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_program.hpp"
 #include "libsim/render/pass_timer.hpp"
-#include "libsim/render/picture_target.hpp"
 #include "libsim/render/view_targets.hpp"
 
 namespace sim {

@@ -1,11 +1,16 @@
 #pragma once
-/// The device buffers of one view. Internal to the renderer.
+/// The device buffers of one view, and the destination of a picture in a framebuffer. Internal to the
+/// renderer.
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "libsim/render/fluid_renderer.hpp"
 #include "libsim/render/gl_buffer.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "libsim/view/camera.hpp"
 
 namespace sim {
 
@@ -40,6 +45,19 @@ struct ViewTargets {
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
   std::int64_t room_ = -1;  // in particles
+};
+
+/// Image unit 0 as access to a framebuffer: its own texture if that is RGBA8, otherwise an internal picture,
+/// which is copied. Pixels keep their coordinates. Needs a current context at every call and when destroyed.
+class PictureTarget {
+ public:
+  /// Pixels stored between begin() and end() reach the views' viewports in the framebuffer.
+  void begin(unsigned framebuffer, std::span<const View> views);
+  void end(unsigned framebuffer, std::span<const View> views) const;
+
+ private:
+  bool copies_ = false;
+  std::unique_ptr<Offscreen> own_;
 };
 
 }  // namespace sim

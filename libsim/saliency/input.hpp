@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "libsim/exec/gl_sharing.hpp"
-#include "libsim/saliency/eye.hpp"
 #include "libsim/saliency/looks.hpp"
+#include "libsim/saliency/sight.hpp"
 
 namespace sim::SIM_BACKEND {
 

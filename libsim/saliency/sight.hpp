@@ -1,11 +1,113 @@
 #pragma once
-/// Features of a particle from the last picture: the curvature of the surface in front of it (paper Eq. 5)
-/// and its depth below that surface (Eq. 7-8).
+/// What an eye sees of a particle: its camera, gaze and last picture, visual acuity as a function of
+/// eccentricity and depth (paper Eq. 3-4), the curvature of the surface in front of the particle (Eq. 5) and
+/// its depth below that surface (Eq. 7-8).
 
+#include "libsim/exec/vec.hpp"
 #include "libsim/methods/preset.hpp"
-#include "libsim/saliency/eye.hpp"
+#include "libsim/view/camera.hpp"
 
 namespace sim::SIM_BACKEND {
+
+/// The G-buffer of libsim/view/gbuffer.hpp in the back end's memory, with any owner: SaliencyInput uploads a
+/// host buffer; a renderer on the same device may pass its own.
+struct GBufferView {
+  const float* depth = nullptr;   ///< not smoothed, m; +infinity without fluid. nullptr: no picture
+  const float* normal = nullptr;  ///< filtered, eye space; 0 without fluid
+  int normal_stride = 3;          ///< floats per pixel: 3 from the host, 4 in the renderer's buffer
+  int width = 0, height = 0;
+  float radius_scale = 1;
+
+  SIM_FN bool holds(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
+  SIM_FN std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+  SIM_FN Vec3 normal_at(int x, int y) const {
+    const float* n = normal + at(x, y) * static_cast<std::size_t>(normal_stride);
+    return {n[0], n[1], n[2]};
+  }
+};
+
+/// World to eye space: x right, y up, z against the line of sight.
+struct EyeSpace {
+  float m[12];  ///< three rows of four
+  SIM_FN Vec3 operator()(Vec3 x) const {
+    return {m[0] * x.x + m[1] * x.y + m[2] * x.z + m[3], m[4] * x.x + m[5] * x.y + m[6] * x.z + m[7],
+            m[8] * x.x + m[9] * x.y + m[10] * x.z + m[11]};
+  }
+};
+
+/// One eye in the form that kernels use.
+struct Eye {
+  Vec3 viewpoint{};  ///< p_v, m
+  Vec3 gaze{};       ///< from visual(), of any length
+  EyeSpace now{};    ///< camera of the coming frame
+  EyeSpace then{};   ///< camera of the picture
+  PixelRays rays{};  ///< of the picture's camera
+  GBufferView picture{};
+  Vec3 axis{0, 0, -1};     ///< the camera's line of sight, a unit vector
+  float visual_scale = 1;  ///< EyeLook::visual_scale
+
+  /// Scales the part of a direction perpendicular to the axis, as the eye sees it in the picture. The result
+  /// has any length; unchanged if visual_scale is 1.
+  SIM_FN Vec3 visual(Vec3 u) const { return visual_scale * u + ((1 - visual_scale) * dot(u, axis)) * axis; }
+};
+
+struct Acuity {
+  AcuityFalloff falloff;
+  float fovea;        ///< theta_f, rad
+  float image_plane;  ///< z_Pi, m
+
+  SIM_FN static constexpr float radians(float degrees) { return degrees * 0.017453292519943f; }
+
+  /// Angle between the gaze and the direction to x, as seen in the picture, rad. An arc cosine would lose all
+  /// precision below 0.03 degrees.
+  SIM_FN static float eccentricity(const Eye& eye, Vec3 x) {
+    const Vec3 u = eye.visual(x - eye.viewpoint);
+    const Vec3 g = eye.gaze;
+    const Vec3 across = {g.y * u.z - g.z * u.y, g.z * u.x - g.x * u.z, g.x * u.y - g.y * u.x};
+    return atan2f(length(across), dot(g, u));
+  }
+
+  /// e(theta): 1 within the fovea, decreasing outside.
+  SIM_FN float falloff_at(float theta) const {
+    const float beyond = theta - fovea;
+    if (beyond <= 0) return 1;
+    if (falloff == AcuityFalloff::Smoothstep) {
+      const float t = fminf(beyond / fmaxf(radians(30) - fovea, 1e-6f), 1.0f);
+      return 1 - t * t * (3 - 2 * t);
+    }
+    const float e2 = falloff == AcuityFalloff::Hyperbolic ? radians(2.3f) : radians(0.85f);
+    return 1 / (1 + beyond / e2);
+  }
+
+  /// Eq. 4: |x - p_v| / |ints_Pi - p_v| = z / z_Pi by similar triangles.
+  SIM_FN float depth_factor(float z) const { return z / image_plane; }
+
+  /// f_a, Eq. 3; 0 behind the viewer.
+  SIM_FN float feature(const Eye& eye, Vec3 x, float z) const {
+    if (z <= 0) return 0;
+    const float quotient = falloff_at(eccentricity(eye, x)) / depth_factor(z);
+    return quotient > 1 ? 1 : quotient;  // preserves a NaN, unlike fminf
+  }
+
+  /// s of a gaze-only method (FovFluid-like): 1 in the fovea, falling to 0 over a band of width `band` (m)
+  /// outside its cone. Near the axis an angle at the eye is visual_scale times the camera's angle.
+  SIM_FN float gaze_saliency(const Eye& eye, Vec3 x, float band) const {
+    const float beyond = (eccentricity(eye, x) - fovea) / eye.visual_scale;
+    if (beyond <= 0) return 1;
+    if (beyond >= 1.5f) return 0;
+    const float way = length(x - eye.viewpoint) * sinf(beyond);
+    return 1 - fminf(way / band, 1.0f);
+  }
+};
+
+/// Eq. 9 with the floor and the clamp that the printed version lost; the caller handles s outside [0, 1] or
+/// NaN.
+SIM_FN int level_of_saliency(float s, int levels) {
+  const int level = static_cast<int>(floorf(static_cast<float>(levels) * (1 - s)));
+  return level < 0 ? 0 : level < levels ? level : levels - 1;
+}
 
 /// A particle's position in a picture.
 struct Spot {

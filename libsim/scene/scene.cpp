@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "libsim/scene/mesh_reader.hpp"
 #include "libsim/scene/vector.hpp"
@@ -52,6 +53,47 @@ Camera overview_of(const Camera& view) {
   Camera out = view;
   for (std::size_t k = 0; k < 3; ++k)
     out.eye_m[k] = view.target_m[k] + 3 * (view.eye_m[k] - view.target_m[k]);
+  return out;
+}
+
+/// In the order of Wall.
+const std::vector<std::string>& wall_names() {
+  static const std::vector<std::string> names{"x_low", "x_high", "z_low", "z_high", "y_low"};
+  return names;
+}
+
+Outlet read_outlet(const base::TomlTable& table, const std::array<double, 3>& tank_size_m,
+                   const std::array<double, 3>& origin_m) {
+  Outlet out;
+  const auto& names = wall_names();
+  const auto name = std::find(names.begin(), names.end(), table.choice("wall", names));
+  out.wall = static_cast<Wall>(name - names.begin());
+  auto min = table.numbers("min_m", 2);
+  auto max = table.numbers("max_m", 2);
+  const auto axes = axes_of(out.wall);
+  for (std::size_t a = 0; a < 2; ++a) {
+    min[a] -= origin_m[axes[a]];
+    max[a] -= origin_m[axes[a]];
+    if (min[a] < -1e-9) table.fail("min_m", "reaches beyond the wall", "keep the outlet within the tank");
+    if (!(max[a] - min[a] >= 1e-3))
+      table.fail("max_m", "leaves the outlet no area", "make each entry at least 1 mm larger than in min_m");
+    if (max[a] > tank_size_m[axes[a]] + 1e-9)
+      table.fail("max_m", "reaches beyond the wall", "keep the outlet within the tank");
+    out.min_m[a] = min[a];
+    out.max_m[a] = max[a];
+  }
+  return out;
+}
+
+/// origin_m: Scene::origin_m, subtracted from the rectangles.
+std::vector<Outlet> read_outlets(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
+                                 const std::array<double, 3>& origin_m) {
+  std::vector<Outlet> out;
+  for (const auto& table : scene.tables("outlet")) {
+    if (out.size() == most_outlets)
+      table.fail("", "is one outlet too many", "use at most " + std::to_string(most_outlets));
+    out.push_back(read_outlet(table, tank_size_m, origin_m));
+  }
   return out;
 }
 
@@ -157,6 +199,31 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
 }
 
 }  // namespace
+
+std::array<double, 3> inward_normal(Wall wall) {
+  switch (wall) {
+    case Wall::LowX:
+      return {1, 0, 0};
+    case Wall::HighX:
+      return {-1, 0, 0};
+    case Wall::LowZ:
+      return {0, 0, 1};
+    case Wall::HighZ:
+      return {0, 0, -1};
+    case Wall::Floor:
+      break;
+  }
+  return {0, 1, 0};
+}
+
+std::array<std::size_t, 2> axes_of(Wall wall) {
+  const auto normal = inward_normal(wall);
+  std::array<std::size_t, 2> out{};
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (normal[k] == 0) out[count++] = k;
+  return out;
+}
 
 Scene parse_scene(std::string_view text, const std::string& name,
                   const std::optional<std::filesystem::path>& beside) {

@@ -3,6 +3,7 @@
 /// along -y.
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,7 +15,6 @@
 #include "libsim/scene/heat.hpp"
 #include "libsim/scene/nozzle.hpp"
 #include "libsim/scene/obstacle.hpp"
-#include "libsim/scene/outlet.hpp"
 #include "libsim/scene/picture_effects.hpp"
 
 namespace sim {
@@ -41,6 +41,28 @@ struct VisibleBox {
   std::string name;  ///< 1 to 64 characters, such as "the falling jet"
   Vec3d min_m{}, max_m{};
 };
+
+// The walls of a tank, which is open at the top, and holes in them.
+
+/// In order of inward normals: +x, -x, +z, -z, +y.
+enum class Wall { LowX, HighX, LowZ, HighZ, Floor };
+inline constexpr std::size_t wall_count = 5;
+
+std::array<double, 3> inward_normal(Wall wall);
+/// The two axes along which a wall extends, ascending: 0 = x, 1 = y, 2 = z.
+std::array<std::size_t, 2> axes_of(Wall wall);
+
+/// A rectangle in which a wall is open. Water that passes the wall's plane in it leaves the simulation at the
+/// end of that frame. Outlets are closed while the water settles.
+/// The tables [[outlet]] of a scene file hold wall = "x_low", "x_high", "z_low", "z_high" or "y_low", and
+/// min_m and max_m, two numbers each, such as y and z of x_low. Errors are base::Error: unknown key, another
+/// wall, no area, a rectangle that exceeds the wall, more than most_outlets.
+struct Outlet {
+  Wall wall = Wall::Floor;
+  std::array<double, 2> min_m{}, max_m{};  ///< corners along axes_of(wall); each side at least 1 mm
+};
+
+inline constexpr std::size_t most_outlets = 4;
 
 struct Scene {
   std::string name;

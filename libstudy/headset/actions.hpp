@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "libstudy/headset/input.hpp"
-#include "libstudy/headset/runtime_clock.hpp"
+#include "libstudy/headset/headset_session.hpp"
+#include "libstudy/headset/loader.hpp"
 #include "libstudy/headset/session_handle.hpp"
 
 namespace study {

@@ -16,7 +16,6 @@
 #include "libstudy/display/cut_cause.hpp"
 #include "libstudy/headset/headset_session.hpp"
 #include "libstudy/headset/picture_turns.hpp"
-#include "libstudy/headset/session_facts.hpp"
 #include "libstudy/headset/session_maker.hpp"
 
 namespace study {

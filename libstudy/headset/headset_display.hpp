@@ -12,7 +12,7 @@
 #include "libstudy/base/clock.hpp"
 #include "libstudy/display/stimulus.hpp"
 #include "libstudy/headset/frame_loop.hpp"
-#include "libstudy/protocol/headset_rules.hpp"
+#include "libstudy/protocol/protocol.hpp"
 
 namespace study {
 

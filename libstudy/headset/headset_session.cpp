@@ -40,6 +40,12 @@ std::vector<base::PictureSize> picture_sizes(const HeadsetSystem& system, const 
 
 }  // namespace
 
+const char* name_of(HeadsetState state) {
+  constexpr const char* names[] = {"unknown", "idle",     "ready",        "synchronized", "visible",
+                                   "focused", "stopping", "loss pending", "exiting"};
+  return names[static_cast<std::size_t>(state)];
+}
+
 /// Members in order of construction; they are destroyed in reverse order.
 struct HeadsetSession::Parts {
   Parts(const sim::GlContext& gl, const HeadsetChoice& choice)

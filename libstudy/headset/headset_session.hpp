@@ -1,6 +1,7 @@
 #pragma once
 /// A session in a headset, frame by frame.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,13 +10,67 @@
 
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/offscreen.hpp"
-#include "libstudy/headset/events.hpp"
-#include "libstudy/headset/input.hpp"
 #include "libstudy/headset/rate_meter.hpp"
 #include "libstudy/headset/views.hpp"
 #include "stats/base/picture_size.hpp"
 
 namespace study {
+
+/// As in OpenXR's specification.
+enum class HeadsetState {
+  Unknown,
+  Idle,
+  Ready,         ///< frames begin
+  Synchronized,  ///< frames run, but nothing is seen
+  Visible,       ///< pictures are seen, but there is no input from controllers and eyes
+  Focused,
+  Stopping,     ///< frames end: the headset was taken off, or the session is about to end
+  LossPending,  ///< the session must be made again
+  Exiting,      ///< the session must end, and no new one may start by itself
+};
+
+/// "focused".
+const char* name_of(HeadsetState state);
+
+struct HeadsetEvent {
+  enum class Kind {
+    State,        ///< `state` was entered
+    RuntimeEnds,  ///< the whole runtime shuts down at `at_ns`
+    Refresh,      ///< the display changed its rate, Hz
+    Recentred,    ///< the world's origin moves at `at_ns`
+    EventsLost,   ///< some events were dropped
+    Lost,         ///< the session is gone; no slots come until MadeAnew
+    MadeAnew,     ///< a new session replaces a lost one
+  };
+  Kind kind = Kind::State;
+  HeadsetState state = HeadsetState::Unknown;
+  double from_hz = 0, to_hz = 0;
+  std::int64_t at_ns = -1;  ///< the session's clock; -1: not reported
+};
+
+/// One ray for both eyes; it starts at `ray.place_m` and goes along direction_of(ray).
+struct HeadsetGaze {
+  /// When the eyes were sampled, on the session's clock; none if the runtime does not say.
+  std::optional<std::int64_t> sampled_ns;
+  HeadsetPose ray;  ///< orientation valid but not tracked: sub-nominal
+};
+
+/// Buttons and pointing. A button held on both hands counts once.
+struct HeadsetHands {
+  bool select = false;                            ///< pressed now
+  bool select_began = false;                      ///< pressed since the last reading
+  bool menu = false;                              ///< pressed now
+  std::array<float, 2> stick{};                   ///< right and up, [-1, 1]; 0 without a stick
+  std::array<std::optional<HeadsetPose>, 2> aim;  ///< left and right hand; along direction_of()
+};
+
+/// The participant's input: gaze, head pose, buttons and pointing.
+struct HeadsetInput {
+  HeadsetPose head;
+  bool focused = false;             ///< the following members are set only while focused
+  std::optional<HeadsetGaze> gaze;  ///< none: no tracker, or no data now
+  HeadsetHands hands;
+};
 
 struct HeadsetChoice {
   bool eye_gaze = false;                      ///< asks for eye tracking; only with the participant's consent

@@ -34,12 +34,6 @@ const Event& as(const XrEventDataBuffer& buffer) {
 
 }  // namespace
 
-const char* name_of(HeadsetState state) {
-  constexpr const char* names[] = {"unknown", "idle",     "ready",        "synchronized", "visible",
-                                   "focused", "stopping", "loss pending", "exiting"};
-  return names[static_cast<std::size_t>(state)];
-}
-
 Lifecycle::Lifecycle(const SessionHandle& session, RuntimeClock& clock) : session_(session), clock_(clock) {}
 
 void Lifecycle::enter(XrSessionState state, std::vector<HeadsetEvent>& out) {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/headset/events.hpp"
-#include "libstudy/headset/runtime_clock.hpp"
+#include "libstudy/headset/headset_session.hpp"
+#include "libstudy/headset/loader.hpp"
 #include "libstudy/headset/session_handle.hpp"
 
 namespace study {

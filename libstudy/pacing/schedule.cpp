@@ -4,12 +4,96 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "libstudy/pacing/exact_rates.hpp"
 #include "libstudy/pacing/frame_order.hpp"
-#include "libstudy/pacing/whole_nanoseconds.hpp"
+#include "stats/base/error.hpp"
 
 namespace study {
+
+namespace {
+
+constexpr double bound = 1e-6;
+
+/// Sums for both moments, so that changing one interval costs constant time.
+struct Sums {
+  long double time = 0, rate = 0, square = 0;
+
+  void add(std::int64_t interval_ns, int sign) {
+    const long double dt = 1e-9L * static_cast<long double>(interval_ns);
+    time += sign * dt;
+    rate += sign / dt;
+    square += sign / (dt * dt);
+  }
+
+  /// The larger of the two errors.
+  double error(std::size_t count, const FpsSetting& setting, FpsMean mean) const {
+    const auto n = static_cast<long double>(count);
+    const long double mean_rate = rate / n;
+    const long double realised = mean == FpsMean::Harmonic ? n / time : mean_rate;
+    const long double sd = std::sqrt(std::max(0.0L, square / n - mean_rate * mean_rate));
+    return static_cast<double>(std::max(std::abs(realised / setting.mean - 1),
+                                        std::abs(sd - setting.sd) / std::max(1.0, setting.sd)));
+  }
+};
+
+std::vector<std::int64_t> rounded_deadlines(const std::vector<double>& intervals_s) {
+  std::vector<std::int64_t> out;
+  long double time_s = 0;
+  std::int64_t last_ns = 0;
+  for (const double interval : intervals_s) {
+    time_s += interval;
+    const std::int64_t deadline_ns = std::llround(time_s * 1e9L);
+    out.push_back(deadline_ns - last_ns);
+    last_ns = deadline_ns;
+  }
+  return out;
+}
+
+/// One pass of coordinate descent over all intervals; returns the error after it.
+double descend(std::vector<std::int64_t>& intervals_ns, Sums& sums, double error, const FpsSetting& setting,
+               FpsMean mean) {
+  for (auto& interval : intervals_ns) {
+    for (const int step : {-1, 1}) {
+      Sums tried = sums;
+      tried.add(interval, -1);
+      tried.add(interval + step, 1);
+      const double tried_error = tried.error(intervals_ns.size(), setting, mean);
+      if (tried_error >= error) continue;
+      interval += step;
+      sums = tried;
+      error = tried_error;
+    }
+    if (error <= bound) break;
+  }
+  return error;
+}
+
+/// Rounds so that deadlines never drift by more than half a nanosecond, then moves single intervals by a
+/// nanosecond where that is needed for the mean (relative) and the standard deviation (of max(sd, 1 frame/s))
+/// to hold to 1e-6. A constant schedule stays constant. base::Error naming the setting when no such list is
+/// found.
+std::vector<std::int64_t> whole_nanoseconds(const std::vector<double>& intervals_s, const FpsSetting& setting,
+                                            FpsMean mean) {
+  if (setting.sd == 0)
+    return std::vector<std::int64_t>(intervals_s.size(), std::llround(intervals_s.front() * 1e9));
+  auto intervals_ns = rounded_deadlines(intervals_s);
+  Sums sums;
+  for (const auto interval : intervals_ns) sums.add(interval, 1);
+  double error = sums.error(intervals_ns.size(), setting, mean);
+  for (int pass = 0; pass < 8 && error > bound; ++pass)
+    error = descend(intervals_ns, sums, error, setting, mean);
+  if (error > bound) {
+    throw base::Error("setting " + setting_name(setting),
+                      "whole nanoseconds cannot hold its moments to 1e-6 over so few frames",
+                      "lengthen the trial");
+  }
+  return intervals_ns;
+}
+
+}  // namespace
 
 PacingRules for_display(PacingRules rules, double refresh_hz) {
   if (rules.fps_max_is_refresh && refresh_hz > 0) rules.fps_max = refresh_hz;

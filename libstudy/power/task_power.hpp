@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "libstudy/power/studies.hpp"
-#include "libstudy/power/task_counts.hpp"
 #include "libstudy/power/worlds.hpp"
 #include "stats/analysis/hypotheses.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Readers of the parts of a protocol file, one translation unit each. Errors as parse_protocol().
+/// Readers of the parts of a protocol file. Errors as parse_protocol().
 
 #include <string>
 #include <string_view>
@@ -27,19 +27,13 @@ std::string shown(double value);
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
 Design read_design(const base::TomlTable& table);
-/// Levels of the factor effects; empty if the design does not vary them.
-std::vector<EffectSet> read_effect_sets(const base::TomlTable& design);
 /// Every combination of the factors, ordered by scene, n_*, method, effects and moments.
 std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
                              const std::vector<EffectSet>& effects);
 /// A list of words without empty or repeated ones.
 std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key);
-HeadsetRules read_headset(const base::TomlTable& table);
-PacingRules read_pacing(const base::TomlTable& table, const Design& design);
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
                                ProtocolUse use);
-/// The steps of each trial of a block.
-std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs);
 /// Checks that gaze_question and sharing_question are asked in a form that the program can obey. tables: the
 /// blocks' TOML tables.
 void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);

@@ -17,6 +17,9 @@ using html::Table;
 using html::whole_page;
 
 /// "Preregistered" or "Exploratory": a word, never a colour alone.
-std::string badge(bool preregistered);
+inline std::string badge(bool preregistered) {
+  return preregistered ? "<span class=\"badge\">Preregistered</span>"
+                       : "<span class=\"badge exploratory\">Exploratory</span>";
+}
 
 }  // namespace study::report

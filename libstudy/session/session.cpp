@@ -1,16 +1,100 @@
 #include "libstudy/session/session.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 
 #include "libstudy/session/farewell.hpp"
-#include "libstudy/session/gaze_validation.hpp"
 #include "libstudy/session/recording.hpp"
+#include "libstudy/session/running.hpp"
 #include "libstudy/session/trial_player.hpp"
 #include "stats/base/error.hpp"
 
 namespace study {
 
 namespace {
+
+/// Time for a saccade and for the eyes to settle, then for the samples.
+constexpr double settle_s = 0.8, sample_s = 1;
+
+/// Targets on a grid from -1 to 1, the middle first, then neighbours: jumps between corners take longer.
+constexpr std::array<std::array<int, 2>, 9> grid{
+    {{0, 0}, {-1, 1}, {0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}}};
+
+class Targets {
+ public:
+  explicit Targets(GazeTargets& targets) : targets_(targets) { targets_.begin(); }
+  ~Targets() { targets_.end(); }
+  Targets(const Targets&) = delete;
+  Targets& operator=(const Targets&) = delete;
+
+ private:
+  GazeTargets& targets_;
+};
+
+std::vector<ValidatedPoint> look_at_all(const Running& run, const Block& block, const Check& check) {
+  const Targets shown(*run.parts.targets);
+  std::vector<ValidatedPoint> points;
+  for (const auto& [x, y] : grid) {
+    ValidatedPoint point;
+    point.azimuth_deg = x * block.extent_deg;
+    point.elevation_deg = y * block.extent_deg;
+    const auto samples =
+        run.parts.targets->look_at(point.azimuth_deg, point.elevation_deg, settle_s, sample_s, check);
+    point.clock_ns = run.now_ns() - static_cast<std::int64_t>(sample_s * 1e9);
+    const GazeQuality quality = gaze_quality(samples);
+    point.samples = quality.samples;
+    point.valid = quality.valid;
+    point.accuracy_deg = quality.accuracy_deg;
+    point.sd_deg = quality.sd_deg;
+    point.rms_s2s_deg = quality.rms_s2s_deg;
+    points.push_back(point);
+  }
+  return points;
+}
+
+/// None if a target had no valid sample.
+std::optional<double> mean_accuracy(const std::vector<ValidatedPoint>& points) {
+  double sum = 0;
+  for (const ValidatedPoint& point : points) {
+    if (!point.accuracy_deg) return {};
+    sum += *point.accuracy_deg;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+std::string in_degrees(const char* form, double value) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), form, value);
+  return text.data();
+}
+
+/// Shows the block's nine targets and stores the eye tracker's accuracy and precision at each. Repeats this,
+/// up to the block's number of tries, while the mean accuracy is beyond its bound or a target had no valid
+/// sample. Without a tracker or permission to record gaze, shows nothing and logs that. base::Error, with all
+/// tries stored and the unit open, if the last try fails too.
+void validate_gaze(const Running& run, const Block& block, const Check& check) {
+  Store& store = run.parts.store;
+  if (!run.parts.targets || !store.allows_gaze(run.session.id)) {
+    store.log(run.session.id, "gaze not validated",
+              run.parts.targets ? "recording gaze is not allowed" : "no eye tracker is read", run.now_ns());
+    return;
+  }
+  std::optional<double> mean;
+  for (int tries = 0; tries < block.count; ++tries) {
+    const auto points = look_at_all(run, block, check);
+    mean = mean_accuracy(points);
+    const bool passed = mean && (!block.max_accuracy_deg || *mean <= *block.max_accuracy_deg);
+    store.add_validation(run.session.id, points, passed);
+    if (passed) return;
+  }
+  throw base::Error("block " + block.id,
+                    mean ? in_degrees("the eye tracker is off by %.2f degrees in the mean, ", *mean) +
+                               in_degrees("more than the protocol's %.2f", block.max_accuracy_deg.value_or(0))
+                         : "the eye tracker does not see the eyes at every target",
+                    "calibrate it in the headset's software and continue with vip-study resume");
+}
 
 /// A running session.
 class SessionRun {
@@ -122,6 +206,45 @@ std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& s
   if (ending && hooks.ends) hooks.ends(*ending);
   if (ending) run.say_farewell(*ending);
   return ending;
+}
+
+namespace {
+
+/// Converts hold counts to nanoseconds without accumulating rounding errors.
+std::vector<std::int64_t> holds_ns(const std::vector<int>& holds, double refresh_hz) {
+  std::vector<std::int64_t> intervals;
+  std::int64_t periods = 0, before = 0;
+  for (const int hold : holds) {
+    periods += hold;
+    const std::int64_t now = std::llround(static_cast<double>(periods) * 1e9 / refresh_hz);
+    intervals.push_back(now - before);
+    before = now;
+  }
+  return intervals;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSetting& setting,
+                                          const Display& display, std::uint64_t schedule_seed) {
+  const double refresh_hz = display.refresh_hz();
+  const PacingRules rules = for_display(protocol.pacing, refresh_hz);
+  if (refresh_hz == 0) return compile_schedule(setting, rules, schedule_seed).intervals_ns;
+
+  const RefreshVerdict found = quantise(setting, rules, refresh_hz, schedule_seed);
+  const bool shown = found.feasibility == Feasibility::Exact ||
+                     (found.feasibility == Feasibility::Approximate && protocol.accept_approximate);
+  if (!shown) {
+    throw base::Error(protocol.name + " on " + display.description(),
+                      "setting " + setting_name(setting) + " cannot be shown: " + found.reason,
+                      "see vip-study check --refresh; use another display or accept_approximate = true");
+  }
+  return holds_ns(found.holds, display.measured_hz());
+}
+
+void check_settings(const Protocol& protocol, const Display& display) {
+  if (protocol.design.timing == TimingSource::Native) return;
+  for (const Cell& cell : protocol.design.cells) trial_intervals(protocol, cell.setting, display, 0);
 }
 
 }  // namespace study

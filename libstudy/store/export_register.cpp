@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "libstudy/store/export_labels.hpp"
-#include "libstudy/store/export_rows.hpp"
 #include "libstudy/store/file/beside.hpp"
 #include "libstudy/store/file/database.hpp"
 #include "libstudy/store/file/journal_file.hpp"

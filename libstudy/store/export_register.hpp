@@ -93,4 +93,17 @@ bool holds_withdrawn(sqlite::Connection& database);
 /// or not deletable; and once, missing ones, since they may have been moved.
 void delete_exports_of_withdrawn(sqlite::Connection& database, CleanUp& done);
 
+/// Rows of the table `export`, shared by the register and the deletion of exports.
+namespace export_rows {
+
+/// Kind of a folder made for registered files. It holds no people itself and is removed when it is empty.
+inline constexpr const char* folder_kind = "folder";
+
+/// Name of this computer; empty if it has none.
+std::string this_host();
+
+void strike_out(sqlite::Connection& database, std::int64_t id);
+
+}  // namespace export_rows
+
 }  // namespace study

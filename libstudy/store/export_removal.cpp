@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "libstudy/store/export_register.hpp"
-#include "libstudy/store/export_rows.hpp"
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/new_file.hpp"

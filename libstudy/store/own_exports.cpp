@@ -9,10 +9,9 @@
 #include <map>
 #include <sstream>
 
-#include "libstudy/store/export_rows.hpp"
+#include "libstudy/store/export_register.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/file_hash.hpp"
 #include "stats/base/json.hpp"
 #include "stats/base/new_file.hpp"
 

@@ -18,7 +18,7 @@ using sqlite::Transaction;
 
 namespace {
 
-std::int64_t schema_of(Connection& database) { return database.integer("PRAGMA user_version"); }
+std::int64_t schema_number(Connection& database) { return database.integer("PRAGMA user_version"); }
 
 /// The rows as one kept batch.
 std::string batch(const std::string& rows, std::int64_t number) {
@@ -67,7 +67,7 @@ void finish_withdrawals(Connection& database, const std::vector<std::string>& pe
     if (!row.bind_all(person).step()) continue;
     const std::string participant = row.text(0);
     row.reset();
-    bury(database, person, schema_of(database));
+    bury(database, person, schema_number(database));
     ChorePlan plan(database);
     plan.forget(person, participant);
     plan.rewrite();
@@ -81,7 +81,7 @@ Settled written_anew(Connection& database, std::set<std::string> gaze_deleted) {
 
 }  // namespace
 
-std::string head_for(Connection& database) { return journal_head(schema_of(database)); }
+std::string head_for(Connection& database) { return journal_head(schema_number(database)); }
 
 Comparison compare(Connection& database, const JournalRows& kept) {
   Comparison found;
@@ -103,7 +103,7 @@ Comparison compare(Connection& database, const JournalRows& kept) {
 }
 
 bool is_ahead(const Comparison& found, const JournalContent& content, Connection& database) {
-  const bool upgraded = content.schema > 0 && content.schema < schema_of(database);
+  const bool upgraded = content.schema > 0 && content.schema < schema_number(database);
   return found.lost > 0 || (found.different > 0 && !upgraded);
 }
 
@@ -134,7 +134,7 @@ Settled bring_together(Connection& database, JournalFile& file) {
   Transaction transaction(database);
   std::set<std::string> gaze_deleted = finish_what_was_begun(database, content);
   transaction.commit();
-  const bool upgraded = content.schema > 0 && content.schema < schema_of(database);
+  const bool upgraded = content.schema > 0 && content.schema < schema_number(database);
   if (anew || upgraded) return written_anew(database, std::move(gaze_deleted));
   if (!content.pending.empty()) {
     for (auto& [key, row] : content.pending) content.kept.insert_or_assign(key, std::move(row));

@@ -8,7 +8,6 @@
 #include "libstudy/store/file/database.hpp"
 #include "libstudy/store/names.hpp"
 #include "libstudy/store/settling.hpp"
-#include "libstudy/store/store_statements.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -18,6 +17,39 @@ namespace study {
 namespace fs = std::filesystem;
 using sqlite::Statement;
 using sqlite::Transaction;
+
+/// The prepared statements of a Store that run for every frame, showing or answer.
+struct Store::Statements {
+  explicit Statements(sqlite::Connection& database)
+      : frame(database,
+              "INSERT INTO frame VALUES "
+              "(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)"),
+        event(database,
+              "INSERT INTO event (session_id, presentation_id, utc, clock_ns, kind, detail) VALUES "
+              "(?,?,?,?,?,?)"),
+        begin(database,
+              "INSERT INTO presentation (trial_id, attempt, interval, cell, state, started_utc, start_ns, "
+              "framing_id, gaze_source) SELECT ?1, ?2, ?3, ?4, 'running', ?5, ?6, (SELECT max(f.framing_id) "
+              "FROM "
+              "trial t JOIN framing f USING (session_id) WHERE t.trial_id = ?1 AND "
+              "instr(' ' || f.cells || ' ', ' ' || ?4 || ' ')), coalesce(?7, (SELECT gaze_source FROM trial "
+              "JOIN session USING (session_id) WHERE trial_id = ?1))"),
+        end(database,
+            "UPDATE presentation SET state = 'played', end_ns = ?, verdict = ?, grade = ?, reason = ?, "
+            "frames = ?, mean_fps = ?, mean_arithmetic_fps = ?, sd_fps = ?, p95_ms = ?, longest_ms = ?, "
+            "shortest_ms = ?, lag1 = ?, late_frames = ?, worst_late_ms = ? WHERE presentation_id = ?"),
+        // Inserts no answer if the question is personal, the unit is done or of another session, or the
+        // question was answered since the trial was last set aside.
+        response(database,
+                 "INSERT INTO response (unit_id, attempt, question_id, score, words, response_time_s, "
+                 "answered_utc, input) SELECT u.unit_id, ?3, q.question_id, ?5, ?6, ?7, ?8, ?9 "
+                 "FROM unit u JOIN session s USING (session_id) JOIN question q USING (protocol_id) "
+                 "LEFT JOIN trial t USING (trial_id) WHERE s.session_id = ?1 AND u.unit_id = ?2 "
+                 "AND q.code = ?4 AND q.personal = 0 AND u.state = 'planned' AND NOT EXISTS "
+                 "(SELECT 1 FROM response r WHERE r.unit_id = u.unit_id AND r.question_id = q.question_id "
+                 "AND r.attempt > coalesce(t.set_aside, -1)) RETURNING response_id") {}
+  sqlite::Statement frame, event, begin, end, response;
+};
 
 namespace {
 
@@ -36,6 +68,31 @@ std::optional<std::string> input_name(const std::optional<AnswerInput>& input) {
 std::optional<std::string> words_of(const Answer& answer) {
   if (answer.words.empty()) return {};
   return answer.words;
+}
+
+/// A time relative to another; none if it is not known.
+std::optional<std::int64_t> after(std::int64_t time_ns, std::int64_t origin_ns) {
+  if (time_ns < 0) return {};
+  return time_ns - origin_ns;
+}
+
+std::optional<std::string> particles_text(const std::vector<std::int64_t>& particles) {
+  if (particles.empty()) return {};
+  std::string text;
+  for (const auto count : particles) text += (text.empty() ? "" : " ") + std::to_string(count);
+  return text;
+}
+
+/// A member of an optional part of a frame; none if the frame lacks the part.
+template <class Part, class Value>
+std::optional<Value> part(const std::optional<Part>& whole, Value Part::*member) {
+  if (!whole) return {};
+  return (*whole).*member;
+}
+template <class Part, class Value>
+std::optional<Value> part(const std::optional<Part>& whole, std::optional<Value> Part::*member) {
+  if (!whole) return {};
+  return (*whole).*member;
 }
 
 }  // namespace
@@ -249,6 +306,38 @@ void Store::log(std::optional<std::int64_t> session, const std::string& kind, co
                 std::optional<std::int64_t> clock_ns) {
   Transaction transaction(*database_);
   insert_event(session, {}, kind, detail, clock_ns);
+  commit(transaction);
+}
+
+void Store::insert_frames(std::int64_t presentation, std::int64_t start_ns,
+                          std::span<const FrameRecord> frames) {
+  Statement& insert = statements_->frame;
+  for (const FrameRecord& frame : frames) {
+    const std::int64_t due = frame.scheduled_ns;
+    const FrameFacts& facts = frame.facts;
+    insert
+        .bind_all(
+            presentation, frame.index, frame.content_step, facts.simulation_time_s, due - start_ns,
+            after(frame.times.submitted_ns, due), after(frame.times.gpu_done_ns, due),
+            after(frame.times.predicted_display_ns, due), after(frame.times.actual_display_ns, due),
+            frame.late ? 1 : 0, particles_text(facts.particles_by_level),
+            part(facts.tolerance, &FrameTolerance::active_fraction),
+            part(facts.tolerance, &FrameTolerance::tau_fps), part(facts.tolerance, &FrameTolerance::beta),
+            part(facts.tolerance, &FrameTolerance::mu_fps), part(facts.tolerance, &FrameTolerance::delta_fps),
+            part(facts.guards, &FrameGuards::speed_limited),
+            part(facts.guards, &FrameGuards::coincident_pairs), part(facts.guards, &FrameGuards::not_finite),
+            part(facts.guards, &FrameGuards::neighbours_dropped),
+            part(facts.guards, &FrameGuards::wall_projected), part(facts.guards, &FrameGuards::nozzle_waited),
+            part(facts.guards, &FrameGuards::saliency_not_finite),
+            part(facts.guards, &FrameGuards::gaze_lost))
+        .run();
+  }
+}
+
+void Store::add_frames(std::int64_t presentation, std::int64_t start_ns,
+                       std::span<const FrameRecord> frames) {
+  Transaction transaction(*database_);
+  insert_frames(presentation, start_ns, frames);
   commit(transaction);
 }
 

@@ -21,7 +21,7 @@ using sqlite::Statement;
 namespace {
 
 /// The person with a code; none if the code was never used. A code belongs to one person.
-std::optional<std::string> person_of(Connection& database, const std::string& participant) {
+std::optional<std::string> known_person(Connection& database, const std::string& participant) {
   Statement row(database,
                 "SELECT person FROM session WHERE participant = ?1 UNION "
                 "SELECT person FROM tombstone WHERE participant = ?1");
@@ -70,7 +70,7 @@ std::vector<std::string> requested_withdrawals(const StudyFile& study) {
 
 Withdrawal withdraw(Connection& database, const std::string& participant) {
   database.execute("PRAGMA temp_store = MEMORY");
-  const auto person = person_of(database, participant);
+  const auto person = known_person(database, participant);
   if (!person) {
     { const AnswerJournal compared(database); }
     clean_up(database);  // of other people

@@ -1,4 +1,5 @@
-/// Store: writes permissions of participants, and gaze if it is allowed.
+/// Store: writes permissions of participants, gaze if it is allowed, and the facts and recordings of a
+/// headset.
 #include <array>
 #include <tuple>
 
@@ -67,6 +68,97 @@ void Store::answer_over_change(std::int64_t session, const std::string& question
     record_permission(*database_, session, what, allowed, now);
   }
   delete_refused_gaze(*database_);
+}
+
+namespace {
+
+void insert_head(Statement& insert, std::int64_t presentation, std::int64_t slot, const HeadPose& head) {
+  std::array<std::optional<double>, 3> place;
+  std::array<std::optional<double>, 4> turn;
+  for (std::size_t k = 0; head.place_valid && k < place.size(); ++k) place[k] = head.place_m[k];
+  for (std::size_t k = 0; head.turn_valid && k < turn.size(); ++k) turn[k] = head.turn[k];
+  insert
+      .bind_all(presentation, slot, place[0], place[1], place[2], turn[0], turn[1], turn[2], turn[3],
+                head.place_valid && head.place_tracked ? 1 : 0, head.turn_valid && head.turn_tracked ? 1 : 0)
+      .run();
+}
+
+}  // namespace
+
+/// Inserts a row unless the session's last row is equal.
+void Store::add_headset(std::int64_t session, const HeadsetFacts& headset) {
+  const auto& [left, right] = headset.eyes;
+  Transaction transaction(*database_);
+  Statement(*database_,
+            "INSERT INTO headset SELECT NULL, v.* FROM (SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
+            "?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24) v WHERE NOT EXISTS (SELECT 1 "
+            "FROM headset WHERE headset_id = (SELECT max(headset_id) FROM headset WHERE session_id = ?1) AND "
+            "(runtime, runtime_version, headset, left_width_px, left_height_px, right_width_px, "
+            "right_height_px, format, refresh_told_hz, hold, blend, times_convert, position_tracking, "
+            "eye_tracking) IS (?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?20, ?21, ?22, ?23, ?24))")
+      .bind_all(session, headset.runtime, headset.runtime_version, headset.headset, left.width_px,
+                left.height_px, right.width_px, right.height_px, headset.format, headset.refresh_told_hz,
+                headset.refresh_measured_hz, left.left_deg, left.right_deg, left.up_deg, left.down_deg,
+                right.left_deg, right.right_deg, right.up_deg, right.down_deg, headset.hold, headset.blend,
+                headset.times_convert ? 1 : 0, headset.position_tracking ? 1 : 0,
+                headset.eye_tracking ? 1 : 0)
+      .run();
+  commit(transaction);
+}
+
+void Store::add_ipd(std::int64_t session, std::int64_t clock_ns, double ipd_mm) {
+  Transaction transaction(*database_);
+  Statement(
+      *database_,
+      "INSERT INTO ipd (session_id, clock_ns, ipd_mm) SELECT ?1, ?2, ?3 WHERE NOT EXISTS (SELECT 1 FROM "
+      "ipd WHERE ipd_id = (SELECT max(ipd_id) FROM ipd WHERE session_id = ?1) AND "
+      "abs(ipd_mm - ?3) <= ?4)")
+      .bind_all(session, clock_ns, ipd_mm, ipd_change_mm)
+      .run();
+  commit(transaction);
+}
+
+void Store::add_slots(std::int64_t presentation, std::int64_t start_ns, std::span<const ShownSlot> slots) {
+  Transaction transaction(*database_);
+  Statement next(*database_, "SELECT coalesce(max(slot_index) + 1, 0) FROM slot WHERE presentation_id = ?");
+  next.bind_all(presentation).step();
+  std::int64_t index = next.integer(0);
+  next.reset();
+  bool asked = false;
+  Statement insert(*database_, "INSERT INTO slot VALUES (?,?,?,?,?,?)");
+  Statement head(*database_, "INSERT INTO head VALUES (?,?,?,?,?,?,?,?,?,?,?)");
+  for (const ShownSlot& shown : slots) {
+    const SlotRecord& slot = shown.slot;
+    insert
+        .bind_all(presentation, index, slot.predicted_ns - start_ns, slot.period_ns,
+                  slot.should_render ? 1 : 0, shown.frame)
+        .run();
+    if (slot.head && !asked) require_gaze_allowed(session_of(presentation));
+    asked = asked || slot.head;
+    if (slot.head) insert_head(head, presentation, index, *slot.head);
+    ++index;
+  }
+  commit(transaction);
+}
+
+void Store::add_validation(std::int64_t session, std::span<const ValidatedPoint> points, bool passed) {
+  Transaction transaction(*database_);
+  require_gaze_allowed(session);
+  Statement next(*database_,
+                 "SELECT coalesce(max(validation) + 1, 1) FROM gaze_validation WHERE session_id = ?");
+  next.bind_all(session).step();
+  const std::int64_t validation = next.integer(0);
+  next.reset();
+  Statement insert(*database_, "INSERT INTO gaze_validation VALUES (?,?,?,?,?,?,?,?,?,?,?,?)");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ValidatedPoint& point = points[i];
+    insert
+        .bind_all(session, validation, static_cast<std::int64_t>(i), point.clock_ns, point.azimuth_deg,
+                  point.elevation_deg, point.samples, point.valid, point.accuracy_deg, point.sd_deg,
+                  point.rms_s2s_deg, passed ? 1 : 0)
+        .run();
+  }
+  commit(transaction);
 }
 
 }  // namespace study

@@ -1,13 +1,26 @@
 #pragma once
-/// Results of one cell of a sweep: the state of the water over time, and the time of each frame.
+/// Results of one cell of a sweep: the state of the water over time, the time of each frame, and pictures.
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "libstudy/sweep/kept_picture.hpp"
-
 namespace study {
+
+/// A picture that the cell stores, to be compared when a table is made.
+struct KeptPicture {
+  double time_s = 0;  ///< since the gate opened
+  std::string png;
+  /// Masks for comparison, packed by to_bits(); only the reference has them, on the first picture of each
+  /// pair.
+  std::string fovea = {}, salient = {};
+};
+
+/// Packs a byte mask (0 or not) into one bit per pixel, lowest bit first.
+std::string to_bits(const std::vector<std::uint8_t>& mask);
+/// One byte per pixel, 1 or 0; empty if there are fewer bits than pixels.
+std::vector<std::uint8_t> from_bits(const std::string& bits, std::size_t pixels);
 
 /// The water at one instant. Energies are per kilogram, J/kg.
 struct WaterSample {

@@ -12,7 +12,7 @@ namespace stats {
 
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_p = std::numeric_limits<double>::quiet_NaN();
 
 std::string count_text(int part, std::size_t whole) {
   return std::to_string(part) + " of " + std::to_string(whole);
@@ -20,7 +20,7 @@ std::string count_text(int part, std::size_t whole) {
 
 void correct(Hypothesis& out, const std::vector<FamilyTest>& tests) {
   std::vector<double> p;
-  for (const FamilyTest& one : tests) p.push_back(one.test.p.value_or(missing));
+  for (const FamilyTest& one : tests) p.push_back(one.test.p.value_or(no_p));
   const auto holm = adjust(p, Adjustment::Holm, p.size());
   const bool by_holm = out.decision == DecisionRule::Holm;
   if (holm) out.p_claim = 0;
@@ -172,7 +172,7 @@ void correct_over_claims(std::span<Hypothesis> claims) {
   constexpr std::size_t h1_to_h6 = 6;
   std::vector<double> p;
   for (const Hypothesis& one : claims)
-    p.push_back(one.status == HypothesisStatus::NotTestable ? missing : one.p_claim.value_or(missing));
+    p.push_back(one.status == HypothesisStatus::NotTestable ? no_p : one.p_claim.value_or(no_p));
   const auto holm = adjust(p, Adjustment::Holm, h1_to_h6);
   for (std::size_t i = 0; holm && i < p.size(); ++i) {
     if (!std::isnan(p[i])) claims[i].p_claim_of_six = holm->p[i];
@@ -182,7 +182,7 @@ void correct_over_claims(std::span<Hypothesis> claims) {
 std::vector<std::optional<double>> holm_over_pairs(
     std::span<const PairPreference> pairs, const std::vector<std::string>& methods,
     const std::function<bool(const std::string&, const std::string&)>& chosen) {
-  std::vector<double> p(pairs.size(), missing);
+  std::vector<double> p(pairs.size(), no_p);
   std::size_t family = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!chosen(methods[static_cast<std::size_t>(pairs[i].a)], methods[static_cast<std::size_t>(pairs[i].b)]))

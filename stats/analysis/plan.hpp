@@ -20,7 +20,7 @@ enum class TimingRule { None, Fail, Degraded };
 enum class RepeatedPairs {
   Refuse,
   Warn,   ///< run the binomial test with a warning
-  Share,  ///< test each person's share over people (share_test.hpp)
+  Share,  ///< test each person's share over people (share_test() of task2.hpp)
   First   ///< use only each person's first answer
 };
 

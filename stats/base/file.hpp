@@ -37,4 +37,7 @@ std::string version();
 /// Now in UTC as ISO 8601 with seconds, e.g. "2026-01-31T12:00:00Z".
 std::string utc_now();
 
+/// SHA-256 of a file's bytes as 64 hexadecimal digits, read part by part. base::Error when it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& path);
+
 }  // namespace base

@@ -1,5 +1,5 @@
 #pragma once
-/// Includes toml++; only for toml.cpp, the files behind it, and their tests. Version 3.3 asserts properties
+/// Includes toml++; only for toml.cpp and its tests. Version 3.3 asserts properties
 /// that malformed documents violate ("here begins a key"); with assertions disabled it goes on to report a
 /// proper error. So they are disabled here: enabled, they would end the program, and as assumptions for the
 /// compiler (clang) they would be undefined behaviour.

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "stats/inference/tails.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/quantiles.hpp"
 
 namespace stats {

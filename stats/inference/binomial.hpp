@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "stats/inference/alternative.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/result.hpp"
 
 namespace stats {

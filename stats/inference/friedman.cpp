@@ -4,10 +4,9 @@
 #include <functional>
 #include <limits>
 
-#include "stats/inference/complete_rows.hpp"
 #include "stats/inference/distributions.hpp"
 #include "stats/inference/ranks.hpp"
-#include "stats/inference/tails.hpp"
+#include "stats/inference/sample.hpp"
 
 namespace stats {
 

@@ -14,7 +14,6 @@
 #include "stats/gsl_errors.hpp"
 #include "stats/inference/binomial.hpp"
 #include "stats/inference/distributions.hpp"
-#include "stats/inference/tails.hpp"
 #include "stats/quantiles.hpp"
 #include "stats/root.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "stats/inference/alternative.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/result.hpp"
 
 namespace stats {

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stats/inference/complete_rows.hpp"
 #include "stats/inference/describe.hpp"
 #include "stats/inference/distributions.hpp"
+#include "stats/inference/sample.hpp"
 #include "stats/root.hpp"
 
 namespace stats {
@@ -21,7 +21,7 @@ double fisher_upper_quantile(double p, double df1, double df2) {
   return find_root(beyond, 0, high);
 }
 
-double variance_of(std::span<const double> values) {
+double sample_variance(std::span<const double> values) {
   const double sd = describe(values)->sd.value_or(0);
   return sd * sd;
 }
@@ -42,9 +42,9 @@ Result<CronbachAlpha> cronbach_alpha(std::span<const double> rows, int items, do
   for (int item = 0; item < items; ++item) {
     std::vector<double> column;
     for (int i = 0; i < table.n; ++i) column.push_back(table.row(i)[static_cast<std::size_t>(item)]);
-    of_items += variance_of(column);
+    of_items += sample_variance(column);
   }
-  const double of_sums = variance_of(sums);
+  const double of_sums = sample_variance(sums);
   if (of_sums <= 0) return Refusal{"the sums of the items do not differ"};
   CronbachAlpha out{items, table.n, table.n_missing, 0, {}};
   out.alpha = items / (items - 1.0) * (1 - of_items / of_sums);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "stats/inference/complete_rows.hpp"
 #include "stats/inference/distributions.hpp"
+#include "stats/inference/sample.hpp"
 
 namespace stats {
 

@@ -12,7 +12,7 @@
 #include <optional>
 #include <span>
 
-#include "stats/inference/alternative.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/result.hpp"
 
 namespace stats {

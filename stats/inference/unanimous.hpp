@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "stats/inference/alternative.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/inference/exact_mean.hpp"
 
 namespace stats {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/ordinal/link.hpp"
+#include "stats/ordinal/cumulative_link.hpp"
 
 namespace stats {
 

@@ -8,9 +8,7 @@
 
 #include "stats/cholesky.hpp"
 #include "stats/inference/distributions.hpp"
-#include "stats/inference/tails.hpp"
 #include "stats/preference/logit_fit.hpp"
-#include "stats/preference/people_errors.hpp"
 
 namespace stats {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "stats/preference/trials.hpp"
+#include "stats/preference/logit_fit.hpp"
 #include "stats/result.hpp"
 
 namespace stats {
@@ -56,7 +56,7 @@ struct BradleyTerry {
   std::vector<std::array<double, 2>> ci_sum0;  ///< Wald
   std::vector<double> se_sum0_independent;     ///< as if answers were independent
   std::vector<double> worth;                   ///< exp(lambda), sum 1
-  /// Degrees of freedom of errors over people (people_errors.hpp). Empty if errors treat answers as
+  /// Degrees of freedom of errors over people (people_errors()). Empty if errors treat answers as
   /// independent.
   std::optional<double> people_df;
   std::string why_independent;  ///< for single trials: why errors are not over people

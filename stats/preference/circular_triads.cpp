@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "stats/inference/tails.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/quantiles.hpp"
 
 namespace stats {

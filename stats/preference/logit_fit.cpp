@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <stdexcept>
 
 #include "stats/gsl_errors.hpp"
-#include "stats/inference/tails.hpp"
+#include "stats/inference/distributions.hpp"
+#include "stats/quantiles.hpp"
 
 namespace stats {
 
@@ -162,6 +165,91 @@ Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias) {
     }
   }
   return Refusal{"the fit did not converge"};
+}
+
+void check_trials(std::span<const Comparison> trials, int items) {
+  const auto outside = [items](int item) { return item < 0 || item >= items; };
+  for (const auto& t : trials) {
+    if (outside(t.first) || outside(t.second) || t.first == t.second || !std::isfinite(t.position))
+      throw std::invalid_argument("a comparison of items outside the list, or without a position");
+  }
+}
+
+std::vector<double> win_table(std::span<const Comparison> trials, int items) {
+  const auto n = static_cast<std::size_t>(items);
+  std::vector<double> wins(n * n, 0.0);
+  for (const auto& t : trials) {
+    const int winner = t.first_chosen ? t.first : t.second, loser = t.first_chosen ? t.second : t.first;
+    wins[static_cast<std::size_t>(winner) * n + static_cast<std::size_t>(loser)] += 1;
+  }
+  return wins;
+}
+
+std::vector<LogitRow> trial_rows(std::span<const Comparison> trials, int items, std::size_t terms) {
+  std::vector<LogitRow> rows;
+  for (const auto& t : trials) {
+    LogitRow row{std::vector<double>(static_cast<std::size_t>(items - 1) + terms, 0.0),
+                 t.first_chosen ? 1.0 : 0.0, 1};
+    if (t.first > 0) row.design[static_cast<std::size_t>(t.first - 1)] = 1;
+    if (t.second > 0) row.design[static_cast<std::size_t>(t.second - 1)] = -1;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+namespace {
+
+using Values = std::vector<double>;
+
+/// Each person's score (gradient of the log-likelihood).
+std::map<int, Values> scores_of_people(const LogitFit& fit, std::span<const LogitRow> rows,
+                                       std::span<const Comparison> trials) {
+  const std::size_t k = fit.coefficients.size();
+  std::map<int, Values> people;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    double predictor = 0;
+    for (std::size_t j = 0; j < k; ++j) predictor += rows[r].design[j] * fit.coefficients[j];
+    const double residual = rows[r].successes - rows[r].trials / (1 + std::exp(-predictor));
+    Values& score = people.try_emplace(trials[r].participant, k, 0.0).first->second;
+    for (std::size_t j = 0; j < k; ++j) score[j] += residual * rows[r].design[j];
+  }
+  return people;
+}
+
+}  // namespace
+
+double CoefficientErrors::quantile(double confidence) const {
+  return df ? student_upper_quantile(0.5 - confidence / 2, *df) : normal_quantile(0.5 + confidence / 2);
+}
+
+double CoefficientErrors::p(double t) const {
+  return df ? student_p(t, *df, Alternative::TwoSided) : normal_two_sided(t);
+}
+
+CoefficientErrors independent_errors(const LogitFit& fit) { return {fit.covariance, {}}; }
+
+Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const LogitRow> rows,
+                                        std::span<const Comparison> trials) {
+  const std::size_t k = fit.coefficients.size();
+  const auto people = scores_of_people(fit, rows, trials);
+  if (people.size() <= k)
+    return Refusal{std::to_string(people.size()) + (people.size() == 1 ? " person is" : " people are") +
+                   " too few for errors over people of " + std::to_string(k) + " coefficients"};
+  const auto n = static_cast<double>(people.size());
+  CoefficientErrors out{Values(k * k, 0.0), n - 1};
+  for (const auto& [person, score] : people) {
+    Values step(k, 0.0);  // how far this person's answers move the coefficients
+    for (std::size_t i = 0; i < k; ++i)
+      for (std::size_t j = 0; j < k; ++j) step[i] += fit.variance(i, j) * score[j];
+    for (std::size_t i = 0; i < k; ++i)
+      for (std::size_t j = 0; j < k; ++j) out.covariance[i * k + j] += step[i] * step[j] * n / (n - 1);
+  }
+  // If all people answer alike, only rounding remains compared with the errors of independent answers.
+  for (std::size_t i = 0; i < k; ++i) {
+    if (!(out.covariance[i * k + i] > 1e-10 * fit.variance(i, i)))
+      return Refusal{"the participants answered too much alike for errors over people"};
+  }
+  return out;
 }
 
 }  // namespace stats

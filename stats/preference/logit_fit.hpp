@@ -1,8 +1,11 @@
 #pragma once
-/// Logistic regression on small tables, used by the preference models.
+/// Logistic regression on small tables, used by the preference models: the fit, single trials of paired
+/// comparisons as its rows, and errors that allow for dependence between the answers of one person.
 
 #include <cmath>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "stats/result.hpp"
@@ -34,5 +37,43 @@ enum class LogitBias {
 /// Newton's method with step halving. All rows have the same number of coefficients, one or more. Refused:
 /// coefficients that the rows do not determine, separation (LogitBias::AsIs), no convergence.
 Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias = LogitBias::AsIs);
+
+/// One 2AFC trial.
+struct Comparison {
+  int first = 0, second = 0;  ///< items shown in the first and the second interval, from 0
+  bool first_chosen = false;
+  double position = 0;  ///< position of the trial in its session, 1, 2, 3 ...; any unit
+  int participant = 0;  ///< any number; equal numbers are one participant
+};
+
+/// std::invalid_argument for an item outside [0, items), equal items, or a position that is not finite.
+void check_trials(std::span<const Comparison> trials, int items);
+
+/// Counts of wins: items by items, row after row, as bradley_terry() takes them.
+std::vector<double> win_table(std::span<const Comparison> trials, int items);
+
+/// One row for each trial: the strengths of all items but the first, then `terms` columns of zeros for
+/// further terms.
+std::vector<LogitRow> trial_rows(std::span<const Comparison> trials, int items, std::size_t terms = 0);
+
+/// A covariance of coefficients and the distribution that goes with its errors.
+struct CoefficientErrors {
+  std::vector<double> covariance;  ///< coefficients by coefficients, row after row
+  std::optional<double> df;        ///< Student's t; empty: normal
+
+  double variance(std::size_t i, std::size_t j, std::size_t size) const { return covariance[i * size + j]; }
+  double quantile(double confidence) const;  ///< two-sided
+  double p(double t) const;                  ///< two-sided
+};
+
+/// Errors as if answers were independent: the inverse information.
+CoefficientErrors independent_errors(const LogitFit& fit);
+
+/// The sandwich estimator with each person's answers as a cluster (Liang and Zeger 1986), times people /
+/// (people - 1), with Student's t of people - 1 degrees of freedom. `rows` as they were fitted, one for each
+/// of `trials`. Refused: no more people than coefficients, since their answers then do not span the
+/// coefficients; people whose answers leave a coefficient without error.
+Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const LogitRow> rows,
+                                        std::span<const Comparison> trials);
 
 }  // namespace stats

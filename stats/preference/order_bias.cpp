@@ -7,10 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "stats/inference/tails.hpp"
+#include "stats/inference/distributions.hpp"
 #include "stats/preference/bradley_terry.hpp"
 #include "stats/preference/logit_fit.hpp"
-#include "stats/preference/people_errors.hpp"
 
 namespace stats {
 

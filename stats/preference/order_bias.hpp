@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "stats/preference/trials.hpp"
+#include "stats/preference/logit_fit.hpp"
 #include "stats/result.hpp"
 
 namespace stats {

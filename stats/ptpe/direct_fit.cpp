@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "stats/ptpe/small_cholesky.hpp"
+#include "stats/ptpe/term_sums.hpp"
 
 namespace stats {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "stats/ptpe/small_cholesky.hpp"
+#include "stats/ptpe/term_sums.hpp"
 #include "stats/quantiles.hpp"
 #include "stats/root.hpp"
 

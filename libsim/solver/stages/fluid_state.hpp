@@ -1,12 +1,15 @@
 #pragma once
 /// All state that stages may access.
 
+#include <array>
+#include <chrono>
 #include <limits>
+#include <vector>
 
 #include "libsim/activation/activation.hpp"
-#include "libsim/flow/heat_ledger.hpp"
-#include "libsim/flow/jets.hpp"
-#include "libsim/flow/outflow.hpp"
+#include "libsim/exec/ordered_sum.hpp"
+#include "libsim/exec/space.hpp"
+#include "libsim/flow/flow.hpp"
 #include "libsim/foam/foam_pool.hpp"
 #include "libsim/impulse/impulse_recorder.hpp"
 #include "libsim/levels/level_state.hpp"
@@ -14,12 +17,9 @@
 #include "libsim/particles/kernels.hpp"
 #include "libsim/particles/walls.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
-#include "libsim/pressure/waterline.hpp"
 #include "libsim/saliency/saliency.hpp"
 #include "libsim/scene/effects.hpp"
-#include "libsim/solver/stages/conjugate_gradient.hpp"
 #include "libsim/solver/stages/obstacle_state.hpp"
-#include "libsim/solver/stages/part_clock.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -79,6 +79,95 @@ struct Brake {
     taken.add(mass_units_of(h, finest_support), v);
     witness.guards->braked.add_at_once(taken);
   }
+};
+
+// State of the conjugate gradients between passes (libsim/solver/effects).
+
+/// Scalars of a step, on the device: the host decides nothing.
+struct ConjugateStep {
+  float rest;   ///< r r
+  float along;  ///< step length of x along p
+  float turn;   ///< factor of p in the next direction
+};
+
+/// Empty until the first solve.
+struct ConjugateGradient {
+  OrderedSum sum;
+  Array<ConjugateStep> step;
+};
+
+/// alpha = r r / p A p, or 0 if p A p is 0.
+struct TakeAlong {
+  ConjugateStep* step;
+  SIM_FN void operator()(float bent) const { step->along = bent > 0 ? step->rest / bent : 0; }
+};
+/// beta = new r r / old r r, or 0 if the old r r is 0.
+struct TakeTurn {
+  ConjugateStep* step;
+  SIM_FN void operator()(float rest) const {
+    step->turn = step->rest > 0 ? rest / step->rest : 0;
+    step->rest = rest;
+  }
+};
+
+// Timers for the parts of a frame, and for its passes.
+
+/// The parts of the paper's Table 2 to which stages are assigned.
+enum class Part { Saliency, Levels, Activation, Solve, count };
+
+/// Off until switched on. Waits for the device between parts.
+class PartClock {
+ public:
+  void switch_on() { on_ = true; }
+  void start_frame() { seconds_.fill(0); }
+  void enter(Part part) {
+    if (!on_ || part == running_) return;
+    synchronize();
+    const auto now = std::chrono::steady_clock::now();
+    if (running_ != Part::count) {
+      seconds_[static_cast<std::size_t>(running_)] += std::chrono::duration<double>(now - since_).count();
+    }
+    running_ = part;
+    since_ = now;
+  }
+  void end_frame() { enter(Part::count); }
+
+  /// In the last frame.
+  double milliseconds(Part part) const { return 1e3 * seconds_[static_cast<std::size_t>(part)]; }
+
+ private:
+  bool on_ = false;
+  Part running_ = Part::count;
+  std::chrono::steady_clock::time_point since_;
+  std::array<double, static_cast<std::size_t>(Part::count)> seconds_{};
+};
+
+/// The same for each pass of a schedule, by its index.
+class PassClock {
+ public:
+  /// Discards earlier measurements. 0 passes: off.
+  void measure(std::size_t passes) {
+    seconds_.assign(passes, 0);
+    running_ = passes;
+  }
+  void start_frame() { seconds_.assign(seconds_.size(), 0); }
+  void enter(std::size_t pass) {
+    if (seconds_.empty()) return;
+    synchronize();
+    const auto now = std::chrono::steady_clock::now();
+    if (running_ < seconds_.size()) seconds_[running_] += std::chrono::duration<double>(now - since_).count();
+    running_ = pass;
+    since_ = now;
+  }
+  void end_frame() { enter(seconds_.size()); }
+
+  /// In the last frame; 0 while off.
+  double milliseconds(std::size_t pass) const { return seconds_.empty() ? 0 : 1e3 * seconds_[pass]; }
+
+ private:
+  std::size_t running_ = 0;
+  std::chrono::steady_clock::time_point since_;
+  std::vector<double> seconds_;
 };
 
 /// The fluid between two passes. Particle arrays are in the grid's order of the last substep.

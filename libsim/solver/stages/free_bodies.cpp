@@ -1,6 +1,7 @@
-/// Obstacles moved by water and gravity.
+/// Obstacles moved by water and gravity, and those that meet others.
 
-#include "libsim/particles/body_drive.hpp"
+#include "libsim/particles/free_body.hpp"
+#include "libsim/particles/meeting.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -133,6 +134,37 @@ Stage bodies_pushed_stage() {
                          .source = "what the water gives them, less the added mass",
                          .phase = Phase::SubstepEnd,
                          .called_for = if_free});
+}
+
+namespace {
+
+void meet(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
+  auto& o = state.obstacles;
+  const Meeting meeting{.bodies = o.bodies.data(),
+                        .free = o.free.data(),
+                        .meshes = o.meshes.data(),
+                        .friction = o.friction.data(),
+                        .by_others = o.by_others.data(),
+                        .walls = state.walls,
+                        .drive = body_drive(state),
+                        .spacing = state.finest_support / 2,
+                        .count = o.count(),
+                        .feelers = o.feelers,
+                        .rough = o.rough};
+  constexpr int threads = 256;
+  in_one_block("meet bodies", threads, meeting.bytes(), o.meeting_room, meeting);
+}
+
+}  // namespace
+
+Stage bodies_meet_stage() {
+  return stage_of<meet>({.name = "bodies meet",
+                         .source = "Newton's and Euler's laws, inelastic contact, Coulomb's friction",
+                         .phase = Phase::Substep,
+                         .called_for = [](const Demand& demand) -> std::string {
+                           return demand.obstacles_meet ? "a free obstacle may meet another, or has friction"
+                                                        : "";
+                         }});
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -1,6 +1,6 @@
 #pragma once
 /// Descriptive and exploratory results of a part (docs/report.md: distributions, response_times,
-/// reliability, by_n_star, detectable).
+/// reliability, by_n_star, detectable, retest).
 
 #include <vector>
 
@@ -36,5 +36,10 @@ Json detectable_scores_json(const std::vector<stats::ScoreTable>& tables,
                             const std::vector<stats::ScoreAnalysis>& analyses,
                             const stats::AnalysisPlan& plan);
 Json detectable_preference_json(const stats::PreferenceAnalysis& analysis, const stats::AnalysisPlan& plan);
+
+/// Task 1: a list with one entry for each question asked about repeated showings; empty without repeats.
+Json rating_retest_json(const TaskData& data);
+/// Task 2: number of pairs and share of equal choices; null without repeats.
+Json choice_retest_json(const TaskData& data);
 
 }  // namespace study

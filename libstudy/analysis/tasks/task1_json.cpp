@@ -5,7 +5,6 @@
 #include "libstudy/analysis/tasks/exploration_json.hpp"
 #include "libstudy/analysis/tasks/factors_json.hpp"
 #include "libstudy/analysis/tasks/missing_json.hpp"
-#include "libstudy/analysis/tasks/retest.hpp"
 
 namespace study {
 

@@ -7,7 +7,6 @@
 
 #include "libstudy/analysis/tasks/exploration_json.hpp"
 #include "libstudy/analysis/tasks/factors_json.hpp"
-#include "libstudy/analysis/tasks/retest.hpp"
 #include "stats/analysis/hypotheses.hpp"
 
 namespace study {

@@ -1,8 +1,9 @@
 #pragma once
-/// The screens between stimuli: pages, pauses and the stop dialog. One instance per session.
+/// The screens between stimuli: pages, pauses and the stop dialog, and the person who answers on them.
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,11 +12,13 @@
 #include "libstudy/pages/gui/page_surface.hpp"
 #include "libstudy/pages/gui/page_view.hpp"
 #include "libstudy/pages/words.hpp"
+#include "libstudy/session/participant.hpp"
 #include "libstudy/session/session.hpp"
 
 namespace study {
 
-/// All calls on the surface's thread. `clock` is the session's; surface and clock must outlive this.
+/// One instance per session. All calls on the surface's thread. `clock` is the session's; surface and clock
+/// must outlive this.
 class Pages {
  public:
   Pages(PageSurface& surface, const std::string& language, const Clock& clock);
@@ -63,6 +66,34 @@ class Pages {
   bool stop_requested_ = false;
   bool over_ = false;  ///< see set_over()
   bool away_ = false;  ///< the last request was a cut because the surface was unseen; it may still be
+};
+
+/// A person who answers on pages.
+class PageParticipant final : public Participant {
+ public:
+  /// last_block: id of the protocol's last block. before_stimulus: called shortly before the end of each
+  /// black pause, since a stimulus may follow.
+  PageParticipant(std::shared_ptr<Pages> pages, std::string last_block, std::function<void()> before_stimulus)
+      : pages_(std::move(pages)),
+        last_block_(std::move(last_block)),
+        before_stimulus_(std::move(before_stimulus)) {}
+
+  std::optional<std::string> simulated() const override { return {}; }
+  void read(const Block& block, double least_s, Clock& clock, const Check& check) override;
+  std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
+                               const Occasion& occasion, Clock& clock, const Check& check) override;
+  void pause(const Pause& pause, Clock& clock, const Check& check) override;
+  void tell(Notice notice, double least_s, Clock& clock, const Check& check) override;
+  bool offer(Offer offer, Clock& clock, const Check& check) override;
+
+ private:
+  /// The texts of a block's page: the first page of a session says how to stop, the last one that it ends.
+  PageText page_of(const Block& block);
+
+  std::shared_ptr<Pages> pages_;
+  std::string last_block_;
+  bool begun_ = false;  ///< a page of the session was shown
+  std::function<void()> before_stimulus_;
 };
 
 }  // namespace study

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libstudy/headset/input.hpp"
+#include "libstudy/headset/headset_session.hpp"
 #include "libstudy/pages/gui/page_surface.hpp"
 
 namespace study {

@@ -6,8 +6,10 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 
+#include <optional>
+
 #include "libsim/render/gl_context.hpp"
-#include "libstudy/pages/window/page_keys.hpp"
+#include "libstudy/pages/gui/page_surface.hpp"
 #include "libstudy/session/session.hpp"
 #include "stats/base/error.hpp"
 
@@ -15,9 +17,81 @@ namespace study {
 
 namespace {
 
+/// 0 to 9 on the main row or the keypad; -1: another key.
+int digit_of(int key) {
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return key - GLFW_KEY_0;
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return key - GLFW_KEY_KP_0;
+  return -1;
+}
+
+/// The page key; none if the key has no meaning on a page.
+std::optional<PageKey> page_key(int key, bool shift) {
+  switch (key) {
+    case GLFW_KEY_LEFT:
+      return PageKey::Left;
+    case GLFW_KEY_RIGHT:
+      return PageKey::Right;
+    case GLFW_KEY_UP:
+      return PageKey::Up;
+    case GLFW_KEY_DOWN:
+      return PageKey::Down;
+    case GLFW_KEY_TAB:
+      return shift ? PageKey::Previous : PageKey::Next;
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+    case GLFW_KEY_SPACE:
+      return PageKey::Enter;
+    case GLFW_KEY_BACKSPACE:
+      return PageKey::Erase;
+    default:
+      return {};
+  }
+}
+
+/// Lines that a key scrolls down; 0 if none.
+float lines_of(int key) {
+  if (key == GLFW_KEY_PAGE_DOWN || key == GLFW_KEY_DOWN) return 1;
+  if (key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_UP) return -1;
+  return 0;
+}
+
+/// The event of a pressed key.
+PageEvent event_of(int key, bool shift) {
+  PageEvent event;
+  event.key = page_key(key, shift);
+  event.digit = digit_of(key);
+  event.minus = key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT;
+  event.stop = key == GLFW_KEY_ESCAPE;
+  event.lines = lines_of(key);
+  event.text_only = key != GLFW_KEY_PAGE_DOWN && key != GLFW_KEY_PAGE_UP;
+  return event;
+}
+
 WindowChoice as_window(const ParticipantWindowOptions& options) {
   return {"vip-study", options.width_px, options.height_px, options.monitor,
           "use --display headless or none on a machine without a screen"};
+}
+
+std::optional<PageKey> key_of(int button) {
+  switch (button) {
+    case GLFW_GAMEPAD_BUTTON_DPAD_LEFT:
+      return PageKey::Left;
+    case GLFW_GAMEPAD_BUTTON_DPAD_RIGHT:
+      return PageKey::Right;
+    case GLFW_GAMEPAD_BUTTON_DPAD_UP:
+      return PageKey::Up;
+    case GLFW_GAMEPAD_BUTTON_DPAD_DOWN:
+      return PageKey::Down;
+    case GLFW_GAMEPAD_BUTTON_A:
+      return PageKey::Enter;
+    case GLFW_GAMEPAD_BUTTON_B:
+    case GLFW_GAMEPAD_BUTTON_LEFT_BUMPER:
+      return PageKey::Previous;
+    case GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER:
+      return PageKey::Next;
+    default:
+      return {};
+  }
 }
 
 }  // namespace
@@ -96,6 +170,23 @@ std::optional<std::pair<double, double>> ParticipantWindow::mouse() const {
   double x = 0, y = 0;
   if (!window_.mouse(x, y)) return {};
   return std::pair{x, y};
+}
+
+std::vector<PageKey> Gamepad::take() {
+  std::vector<PageKey> pressed;
+  for (int joystick = GLFW_JOYSTICK_1; joystick <= GLFW_JOYSTICK_LAST; ++joystick) {
+    GLFWgamepadstate state{};
+    auto& down = down_[static_cast<std::size_t>(joystick)];
+    const bool there = glfwGetGamepadState(joystick, &state) == GLFW_TRUE;
+    for (int button = 0; button <= GLFW_GAMEPAD_BUTTON_LAST; ++button) {
+      const bool now = there && state.buttons[button] == GLFW_PRESS;
+      bool& before = down[static_cast<std::size_t>(button)];
+      const auto key = key_of(button);
+      if (now && !before && key) pressed.push_back(*key);
+      before = now;
+    }
+  }
+  return pressed;
 }
 
 }  // namespace study

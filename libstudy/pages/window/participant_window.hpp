@@ -1,6 +1,7 @@
 #pragma once
 /// The participant's window as a surface of pages. One per session.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,11 +9,24 @@
 #include <vector>
 
 #include "libstudy/pages/gui/page_surface.hpp"
-#include "libstudy/pages/window/gamepad.hpp"
+#include "libstudy/pages/page.hpp"
 #include "libstudy/pages/window/mirror_window.hpp"
 #include "libstudy/window/glfw_window.hpp"
 
 namespace study {
+
+/// Converts newly pressed buttons of any gamepad to keys of a page.
+class Gamepad {
+ public:
+  /// Keys pressed since the last call. The cross gives arrows, A Enter, B the previous question, the
+  /// shoulders move between questions.
+  std::vector<PageKey> take();
+  /// Ignores all that is held down now.
+  void forget() { take(); }
+
+ private:
+  std::array<std::array<bool, 16>, 16> down_{};  ///< [joystick][button]
+};
 
 struct ParticipantWindowOptions {
   int width_px = 0, height_px = 0;  ///< 0: the whole monitor

@@ -1,15 +1,146 @@
 #include "libstudy/runner/window_parts.hpp"
 
+// epoxy first: GLFW then leaves GL's headers alone.
+#include <epoxy/gl.h>
+#include <fmt/core.h>
+
+#include <GLFW/glfw3.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "libsim/render/gl_context.hpp"
-#include "libstudy/pages/gui/page_participant.hpp"
+#include "libsim/render/offscreen.hpp"
+#include "libstudy/base/clock.hpp"
+#include "libstudy/console/preflight.hpp"
+#include "libstudy/console/refresh.hpp"
+#include "libstudy/display/stimulus.hpp"
+#include "libstudy/pages/gui/pages.hpp"
 #include "libstudy/pages/mouse_gaze.hpp"
 #include "libstudy/pages/window/participant_window.hpp"
-#include "libstudy/pages/window/window_display.hpp"
 #include "libstudy/window/headset_mirror.hpp"
 
 namespace study {
 
 namespace {
+
+/// The participant's window as a display of stimuli: draws off-screen, shows by a swap that waits for the
+/// screen.
+///
+/// Its timing evidence is the submission (grade D): the screen does not report when it showed a frame. The
+/// predicted time is the screen's next beat (refresh.hpp), as measured before the trial. Destroy stimuli that
+/// drew on it first.
+class WindowDisplay final : public Display {
+ public:
+  /// Measures the refresh for about two seconds on a black window. The session's clock must be real.
+  explicit WindowDisplay(std::shared_ptr<ParticipantWindow> window);
+
+  std::string description() const override;
+  TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
+  /// 0 if swaps do not wait for the screen.
+  double refresh_hz() const override { return refresh_.nominal_hz; }
+  double measured_hz() const override;
+  std::int64_t first_onset(std::int64_t earliest_ns) const override;
+  /// Measures the screen's beat again on a black window for about ten periods, so that its drift since the
+  /// start does not matter to a trial. Returns at once if swaps do not wait.
+  void find_beat();
+  /// Draws off-screen, copies to the window's back buffer and waits until the device has finished, so that
+  /// present() is only a swap and a slow picture counts as late.
+  void render(Stimulus& stimulus) override;
+  /// gpu_done is the time when the picture was ready, before its submission.
+  PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override;
+
+  ScreenFacts facts() const;
+
+ private:
+  std::vector<std::int64_t> swap_black(int swaps);
+
+  std::shared_ptr<ParticipantWindow> window_;
+  RealClock clock_;
+  sim::Offscreen picture_;
+  Monitor monitor_;
+  std::string device_;  ///< of OpenGL
+  MeasuredRefresh refresh_;
+  std::int64_t ready_ns_ = -1;
+};
+
+constexpr int measured_swaps = 120, queued_swaps = 4, beat_swaps = 6;
+
+std::string describe(const Monitor& monitor) {
+  return fmt::format("monitor '{}' {}x{}", monitor.name, monitor.width_px, monitor.height_px);
+}
+
+WindowDisplay::WindowDisplay(std::shared_ptr<ParticipantWindow> window)
+    : window_(std::move(window)),
+      picture_(window_->size().width, window_->size().height),
+      monitor_(window_->window().monitor()),
+      device_(sim::gl_description()),
+      refresh_(judge_swaps(swap_black(measured_swaps), monitor_.refresh_hz)) {}
+
+std::vector<std::int64_t> WindowDisplay::swap_black(int swaps) {
+  std::vector<std::int64_t> returns;
+  for (int i = 0; i < swaps; ++i) {
+    window_->show_black();
+    glFinish();  // many drivers return from a swap before the screen has taken the picture
+    returns.push_back(clock_.now_ns());
+    window_->poll(0);
+  }
+  return returns;
+}
+
+double WindowDisplay::measured_hz() const { return refresh_.in_effect ? 1e9 / refresh_.period_ns : 0; }
+
+std::int64_t WindowDisplay::first_onset(std::int64_t earliest_ns) const {
+  return between_beats(refresh_, earliest_ns);
+}
+
+/// Skips the first swaps, which fill the queue of pictures and return at once.
+void WindowDisplay::find_beat() {
+  if (!refresh_.in_effect) return;
+  const auto returns = swap_black(queued_swaps + beat_swaps);
+  refresh_.beat_ns = beat_of(std::span(returns).last(beat_swaps), refresh_.period_ns);
+}
+
+ScreenFacts WindowDisplay::facts() const {
+  ScreenFacts facts;
+  facts.reported_hz = monitor_.refresh_hz;
+  facts.measured_hz = measured_hz();
+  const Compositor compositor = find_compositor();
+  if (compositor != Compositor::Unknown) facts.compositor = compositor == Compositor::Running;
+  facts.software_gl = sim::gl_is_software();
+  return facts;
+}
+
+std::string WindowDisplay::description() const {
+  return "window " + std::to_string(picture_.width()) + "x" + std::to_string(picture_.height()) + ", " +
+         describe(monitor_) + ", " + refresh_.finding + ", " + device_;
+}
+
+void WindowDisplay::render(Stimulus& stimulus) {
+  stimulus.draw({picture_.framebuffer(), picture_.width(), picture_.height()});
+  glDisable(GL_SCISSOR_TEST);
+  glBlitNamedFramebuffer(picture_.framebuffer(), 0, 0, 0, picture_.width(), picture_.height(), 0, 0,
+                         picture_.width(), picture_.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const GLsync done = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  constexpr GLuint64 patience_ns = 100'000'000;
+  while (glClientWaitSync(done, GL_SYNC_FLUSH_COMMANDS_BIT, patience_ns) == GL_TIMEOUT_EXPIRED)
+    window_->poll(0);
+  glDeleteSync(done);
+  ready_ns_ = clock_.now_ns();
+}
+
+PresentTimes WindowDisplay::present(std::int64_t scheduled_ns, Clock& clock) {
+  clock.wait_until(scheduled_ns);
+  PresentTimes times;
+  times.gpu_done_ns = ready_ns_;
+  times.submitted_ns = clock.now_ns();
+  times.predicted_display_ns = next_beat(refresh_, times.submitted_ns);
+  glfwSwapBuffers(window_->window().get());
+  window_->poll(0);
+  window_->mirror(picture_.framebuffer());
+  return times;
+}
 
 /// Owns the window and its pages while either is referenced.
 struct WindowPages {

@@ -1,11 +1,13 @@
 #include "libstudy/stimulus/bakes/write_bake.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 
 #include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/setting/finite_water.hpp"
+#include "stats/base/progress.hpp"
 
 namespace study {
 
@@ -28,6 +30,23 @@ auto gaze_by_keys(const BakeOrder& order, const sim::Scene& scene, const std::in
     const sim::View view = framed_view(camera, viewing, width, height);
     return place_in(view, sim::gaze_point(scene, sim::scene_frame(scene, frame, frame_dt_s)));
   };
+}
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Calls read(frame) for all frames; returns frames per second.
+template <typename Read>
+double read_all(const char* label, std::int64_t frames, const std::function<void()>& stop, Read read) {
+  base::Progress progress(label, static_cast<std::size_t>(frames));
+  const double start_s = seconds_now();
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    stop();
+    read(frame);
+    progress.update(static_cast<std::size_t>(frame + 1));
+  }
+  return static_cast<double>(frames) / std::max(1e-9, seconds_now() - start_s);
 }
 
 }  // namespace
@@ -73,6 +92,20 @@ sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const 
   }
   sim::check_finite(fluid->simulation(), out.string());
   return writer.finish();
+}
+
+ReadingSpeed read_whole(const sim::BakeReader& bake, const std::function<void()>& stop) {
+  const std::int64_t frames = bake.header().frame_count;
+  sim::BakeFrame frame;
+  ReadingSpeed speed;
+  speed.particles = read_all("particles", frames, stop, [&](auto i) {
+    bake.read_frame(i, frame);
+    speed.temperature_error_k = std::max(speed.temperature_error_k, frame.temperature_error_k);
+  });
+  if (!bake.header().has_pictures()) return speed;
+  sim::PictureReader reader(bake);
+  speed.pictures = read_all("pictures", frames, stop, [&](auto i) { reader.read(i); });
+  return speed;
 }
 
 }  // namespace study

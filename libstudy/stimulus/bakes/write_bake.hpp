@@ -1,8 +1,9 @@
 #pragma once
-/// Computes a bake as a session would have shown it live.
+/// Computes a bake as a session would have shown it live, and reads one from its first byte to its last.
 
 #include <functional>
 
+#include "libsim/bake/bake_file.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libstudy/stimulus/bakes/bake_order.hpp"
 
@@ -22,5 +23,17 @@ inline bool draws(const sim::BakeHeader& header) { return header.view.drawn(); }
 /// values.
 sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const std::filesystem::path& out,
                           bool overwrite, const BakeHooks& hooks);
+
+/// Frames per second that were read, checked and decoded.
+struct ReadingSpeed {
+  double particles = 0;
+  double pictures = 0;             ///< 0 if there are none
+  double temperature_error_k = 0;  ///< largest error of the temperatures of any frame
+};
+
+/// Shows a progress bar if it takes long. `stop` is called before each frame and may throw to end the work.
+/// base::Error for the first damaged frame.
+ReadingSpeed read_whole(
+    const sim::BakeReader& bake, const std::function<void()>& stop = [] {});
 
 }  // namespace study

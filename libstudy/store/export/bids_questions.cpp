@@ -1,9 +1,9 @@
-#include "libstudy/store/export/bids_questions.hpp"
-
+/// Questions in BIDS: as columns, and the pages of questionnaires.
 #include <algorithm>
 #include <map>
 #include <sstream>
 
+#include "libstudy/store/export/bids_writer.hpp"
 #include "libstudy/store/export/sickness_table.hpp"
 
 namespace study::bids {

@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "libstudy/store/export/bids_questions.hpp"
+#include "libstudy/store/export/bids_writer.hpp"
 #include "libstudy/store/export/rating_table.hpp"
 #include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/open_study.hpp"

@@ -18,7 +18,6 @@
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
-#include "stats/base/file_hash.hpp"
 #include "stats/base/new_file.hpp"
 #include "stats/base/outgoing.hpp"
 #include "stats/base/text.hpp"

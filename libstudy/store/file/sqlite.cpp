@@ -1,27 +1,69 @@
 #include "libstudy/store/file/sqlite.hpp"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "libstudy/store/file/file_watch.hpp"
 #include "libstudy/store/file/foreign_log.hpp"
-#include "libstudy/store/file/lock_holder.hpp"
 #include "libstudy/store/file/private_file.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
 namespace study::sqlite {
 
+namespace fs = std::filesystem;
+
 namespace {
 
-namespace fs = std::filesystem;
+/// A file's name in /proc/locks; empty if there is no file.
+std::string kernel_name(const std::string& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return {};
+  return fmt::format("{:02x}:{:02x}:{}", major(file.st_dev), minor(file.st_dev), file.st_ino);
+}
+
+/// The programs with a write lock on a SQLite database or its shared memory, e.g. "sqlitebrowser (process
+/// 4711)"; "another program" if the system does not tell.
+/// Reads the list of all locks instead of asking with a descriptor, because closing that would release
+/// SQLite's locks.
+std::string lock_holder(const std::filesystem::path& database) {
+  const std::string file = kernel_name(database.string()), shared = kernel_name(database.string() + "-shm");
+  std::set<long> holders;
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number, kind, strictness, access, name;
+    long process = 0;
+    if (!(words >> number >> kind >> strictness >> access >> process >> name)) continue;
+    const bool ours = process == ::getpid();
+    if (kind == "POSIX" && access == "WRITE" && !ours && process > 0 && (name == file || name == shared))
+      holders.insert(process);
+  }
+  std::string text;
+  for (const long process : holders) {
+    std::string program;
+    std::ifstream comm("/proc/" + std::to_string(process) + "/comm");
+    std::getline(comm, program);
+    text += (text.empty() ? "" : ", ") + (program.empty() ? "a program" : program) + " (process " +
+            std::to_string(process) + ")";
+  }
+  return text.empty() ? "another program" : text;
+}
 
 constexpr std::int64_t second_ns = 1'000'000'000, longest_wait_ns = 5 * second_ns;
 constexpr std::chrono::milliseconds between_tries{20};

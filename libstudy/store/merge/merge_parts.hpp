@@ -55,15 +55,6 @@ std::vector<std::string> station_troubles(const Content& content);
 void write_union(Content& content, const std::vector<SessionCopy>& chosen,
                  const std::map<std::string, std::string>& names, sqlite::Connection& target);
 
-/// Adds the permission changes of all copies of a session, each once, to row `session` of the target. A
-/// change that was superseded in one copy is superseded in all; no clock decides.
-void add_permissions(Content& content, const std::string& uid, sqlite::Connection& target,
-                     std::int64_t session);
-
-/// Stores the union's labels (export_labels.hpp): labels of the source at the target's path stay, then those
-/// of the others in the order in which people were first planned.
-void add_labels(const Content& content, sqlite::Connection& target);
-
 /// Adds the registered exports of a source and their people; for equal paths, the latest one counts.
 void add_exports(sqlite::Connection& source, sqlite::Connection& target);
 

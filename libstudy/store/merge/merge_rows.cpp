@@ -1,11 +1,15 @@
 /// Moves rows from the sources of a merge into the union, with new row numbers.
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <tuple>
 #include <unordered_map>
 
+#include "libstudy/store/export_labels.hpp"
 #include "libstudy/store/file/schema.hpp"
 #include "libstudy/store/merge/merge_parts.hpp"
+#include "libstudy/store/permissions.hpp"
 #include "libstudy/store/refusals.hpp"
 #include "stats/base/error.hpp"
 
@@ -15,6 +19,107 @@ using sqlite::Connection;
 using sqlite::Statement;
 
 namespace {
+
+// A permission change is identified by its constant fields. Fields that only grow (superseded, and how much
+// of the session it knew) take the largest value of all copies, so that neither the order nor the number of
+// merges matters.
+
+/// What, when, refused or not, identity.
+using Key = std::tuple<std::string, std::string, bool, std::optional<std::string>>;
+
+struct Known {
+  std::optional<std::int64_t> turn, answers, showings, superseded;
+};
+
+std::optional<std::int64_t> number(const Statement& row, int column) {
+  if (row.is_null(column)) return {};
+  return row.integer(column);
+}
+
+void read_changes(Connection& source, std::int64_t session, std::map<Key, Known>& changes) {
+  Statement row(source,
+                "SELECT what, utc, granted, uid, turn, answers, showings, superseded FROM permission_change "
+                "WHERE session_id = ?");
+  for (row.bind_all(session); row.step();) {
+    std::optional<std::string> uid;
+    if (!row.is_null(3)) uid = row.text(3);
+    Known& known = changes[{row.text(0), row.text(1), row.integer(2) == 0, uid}];
+    known.turn = std::max(known.turn, number(row, 4));
+    known.answers = std::max(known.answers, number(row, 5));
+    known.showings = std::max(known.showings, number(row, 6));
+    known.superseded = std::max(known.superseded, number(row, 7));
+  }
+}
+
+/// Keeps the row order of each source. Changes from sources that did not know of each other are ordered by
+/// their content alone.
+std::vector<std::pair<Key, Known>> in_order(const std::map<Key, Known>& changes) {
+  std::vector<std::pair<Key, Known>> rows(changes.begin(), changes.end());
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& a, const auto& b) { return a.second.turn < b.second.turn; });
+  return rows;
+}
+
+/// Adds the permission changes of all copies of a session, each once, to row `session` of the target. A
+/// change that was superseded in one copy is superseded in all; no clock decides.
+void add_permissions(Content& content, const std::string& uid, Connection& target, std::int64_t session) {
+  std::map<Key, Known> changes;
+  std::set<std::pair<std::string, std::string>> events;  // when, detail
+  for (const SessionCopy& copy : content.copies) {
+    if (copy.uid != uid) continue;
+    Connection& source = *content.sources[copy.source];
+    read_changes(source, copy.id, changes);
+    Statement event(source, "SELECT utc, detail FROM event WHERE session_id = ? AND kind = ?");
+    for (event.bind_all(copy.id, permission_event); event.step();)
+      events.emplace(event.text(0), event.text(1));
+  }
+  Statement change(target,
+                   "INSERT INTO permission_change (session_id, what, utc, granted, uid, turn, answers, "
+                   "showings, superseded) VALUES (?,?,?,?,?,?,?,?,?)");
+  for (const auto& [key, known] : in_order(changes)) {
+    const auto& [what, utc, refused, identity] = key;
+    change
+        .bind_all(session, what, utc, refused ? 0 : 1, identity, known.turn, known.answers, known.showings,
+                  known.superseded)
+        .run();
+  }
+  Statement event(target, "INSERT INTO event (session_id, utc, kind, detail) VALUES (?,?,?,?)");
+  for (const auto& [utc, detail] : events) event.bind_all(session, utc, permission_event, detail).run();
+}
+
+/// Sorts by the time of the first plan, then by identity: independent of the order of the sources.
+void sort_labels(std::vector<GivenLabel>& labels, const Content& content) {
+  std::map<std::string, std::string> planned;
+  for (const SessionCopy& copy : content.copies) {
+    const auto [known, fresh] = planned.try_emplace(copy.person, copy.planned_utc);
+    if (!fresh) known->second = std::min(known->second, copy.planned_utc);
+  }
+  const auto key = [&](const GivenLabel& one) {
+    const auto when = planned.find(one.owner);
+    return std::tuple(one.kind, when == planned.end() ? std::string() : when->second, one.owner, one.label);
+  };
+  std::sort(labels.begin(), labels.end(),
+            [&](const GivenLabel& a, const GivenLabel& b) { return key(a) < key(b); });
+}
+
+/// Stores the union's labels (export_labels.hpp): labels of the source at the target's path stay, then those
+/// of the others in the order in which people were first planned.
+void add_labels(const Content& content, sqlite::Connection& target) {
+  const auto into = std::filesystem::weakly_canonical(target.path());
+  std::vector<GivenLabel> first, others;
+  for (const auto& source : content.sources) {
+    const bool stays = std::filesystem::weakly_canonical(source->path()) == into;
+    const std::vector<GivenLabel> found = labels_of(*source);
+    std::vector<GivenLabel>& list = stays ? first : others;
+    list.insert(list.end(), found.begin(), found.end());
+  }
+  sort_labels(others, content);
+  std::vector<GivenLabel> joined = joined_labels(first, others);
+  std::erase_if(joined, [&](const GivenLabel& one) {
+    return one.kind == "person" && content.tombstones.contains(one.owner);
+  });
+  store_labels(target, joined);
+}
 
 /// New row numbers by old ones, for each column that holds them ("trial_id", ...).
 using RowNumbers = std::map<std::string, std::unordered_map<std::int64_t, std::int64_t>>;

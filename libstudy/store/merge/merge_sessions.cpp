@@ -1,10 +1,13 @@
-/// Reads the sources of a merge and chooses the copy of each session that counts.
+/// Reads the sources of a merge: chooses the copy of each session that counts, gives people distinct codes,
+/// and checks that the stations dealt disjoint shares of one assignment.
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "libstudy/store/merge/merge_parts.hpp"
 #include "libstudy/store/permissions.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
 
 namespace study::merging {
 
@@ -150,6 +153,149 @@ std::vector<SessionCopy> choose_sessions(Content& content) {
             [&](const SessionCopy& a, const SessionCopy& b) { return key(a) < key(b); });
   check_visits(content, chosen);
   return chosen;
+}
+
+namespace {
+
+constexpr std::size_t longest_code = 32;
+constexpr std::size_t digits = 4;
+
+struct Person {
+  std::string uid, code, station;
+};
+
+/// All people including withdrawn ones, each with the station of the first session.
+std::vector<Person> people_of(const Content& content) {
+  std::map<std::string, Person> people;
+  std::map<std::string, std::pair<std::string, std::string>> first;  // planned, session
+  for (const SessionCopy& copy : content.copies) {
+    const std::pair key{copy.planned_utc, copy.uid};
+    const auto [known, fresh] = first.try_emplace(copy.person, key);
+    if (!fresh && known->second <= key) continue;
+    known->second = key;
+    people[copy.person] = {copy.person, copy.code, copy.station};
+  }
+  for (const auto& [uid, stone] : content.tombstones) people[uid] = {uid, stone.code, stone.station};
+  std::vector<Person> out;
+  for (auto& [uid, person] : people) out.push_back(std::move(person));
+  return out;
+}
+
+std::string as_code(std::string text) {
+  for (char& c : text) {
+    const bool allowed =
+        (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    if (!allowed) c = '-';
+  }
+  return text;
+}
+
+std::string with_digits(const Person& person) {
+  return person.code.substr(0, longest_code - digits - 1) + '-' +
+         base::sha256_hex(person.uid).substr(0, digits);
+}
+
+/// "<code>-<station>", or with digits if there is no station or no room.
+std::string with_station(const Person& person) {
+  const std::string name = person.code + '-' + as_code(person.station);
+  return person.station.empty() || name.size() > longest_code ? with_digits(person) : name;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> name_people(const Content& content) {
+  const auto people = people_of(content);
+  std::map<std::string, int> given, taken;
+  for (const Person& person : people) ++given[person.code];
+  const auto wished = [&](const Person& person) {
+    return given[person.code] == 1 ? person.code : with_station(person);
+  };
+  for (const Person& person : people) ++taken[wished(person)];
+  std::map<std::string, std::string> names;
+  std::set<std::string> distinct;
+  for (const Person& person : people) {
+    const bool alone = given[person.code] == 1 || taken[wished(person)] == 1;
+    const std::string name = alone ? wished(person) : with_digits(person);
+    if (!distinct.insert(name).second) {
+      throw base::Error("participant code " + person.code, "cannot be made distinct from another",
+                        "merge fewer databases at a time");
+    }
+    names[person.uid] = name;
+  }
+  return names;
+}
+
+namespace {
+
+/// Sessions that one source planned under one protocol and station number.
+struct Dealt {
+  std::size_t source = 0;
+  std::optional<StationNumber> number;
+  std::set<std::string> sessions;  ///< uids
+};
+
+std::vector<Dealt> dealt_by_sources(const Content& content, const std::string& protocol) {
+  std::vector<Dealt> all;
+  for (const SessionCopy& copy : content.copies) {
+    if (!copy.counts || copy.protocol_sha256 != protocol || content.tombstones.contains(copy.person))
+      continue;
+    const auto same = [&](const Dealt& one) {
+      return one.source == copy.source && one.number == copy.station_number;
+    };
+    auto found = std::find_if(all.begin(), all.end(), same);
+    if (found == all.end()) found = all.insert(all.end(), Dealt{copy.source, copy.station_number, {}});
+    found->sessions.insert(copy.uid);
+  }
+  return all;
+}
+
+/// True if each has a session that the other lacks, so that neither is an earlier copy of the other.
+bool went_apart(const Dealt& a, const Dealt& b) {
+  const auto holds = [](const Dealt& one, const Dealt& other) {
+    return std::includes(one.sessions.begin(), one.sessions.end(), other.sessions.begin(),
+                         other.sessions.end());
+  };
+  return !holds(a, b) && !holds(b, a);
+}
+
+std::string files_of(const Content& content, const Dealt& a, const Dealt& b) {
+  const auto file = [&](const Dealt& one) { return content.sources[one.source]->path().string(); };
+  return a.source == b.source ? file(a) : file(a) + " and " + file(b);
+}
+
+/// The problem of two shares; empty: none.
+std::string trouble_of(const Content& content, const Dealt& a, const Dealt& b) {
+  const std::string files = files_of(content, a, b);
+  if (a.source != b.source && a.number == b.number && went_apart(a, b))
+    return files +
+           (a.number ? " were both recorded as station " + station_text(*a.number)
+                     : " have sessions without a station number") +
+           ": they used the same slots of the assignment";
+  if (a.number && b.number && a.number->count != b.number->count)
+    return files + ": sessions were recorded as stations " + station_text(*a.number) + " and " +
+           station_text(*b.number) + ", whose shares overlap";
+  if (a.number.has_value() != b.number.has_value())
+    return files + ": some sessions were recorded as station " +
+           station_text(a.number ? *a.number : *b.number) +
+           ", others without a station number: their shares overlap";
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> station_troubles(const Content& content) {
+  std::set<std::string> protocols, troubles;
+  for (const SessionCopy& copy : content.copies) protocols.insert(copy.protocol_sha256);
+  for (const std::string& protocol : protocols) {
+    const auto all = dealt_by_sources(content, protocol);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        if (const auto trouble = trouble_of(content, all[i], all[j]); !trouble.empty())
+          troubles.insert(trouble);
+      }
+    }
+  }
+  return {troubles.begin(), troubles.end()};
 }
 
 }  // namespace study::merging

@@ -3,10 +3,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "libstudy/store/answer_journal.hpp"
 #include "libstudy/store/file/database.hpp"
@@ -15,7 +19,7 @@
 #include "libstudy/store/file/schema.hpp"
 #include "libstudy/store/file/writer_lock.hpp"
 #include "libstudy/store/refusals.hpp"
-#include "libstudy/store/salvage/earlier_shapes.hpp"
+#include "libstudy/store/salvage/page_scan.hpp"
 #include "libstudy/store/salvage/salvage_rows.hpp"
 #include "stats/base/durable.hpp"
 #include "stats/base/error.hpp"
@@ -25,7 +29,6 @@
 namespace study {
 
 namespace fs = std::filesystem;
-using salvaging::EarlierShape;
 using salvaging::RowsByTable;
 using salvaging::Shape;
 using salvaging::Values;
@@ -34,6 +37,73 @@ using sqlite::Open;
 using sqlite::Statement;
 
 namespace {
+
+/// A table in an earlier schema.
+struct EarlierShape {
+  Shape shape;
+  std::size_t now = 0;                             ///< index of the table's current shape
+  std::vector<std::optional<std::size_t>> source;  ///< by current column: earlier column copied; none: NULL
+};
+
+constexpr std::size_t first_schema = 2;
+
+bool same(const Shape::Column& a, const Shape::Column& b) {
+  return a.name == b.name && a.type == b.type && a.may_be_null == b.may_be_null;
+}
+
+bool same(const Shape& a, const Shape& b) {
+  return a.table == b.table &&
+         std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), b.columns.end(),
+                    [](const auto& x, const auto& y) { return same(x, y); });
+}
+
+EarlierShape placed(const Shape& shape, const std::vector<Shape>& now, std::size_t index) {
+  EarlierShape out{shape, index, {}};
+  for (const Shape::Column& column : now[index].columns) {
+    const auto found = std::find_if(shape.columns.begin(), shape.columns.end(),
+                                    [&](const Shape::Column& before) { return same(before, column); });
+    out.source.emplace_back();
+    if (found != shape.columns.end())
+      out.source.back() = static_cast<std::size_t>(found - shape.columns.begin());
+  }
+  return out;
+}
+
+/// The shapes of every schema before this program's.
+std::vector<Shape> shapes_before() {
+  std::vector<Shape> out;
+  const SchemaSteps steps = read_schema_steps();
+  for (std::size_t schema = first_schema; schema < steps.size(); ++schema) {
+    const auto database =
+        make_temporary_database("schema " + std::to_string(schema),
+                                {steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(schema)});
+    for (Shape& shape : salvaging::shapes_of(*database)) out.push_back(std::move(shape));
+  }
+  return out;
+}
+
+/// Tables of schemas 2 and newer that have changed since. A column is copied if name, type and NOT NULL are
+/// unchanged; a newer nullable column becomes NULL (not measured).
+std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
+  static const std::vector<Shape> before = shapes_before();
+  std::vector<EarlierShape> out;
+  for (const Shape& shape : before) {
+    const auto table =
+        std::find_if(now.begin(), now.end(), [&](const Shape& one) { return one.table == shape.table; });
+    const bool known =
+        table == now.end() || same(*table, shape) ||
+        std::any_of(out.begin(), out.end(), [&](const EarlierShape& one) { return same(one.shape, shape); });
+    if (!known) out.push_back(placed(shape, now, static_cast<std::size_t>(table - now.begin())));
+  }
+  return out;
+}
+
+/// The row in the current schema.
+Values as_now(const EarlierShape& earlier, const Values& row) {
+  Values out;
+  for (const auto& column : earlier.source) out.push_back(column ? row.at(*column) : salvaging::Value());
+  return out;
+}
 
 /// A folder beside the result, readable by its owner only and deleted in the end.
 class Workplace {
@@ -159,7 +229,7 @@ void read_rows(Connection* sound, const Damaged& damaged, const std::vector<Shap
     const auto index = static_cast<std::size_t>(&shape - all.data());
     if (index < shapes.size()) return take(shape, std::move(values));
     const auto& before = earlier[index - shapes.size()];
-    take(shapes[before.now], salvaging::as_now(before, values));
+    take(shapes[before.now], as_now(before, values));
   };
   salvaging::scan_pages(damaged.database, all, take_row, damaged.use_log);
 }
@@ -168,7 +238,7 @@ void fill(Connection& target, Connection* sound, const Damaged& damaged, const J
           Salvage& told) {
   sqlite::Transaction transaction(target);
   const auto shapes = salvaging::shapes_of(target);
-  const auto earlier = sound ? std::vector<EarlierShape>() : salvaging::earlier_shapes(shapes);
+  const auto earlier = sound ? std::vector<EarlierShape>() : earlier_shapes(shapes);
   RowsByTable rows;
   read_rows(sound, damaged, shapes, earlier, false,
             [&](const Shape& shape, Values values) { rows[shape.table].push_back(std::move(values)); });

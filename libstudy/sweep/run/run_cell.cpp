@@ -3,17 +3,74 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
+#include <optional>
 
 #include "libsim/measure/checkpoint.hpp"
+#include "libsim/measure/masks.hpp"
+#include "libsim/measure/onlooker.hpp"
 #include "libsim/measure/render_timer.hpp"
 #include "libsim/measure/timed_run.hpp"
+#include "libsim/methods/preset.hpp"
+#include "libsim/render/gl_context.hpp"
+#include "libsim/render/png.hpp"
+#include "libsim/scene/gaze.hpp"
+#include "libsim/scene/scene.hpp"
 #include "libsim/setting/finite_water.hpp"
-#include "libstudy/sweep/run/picture_keeper.hpp"
+#include "libsim/simulation.hpp"
+#include "stats/base/picture_size.hpp"
 #include "stats/base/timing.hpp"
 
 namespace study {
 
 namespace {
+
+/// Draws and stores pictures of the water outside the timing.
+class PictureKeeper {
+ public:
+  /// Uses the current context if there is one, which must outlive this object, or else its own.
+  PictureKeeper(const sim::Scene& scene, const base::PictureSize& size, bool context_is_current)
+      : scene_(scene),
+        context_(context_is_current ? std::nullopt : std::optional(sim::GlContext::make_headless())),
+        eye_(scene, size) {}
+
+  /// At the middle of the picture.
+  double pixels_per_degree() const { return std::numbers::pi / 180 / sim::pixel_rays(eye_.view()).scale_y; }
+  /// `frame` is the run's. With `masks`, also stores the masks of the gaze's fovea (the tuned half angle) and
+  /// of the most salient part outside it; this sorts the particles.
+  KeptPicture keep(sim::Simulation& fluid, int frame, double frame_dt_s, bool masks);
+
+ private:
+  const sim::Scene& scene_;
+  std::optional<sim::GlContext> context_;  // must outlive the objects drawn in it
+  measure::Onlooker eye_;
+};
+
+KeptPicture PictureKeeper::keep(sim::Simulation& fluid, int frame, double frame_dt_s, bool masks) {
+  eye_.begin(nullptr);
+  eye_.draw(fluid);
+  KeptPicture out{.time_s = frame * frame_dt_s,
+                  .png = sim::png_bytes(eye_.image(), "a picture of the sweep")};
+  if (!masks) return out;
+  const sim::GBuffer seen = eye_.gbuffer();
+  const auto drawn_ids = fluid.read_ids();
+  const sim::Vec3d point = sim::gaze_point(scene_, sim::scene_frame(scene_, frame, frame_dt_s));
+  const sim::Gaze gaze = sim::gaze_at(eye_.camera(), point);
+  const measure::Mask fovea =
+      measure::fovea_mask(eye_.view(), gaze, sim::readings_of(sim::Preset::Tuned).fovea_half_angle_deg);
+  std::vector<sim::ParticleSaliency> values;
+  fluid.measure_saliency({{{gaze, eye_.view(), &seen}}}, values);
+  const auto ids = fluid.read_ids();
+  std::vector<float> by_id;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const auto id = static_cast<std::size_t>(ids[i]);
+    if (id >= by_id.size()) by_id.resize(id + 1);
+    by_id[id] = values[i].combined;
+  }
+  out.fovea = to_bits(fovea);
+  out.salient = to_bits(measure::salient_mask(seen, drawn_ids, by_id, fovea));
+  return out;
+}
 
 constexpr int samples_per_s = 30, warm_up_frames = 5;
 

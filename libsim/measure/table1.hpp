@@ -1,0 +1,109 @@
+#pragma once
+/// The protocol of Table 1: its parameters, the checkpoints of HiRes (checkpoint_source.cpp), the still cells
+/// (stills.cpp), and SSIM-cumul and both flickers, which compare all methods frame by frame with HiRes
+/// (film.cpp).
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "libsim/measure/cells.hpp"
+#include "libsim/measure/checkpoint.hpp"
+#include "libsim/measure/contact_sheet.hpp"
+#include "libsim/measure/onlooker.hpp"
+#include "libsim/measure/render_timer.hpp"
+#include "libsim/measure/scores.hpp"
+#include "libsim/solver/settled_state.hpp"
+
+namespace measure {
+
+/// The defaults are those of the paper and of the scenes.
+struct Table1Options : TableOptions {
+  int checkpoints = 0;       ///< number of the scene's checkpoints to use; 0 = all
+  int gazes = 3;             ///< gaze points per checkpoint
+  int repeats = 5;           ///< perturbed starts per gaze point
+  int frames_after = 5;      ///< from a checkpoint to the compared picture
+  int cumul_frames = 200;    ///< length of the film; 0 = no film
+  int film_starts = 1;       ///< starts of the film, an ulp apart
+  int projections = 50;      ///< largest number of projections of a start
+  bool unperturbed = false;  ///< starts are not perturbed: HiRes must then equal itself
+  base::PictureSize size{1280, 720};
+  std::string pictures;                          ///< folder for side-by-side pictures; empty = none
+  std::string checkpoints_to, checkpoints_from;  ///< folders for checkpoint_file.hpp; empty = none
+  std::string cells;                             ///< file for cell_scores.hpp; empty = none
+  std::string paired_with;                       ///< file of that kind from another run; empty = none
+};
+
+/// Options that all runs of a method share.
+inline sim::SimulationOptions run_options(const Table1Options& options, const sim::CellScene& scene,
+                                          const CellSize& size, sim::Preset preset, sim::MethodKind method) {
+  sim::SimulationOptions out;
+  out.method = method;
+  out.n_star = size.n_star;
+  out.backend = sim::choose_backend(options.backend);
+  out.readings = sim::readings_of(preset);
+  out.cache = sim::default_cache_folder();
+  if (sim::traits_of(method).temporal)
+    out.temporal.fixed_tau = tau_of(options.tau, scene.name, size.word, method);
+  return out;
+}
+
+// Checkpoints from a run of HiRes, or from the files of an earlier run.
+
+/// Frames of the scene's checkpoints that the options ask for.
+std::vector<int> checkpoint_frames(const sim::CellScene& scene, const Table1Options& options);
+
+/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error unless all are
+/// there.
+std::vector<std::string> stored_digests(const sim::CellScene& scene, const CellSize& size,
+                                        const Table1Options& options);
+
+/// Reads the checkpoints from --checkpoints-from, or else runs HiRes from its settled state, drawn by `eye`,
+/// and also stores them in --checkpoints-to if given.
+std::vector<Checkpoint> take_checkpoints(const sim::CellScene& scene, const CellSize& size,
+                                         const Table1Options& options, Onlooker& eye);
+
+// Still cells: from one state of HiRes to each method's picture a few frames later.
+
+/// Quality of a method's starts after projection.
+struct StartQuality {
+  sim::MethodKind method{};
+  sim::Preset preset{};
+  sim::RelaxedStart worst;     ///< largest number of projections, largest compression
+  double particles_share = 0;  ///< mean of n / (8 n_*)
+  int starts = 0;
+};
+
+struct StillResult {
+  std::vector<ScoreBlock> blocks;  ///< one per preset
+  std::vector<StartQuality> starts;
+};
+
+/// A block without values: the methods, checkpoints and number of repeats to compare.
+ScoreBlock empty_block(const sim::CellScene& scene, const CellSize& size, sim::Preset preset,
+                       const Table1Options& options);
+
+/// Number of runs that run_stills() makes, for a progress line.
+std::size_t still_runs(const sim::CellScene& scene, const Table1Options& options, std::size_t presets);
+
+/// The protocol: HiRes runs from its settled state. At each checkpoint every method starts from that state,
+/// coarsened to the method's targets and projected, looks at one gaze point and at the checkpoint's picture,
+/// and is compared `frames_after` frames later with HiRes from the same checkpoint. Repeats perturb the state
+/// by an ulp (checkpoint.hpp) and reseed the choice of active particles; HiRes from perturbed states gives
+/// the floor set by chaos. Masks come from the HiRes picture and its saliency with tuned readings, the same
+/// for all methods. Needs a current context; calls `done` after each run.
+StillResult run_stills(const sim::CellScene& scene, const CellSize& size, const Table1Options& options,
+                       const std::vector<sim::Preset>& presets, const std::function<void()>& done,
+                       SheetWriter& sheets);
+
+// The film: all methods from frame 0 on.
+
+/// Runs the methods in lockstep, with the gaze on the scene's keys, and adds Metric::SsimCumul (mean SSIM of
+/// frames 1 .. cumul_frames), Metric::Flicker and Metric::FlickerPeriphery (means over frames 2 ..
+/// cumul_frames) to the block's methods, one cell for each of film_starts. HiRes is compared with itself from
+/// a perturbed settled state; from the second start on, all methods start from perturbed states. Needs a
+/// current context.
+void run_film(const sim::CellScene& scene, const CellSize& size, const Table1Options& options,
+              ScoreBlock& block);
+
+}  // namespace measure
