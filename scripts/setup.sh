@@ -19,7 +19,7 @@ build=(
   # type of the participant's window; other fonts of the system are found by fontconfig
   fonts-dejavu-core libfontconfig-dev
 )
-tests=(libgtest-dev libgmock-dev sqlite3 openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy)
+tests=(libgtest-dev libgmock-dev sqlite3 locales openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy)
 slow=(debootstrap dpkg-dev file)  # for scripts/package.sh
 # For the BIDS validator (scripts/validate_bids.sh); an npm from elsewhere will do.
 command -v npm >/dev/null || slow+=(nodejs npm)

@@ -63,7 +63,8 @@ void print_offer(const study::HeadsetOffer& offer) {
   row("extensions", listed(offer.extensions, [](const std::string& name) { return name; }));
 }
 
-/// One line per setting: "mean 40, SD 5 frames/s exact at 90, 120 Hz".
+/// One line per setting of the frame rate, with the refresh rates at which its mean and SD are reached
+/// exactly: "mean 40, SD 5 frames/s exact at 90, 120 Hz".
 void print_exact_settings(const std::vector<study::CheckedSetting>& settings,
                           const std::vector<study::RefreshCheck>& checks) {
   for (std::size_t i = 0; i < settings.size(); ++i) {

@@ -66,7 +66,7 @@ struct Outcome {
 /// True if the finding shows that water was lost, braked or compressed, which no effect may cause. Other
 /// findings, such as where and how fast water comes to rest, may change with effects.
 bool is_of_stability(const Finding& finding);
-/// The outcome with only these findings.
+/// The outcome without the findings for which is_of_stability() is false.
 Outcome of_stability(Outcome outcome);
 
 struct HardCase {

@@ -23,7 +23,7 @@ class RateMeter {
   void interrupt();
   /// Hz; none until enough steps have settled, and while the rate changes.
   std::optional<double> hz() const;
-  /// Number of slots left out between two that came.
+  /// Number of slots whose predicted time never came, although a later one did; over the whole session.
   std::int64_t dropped() const { return dropped_; }
   /// Number of predicted times that did not go forward.
   std::int64_t repeated() const { return repeated_; }

@@ -58,8 +58,9 @@ Scenario paper_task1(const ShownFactors& factors) {
     const auto* const means = std::find_if(paper_means.begin(), paper_means.end(),
                                            [&](const PaperMeans& one) { return n_star == one.n_star; });
     if (means == paper_means.end()) {
-      throw base::Error("--world paper", "the paper shows n_* of 16k and 32k, not " + n_star,
-                        "choose --world effect, null or margin");
+      throw base::Error("--world paper",
+                        "the paper has results for n_* = 16k and 32k only, not for " + n_star,
+                        "choose --world effect, null or margin, or a protocol with those n_*");
     }
     for (const auto& method : factors.methods) {
       const int rank = rank_of(method);

@@ -42,7 +42,7 @@ inline bool has_effects(const StimulusSpec& what) {
 enum class TimingSource {
   Settings,  ///< mean_fps and sd_fps of the design (pilot)
   Native,    ///< as fast as the method runs: no schedule, the setting's moments are 0
-  Equal,     ///< one mean and deviation for all cells
+  Equal,     ///< the same mean and SD of the frame rate for all cells
   Table2     ///< each cell's published moments (paper, Table 2), also used for tau
 };
 

@@ -37,8 +37,8 @@ struct SettingPrices {
   std::vector<SettingPrice> found;  ///< one per table that holds the setting
   std::string why_none;             ///< empty if there are some
 };
-/// Finds exactly this setting for this scene file; its `scene` is ignored. A knob that is NaN follows the
-/// frame rate and matches no row.
+/// Finds exactly this setting for this scene file; the setting's `scene` is ignored. A knob of the setting
+/// that is NaN is chosen anew for each frame from the frame rate, so that no row matches.
 SettingPrices prices_of(const SweepTables& tables, sim::SolverSetting setting,
                         const std::string& scene_sha256);
 

@@ -144,7 +144,8 @@ void expect_as_r(bool large, int least) {
   std::set<std::string> only_here;
   for (const auto& name : printed)
     if (!all.names.contains(name) && !is_left_to_others(name)) only_here.insert(name);
-  // Inputs, and counts of answers to a pair, which choose its test (suites Task2 and ShareTest).
+  // R does not compute these: they are inputs of the analysis, and counts of answers that decide which test a
+  // pair gets. The suites Task2 and ShareTest check the counts.
   EXPECT_THAT(only_here, ElementsAre(".hypotheses.alpha", ".task1.scores.margin", ".task1.scores.max",
                                      ".task1.scores.min", ".task2.choices.position", ".task2.pairs.several",
                                      ".task2.several_answers.most", ".task2.several_answers.of",

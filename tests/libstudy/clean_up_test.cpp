@@ -116,8 +116,8 @@ TEST(CleanUp, ARepeatedWithdrawalAndAMergeDoItToo) {
   }
 }
 
-// A chore may stop after its change and before its own deletion: the test puts the database back and repeats
-// it.
+// A chore may stop after it changed files and before its row in the table chore is deleted. The test puts the
+// database with that row back and runs the chore again.
 TEST(CleanUp, DoneTwiceItComesToTheSame) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db", before = folder / "before";

@@ -16,7 +16,8 @@ struct Gather {
   Selection select;
   const Vec4* predicted;
   const float* density;
-  const float* ease;  ///< share of its constraint; nullptr if nothing splits or merges
+  const float* ease;  ///< share of a particle's density constraint that acts yet, [0, 1]; nullptr if nothing
+                      ///< splits or merges
   PressureFrame frame;
   CellBlock block;
   CellSum* sums;
