@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
-#include <sstream>
 
 #include "apps/bench/commands.hpp"
 #include "apps/common/options.hpp"
@@ -15,6 +14,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/progress.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -40,20 +40,13 @@ struct Job {
 };
 constexpr std::size_t steps_of_a_job = 1 + std::size(measure::all_knobs);
 
-std::vector<std::string> words_of(const std::string& words) {
-  std::vector<std::string> out;
-  std::istringstream stream(words);
-  for (std::string word; std::getline(stream, word, ',');) out.push_back(word);
-  return out;
-}
-
 std::vector<const HardCase*> cases_of(const std::string& words) {
   std::vector<const HardCase*> out;
   if (words == "all") {
     for (const HardCase& one : sim::cases::hard_cases()) out.push_back(&one);
     return out;
   }
-  for (const auto& word : words_of(words)) out.push_back(&sim::cases::hard_case(word));
+  for (const auto& word : base::split(words)) out.push_back(&sim::cases::hard_case(word));
   if (out.empty()) throw base::Error("--case", "names no case", "leave it out, or write for example S9");
   return out;
 }
@@ -64,7 +57,7 @@ std::vector<sim::MethodKind> methods_of(const std::string& words) {
     for (const auto& traits : sim::all_methods()) out.push_back(traits.kind);
     return out;
   }
-  for (const auto& word : words_of(words)) out.push_back(sim::parse_method(word));
+  for (const auto& word : base::split(words)) out.push_back(sim::parse_method(word));
   if (out.empty())
     throw base::Error("--method", "names no method", "leave it out, or write for example Ours");
   return out;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
-#include <sstream>
 
 #include "apps/bench/commands.hpp"
 #include "apps/bench/table_options.hpp"
@@ -21,6 +20,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/progress.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/timing.hpp"
 #include "stats/figures/bar_chart.hpp"
 #include "stats/fps_window.hpp"
@@ -171,8 +171,7 @@ std::vector<std::string> row_of(const sim::CellScene& scene, const measure::Cell
 bool wanted(sim::MethodKind method, const std::string& words) {
   if (words == "all" || method == sim::MethodKind::HiRes) return true;
   bool found = false;
-  std::istringstream stream(words);
-  for (std::string word; std::getline(stream, word, ',');) found |= sim::parse_method(word) == method;
+  for (const std::string& word : base::split(words)) found |= sim::parse_method(word) == method;
   return found;
 }
 

@@ -1,7 +1,6 @@
 #include "apps/view/effect_switches.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
@@ -56,8 +55,7 @@ std::vector<sim::Effect> left_on(const std::vector<sim::Effect>& listed, const s
   if (off.empty()) return listed;
   auto switches = switches_of(listed, listed);
   // A trailing comma gives an empty word, which no effect has.
-  std::istringstream words(off + ",");
-  for (std::string word; std::getline(words, word, ',');) {
+  for (const std::string& word : base::split(off + ",")) {
     const auto is_it = [&](const auto& one) { return word == sim::traits_of(one.effect.kind).word; };
     const auto found = std::find_if(switches.begin(), switches.end(), is_it);
     if (found == switches.end()) {

@@ -103,14 +103,14 @@ CellScores read_cells(const std::filesystem::path& path) {
   std::istringstream lines(base::read_file(path, most_bytes));
   std::string line;
   std::getline(lines, line);
-  if (figures::split(line) != score_head())
+  if (base::split(line) != score_head())
     throw base::Error(path.string(), "is no table of single pictures", "give a file that --cells wrote");
   CellScores out;
   for (int number = 2; std::getline(lines, line); ++number) {
     CellKey key;
     CellValues values{};
     const std::string place = path.string() + ":" + std::to_string(number);
-    if (!reads_row(figures::split(line), key, values))
+    if (!reads_row(base::split(line), key, values))
       throw base::Error(place, "is no row of a picture", "write the file again with --cells");
     if (!out.emplace(key, values).second)
       throw base::Error(place, "names a picture a second time: " + in_words(key),

@@ -2,11 +2,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace measure {
 
@@ -18,12 +18,12 @@ bool read_number(const std::string& text, double& value) {
   return error == std::errc() && rest == end && std::isfinite(value);
 }
 
-/// tau of a cell in the paper's Table 2.
+/// The tau that the paper's Table 2 gives for this scene, n_* and method.
 double paper_tau(const std::string& scene, const std::string& n_star, sim::MethodKind method) {
   const auto path = base::resource("data/paper/table2_performance.csv");
-  const auto lines = figures::split(base::read_file(path, 1 << 16), '\n');
+  const auto lines = base::split(base::read_file(path, 1 << 16), '\n');
   for (const auto& line : lines) {
-    const auto cell = figures::split(line);
+    const auto cell = base::split(line);
     double tau = 0;
     if (cell.size() < 8 || cell[0] != scene || cell[1] + "k" != n_star || cell[2] != sim::method_name(method))
       continue;
@@ -39,7 +39,7 @@ double paper_tau(const std::string& scene, const std::string& n_star, sim::Metho
 
 std::vector<CellSize> sizes_of(const std::string& words) {
   std::vector<CellSize> out;
-  for (const auto& word : figures::split(words)) out.push_back({word, sim::parse_n_star(word)});
+  for (const auto& word : base::split(words)) out.push_back({word, sim::parse_n_star(word)});
   if (out.empty()) throw base::Error("--n-star", "names no size", "write for example 16k,32k");
   return out;
 }

@@ -24,7 +24,7 @@ constexpr std::size_t columns = 10;
 class Cells {
  public:
   Cells(std::string place, const std::string& line)
-      : place_(std::move(place)), cells_(figures::split(line + ",")) {  // an empty last cell counts
+      : place_(std::move(place)), cells_(base::split(line + ",")) {  // an empty last cell counts
     if (cells_.size() != columns)
       fail("has " + std::to_string(cells_.size()) + " cells where " + std::to_string(columns) + " belong");
   }

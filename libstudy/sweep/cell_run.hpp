@@ -12,8 +12,8 @@ namespace study {
 struct KeptPicture {
   double time_s = 0;  ///< since the gate opened
   std::string png;
-  /// Masks for comparison, packed by to_bits(); only the reference has them, on the first picture of each
-  /// pair.
+  /// Masks for comparison, packed by to_bits(); only the first picture of each pair of the
+  /// reference has them.
   std::string fovea = {}, salient = {};
 };
 

@@ -9,6 +9,19 @@
 
 namespace base {
 
+/// A file descriptor that closes itself; below 0: none.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor();
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
 /// Returns the bytes of a regular file. An error if it is missing, unreadable or larger than max_bytes.
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 

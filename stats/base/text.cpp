@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <sstream>
 
 namespace base {
 
@@ -68,6 +69,13 @@ std::string shortened(std::string_view value, std::size_t most_bytes) {
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+std::vector<std::string> split(const std::string& line, char separator) {
+  std::vector<std::string> out;
+  std::istringstream stream(line);
+  for (std::string part; std::getline(stream, part, separator);) out.push_back(part);
   return out;
 }
 

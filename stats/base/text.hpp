@@ -23,6 +23,10 @@ std::string shortened(std::string_view value, std::size_t most_bytes = 120);
 /// The words, separated by ", ".
 std::string joined(const std::vector<std::string>& words);
 
+/// The parts of a line between separators, such as the cells of CSV without quotes. An empty last part is
+/// left out.
+std::vector<std::string> split(const std::string& line, char separator = ',');
+
 /// The shortest text that reads back to the same double: "0.1", "1e-05".
 std::string shortest(double value);
 

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace figures {
 
@@ -20,13 +19,6 @@ std::string in_a_cell(std::string text) {
   std::replace(text.begin(), text.end(), '|', '/');
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
-}
-
-std::vector<std::string> split(const std::string& line, char separator) {
-  std::vector<std::string> out;
-  std::istringstream stream(line);
-  for (std::string part; std::getline(stream, part, separator);) out.push_back(part);
-  return out;
 }
 
 std::string to_csv(const TextTable& table) {

@@ -15,10 +15,6 @@ std::string shortest(double value);
 /// Free text as one cell of a CSV or Markdown table.
 std::string in_a_cell(std::string text);
 
-/// The parts of a line between separators, such as the cells of CSV without quotes. An empty last part is
-/// left out.
-std::vector<std::string> split(const std::string& line, char separator = ',');
-
 /// Rows of text cells as CSV and as a Markdown table; the caller formats numbers.
 struct TextTable {
   std::vector<std::string> head;

@@ -1,8 +1,7 @@
 #include "libstudy/pages/headset/answer_ways.hpp"
 
-#include <sstream>
-
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -10,9 +9,8 @@ const char* const usual_answer_ways = "ray,stick,keyboard";
 
 AnswerWays parse_answer_ways(const std::string& words) {
   AnswerWays ways;
-  std::istringstream all(words);
   const std::string known = "use ray, stick, dwell and keyboard with commas between";
-  for (std::string word; std::getline(all, word, ',');) {
+  for (const std::string& word : base::split(words)) {
     bool* const way = word == "ray"        ? &ways.ray
                       : word == "stick"    ? &ways.stick
                       : word == "dwell"    ? &ways.dwell

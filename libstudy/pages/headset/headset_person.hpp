@@ -19,7 +19,7 @@ struct HeadsetPerson {
   std::unique_ptr<Participant> participant;
   std::function<Request(const std::function<Request()>& others)> request;  ///< see SessionHooks::request
   std::function<std::optional<double>()> idle;  ///< seconds since a hand or a key was used
-  std::function<void()> listen;                 ///< makes the terminal's keys answer from now on
+  std::function<void()> listen;                 ///< takes keys of the terminal as answers from this call on
 };
 
 /// The choice with which a display must be made for this person. base::Error if the program has no pages.

@@ -17,7 +17,7 @@ namespace study {
 
 namespace {
 
-/// 0 to 9 on the main row or the keypad; -1: another key.
+/// The digit of a key on the main row or the keypad; -1 for any other key.
 int digit_of(int key) {
   if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return key - GLFW_KEY_0;
   if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return key - GLFW_KEY_KP_0;

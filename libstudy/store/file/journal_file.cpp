@@ -38,20 +38,6 @@ namespace {
           : "the journal of answers must be a file on a sound disk, not a link");
 }
 
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 /// 0, or errno.
 int write_all(int fd, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -74,7 +60,7 @@ std::uintmax_t size_of(int fd, const fs::path& path) {
 }
 
 std::string whole(const fs::path& path, bool& exists) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const base::Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   exists = file.get() >= 0;
   if (!exists && errno == ENOENT) return {};
   if (!exists) fail_to_read(path, errno);
@@ -268,7 +254,7 @@ namespace {
 fs::path draft_of(const fs::path& journal) { return journal.string() + ".new"; }
 
 /// Deleting a file leaves its bytes on the disk, so overwrites them first.
-void overwrite(const Descriptor& file, const fs::path& path) {
+void overwrite(const base::Descriptor& file, const fs::path& path) {
   const std::string zeros(1 << 16, '\0');
   for (std::uintmax_t left = size_of(file.get(), path); left > 0;) {
     const auto part = static_cast<std::size_t>(std::min<std::uintmax_t>(left, zeros.size()));
@@ -280,7 +266,7 @@ void overwrite(const Descriptor& file, const fs::path& path) {
 }
 
 void overwrite(const fs::path& path) {
-  const Descriptor file(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const base::Descriptor file(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   const bool holds_bytes = file.get() >= 0 || (errno != ENOENT && errno != ELOOP && errno != ENXIO);
   if (!holds_bytes) return;  // nothing, a link, a pipe
   if (file.get() < 0) fail(path, "cannot be overwritten", errno);
@@ -288,7 +274,8 @@ void overwrite(const fs::path& path) {
 }
 
 void write_draft(const fs::path& draft, const fs::path& journal, const std::string& text) {
-  const Descriptor file(::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  const base::Descriptor file(
+      ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (file.get() < 0) fail(draft, "cannot be made", errno);
   int reason = ::fchmod(file.get(), 0600) != 0 ? errno : write_all(file.get(), text);
   if (reason == 0 && ::fsync(file.get()) != 0) reason = errno;
@@ -319,7 +306,7 @@ void replace_journal(const fs::path& path, const std::string& text) {
     return remove_journal_draft(path);
   // Network file systems cannot exchange two names, so the new journal replaces the old one.
   const int reason = errno;
-  const Descriptor old(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const base::Descriptor old(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (reason != EINVAL) fail(path, "cannot be replaced", reason);
   if (!base::rename_durably(draft, path)) fail(path, "cannot be replaced", errno);
   if (old.get() >= 0) overwrite(old, path);

@@ -241,7 +241,8 @@ std::vector<Planned> sessions_of(Connection& database) {
   return all;
 }
 
-/// Row number of position 0: the rows of a session are consecutive. None if no row is left or they are not.
+/// The id that position 0 of the session has or had, since a session's rows have consecutive ids. None if no
+/// row is left or the ids are not consecutive.
 std::optional<std::int64_t> first_row(Connection& database, const std::string& table, std::int64_t session) {
   Statement row(database, "SELECT min(" + table + "_id - position), max(" + table +
                               "_id - position), count(*) FROM " + table + " WHERE session_id = ?");

@@ -36,8 +36,8 @@ class PictureKeeper {
 
   /// At the middle of the picture.
   double pixels_per_degree() const { return std::numbers::pi / 180 / sim::pixel_rays(eye_.view()).scale_y; }
-  /// `frame` is the run's. With `masks`, also stores the masks of the gaze's fovea (the tuned half angle) and
-  /// of the most salient part outside it; this sorts the particles.
+  /// `frame`: number of the frame in the run. With `masks`, also stores the masks of the gaze's fovea (the
+  /// tuned half angle) and of the most salient part outside it; this sorts the particles.
   KeptPicture keep(sim::Simulation& fluid, int frame, double frame_dt_s, bool masks);
 
  private:
