@@ -27,7 +27,7 @@ docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
 docs/results.md|vip-bench accuracy|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it takes more than a minute on two cores|DocsSlow.docs/results.md
 docs/results.md|key=|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it settles water for long|DocsSlow.docs/results.md
-docs/results.md|snakemake -s scripts/sweep.smk --cores 2|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it takes more than a minute on two cores|DocsSlow.docs/results.md
+docs/results.md|snakemake -s scripts/sweep.smk --cores 2|slow s/--quick/--quick --n-star 64 --seconds 0.2/|it takes more than a minute on two cores|DocsSlow.docs/results.md
 docs/results.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|slow s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|DocsSlow.docs/results.md
 docs/results.md|vip-bench table1|slow s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|DocsSlow.docs/results.md
 docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 4k|quick s/4k/64/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/results.md
@@ -41,7 +41,8 @@ docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 32k|s/32k/6
 docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/|it needs a GPU|
 docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/results.md|vip-bench frame --peers --backend cuda|s/cuda/cpu --frames 2/|it needs a GPU|
-docs/results.md|vip-bench stability --case S9,S11,S12|s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|
+docs/results.md|vip-bench stability --case S9,S11,S12|slow s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|DocsSlow.docs/results.md
+docs/results.md|vip-view data/scenes/single_dam.toml --headless --frames 3 --n-star 256|quick s/256/64/|it settles water for long|DocsSlow.docs/results.md
 docs/results.md|vip-bench stability|s/--csv/--case S9 --method HiRes --quick --csv/|every core works on it for minutes|
 docs/results.md|vip-bench frame out/dam_foam.toml|s/32k/64/; s/cuda/cpu/; s/frames 240/frames 2/|it needs a GPU|
 docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md

@@ -2,9 +2,11 @@
 # Installs the Debian packages that ViP-Lab needs. Safe to run again.
 # usage: scripts/setup.sh [PART ...]     without a part: all of them
 #   build    what builds and runs the programs
-#   tests    what the tests need besides
-#   slow     what tests of the label slow need besides
+#   tests    what the tests are compiled with besides
+#   tools    programs that the tests run
+#   slow     programs that tests of the label slow run besides
 #   sweeps   Snakemake, for scripts/sweep.smk and its tests
+#   lint     clang-tidy, for scripts/tidy.sh
 set -euo pipefail
 
 build=(
@@ -19,21 +21,26 @@ build=(
   # type of the participant's window; other fonts of the system are found by fontconfig
   fonts-dejavu-core libfontconfig-dev
 )
-tests=(libgtest-dev libgmock-dev sqlite3 locales openxr-layer-corevalidation util-linux xvfb xauth xdotool imagemagick clang-tidy)
-slow=(debootstrap dpkg-dev file)  # for scripts/package.sh
+tests=(libgtest-dev libgmock-dev)
+tools=(sqlite3 locales openxr-layer-corevalidation util-linux xvfb xauth)
+slow=(xdotool imagemagick)            # for scripts/window_*.sh
+slow+=(debootstrap dpkg-dev file)     # for scripts/package.sh
 # For the BIDS validator (scripts/validate_bids.sh); an npm from elsewhere will do.
 command -v npm >/dev/null || slow+=(nodejs npm)
 sweeps=(snakemake)
+lint=(clang-tidy)
 
 packages=()
-[ $# -gt 0 ] || set -- build tests slow sweeps
+[ $# -gt 0 ] || set -- build tests tools slow sweeps lint
 for part in "$@"; do
   case "$part" in
     build) packages+=("${build[@]}") ;;
     tests) packages+=("${tests[@]}") ;;
+    tools) packages+=("${tools[@]}") ;;
     slow) packages+=("${slow[@]}") ;;
     sweeps) packages+=("${sweeps[@]}") ;;
-    *) echo "setup: no part is called '$part'; the parts are build, tests, slow and sweeps." >&2; exit 2 ;;
+    lint) packages+=("${lint[@]}") ;;
+    *) echo "setup: no part is called '$part'; the parts are build, tests, tools, slow, sweeps and lint." >&2; exit 2 ;;
   esac
 done
 

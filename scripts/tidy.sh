@@ -1,17 +1,14 @@
 #!/usr/bin/env bash
 # clang-tidy with the checks of .clang-tidy on the C++ that changed since BASE, committed or not; what it finds is an error.
-# usage: scripts/tidy.sh [BASE]           default: where this branch left origin/main; there, the commit before
+# usage: scripts/tidy.sh [BASE]           default: $VIP_TIDY_BASE, or where this branch left origin/main
 #        scripts/tidy.sh --files FILE...  these sources
 # A header is looked at through a source that includes it. Without --files no more than $VIP_TIDY_MOST sources (default: 16) are
 # looked at, which takes up to two minutes on two cores; the rest is named.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-command -v clang-tidy >/dev/null || { echo "tidy: clang-tidy is missing; run scripts/setup.sh tests" >&2; exit 1; }
-
 changed() {  # changed [BASE]: C++ files that differ from there
-  local base=${1:-}
+  local base=${1:-${VIP_TIDY_BASE:-}}
   [ -n "$base" ] || base=$(git merge-base HEAD origin/main 2>/dev/null || git merge-base HEAD main 2>/dev/null || true)
-  if [ -z "${1:-}" ] && [ "$base" = "$(git rev-parse HEAD)" ] && git diff --quiet HEAD; then base=HEAD~1; fi
   git rev-parse --verify -q "$base^{commit}" >/dev/null || { echo "tidy: no earlier commit is known here" >&2; return; }
   { git diff --name-only --diff-filter=d "$base"; git ls-files -o --exclude-standard; } | grep -E '\.[ch]pp$' | sort -u || true
 }
@@ -35,6 +32,7 @@ else
 fi
 [ ${#sources[@]} -gt 0 ] || { echo "tidy: nothing changed"; exit 0; }
 
+./scripts/setup.sh lint
 # Without precompiled headers, which clang cannot read from g++, and each source by itself.
 cmake --preset dev -B build/tidy -DVIP_PRECOMPILE=OFF -DVIP_UNITY=OFF -DVIP_CUDA=OFF >/dev/null
 known=()

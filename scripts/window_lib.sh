@@ -1,7 +1,7 @@
 # What the scripts that sit at the participant's window share: a virtual screen, keys, mouse, pictures, checks.
 # Sourced, after $out (a folder) and $size (the screen, such as 1280x720) are set; ends with the screens it opened.
 for tool in Xvfb xdotool import sqlite3; do
-  command -v "$tool" >/dev/null || { echo "${0##*/}: $tool is missing; run scripts/setup.sh tests" >&2; exit 1; }
+  command -v "$tool" >/dev/null || { echo "${0##*/}: $tool is missing; run scripts/setup.sh tools slow" >&2; exit 1; }
 done
 mkdir -p "$out"
 width=${size%x*} height=${size#*x}

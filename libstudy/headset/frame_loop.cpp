@@ -237,6 +237,8 @@ HeadsetLayers FrameLoop::layers_at(std::int64_t at_ns, std::size_t picture, std:
   out.in_head = shown_from_.in_head;
   out.light = light_at(at_ns);
   out.place = shown_place_;
+  out.picture_number = picture_turns_.number();
+  out.page_number = page_turns_.number();
   return out;
 }
 

@@ -236,7 +236,7 @@ void HeadsetSession::end(const HeadsetSlot& slot, const HeadsetLayers& shown) {
   if (slot.should_render && shown.picture && can_be_shown(shown.views)) {
     for (std::size_t eye = 0; eye < views.size(); ++eye) {
       const PicturePart part{eye == 0 ? 0 : parts.sizes[0].width, shown.light};
-      parts.swapchains[eye]->write(*shown.picture, part, parts.patience);
+      parts.swapchains[eye]->write(*shown.picture, part, shown.picture_number, parts.patience);
       views[eye] = parts.layer_view(shown.views[eye], *parts.swapchains[eye]);
     }
     projection.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION;
@@ -247,7 +247,7 @@ void HeadsetSession::end(const HeadsetSlot& slot, const HeadsetLayers& shown) {
   }
   if (slot.should_render && shown.page) {
     Swapchain& swapchain = *parts.swapchains.at(2);
-    swapchain.write(*shown.page, {}, parts.patience);
+    swapchain.write(*shown.page, {}, shown.page_number, parts.patience);
     quad.type = XR_TYPE_COMPOSITION_LAYER_QUAD;
     quad.space = parts.world.get();
     quad.eyeVisibility = XR_EYE_VISIBILITY_BOTH;

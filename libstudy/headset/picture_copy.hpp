@@ -22,6 +22,7 @@ std::string gl_format_name(std::int64_t format);
 struct PicturePart {
   int x_px = 0;     ///< left edge of the part
   float light = 1;  ///< factor of its levels, [0, 1]
+  bool operator==(const PicturePart&) const = default;
 };
 struct CopyTarget {
   unsigned texture = 0;

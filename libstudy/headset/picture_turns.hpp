@@ -2,6 +2,7 @@
 /// Keeps track of which picture is drawn into, waits for its slot, is shown, and is looked at by an onlooker.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace study {
 
@@ -28,8 +29,11 @@ class PictureTurns {
   void take() {
     shown_ = waiting_;
     waiting_ = none;
+    ++number_;
   }
   bool shows() const { return shown_ != none; }
+  /// Number of the shown picture, from 1: no two pictures have the same.
+  std::uint64_t number() const { return number_; }
   /// Returns the shown picture, which is read from now until the next call.
   std::size_t read() { return read_ = shown_; }
   /// The same for the onlooker, until its next call or look_away().
@@ -46,6 +50,7 @@ class PictureTurns {
   static constexpr std::size_t none = count_with_onlooker;
   std::size_t drawn_ = 0, waiting_ = none, shown_ = none, read_ = none, looked_at_ = none;
   bool dropped_ = false;
+  std::uint64_t number_ = 0;
 };
 
 }  // namespace study

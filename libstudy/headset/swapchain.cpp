@@ -73,13 +73,17 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
                     "restart the headset's software; vip-study resume continues a session");
 }
 
-void Swapchain::write(const sim::Offscreen& picture, const PicturePart& part,
+void Swapchain::write(const sim::Offscreen& picture, const PicturePart& part, std::uint64_t number,
                       std::chrono::nanoseconds limit) {
+  // A layer shows the image that was released last, in as many frames as it likes.
+  if (number != 0 && number == last_number_ && part == last_part_) return;
   copy_->copy(picture, part, images_.at(acquire(limit)));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   XrSwapchainImageReleaseInfo release{};
   release.type = XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO;
   session_.call<PFN_xrReleaseSwapchainImage>("xrReleaseSwapchainImage", swapchain_, &release);
+  last_number_ = number;
+  last_part_ = part;
 }
 
 XrSwapchainSubImage Swapchain::image() const { return {swapchain_, {{0, 0}, {width_px_, height_px_}}, 0}; }

@@ -2,6 +2,7 @@
 /// A runtime's swapchain for one picture.
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -22,8 +23,10 @@ class Swapchain {
 
   std::int64_t format() const { return format_; }
   /// Copies a part of a picture, of the image's size, into the next image and releases that to the runtime.
+  /// Does nothing if the last image holds that part of the picture of this number; 0: a new picture each time.
   /// base::Error if the runtime holds all images for longer than `limit`.
-  void write(const sim::Offscreen& picture, const PicturePart& part, std::chrono::nanoseconds limit);
+  void write(const sim::Offscreen& picture, const PicturePart& part, std::uint64_t number,
+             std::chrono::nanoseconds limit);
   /// The whole image, for a layer.
   XrSwapchainSubImage image() const;
 
@@ -38,6 +41,8 @@ class Swapchain {
   XrSwapchain swapchain_ = XR_NULL_HANDLE;
   std::vector<CopyTarget> images_;
   std::unique_ptr<PictureCopy> copy_;
+  PicturePart last_part_;
+  std::uint64_t last_number_ = 0;
 };
 
 /// Makes one swapchain per size, all of the best offered format that can really be made. base::Error if there

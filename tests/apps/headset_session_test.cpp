@@ -118,6 +118,19 @@ TEST_F(HeadsetSessionGl, APageStandsBeforeThePictures) {
     EXPECT_NEAR(shown.rgba[part], level, 1);
 }
 
+TEST_F(HeadsetSessionGl, ContentThatKeepsItsNumberIsCopiedOnce) {
+  start("dump=5,7");
+  begin_running();
+  run_frames(8, [&](const study::HeadsetSlot& slot) -> study::HeadsetLayers {
+    paint(*picture_, slot.index < 3 ? 1 : 0);
+    study::HeadsetLayers shown = seen_from(session_->views(slot));
+    shown.picture_number = slot.index < 7 ? 1 : 2;
+    return shown;
+  });
+  EXPECT_EQ(picture(5, "left").rgba[0], 255);
+  EXPECT_EQ(picture(7, "right").rgba[0], 0);
+}
+
 TEST_F(HeadsetSessionGl, NothingIsHandedOverForASlotThatNobodySees) {
   start("at=4:render/0", {.page_width_px = 40, .page_height_px = 20});
   begin_running();

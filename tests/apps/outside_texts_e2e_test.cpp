@@ -143,7 +143,7 @@ TEST_F(OutsideTextsE2e, ExcelFilesFollowTheLocale) {
   EXPECT_FALSE(fs::exists(folder_ / "unknown"));
   fs::create_directory(folder_ / "locales");
   const std::string locales = german_locales(folder_ / "locales");
-  ASSERT_NE(locales, "") << "localedef makes no German locale; scripts/setup.sh tests installs its sources";
+  ASSERT_NE(locales, "") << "localedef makes no German locale; scripts/setup.sh tools installs its sources";
   const Ended german = exported("german", "de_DE.UTF-8", locales);
   EXPECT_THAT(german.out, HasSubstr("';' between fields, ',' as the decimal mark")) << german.err;
   EXPECT_EQ(head_of("german"), "\xEF\xBB\xBFresponse_id;unit_id;a");

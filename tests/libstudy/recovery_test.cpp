@@ -197,6 +197,17 @@ TEST(Recovery, AFileCutInItsFirstTransactionIsMadeAnew) {
   EXPECT_EQ(store.open_runs().size(), 1u);
 }
 
+TEST(Recovery, AFileCutAfterItsFirstCommitIsFinished) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "study.db";
+  Connection(path, Open::Create)
+      .execute("PRAGMA application_id = " + std::to_string(database_application_id));
+  EXPECT_EQ(open_database(path, Open::Read, read_schema_steps())->integer("SELECT count(*) FROM session"), 0);
+  Store store(path, Open::Write);
+  store.add_run(test::run_plan(test::pilot(), {"P01"}));
+  EXPECT_EQ(store.open_runs().size(), 1u);
+}
+
 TEST(Recovery, ForeignFilesKeepTheirLogAndTheirJournal) {
   const test::TemporaryFolder folder;
   const fs::path logged = folder / "logged.db", journalled = folder / "journalled.db";

@@ -106,6 +106,10 @@ constexpr std::array step_files{"001_initial.sql",  "002_blocks.sql",   "003_per
                                 "007_promises.sql"};
 constexpr std::size_t max_sql_bytes = 1 << 20;
 
+std::string read_sql(const std::string& name) {
+  return base::read_file(base::resource("libstudy/store/sql/" + name), max_sql_bytes);
+}
+
 struct Identity {
   std::int64_t application = 0;
   std::int64_t version = 0;
@@ -200,6 +204,26 @@ void give_identity(Connection& database) {
   sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
 }
 
+void set_version(Connection& database, std::size_t version) {
+  database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
+  database.execute("PRAGMA user_version = " + std::to_string(version));
+}
+
+/// Makes the schema of this version at once: the steps give the same, but take 20 times as long, because SQLite
+/// reads the whole schema again for each renamed table.
+void make_schema(Connection& database, std::size_t version) {
+  // A commit of its own: a journal that makes a file empty again is ours only beside a file without tables
+  // (holds_nothing).
+  sqlite::Transaction named(database);
+  set_version(database, 0);
+  named.commit();
+  sqlite::Transaction transaction(database);
+  database.execute(read_sql("schema.sql"));
+  set_version(database, version);
+  give_identity(database);
+  transaction.commit();
+}
+
 /// A step may recreate tables, so that references dangle until it ends: checks them before the commit.
 void take_step(Connection& database, const SchemaSteps& steps, std::size_t version) {
   sqlite::Transaction transaction(database);
@@ -210,8 +234,7 @@ void take_step(Connection& database, const SchemaSteps& steps, std::size_t versi
         "cannot be upgraded: a row of " + lost.text(0) + " refers to a missing row of " + lost.text(2),
         "restore a backup of it; the file was left as it is");
   }
-  database.execute("PRAGMA application_id = " + std::to_string(database_application_id));
-  database.execute("PRAGMA user_version = " + std::to_string(version));
+  set_version(database, version);
   if (version == steps.size()) give_identity(database);
   transaction.commit();
 }
@@ -267,19 +290,19 @@ bool holds_nothing(const fs::path& path) {
 
 SchemaSteps read_schema_steps() {
   SchemaSteps steps;
-  for (const char* file : step_files) {
-    steps.push_back(
-        base::read_file(base::resource(std::string("libstudy/store/sql/") + file), max_sql_bytes));
-  }
+  for (const char* file : step_files) steps.push_back(read_sql(file));
   return steps;
 }
 
 void upgrade(Connection& database, const SchemaSteps& steps) {
   // This pragma has no effect within a transaction.
   database.execute("PRAGMA foreign_keys = OFF");
-  for (auto step = static_cast<std::size_t>(database.integer("PRAGMA user_version")); step < steps.size();
-       ++step)
-    take_step(database, steps, step + 1);
+  auto version = static_cast<std::size_t>(database.integer("PRAGMA user_version"));
+  if (version == 0 && steps == read_schema_steps()) {
+    make_schema(database, steps.size());
+    version = steps.size();
+  }
+  for (; version < steps.size(); ++version) take_step(database, steps, version + 1);
   database.execute("PRAGMA foreign_keys = ON");
 }
 

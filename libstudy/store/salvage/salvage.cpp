@@ -73,10 +73,9 @@ EarlierShape placed(const Shape& shape, const std::vector<Shape>& now, std::size
 std::vector<Shape> shapes_before() {
   std::vector<Shape> out;
   const SchemaSteps steps = read_schema_steps();
+  const auto database = make_temporary_database("earlier schemas", {});
   for (std::size_t schema = first_schema; schema < steps.size(); ++schema) {
-    const auto database =
-        make_temporary_database("schema " + std::to_string(schema),
-                                {steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(schema)});
+    upgrade(*database, {steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(schema)});
     for (Shape& shape : salvaging::shapes_of(*database)) out.push_back(std::move(shape));
   }
   return out;
