@@ -100,21 +100,12 @@ TEST(Claims, AMarginActsWhereverMethodsAreComparedByItsScore) {
   EXPECT_THAT(plan, HasSubstr("# cannot act, as no ratings of cybersickness compare methods: sickness = "));
 }
 
-study::Json results_of(std::vector<study::TaskProtocol> protocols) {
-  study::PlanInForce plan;
-  plan.plan.resamples = 100;
-  return study::make_results(
-             {std::move(protocols), 0},
-             {"s.db", {study::TaskKind::Task1, study::TaskKind::Task2, study::TaskKind::Own}, "", plan})
-      .json;
-}
-
 TEST(Claims, ThePageNamesTheProtocolThatDoesNotTestThem) {
   auto own = made_study::task1(6);
   own.name = "comfort";
   own.sha256 = std::string(64, '4');
   own.questions.erase(own.questions.begin());
-  const study::Json json = results_of({made_study::task1(6), own});
+  const study::Json json = made_study::results_of({{made_study::task1(6), own}, 0});
   ASSERT_EQ(json.at("hypotheses").size(), 3u) << "H1 to H3 of task1";
   std::vector<std::string> lines;
   for (const study::Json& one : json.at("not_analysed"))
@@ -126,7 +117,7 @@ TEST(Claims, ThePageNamesTheProtocolThatDoesNotTestThem) {
 TEST(Claims, PairsWithThreeAnswersLackTheChoiceOfTwo) {
   auto pairs = made_study::task2(6);
   pairs.questions[0].anchors.emplace_back(3, "no difference");
-  const study::Json json = results_of({pairs});
+  const study::Json json = made_study::results_of({{pairs}, 0});
   std::string reasons;
   for (const study::Json& one : json.at("not_analysed")) reasons += std::string(one.at("reason")) + "\n";
   EXPECT_THAT(reasons, AllOf(HasSubstr("exactly two anchors"), HasSubstr("not rated one by one"),

@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/analysis/tasks/sickness_json.hpp"
 #include "libstudy/store/read/sickness.hpp"
 #include "libstudy/store/read/task_answers.hpp"
+#include "tests/apps/simulated_pilot.hpp"
 
 namespace made_study {
 
@@ -172,6 +175,34 @@ inline std::vector<study::SicknessSession> sickness(int participants, unsigned s
                          rounded(0.6 * asked * skewed(generator), 0, 20)});
     out.push_back(one);
   }
+  return out;
+}
+
+inline study::PlanInForce quick_plan() {
+  study::PlanInForce plan;
+  plan.plan.resamples = 200;
+  return plan;
+}
+
+/// The results of all parts. `question`: of a pilot; empty: all.
+inline study::Json results_of(const study::TaskStudy& study, const study::PlanInForce& plan = quick_plan(),
+                              const std::string& question = "") {
+  study::ResultsRequest request{
+      "folder/study.db",
+      {study::TaskKind::Pilot, study::TaskKind::Task1, study::TaskKind::Task2, study::TaskKind::Own},
+      "",
+      plan};
+  request.question = question;
+  return study::make_results(study, request).json;
+}
+
+/// A simulated pilot and both tasks.
+inline study::Json whole_study(int people, const study::TaskProtocol& first) {
+  auto out = results_of(
+      {.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7), first, task2(people)},
+       .withdrawn = 1,
+       .about_people = about_people(people)});
+  out["sickness"] = study::sickness_json(sickness(people), quick_plan().plan);
   return out;
 }
 

@@ -12,7 +12,6 @@ namespace apps {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// Every third participant leaves after the seventh trial; all other answers exist.
 study::TaskProtocol with_dropout(int participants) {
@@ -30,10 +29,9 @@ study::TaskProtocol with_dropout(int participants) {
 
 study::Json results_of(const study::TaskProtocol& protocol,
                        stats::ScoreTests tests = stats::ScoreTests::Paired) {
-  study::PlanInForce plan;
+  auto plan = made_study::quick_plan();
   plan.plan.tests = tests;
-  plan.plan.resamples = 100;
-  return study::make_results({{protocol}, 0}, {"study.db", {study::TaskKind::Task1}, "", plan}).json;
+  return made_study::results_of({{protocol}, 0}, plan);
 }
 
 study::TaskData data_of(const study::TaskProtocol& protocol) {
@@ -83,10 +81,6 @@ TEST(MissingAnswers, PairsThatRestOnDifferentPeopleAreFlagged) {
                                     {"fewest", 8},
                                     {"most", 12},
                                     {"differ", true}}));
-  const std::string page = study::report::results_page(json);
-  EXPECT_THAT(page, HasSubstr("pairs rest on different people"));
-  EXPECT_THAT(study::report::results_page(results_of(made_study::task1(12))),
-              Not(HasSubstr("pairs rest on different people")));
 }
 
 TEST(MissingAnswers, TheMixedModelTakesAllAnswers) {
@@ -141,11 +135,12 @@ TEST(MissingAnswers, TheTestsOfHypothesesHaveTippingPoints) {
     }
   }
   EXPECT_GT(missing, 0);
-  EXPECT_THAT(study::report::results_page(json), HasSubstr("Tipping points of the tests of H1 to H3"));
-  const auto whole = study::report::results_page(results_of(made_study::task1(12)));
-  EXPECT_THAT(whole, Not(HasSubstr("Tipping points of")));
-  EXPECT_THAT(whole, HasSubstr("No participant lacks an answer to a method: there are no tipping points."));
-  EXPECT_THAT(study::report::results_page(json), Not(HasSubstr("there are no tipping points")));
+  const auto points = [](const study::Json& results) {
+    const std::string page = study::report::results_page(results);
+    return page.find("Tipping points of") != std::string::npos;
+  };
+  EXPECT_TRUE(points(json));
+  EXPECT_FALSE(points(results_of(made_study::task1(12)))) << "nobody lacks an answer";
 }
 
 TEST(MissingAnswers, EqualDifferencesHaveNoTippingPointAndSaySo) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The report's prose: paragraphs, list items, captions and descriptions, with the values they quote.
+/// The report's prose: paragraphs, list items, captions and descriptions.
 
 #include <string>
 #include <vector>
@@ -11,9 +11,8 @@
 namespace report_blocks {
 
 struct Block {
-  std::string words;                ///< as printed
-  std::string form;                 ///< the same with "#" for each value
-  std::vector<std::string> fields;  ///< paths of the values in the results
+  std::string words;  ///< as printed
+  std::string form;   ///< the same with "#" for each value
 };
 
 /// Parses the content between two tags of a block.
@@ -38,11 +37,7 @@ inline Block block_of(const std::string& html) {
     if (tag == "/span") value = false;
     if (!tag.starts_with("span")) continue;
     const auto element = html_reader::tag_of(tag);
-    for (const char* name : {"data-field", "data-count"}) {
-      if (!element.attributes.contains(name)) continue;
-      out.fields.push_back(element.attributes.at(name));
-      value = true;
-    }
+    for (const char* name : {"data-field", "data-count"}) value = value || element.attributes.contains(name);
     const auto kind = element.attributes.find("class");
     value =
         value || (kind != element.attributes.end() && (kind->second == "none" || kind->second == "ordinal"));

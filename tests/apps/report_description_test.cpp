@@ -8,14 +8,12 @@
 #include <set>
 
 #include "libstudy/analysis/tasks/people_json.hpp"
-#include "libstudy/analysis/tasks/results.hpp"
 #include "libstudy/report/page.hpp"
 #include "stats/base/json.hpp"
 #include "stats/inference/t_test.hpp"
 #include "tests/apps/html_reader.hpp"
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/report_blocks.hpp"
-#include "tests/apps/simulated_pilot.hpp"
 
 namespace apps {
 namespace {
@@ -29,16 +27,7 @@ using ::testing::Pair;
 constexpr int people = 26;
 
 const study::Json& made() {
-  static const study::Json json = [] {
-    study::PlanInForce plan;
-    plan.plan.resamples = 200;
-    return study::make_results(
-               {.protocols = {testing_pilot::simulated_pilot("ptpe:a=24,b=0.02", 16, 7),
-                              made_study::task1(people), made_study::task2(people)},
-                .about_people = made_study::about_people(people)},
-               {"s.db", {study::TaskKind::Pilot, study::TaskKind::Task1, study::TaskKind::Task2}, "", plan})
-        .json;
-  }();
+  static const study::Json json = made_study::whole_study(people, made_study::task1(people));
   return json;
 }
 
@@ -99,16 +88,11 @@ TEST(PeopleOfTheReport, AgeAndGenderOfThoseAnalysedStandInSummary) {
   EXPECT_EQ(age.at("range"), study::Json({20, 35})) << "20 to 31, in whole fives: the ends are single people";
   EXPECT_EQ(gender.at("groups"), study::Json::array({{{"answer", "male"}, {"n", 12}}}));
   EXPECT_EQ(gender.at("pooled").at("n"), 13);
-  EXPECT_THAT(page(), HasSubstr("What the analysed participants answered on pages outside the trials"));
-
-  study::PlanInForce plan;
-  plan.plan.resamples = 100;
-  const auto few =
-      study::make_results({.protocols = {made_study::task1(4)}, .about_people = made_study::about_people(4)},
-                          {"s.db", {study::TaskKind::Task1}, "", plan})
-          .json.at("people")
-          .at(0)
-          .at("questions");
+  const auto few = made_study::results_of(
+                       {.protocols = {made_study::task1(4)}, .about_people = made_study::about_people(4)})
+                       .at("people")
+                       .at(0)
+                       .at("questions");
   EXPECT_FALSE(few.at(0).contains("mean"));
   EXPECT_THAT(few.at(0).at("refused").get<std::string>(), HasSubstr("fewer than 5"));
   EXPECT_THAT(few.at(1).at("groups"), IsEmpty());
@@ -271,10 +255,7 @@ TEST(PageOfTheReport, TimingComesAfterTheResultsAndShowsFailuresAlone) {
   EXPECT_THAT(page(), Not(HasSubstr("id=\"timing-task1-title\""))) << "every showing passed";
   auto study = made_study::task1(6);
   study.sessions[2].trials[3].first.verdict = study::Verdict::Fail;
-  study::PlanInForce plan;
-  plan.plan.resamples = 100;
-  const study::Json json =
-      study::make_results({{study}, 0}, {"s.db", {study::TaskKind::Task1}, "", plan}).json;
+  const study::Json json = made_study::results_of({{study}, 0});
   EXPECT_EQ(json.at("timing_totals").at(0).at("fail"), 1);
   EXPECT_EQ(json.at("timing_totals").at(0).at("flawed_cells"), 1);
   const auto html = study::report::results_page(json);

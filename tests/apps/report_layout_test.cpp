@@ -11,22 +11,17 @@
 
 #include "libstudy/report/page.hpp"
 #include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
+#include "tests/apps/report_walk.hpp"
 
 namespace apps {
 namespace {
 
+using report_walk::example;
 using OrderedJson = base::Json;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
-
-const OrderedJson& example() {
-  static const auto json =
-      OrderedJson::parse(base::read_file(std::string(VIP_TEST_DIR) + "/apps/results_example.json", 1 << 24));
-  return json;
-}
 
 html_reader::Page page_of(const OrderedJson& json) {
   return html_reader::read(study::report::results_page(json));

@@ -4,15 +4,25 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/html_reader.hpp"
 
 namespace report_walk {
 
 using Json = base::Json;
+
+/// The results of a simulated study; scripts/results_example.sh makes it.
+inline const Json& example() {
+  static const auto json = Json::parse(base::read_file(VIP_TEST_DIR "/apps/results_example.json", 1 << 24));
+  return json;
+}
 
 /// Number of decimals.
 inline int decimals(const std::string& text) {
@@ -94,6 +104,24 @@ inline std::vector<std::string> wrong_fields(const html_reader::Page& page, cons
     if (!json.contains(pointer) || !says(text.words, json.at(pointer), !text.attribute("data-unit").empty()))
       wrong.push_back(field + ": " + text.words);
   }
+  return wrong;
+}
+
+/// Ids that occur twice, and references without a target.
+inline std::vector<std::string> wrong_references(const html_reader::Page& page) {
+  std::set<std::string> ids, wanted;
+  std::vector<std::string> wrong;
+  for (const auto& element : page.elements) {
+    for (const auto& [name, value] : element.attributes) {
+      if (name == "id" && !ids.insert(value).second) wrong.push_back(value);
+      if (name == "href") wanted.insert(value.substr(1));
+      if (const auto at = value.find("url(#"); at != std::string::npos)
+        wanted.insert(value.substr(at + 5, value.find(')', at) - at - 5));
+      std::istringstream several(name == "aria-labelledby" ? value : "");
+      for (std::string id; several >> id;) wanted.insert(id);
+    }
+  }
+  std::set_difference(wanted.begin(), wanted.end(), ids.begin(), ids.end(), std::back_inserter(wrong));
   return wrong;
 }
 

@@ -22,17 +22,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
 
-study::PlanInForce quick_plan() {
-  study::PlanInForce plan;
-  plan.plan.resamples = 200;
-  return plan;
-}
-
-study::Json results_of(const study::TaskStudy& study, const study::PlanInForce& plan = quick_plan()) {
-  return study::make_results(study,
-                             {"folder/study.db", {study::TaskKind::Task1, study::TaskKind::Task2}, "", plan})
-      .json;
-}
+using made_study::quick_plan;
+using made_study::results_of;
 
 const study::Json& whole_study() {
   static const study::Json json = results_of({{made_study::task1(26), made_study::task2(26)}, 1});
