@@ -23,7 +23,7 @@ namespace {
 struct State {
   CallPlan plan;
   std::atomic<bool> active{false};
-  std::atomic<long> calls{0};
+  std::atomic<long> calls{0}, reads{0};
   std::atomic<bool> failed{false};
   std::atomic<bool> exchanges{true};
   std::atomic<std::int64_t> clock_ahead_s{0};
@@ -39,6 +39,15 @@ State& state() {
 bool below(const std::string& path) {
   const std::string& folder = state().plan.folder;
   return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
+}
+
+bool read_fails() {
+  const CallPlan& plan = state().plan;
+  const long k = ++state().reads;
+  if (plan.kind == Kind::Pause && k % plan.at == 0) ::raise(SIGSTOP);
+  if (plan.kind != Kind::Error || (plan.from_then_on ? k < plan.at : k != plan.at)) return false;
+  errno = EIO;
+  return true;
 }
 
 }  // namespace
@@ -99,7 +108,7 @@ Act count(Need need) {
   State& now = state();
   const CallPlan& plan = now.plan;
   const long k = ++now.calls;
-  if (plan.kind == Kind::None || k < plan.at) return Act::Go;
+  if (plan.kind == Kind::None || plan.reads || k < plan.at) return Act::Go;
   if (plan.kind == Kind::Kill) die();
   if (plan.kind == Kind::Tear) return Act::Half;
   if (plan.kind == Kind::Full && need == Need::Nothing) return Act::Go;
@@ -116,12 +125,17 @@ bool refuse(Need need) {
   return act == Act::Fail;
 }
 
+bool refuse_read(int fd) { return state().plan.reads && watched(fd) && read_fails(); }
+bool refuse_read(int folder, const char* path) {
+  return state().plan.reads && !watched_at(folder, path).empty() && read_fails();
+}
+
 }  // namespace calls
 
 void arm_calls(const CallPlan& plan) {
   calls::State& now = calls::state();
   now.plan = plan;
-  now.calls = 0;
+  now.calls = now.reads = 0;
   now.failed = false;
   now.clock_ahead_s = plan.clock_ahead_s;
   now.active = !plan.folder.empty();
@@ -130,6 +144,8 @@ void arm_calls(const CallPlan& plan) {
 void refuse_exchanges() { calls::state().exchanges = false; }
 
 long counted_calls() { return calls::state().calls; }
+
+long counted_reads() { return calls::state().reads; }
 
 void record_words(const std::string& words) {
   const calls::Turn turn;

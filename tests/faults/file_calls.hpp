@@ -4,11 +4,14 @@
 /// the states after a power cut can be made later (crash_states.hpp). It covers all code of the program
 /// alike: SQLite, the standard library, the journal, personal data, exports, chores and locks.
 ///
-/// The source is used in two ways: compiled into a test program, which arms it in a child, or as a library
-/// for LD_PRELOAD, which reads its plan from the environment (file_calls_environment.cpp).
+/// The source is used in two ways: compiled into a test program, which arms it, mostly in a child, or as a
+/// library for LD_PRELOAD, which reads its plan from the environment (file_calls_environment.cpp).
 ///
 /// It counts open for writing, write, sync, truncate, rename, link, remove, mkdir and their stdio
 /// equivalents, but not writes through a mapping (the index of SQLite's log, which every opening rebuilds).
+///
+/// If asked to, it counts reads too, apart from the others: open for reading, read and the listing of a
+/// folder. Locks never fail: SQLite takes one that does for a busy one and waits ten seconds.
 
 #include <cstdint>
 #include <string>
@@ -24,12 +27,14 @@ struct CallPlan {
     Kill,   ///< SIGKILL before the call
     Tear,   ///< SIGKILL during the call; a write writes half of its bytes
     Error,  ///< EIO
-    Full    ///< ENOSPC: this call, or the next one that needs space
+    Full,   ///< ENOSPC: this call, or the next one that needs space
+    Pause   ///< SIGSTOP before every at-th read
   };
   std::string folder;  ///< calls on files below it count; absolute, without links; empty: none
   Kind kind = Kind::None;
   bool from_then_on = false;       ///< Error, Full: all later calls fail too
   long at = 0;                     ///< number of the call, from 1
+  bool reads = false;              ///< counts reads too; Error then means them instead
   std::int64_t clock_ahead_s = 0;  ///< added to the time of day
   CallLog* log = nullptr;          ///< where texts are recorded; null: nowhere
   bool record = false;             ///< also records calls and their data
@@ -37,8 +42,10 @@ struct CallPlan {
 
 /// Starts counting from 0. Do not call it while another thread changes files.
 void arm_calls(const CallPlan& plan);
-/// Calls since then.
+/// Calls since then that change files.
 long counted_calls();
+/// Reads since then.
+long counted_reads();
 /// From now on, swapping two names fails in this process, as on network file systems (EINVAL).
 void refuse_exchanges();
 /// Records a text between the calls, e.g. that an answer was acknowledged. Does nothing without a log.

@@ -1,4 +1,5 @@
-/// Replaces the libc calls that change files.
+/// Replaces the libc calls that change or read files.
+#include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/types.h>
@@ -28,6 +29,7 @@ int open_with(const char* name, int folder, const char* path, int flags, mode_t 
                               : next<int (*)(int, const char*, int, ...)>(name)(folder, path, flags, mode);
   };
   const bool changes = (flags & (O_CREAT | O_TRUNC)) || (flags & O_ACCMODE) != O_RDONLY;
+  if (!changes && refuse_read(folder, path)) return -1;
   const std::string whole = changes ? watched_at(folder, path) : "";
   if (whole.empty()) return call();
   const Turn turn;
@@ -55,7 +57,7 @@ std::string bytes_at(int fd, std::int64_t at, std::size_t size) {
   std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
   const int reader = next<int (*)(const char*, int, ...)>("open")(link, O_RDONLY | O_CLOEXEC);
   std::string bytes(size, '\0');
-  const ssize_t n = ::pread(reader, bytes.data(), size, at);
+  const ssize_t n = next<ssize_t (*)(int, void*, size_t, off_t)>("pread")(reader, bytes.data(), size, at);
   ::close(reader);
   bytes.resize(n < 0 ? 0 : static_cast<std::size_t>(n));
   return bytes;
@@ -145,6 +147,21 @@ VIP_OPENAT(openat64)
 
 int creat(const char* path, mode_t mode) {
   return open_with("open", AT_FDCWD, path, O_WRONLY | O_CREAT | O_TRUNC, mode);
+}
+
+ssize_t read(int fd, void* bytes, size_t size) {
+  return refuse_read(fd) ? -1 : next<ssize_t (*)(int, void*, size_t)>("read")(fd, bytes, size);
+}
+
+#define VIP_PREAD(name)                                                                                     \
+  ssize_t name(int fd, void* bytes, size_t size, off_t at) {                                                \
+    return refuse_read(fd) ? -1 : next<ssize_t (*)(int, void*, size_t, off_t)>(#name)(fd, bytes, size, at); \
+  }
+VIP_PREAD(pread)
+VIP_PREAD(pread64)
+
+dirent* readdir(DIR* folder) {
+  return refuse_read(::dirfd(folder)) ? nullptr : next<dirent* (*)(DIR*)>("readdir")(folder);
 }
 
 ssize_t write(int fd, const void* bytes, size_t size) {
@@ -258,7 +275,9 @@ int renameat2(int of, const char* from, int at, const char* path, unsigned flags
 #define VIP_FOPEN(name)                                                                    \
   FILE* name(const char* path, const char* mode) {                                         \
     const auto call = next<FILE* (*)(const char*, const char*)>(#name);                    \
-    const std::string whole = std::strpbrk(mode, "wa+") ? watched_at(AT_FDCWD, path) : ""; \
+    const bool changes = std::strpbrk(mode, "wa+");                                        \
+    if (!changes && refuse_read(AT_FDCWD, path)) return nullptr;                           \
+    const std::string whole = changes ? watched_at(AT_FDCWD, path) : "";                   \
     if (whole.empty()) return call(path, mode);                                            \
     const Turn turn;                                                                       \
     const struct stat before = look(whole);                                                \
@@ -271,6 +290,13 @@ int renameat2(int of, const char* from, int at, const char* path, unsigned flags
   }
 VIP_FOPEN(fopen)
 VIP_FOPEN(fopen64)
+
+size_t fread(void* bytes, size_t size, size_t n, FILE* file) {
+  if (!refuse_read(::fileno(file)))
+    return next<size_t (*)(void*, size_t, size_t, FILE*)>("fread")(bytes, size, n, file);
+  file->_flags |= _IO_ERR_SEEN;
+  return 0;
+}
 
 size_t fwrite(const void* bytes, size_t size, size_t n, FILE* file) {
   const auto call = next<size_t (*)(const void*, size_t, size_t, FILE*)>("fwrite");

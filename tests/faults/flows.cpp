@@ -217,7 +217,8 @@ const std::vector<Flow>& all_flows() {
                 of("s.db", resume_arguments),
                 upgraded_content,
                 {"s.db"},
-                "s.db"};
+                "s.db",
+                4};  // these sessions take seconds
   };
   static const std::vector<Flow> flows{
       {"run", write_protocol, run, go_on, sessions, {}, "s.db"},
@@ -247,6 +248,7 @@ const std::vector<Flow>& all_flows() {
       upgrade_from(3),
       upgrade_from(4),
       upgrade_from(5),
+      upgrade_from(6),
   };
   return flows;
 }

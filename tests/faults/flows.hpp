@@ -26,6 +26,8 @@ struct Flow {
   std::vector<std::string> healthy;
   /// Database whose sessions the command plays and whose answers it acknowledges; empty: none.
   std::string played;
+  /// If not all calls are tried: one in so many kinds of faults is, and others are in the next flow.
+  int share = 1;
 };
 
 /// Folder of this program, which has the programs under test.

@@ -102,22 +102,33 @@ void side_by_side(int jobs, Table& table, Work work) {
   for (auto& thread : threads) thread.join();
 }
 
-/// Tries every k-th call of each command, with each kind of fault.
+/// Each kind of fault at every so-manieth call, at one at least. Different kinds fall on different calls.
+/// `number`: of the flow.
+std::vector<Fault> faults_of_each(const Flow& flow, std::size_t number, const Bench& bench, long every) {
+  constexpr Kind kinds[] = {Kind::Kill, Kind::Tear,   Kind::Error, Kind::ErrorsOn,
+                            Kind::Full, Kind::FullOn, Kind::Read,  Kind::ReadsOn};
+  std::vector<Fault> all;
+  for (std::size_t i = 0; i < std::size(kinds); ++i) {
+    if (every > 1 && (i + number) % static_cast<std::size_t>(flow.share) != 0) continue;
+    const bool reads = kinds[i] == Kind::Read || kinds[i] == Kind::ReadsOn;
+    const long calls = reads ? bench.reads() : bench.calls(), step = std::min(every, calls);
+    const long first = 1 + (2 * static_cast<long>(i) + 1) * step / (2 * std::ssize(kinds));
+    for (long k = first; k <= calls; k += step) all.push_back({kinds[i], k, 0});
+  }
+  return all;
+}
+
+/// Tries every so-manieth call of each command, with each kind of fault.
 void try_each(const Options& options, const fs::path& folder, Table& table) {
-  for (const Flow& flow : all_flows()) {
+  for (std::size_t number = 0; number < all_flows().size(); ++number) {
+    const Flow& flow = all_flows()[number];
     if (!chosen(options, flow.name)) continue;
-    std::atomic<long> next{0};
+    std::atomic<std::size_t> next{0};
     side_by_side(options.jobs, table, [&](int worker) {
       Bench bench(flow, folder / std::to_string(worker));
-      const std::vector<Kind> kinds{Kind::Kill,     Kind::Tear, Kind::Error,
-                                    Kind::ErrorsOn, Kind::Full, Kind::FullOn};
-      const long step = options.every, points = (bench.calls() + step - 1) / step;
-      for (long i; (i = next++) < points * static_cast<long>(kinds.size());) {
-        const Kind kind = kinds[static_cast<std::size_t>(i / points)];
-        // If not all calls are tried, different kinds fall on different calls.
-        const long k = 1 + (i % points) * step + (i / points) * step / static_cast<long>(kinds.size());
-        table.add(flow.name + ", " + name_of(kind), bench.attempt({kind, k, 0}));
-      }
+      const std::vector<Fault> faults = faults_of_each(flow, number, bench, options.every);
+      for (std::size_t i; (i = next++) < faults.size();)
+        table.add(flow.name + ", " + name_of(faults[i].kind), bench.attempt(faults[i]));
     });
   }
 }

@@ -93,6 +93,10 @@ const char* name_of(Kind kind) {
       return "enospc";
     case Kind::FullOn:
       return "enospc+";
+    case Kind::Read:
+      return "read";
+    case Kind::ReadsOn:
+      return "read+";
     case Kind::SmallDisk:
       return "small disk";
   }
@@ -119,7 +123,8 @@ Bench::Bench(const Flow& flow, const fs::path& folder)
   const auto took = std::chrono::steady_clock::now() - begun;
   need(ended.exit_code == 0, flow.name + " without a fault: " + told(ended));
   microseconds_ = std::chrono::duration_cast<std::chrono::microseconds>(took).count();
-  calls_ = std::stol(base::read_file(folder / "count", 100));
+  const std::string counts = base::read_file(folder / "count", 100);
+  need(std::sscanf(counts.c_str(), "%ld %ld", &calls_, &reads_) == 2, "no counts: " + counts);
   wanted_ = flow.content(now_);
 }
 

@@ -20,10 +20,12 @@ struct Fault {
     ErrorsOn,  ///< EIO from then on
     Full,      ///< ENOSPC, once
     FullOn,    ///< ENOSPC from then on
+    Read,      ///< EIO of a read, once
+    ReadsOn,   ///< EIO of all reads from then on
     SmallDisk  ///< a small file system of its own that fills up
   };
   Kind kind = Kind::None;
-  long at = 0;    ///< number of the call, from 1; Instant: microseconds; SmallDisk: free bytes
+  long at = 0;    ///< number of the call or read, from 1; Instant: microseconds; SmallDisk: free bytes
   int again = 0;  ///< Kill, Instant: number of following commands to kill as well
 };
 
@@ -52,8 +54,10 @@ class Bench {
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  /// Number of calls that the command makes on its files.
+  /// Number of calls by which the command changes its files.
   long calls() const { return calls_; }
+  /// Number of calls by which it reads them.
+  long reads() const { return reads_; }
   /// Duration of the command.
   long microseconds() const { return microseconds_; }
   Outcome attempt(const Fault& fault);
@@ -65,7 +69,7 @@ class Bench {
   const Flow& flow_;
   fs::path start_, now_, peek_;
   Lines wanted_;
-  long calls_ = 0, microseconds_ = 0;
+  long calls_ = 0, reads_ = 0, microseconds_ = 0;
   long tries_ = 0;
   bool mounted_ = false;
 };

@@ -1,8 +1,16 @@
-/// The two models of a power cut, and the model of permission decisions, that vip-faults tests commands with.
+/// What vip-faults tests commands with: the two models of a power cut, the model of permission decisions, and
+/// reads that fail.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <functional>
+
+#include "libstudy/store/file/sqlite.hpp"
+#include "stats/base/file.hpp"
+#include "tests/common/temporary_folder.hpp"
 #include "tests/faults/crash_states.hpp"
 #include "tests/faults/decisions.hpp"
+#include "tests/faults/file_calls.hpp"
 
 namespace faults {
 namespace {
@@ -103,6 +111,39 @@ TEST(DecisionsOfStations, ARefusalHoldsUntilAConsentThatKnewOfIt) {
   EXPECT_TRUE(decisions.allows(south, "P01", What::Gaze));
   EXPECT_FALSE(decisions.allows(north, "P01", What::Gaze));
   EXPECT_FALSE(decisions.allows(south, "P01", What::Sharing));
+}
+
+TEST(FileCalls, FailAtEachReadOfEveryKind) {
+  const ::test::TemporaryFolder folder;
+  const auto file = folder / "file", database = folder / "database";
+  base::write_file_atomically(file, "bytes");
+  study::sqlite::Connection(database, study::sqlite::Open::Create).execute("CREATE TABLE t (a)");
+  const std::function<void()> ways[] = {
+      [&] { base::read_file(file, 100); }, [&] { base::sha256_of_file(file); },
+      [&] {
+        std::ifstream stream(file);
+        stream.exceptions(std::ios::failbit | std::ios::badbit);
+        stream.get();
+      },
+      [&] {
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path())) (void)entry;
+      },
+      [&] {
+        study::sqlite::Connection(database, study::sqlite::Open::Read).integer("SELECT count(*) FROM t");
+      }};
+  for (const auto& way : ways) {
+    CallPlan plan{.folder = folder.path(), .reads = true};
+    arm_calls(plan);
+    way();
+    const long reads = counted_reads();
+    EXPECT_GT(reads, 0) << &way - ways;
+    plan.kind = CallPlan::Kind::Error;
+    for (plan.at = 1; plan.at <= reads; ++plan.at) {
+      arm_calls(plan);
+      EXPECT_ANY_THROW(way()) << &way - ways << " at " << plan.at << " of " << reads;
+    }
+  }
+  arm_calls({});
 }
 
 }  // namespace

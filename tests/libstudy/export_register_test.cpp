@@ -17,7 +17,7 @@
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/killed.hpp"
-#include "tests/libstudy/fault_vfs.hpp"
+#include "tests/faults/file_calls.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study {
@@ -211,17 +211,21 @@ TEST_F(Exports, OfASourceAreKnownAfterAMerge) {
   EXPECT_THAT(merge({folder / "all.db"}, path).beside.cleaned, ElementsAre(csv));
 }
 
-// Registering takes no writer lock, so it can happen between any two calls of a merge. It must not happen
-// between too many, or SQLite gives up reading a database that changes all the time.
+// Registering takes no writer lock, so it can happen at any moment of a merge: here before every 20th of its
+// reads. Before more of them SQLite may give up reading a database that changes all the time.
 TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
   Store(folder / "south.db", Open::Create).add_run(test::run_plan(test::pairs(), {"P02"}));
-  test::FaultVfs vfs;
+  const pid_t merging = ::fork();
+  if (merging == 0) {
+    faults::arm_calls(
+        {.folder = folder.path(), .kind = faults::CallPlan::Kind::Pause, .at = 20, .reads = true});
+    merge({folder / "south.db"}, path);
+    ::_exit(0);
+  }
   std::vector<std::string> entered;
-  int refused = 0;
-  long next = 0;
-  vfs.before_each([&] {
-    if (vfs.calls() < next) return;
-    const std::string name = "'/e" + std::to_string(vfs.calls()) + "'";
+  int refused = 0, status = 0;
+  while (::waitpid(merging, &status, WUNTRACED) == merging && WIFSTOPPED(status)) {
+    const std::string name = "'/e" + std::to_string(entered.size()) + "'";
     try {
       Connection now(path, Open::Write);
       now.mark_commits();  // as every program of the project does
@@ -234,10 +238,9 @@ TEST_F(Exports, EnteredAtAnyMomentOfAMergeAreKnownAfterIt) {
     } catch (const sqlite::LockedOut&) {
       ++refused;
     }
-    next = vfs.calls() + 20;
-  });
-  merge({folder / "south.db"}, path);
-  vfs.before_each({});
+    ::kill(merging, SIGCONT);
+  }
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
   EXPECT_GT(refused, 0);  // during the merge's own commits
   ASSERT_GT(entered.size(), 10u);
   for (const std::string& name : entered) EXPECT_EQ(count("export WHERE path = " + name), 1) << name;

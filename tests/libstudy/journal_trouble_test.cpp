@@ -193,6 +193,21 @@ TEST(JournalTrouble, AShowingWhoseFramesWentWithAKilledProgramIsCutAndShownAgain
   EXPECT_TRUE(again.begun) << "the trial is shown again";
 }
 
+// If the disk fills in the first commit of a new database, only the journal has the plan. The next run takes
+// it over and is then refused because the plan exists: the plan must not be deleted with that run's new
+// file.
+TEST(JournalTrouble, APlanThatStandsInTheJournalAloneOutlivesARefusedRun) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder / "s.db";
+  const RunPlan plan = test::run_plan(test::pairs(), {"P01"});
+  { Store(path, Open::Create).add_run(plan); }
+  fs::remove(path);
+  const std::string journal = test::bytes_of(journal_beside(path));
+  base::write_file_atomically(journal_beside(path), journal.substr(0, journal.rfind("{\"kept\"")));
+  EXPECT_THROW(Store(path, Open::Create).add_run(plan), base::Error);
+  EXPECT_EQ(Store(path, Open::Write).open_runs().size(), 1u);
+}
+
 TEST(JournalTrouble, ACopyOfADatabaseIsADatabaseOfItsOwn) {
   const test::TemporaryFolder folder;
   const fs::path path = folder / "study.db";

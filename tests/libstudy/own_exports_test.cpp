@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -16,7 +15,7 @@
 #include "libstudy/store/merge/merge.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
-#include "tests/libstudy/fault_vfs.hpp"
+#include "tests/faults/child.hpp"
 #include "tests/libstudy/study_fixture.hpp"
 
 namespace study {
@@ -25,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using sqlite::Connection;
 using sqlite::Open;
+using ::testing::AnyOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -57,8 +57,18 @@ class OwnExports : public ::testing::Test {
     return Connection(database, Open::Read).integer("SELECT count(*) FROM " + table);
   }
 
+  /// Runs `work` in a process that is killed before its `at`th change of a file in the folder. False if it
+  /// ended by itself.
+  bool is_killed(long at, const std::function<void()>& work) {
+    const auto ended = faults::run_child(
+        {.folder = folder.path(), .kind = faults::CallPlan::Kind::Kill, .at = at, .log = &log}, work);
+    EXPECT_THAT(ended.how, AnyOf(faults::Ended::How::Done, faults::Ended::How::Killed)) << ended.problem;
+    return ended.how == faults::Ended::How::Killed;
+  }
+
   test::TemporaryFolder folder{::test::memory_folder()};
   const fs::path path = folder / "study.db", csv = folder / "csv";
+  faults::CallLog log;
 };
 
 /// A foreign database that claims that several paths here are exports of a person who withdrew.
@@ -236,26 +246,18 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
   return names;
 }
 
-// An export over an earlier one stops at calls of SQLite, which lie between all its steps.
+// An export over an earlier one is killed between all its steps.
 TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   const StateAt state(folder / "state");
   int stops = 0;
-  for (long at = 1;; at += 11) {
+  for (long at = 1;; at += 53) {
     const std::string code = "QXJ" + std::to_string(at);
     add(path, {code});
     export_csv(path, csv);
-    const pid_t child = ::fork();
-    if (child == 0) {
-      test::FaultVfs vfs;
-      vfs.arm({test::VfsFault::Kind::Stop, at});
-      export_csv(path, csv, {.words = true});
-      ::_exit(0);
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
+    const bool killed = is_killed(at, [&] { export_csv(path, csv, {.words = true}); });
     EXPECT_THAT(withdraw(path, code).beside.left, IsEmpty()) << at;
     EXPECT_THAT(files_with(folder.path(), code), IsEmpty()) << at;
-    if (WEXITSTATUS(status) == 0) break;
+    if (!killed) break;
     ++stops;
   }
   EXPECT_GT(stops, 10);
@@ -270,19 +272,11 @@ TEST_F(OwnExports, AreDeletedWhereverTheWithdrawalWasStopped) {
     add(path, {code});
     export_csv(path, csv);
     RegisteredFiles(path).write("vip-stats report", folder / "r.json", code);
-    const pid_t child = ::fork();
-    if (child == 0) {
-      test::FaultVfs vfs;
-      vfs.arm({test::VfsFault::Kind::Stop, at});
-      withdraw(path, code);
-      ::_exit(0);
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
+    const bool killed = is_killed(at, [&] { withdraw(path, code); });
     EXPECT_THAT(withdraw(path, code).beside.left, IsEmpty()) << at;
     EXPECT_THAT(files_with(folder.path(), code), IsEmpty()) << at;
     EXPECT_FALSE(fs::exists(csv)) << at;
-    if (WEXITSTATUS(status) == 0) break;
+    if (!killed) break;
     ++stops;
   }
   EXPECT_GT(stops, 10);
