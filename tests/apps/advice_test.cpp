@@ -234,14 +234,11 @@ TEST(AdviceE2e, AnOptionThatIsNotThereWouldBeSeen) {
 
 /// A pilot of six settings with a second question and this version.
 std::string two_questions(const std::string& version) {
-  std::string text = short_protocol("1");
-  text = replaced(text, "version = \"2.0\"", "version = \"" + version + "\"");
-  text = replaced(text, "\"ask satisfaction\"", "\"ask satisfaction smoothness\"");
-  const std::string first = "[[block.question]]\nid = \"satisfaction\"";
-  return replaced(text, first,
-                  "[[block.question]]\nid = \"smoothness\"\nkind = \"scale\"\ntext = \"How smooth?\"\nscale "
-                  "= [0, 3]\n\n" +
-                      first);
+  return with_before(replaced(with_keys(short_protocol("1"), {{"version", '"' + version + '"'}}),
+                              "\"ask satisfaction\"", "\"ask satisfaction smoothness\""),
+                     "[[block.question]]\nid = \"satisfaction\"",
+                     "[[block.question]]\nid = \"smoothness\"\nkind = \"scale\"\ntext = \"How "
+                     "smooth?\"\nscale = [0, 3]\n\n");
 }
 
 /// Items of the list after `advice`, up to the end of the line.

@@ -19,12 +19,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-std::string shipped(const std::string& name) {
-  return base::read_file(base::resource("protocols/" + name + ".toml"), 1 << 20);
-}
-
 std::string with_fixation(const std::string& text) {
-  return test::replaced(text, "participants = ", "gaze = \"fixation\"\nparticipants = ");
+  return test::with_before(text, "participants = ", "gaze = \"fixation\"\n");
 }
 
 std::vector<study::PlannedStimulus> plan_of(const std::string& text) {
@@ -44,7 +40,7 @@ std::set<std::string> files(const std::vector<study::PlannedStimulus>& plan) {
 }
 
 TEST(BakePlan, MethodsThatFollowAFreeGazeRunLive) {
-  const auto plan = plan_of(shipped("task1"));
+  const auto plan = plan_of(test::shipped_text("task1"));
   EXPECT_EQ(plan.size(), 30u);
   EXPECT_EQ(baked(plan), 12);
   EXPECT_EQ(files(plan).size(), 12u);
@@ -58,13 +54,13 @@ TEST(BakePlan, MethodsThatFollowAFreeGazeRunLive) {
 }
 
 TEST(BakePlan, UnderFixationAllAreBakedEachUnderItsName) {
-  const auto plan = plan_of(with_fixation(shipped("task1")));
+  const auto plan = plan_of(with_fixation(test::shipped_text("task1")));
   EXPECT_EQ(baked(plan), 30);
   EXPECT_EQ(files(plan).size(), 30u);
 }
 
 TEST(BakePlan, OneBakeServesAllSettingsUnlessTauFollowsFromThem) {
-  const std::string text = with_fixation(shipped("ptpe_pilot"));
+  const std::string text = with_fixation(test::shipped_text("ptpe_pilot"));
   EXPECT_THAT(plan_of(text), ::testing::SizeIs(1));
   const auto plan =
       plan_of(test::replaced(text, "method = [\"HiRes\"]", "method = [\"Ours\", \"Ours-TSp\"]"));
@@ -74,13 +70,15 @@ TEST(BakePlan, OneBakeServesAllSettingsUnlessTauFollowsFromThem) {
 }
 
 TEST(BakePlan, WhatRunsAsFastAsItGoesIsNotBaked) {
-  const std::string text = test::replaced(shipped("task1"), "timing = \"table2\"", "timing = \"native\"");
+  const std::string text =
+      test::replaced(test::shipped_text("task1"), "timing = \"table2\"", "timing = \"native\"");
   EXPECT_EQ(baked(plan_of(with_fixation(text))), 0);
 }
 
 TEST(BakePlan, ScenesOfOneNameAreToldApart) {
-  const auto plan = plan_of(test::replaced(shipped("ptpe_pilot"), "scene = [\"data/scenes/single_dam.toml\"]",
-                                           "scene = [\"a/dam.toml\", \"b/dam.toml\"]"));
+  const auto plan =
+      plan_of(test::replaced(test::shipped_text("ptpe_pilot"), "scene = [\"data/scenes/single_dam.toml\"]",
+                             "scene = [\"a/dam.toml\", \"b/dam.toml\"]"));
   EXPECT_THAT(files(plan), ElementsAre("dam_32k_HiRes-2.bake", "dam_32k_HiRes.bake"));
 }
 
@@ -174,9 +172,9 @@ TEST(BakeOrder, HoldsTheTrianglesOfMeshes) {
 
 TEST(SessionBakes, PicturesOfAFreeObstacleArePlayedParticlesAloneAreNot) {
   const auto protocol = study::parse_protocol(
-      test::replaced(test::replaced(test::replaced(shipped("ptpe_pilot"), "single_dam", "float"),
-                                    "n_star = [\"32k\"]", "n_star = [\"64\"]"),
-                     "duration_s = 10", "duration_s = 0.5"),
+      test::with_keys(
+          test::shipped_text("ptpe_pilot"),
+          {{"scene", "[\"data/scenes/float.toml\"]"}, {"n_star", "[\"64\"]"}, {"duration_s", "0.5"}}),
       "test");
   const study::SessionLook look{{}, {32, 18}};
   const auto plan = study::plan_bakes(protocol);

@@ -25,12 +25,12 @@ class BakeProtocolE2e : public ::testing::Test {
   }
   /// Two settings, trials of 0.4 s.
   void write_protocol(bool fixation, const std::string& methods, const std::string& n_star = "64") {
-    std::string text = replaced(short_protocol("0.4"), "data/scenes/single_dam.toml", scene_);
-    text = replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [5]");
-    text = replaced(text, "method = [\"HiRes\"]", "method = [" + methods + "]");
-    text = replaced(text, "n_star = [\"32k\"]", "n_star = [\"" + n_star + "\"]");
-    if (fixation) text = replaced(text, "participants = ", "gaze = \"fixation\"\nparticipants = ");
-    base::write_file_atomically(protocol_, text);
+    const std::string text = with_keys(short_protocol("0.4"), {{"scene", "[\"" + scene_ + "\"]"},
+                                                               {"sd_fps", "[5]"},
+                                                               {"method", "[" + methods + "]"},
+                                                               {"n_star", "[\"" + n_star + "\"]"}});
+    base::write_file_atomically(
+        protocol_, with_before(text, "participants = ", fixation ? "gaze = \"fixation\"\n" : ""));
   }
   std::vector<std::string> command(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> out{vip_study, "bake",   "--protocol", protocol_,   "--out",
@@ -183,8 +183,7 @@ TEST_F(BakeProtocolE2e, AFullDiskIsOneErrorAndKeepsWhatIsWhole) {
 
 TEST_F(BakeProtocolE2e, TooLittleRoomIsToldBeforeAnyWork) {
   write_protocol(false, "\"HiRes\"", "4096k");
-  std::string text = base::read_file(protocol_, 1 << 20);
-  base::write_file_atomically(protocol_, replaced(text, "duration_s = 0.4", "duration_s = 3600"));
+  replace_in(protocol_, "duration_s = 0.4", "duration_s = 3600");
   const Ended ended = bake();
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.err,

@@ -25,11 +25,7 @@ using ::testing::IsEmpty;
 /// protocols/foam.toml with another factor, and a scene of another name.
 study::Protocol protocol_with(const std::string& effects, const std::string& sets,
                               const std::string& scene = "sea_spray") {
-  std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
-  text = test::replaced(text, "effects = [\"none\", \"foam\"]", effects);
-  text = test::replaced(text, "sea_spray", scene);
-  const auto begin = text.find("[[design.effect_set]]"), end = text.find("[pacing]");
-  return study::parse_protocol(text.replace(begin, end - begin, sets), "p.toml");
+  return study::parse_protocol(test::replaced(test::foam_text(effects, sets), "sea_spray", scene), "p.toml");
 }
 
 std::string error_of(const study::Protocol& protocol) {

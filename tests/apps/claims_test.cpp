@@ -26,9 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-std::string own_design() {
-  return base::read_file(std::string(VIP_TEST_DIR) + "/apps/own_design.toml", 1 << 20);
-}
+std::string own_design() { return test::protocol_text("own_design"); }
 
 /// A design that rates realism and strain on 1 to 4.
 std::string own_realism() {
@@ -63,12 +61,9 @@ TEST(Claims, RatingsAndPairsHaveReasonsOfTheirOwn) {
               ElementsAre("H1 to H3: methods are shown in pairs and not rated one by one",
                           "H4 to H6: no question of kind choice with exactly two anchors, one for each of a "
                           "pair, is asked"));
-  const auto shipped = [](const std::string& name) {
-    return left_out_of(base::read_file(base::resource("protocols/" + name), 1 << 20));
-  };
-  EXPECT_THAT(shipped("task1.toml"), ElementsAre("H4 to H6: no pairs of methods are shown"));
-  EXPECT_THAT(shipped("task2.toml"),
-              ElementsAre("H1 to H3: methods are shown in pairs and not rated one by one"));
+  const auto shipped = [](const std::string& name) { return left_out_of(test::shipped_text(name)); };
+  EXPECT_THAT(shipped("task1"), ElementsAre("H4 to H6: no pairs of methods are shown"));
+  EXPECT_THAT(shipped("task2"), ElementsAre("H1 to H3: methods are shown in pairs and not rated one by one"));
 }
 
 std::string bundle_of(std::vector<std::filesystem::path> protocols) {

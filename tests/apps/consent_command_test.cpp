@@ -12,15 +12,13 @@ using ::testing::HasSubstr;
 /// short_protocol with one more box on its consent page, which the observer "constant:0" leaves at no and
 /// "constant:1" ticks.
 std::string asking_protocol() {
-  std::string text = short_protocol("1");
-  const std::string box = R"(
-[[block.question]]
+  return with_before(short_protocol("1"), "[[block]]\nkind = \"stimulus\"", R"([[block.question]]
 id = "data_shared"
 kind = "choice"
 text = "May it be shared?"
 anchors = {0 = "no", 1 = "yes"}
-)";
-  return text.insert(text.find('\n', text.find("\naccept = ") + 1) + 1, box);
+
+)");
 }
 
 TEST(ConsentCommandE2e, IsToldObeyedAndChanged) {

@@ -20,12 +20,8 @@ using ::testing::HasSubstr;
 /// protocols/foam.toml, coarse and short. Foam alone does not change the water, so one level adds drag too:
 /// then the frame records differ between the levels.
 std::string short_foam() {
-  std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
-  text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");
-  text = replaced(text, "[\"16k\"]", "[\"256\"]");
-  text = replaced(text, "[\"none\", \"foam\"]", "[\"none\", \"foam\", \"scene\"]");
-  text = replaced(text, "duration_s = 8", "duration_s = 0.5");
-  return replaced(text, "keep = [\"foam\"]",
+  return replaced(with_keys(coarse(shipped_text("foam")), {{"effects", "[\"none\", \"foam\", \"scene\"]"}}),
+                  "keep = [\"foam\"]",
                   "effect = [{kind = \"foam\", emission_per_s = 3}, {kind = \"air_drag\", rate_per_s = 9}]");
 }
 

@@ -151,7 +151,7 @@ TEST_F(FoamStudyE2e, CheckNamesLevelsAndStimuli) {
 }
 
 TEST_F(FoamStudyE2e, CheckSaysThatFreeObstaclesTakePictures) {
-  std::string text = base::read_file(foam_protocol(), 1 << 20);
+  std::string text = shipped_text("foam");
   text = replaced(replaced(text, "sea_spray", "float"), "keep = [\"foam\"]",
                   "effect = [{kind = \"air_drag\", rate_per_s = 1}]");
   base::write_file_atomically(folder_ / "float.toml", text);
@@ -161,7 +161,7 @@ TEST_F(FoamStudyE2e, CheckSaysThatFreeObstaclesTakePictures) {
 }
 
 TEST_F(FoamStudyE2e, CheckRefusesALevelThatTheSceneCannotHaveAtItsPlace) {
-  const std::string text = base::read_file(foam_protocol(), 1 << 20), path = folder_ / "wrong.toml";
+  const std::string text = shipped_text("foam"), path = folder_ / "wrong.toml";
   base::write_file_atomically(path, replaced(text, "keep = [\"foam\"]", "keep = [\"heat\"]"));
   const Ended ended = run_program({vip_study, "check", path});
   EXPECT_EQ(ended.exit_code, 1);
@@ -173,12 +173,8 @@ class FoamShownE2e : public ShownStudy {
  protected:
   void SetUp() override { NEEDS_EFFECTS; }
   FoamShownE2e() : ShownStudy("foam", "64x36") {
-    std::string text = base::read_file(foam_protocol(), 1 << 20);
-    text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");
-    text = replaced(text, "[\"16k\"]", "[\"256\"]");
-    text = replaced(text, "duration_s = 8", "duration_s = 0.5");
-    text = replaced(text, "keep = [\"foam\"]", "effect = [{kind = \"foam\", emission_per_s = 3}]");
-    base::write_file_atomically(protocol_, text);
+    base::write_file_atomically(protocol_, replaced(coarse(shipped_text("foam")), "keep = [\"foam\"]",
+                                                    "effect = [{kind = \"foam\", emission_per_s = 3}]"));
   }
 };
 
@@ -203,8 +199,7 @@ TEST_F(FoamShownE2e, BakesHoldTheFoamOfTheirLevelAndArePlayed) {
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("sea_spray 256 LoRes none bake"),
                                 HasSubstr("sea_spray 256 LoRes foam bake"), Not(HasSubstr("live"))));
   // A changed number makes the bakes those of other water.
-  base::write_file_atomically(
-      protocol_, replaced(base::read_file(protocol_, 1 << 20), "emission_per_s = 3", "emission_per_s = 4"));
+  replace_in(protocol_, "emission_per_s = 3", "emission_per_s = 4");
   fs::remove(database_);
   const Ended other = run({"--participant", "P01", "--stimulus", bakes_});
   EXPECT_EQ(other.exit_code, 1);

@@ -23,58 +23,21 @@ constexpr const char* guards[] = {"speed_limited",       "coincident_pairs", "no
                                   "neighbours_dropped",  "wall_projected",   "nozzle_waited",
                                   "saliency_not_finite", "gaze_lost"};
 
-/// One showing of 2.5 s of Ours-TSp and of HiRes, 512 particles, at 12 frames/s with a standard deviation
-/// of 3.
-constexpr const char* protocol = R"(
-format = 2
-name = "frames"
-version = "1"
-language = "en"
-participants = 2
-accept_approximate = true
-
-[design]
-scene = ["data/scenes/single_dam.toml"]
-method = ["Ours-TSp", "HiRes"]
-n_star = ["64"]
-timing = "TIMING"
-mean_fps = [12]
-sd_fps = [3]
-duration_s = 2.5
-order = "shuffle"
-
-[pacing]
-mean = "harmonic"
-fps_min = 4
-fps_max = "none"
-max_interval_ms = 250
-order = "white"
-
-[content]
-mode = "per_frame"
-content_step_s = 0.016666666666666666
-start_frame = 0
-at_end = "hold"
-
-[[block]]
-kind = "stimulus"
-id = "ratings"
-steps = ["stimulus", "ask realism"]
-
-[[block.question]]
-id = "realism"
-kind = "scale"
-text = "How real was it?"
-scale = [1, 7]
-anchors = {1 = "not at all", 7 = "fully"}
-)";
-
 class FrameAccountE2e : public ::testing::Test {
  protected:
-  void write_protocol(const std::string& timing, const std::string& methods = "") {
-    std::string text = apps::test::replaced(protocol, "TIMING", timing);
-    if (!methods.empty()) text = apps::test::replaced(text, "\"Ours-TSp\", \"HiRes\"", methods);
-    base::write_file_atomically(folder_ / "frames.toml", text);
+  /// One showing of 2.5 s of each method, 512 particles, at 12 frames/s with a standard deviation of 3.
+  void write_protocol(const std::string& timing, const std::string& methods = "\"Ours-TSp\", \"HiRes\"") {
+    const std::string text =
+        test::without(test::protocol_text("ratings"), {"consent", "about", "warm_up", "smoothness", "end"});
+    base::write_file_atomically(folder_ / "frames.toml",
+                                test::with_keys(text, {{"language", "\"en\"\naccept_approximate = true"},
+                                                       {"method", "[" + methods + "]"},
+                                                       {"n_star", "[\"64\"]"},
+                                                       {"timing", '"' + timing + '"'},
+                                                       {"mean_fps", "[12]"},
+                                                       {"sd_fps", "[3]"},
+                                                       {"duration_s", "2.5"},
+                                                       {"content_step_s", "0.016666666666666666"}}));
   }
   void run(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{apps::test::vip_study,

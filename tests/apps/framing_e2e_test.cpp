@@ -23,10 +23,11 @@ class FramingE2e : public ::testing::Test {
   }
   /// A protocol of short trials with this method; `more` comes first in the file.
   void write_protocol(const std::string& method, const std::string& more = "") {
-    std::string text = replaced(short_protocol("0.2"), "data/scenes/single_dam.toml", scene_);
-    text = replaced(text, "method = [\"HiRes\"]", "method = [\"" + method + "\"]");
-    text = replaced(text, "n_star = [\"32k\"]", "n_star = [\"64\"]");
-    base::write_file_atomically(protocol_, replaced(text, "participants = ", more + "participants = "));
+    base::write_file_atomically(
+        protocol_, with_before(with_keys(short_protocol("0.2"), {{"scene", "[\"" + scene_ + "\"]"},
+                                                                 {"method", "[\"" + method + "\"]"},
+                                                                 {"n_star", "[\"64\"]"}}),
+                               "participants = ", more));
   }
   Ended run(std::vector<std::string> more) {
     more.insert(more.end(), {"--participants", "1", "--display", "headless", "--backend", "cpu"});

@@ -23,14 +23,7 @@ class HeadsetFlashE2e : public test::HeadsetRuns {
   /// Two showings of half a second without black of their own, after a consent page.
   test::Ended session(const std::string& profile, const std::string& gaze,
                       const std::string& clock = "virtual") {
-    std::string text = study::test::asking_protocol().text;
-    const auto set = [&](const std::string& from, const std::string& to) {
-      text.replace(text.find(from), from.size(), to);
-    };
-    set("mean_fps = [20, 50]", "mean_fps = [10, 30]");
-    set("content_step_s = 0.02", "content_step_s = 0.016666666666666666");
-    set("language = \"en\"", "language = \"en\"\naccept_approximate = true");
-    base::write_file_atomically(folder_ / "asking.toml", text);
+    base::write_file_atomically(folder_ / "asking.toml", test::asking_at_60());
     fs::remove(database_);
     fs::remove(database_ + ".answers.jsonl");
     return study("size=32x32;" + profile,

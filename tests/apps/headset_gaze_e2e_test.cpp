@@ -23,14 +23,7 @@ class HeadsetGazeE2e : public test::HeadsetRuns {
 
   /// Two showings of half a second after a consent page that asks for gaze, or does not.
   std::string protocol(bool asks_gaze = true) {
-    std::string text = study::test::asking_protocol(asks_gaze).text;
-    const auto set = [&](const std::string& from, const std::string& to) {
-      text.replace(text.find(from), from.size(), to);
-    };
-    set("mean_fps = [20, 50]", "mean_fps = [10, 30]");
-    set("content_step_s = 0.02", "content_step_s = 0.016666666666666666");
-    set("language = \"en\"", "language = \"en\"\naccept_approximate = true");
-    base::write_file_atomically(folder_ / "asking.toml", text);
+    base::write_file_atomically(folder_ / "asking.toml", test::asking_at_60(asks_gaze));
     return folder_ / "asking.toml";
   }
 
@@ -163,11 +156,10 @@ TEST_F(HeadsetGazeE2e, ThePointOfGazeIsOnThePictureAsItWasDrawn) {
 }
 
 TEST_F(HeadsetGazeE2e, ATrackerIsValidatedAtNineTargets) {
-  std::string text = base::read_file(protocol(), 1 << 20);
-  text.insert(text.find("[[block]]\nkind = \"stimulus\""),
-              "[[block]]\nkind = \"gaze_validation\"\nid = \"look\"\nmax_accuracy_deg = 1\n\n");
-  const std::string file = folder_ / "validating.toml";
-  base::write_file_atomically(file, text);
+  const std::string file = protocol();
+  test::replace_in(file, "[[block]]\nkind = \"stimulus\"",
+                   "[[block]]\nkind = \"gaze_validation\"\nid = \"look\"\nmax_accuracy_deg = "
+                   "1\n\n[[block]]\nkind = \"stimulus\"");
   const auto good = session("look=page;targets=0.5:0.5;head=turn", "tracked", 1, file);
   ASSERT_EQ(good.exit_code, 0) << good.err;
   EXPECT_EQ(count("gaze_validation WHERE passed AND accuracy_deg < 0.5 AND valid > 60"), 9);

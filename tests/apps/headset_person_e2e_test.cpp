@@ -31,16 +31,9 @@ class HeadsetPersonE2e : public test::HeadsetRuns {
  protected:
   void SetUp() override { bake_dam(dam_, 30); }
 
-  /// The pilot with these means, played although some are approximate; the first page's five seconds become
-  /// one.
   std::string pilot(const std::string& means, const std::string& seconds = "0.5") {
     trial_seconds_ = seconds;
-    std::string text = test::short_protocol("10");
-    text = test::replaced(text, "mean_fps = [20, 50]", "mean_fps = " + means);
-    text = test::replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [0]");
-    text = test::replaced(text, "accept_approximate = false", "accept_approximate = true");
-    text = test::replaced(text, "seconds = 5 ", "seconds = 1 ");
-    base::write_file_atomically(folder_ / "pilot.toml", text);
+    base::write_file_atomically(folder_ / "pilot.toml", test::short_protocol_at(means));
     return folder_ / "pilot.toml";
   }
 

@@ -12,9 +12,12 @@
 #include "libsim/render/png.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/common/protocols.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace apps::test {
+
+using namespace ::test;
 
 class HeadsetRuns : public ::testing::Test {
  protected:
@@ -85,7 +88,7 @@ class HeadsetRuns : public ::testing::Test {
   }
 
   const std::string bin = VIP_BIN_DIR;
-  const ::test::TemporaryFolder folder_;
+  const TemporaryFolder folder_;
 };
 
 }  // namespace apps::test

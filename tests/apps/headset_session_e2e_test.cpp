@@ -5,6 +5,7 @@
 
 #include "libstudy/store/file/sqlite.hpp"
 #include "tests/apps/headset_runs.hpp"
+#include "tests/common/protocols.hpp"
 
 namespace apps {
 namespace {
@@ -48,16 +49,11 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
 
   /// The pilot's protocol with these means and standard deviations, played although some are approximate.
   std::string pilot(const std::string& means, const std::string& sds) {
-    std::string text = base::read_file(base::find_input("protocols/ptpe_pilot.toml"), 1 << 20);
-    const auto set = [&](const std::string& key, const std::string& value) {
-      const auto at = text.find("\n" + key + " = ") + 1;
-      text.replace(at, text.find('\n', at) - at, key + " = " + value);
-    };
-    set("n_star", R"(["64"])");
-    set("mean_fps", means);
-    set("sd_fps", sds);
-    set("accept_approximate", "true");
-    base::write_file_atomically(folder_ / "pilot.toml", text);
+    base::write_file_atomically(
+        folder_ / "pilot.toml",
+        test::with_keys(
+            test::shipped_text("ptpe_pilot"),
+            {{"n_star", "[\"64\"]"}, {"mean_fps", means}, {"sd_fps", sds}, {"accept_approximate", "true"}}));
     return folder_ / "pilot.toml";
   }
 

@@ -25,14 +25,8 @@ class HeatStudyE2e : public ShownStudy {
  protected:
   void SetUp() override { NEEDS_EFFECTS; }
   HeatStudyE2e() : ShownStudy("heat", "64x36") {
-    std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
-    const auto begin = text.find("[[design.effect_set]]"), end = text.find("[pacing]");
-    text.erase(begin, end - begin);
-    text = replaced(text, "effects = [\"none\", \"foam\"]", "overlay = \"temperature\"");
-    text = replaced(text, "sea_spray", "hot_jet");
-    text = replaced(text, "[\"16k\"]", "[\"256\"]");
-    text = replaced(text, "duration_s = 8", "duration_s = 0.5");
-    base::write_file_atomically(protocol_, text);
+    const std::string text = replaced(foam_text("overlay = \"temperature\"", ""), "sea_spray", "hot_jet");
+    base::write_file_atomically(protocol_, with_keys(text, {{"n_star", "[\"256\"]"}, {"duration_s", "0.5"}}));
   }
 };
 
@@ -75,8 +69,7 @@ TEST_F(HeatStudyE2e, PicturesWithoutTheirPaintAreRefused) {
   EXPECT_THAT(run_program({vip_study, "bake", "--verify", file}).out,
               HasSubstr("64x36 pictures (view, temperature painted) read"));
   ASSERT_EQ(run({"--participant", "P01", "--stimulus", bakes_}).exit_code, 0);
-  base::write_file_atomically(protocol_, replaced(base::read_file(protocol_, 1 << 20),
-                                                  "overlay = \"temperature\"", "overlay = \"none\""));
+  replace_in(protocol_, "overlay = \"temperature\"", "overlay = \"none\"");
   fs::remove(database_);
   const Ended other = run({"--participant", "P01", "--stimulus", bakes_});
   EXPECT_EQ(other.exit_code, 1);
@@ -91,8 +84,7 @@ TEST_F(HeatStudyE2e, CheckTellsTheOverlayAndRefusesWaterWithoutHeat) {
   EXPECT_EQ(json::parse(base::read_file(found, 1 << 20)).at("overlay"), "temperature");
   EXPECT_THAT(run_program({vip_study, "check", base::resource("protocols/foam.toml")}).out,
               Not(HasSubstr("overlay:")));
-  base::write_file_atomically(protocol_,
-                              replaced(base::read_file(protocol_, 1 << 20), "hot_jet", "single_dam"));
+  replace_in(protocol_, "hot_jet", "single_dam");
   const Ended cold = run_program({vip_study, "check", protocol_});
   EXPECT_EQ(cold.exit_code, 1);
   EXPECT_THAT(cold.err, AllOf(HasSubstr("heat.toml:15:11: "),

@@ -23,20 +23,14 @@ const std::string vip_stats = VIP_BIN_DIR "/vip-stats";
 /// protocols/foam.toml with PoolLight: without light on the floor, and with caustics and half of the shadows.
 class LightStudyE2e : public ShownStudy {
  protected:
-  LightStudyE2e() : ShownStudy("light", "128x72") { write(protocol_, ""); }
-  /// `small`: n_* of a coarse and short protocol with only LoRes.
-  void write(const std::string& path, const std::string& small) const {
-    std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
-    text = replaced(text, "sea_spray", "pool_light");
-    text = replaced(text, "[\"none\", \"foam\"]", "[\"none\", \"lit\"]");
-    text = replaced(text, "name = \"foam\"\nkeep = [\"foam\"]",
-                    "name = \"lit\"\nkeep = [\"caustics\"]\n"
-                    "effect = [{kind = \"shadows\", strength = 0.5}]");
-    if (!small.empty()) {
-      text = replaced(text, "[\"LoRes\", \"HiRes\"]", "[\"LoRes\"]");
-      text = replaced(text, "[\"16k\"]", "[\"" + small + "\"]");
-      text = replaced(text, "duration_s = 8", "duration_s = 0.5");
-    }
+  LightStudyE2e() : ShownStudy("light", "128x72") { write(protocol_, false); }
+  void write(const std::string& path, bool small) const {
+    std::string text = replaced(replaced(shipped_text("foam"), "sea_spray", "pool_light"),
+                                "name = \"foam\"\nkeep = [\"foam\"]",
+                                "name = \"lit\"\nkeep = [\"caustics\"]\n"
+                                "effect = [{kind = \"shadows\", strength = 0.5}]");
+    text = with_keys(text, {{"effects", "[\"none\", \"lit\"]"}});
+    if (small) text = coarse(text);
     base::write_file_atomically(path, text);
   }
 };
@@ -77,8 +71,7 @@ TEST_F(LightStudyE2e, CheckNamesLevelsAndRefusesWhatTheSceneDoesNotList) {
   const Ended ended = run_program({vip_study, "check", protocol_});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("effects \"lit\": keeps caustics; shadows strength = 0.5\n"));
-  base::write_file_atomically(protocol_,
-                              replaced(base::read_file(protocol_, 1 << 20), "pool_light", "single_dam"));
+  replace_in(protocol_, "pool_light", "single_dam");
   const Ended wrong = run_program({vip_study, "check", protocol_});
   EXPECT_EQ(wrong.exit_code, 1);
   EXPECT_THAT(wrong.err, AllOf(HasSubstr("light.toml:25:9: "),
@@ -86,7 +79,7 @@ TEST_F(LightStudyE2e, CheckNamesLevelsAndRefusesWhatTheSceneDoesNotList) {
 }
 
 TEST_F(LightStudyE2e, LiveCellsHaveTheLightOfTheirLevel) {
-  write(protocol_, "256");
+  write(protocol_, true);
   const Ended ended = run({"--participant", "P01"});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("live on cpu, scene PoolLight"),
@@ -95,7 +88,7 @@ TEST_F(LightStudyE2e, LiveCellsHaveTheLightOfTheirLevel) {
 }
 
 TEST_F(LightStudyE2e, BakesOfParticlesTellTheirLightAndAreDrawnByIt) {
-  write(protocol_, "256");
+  write(protocol_, true);
   const Ended baked = bake();
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   const sim::BakeReader lit(fs::path(bakes_) / "pool_light_256_LoRes_lit.bake"),
@@ -109,8 +102,7 @@ TEST_F(LightStudyE2e, BakesOfParticlesTellTheirLightAndAreDrawnByIt) {
   EXPECT_THAT(stimulus(), AllOf(HasSubstr("pool_light 256 LoRes none bake"),
                                 HasSubstr("pool_light 256 LoRes lit bake"), Not(HasSubstr("live"))));
   // A changed number makes the bakes those of other light.
-  base::write_file_atomically(
-      protocol_, replaced(base::read_file(protocol_, 1 << 20), "strength = 0.5", "strength = 0.25"));
+  replace_in(protocol_, "strength = 0.5", "strength = 0.25");
   fs::remove(database_);
   const Ended other = run({"--participant", "P01", "--stimulus", bakes_});
   EXPECT_EQ(other.exit_code, 1);
@@ -120,7 +112,7 @@ TEST_F(LightStudyE2e, BakesOfParticlesTellTheirLightAndAreDrawnByIt) {
 
 /// The water is the same at both levels, so the pictures differ only in light.
 TEST_F(LightStudyE2e, BakesOfPicturesHoldTheirLight) {
-  write(protocol_, "256");
+  write(protocol_, true);
   ASSERT_EQ(bake({"--keep", "pictures"}).exit_code, 0);
   const sim::BakeReader lit(fs::path(bakes_) / "pool_light_256_LoRes_lit.bake"),
       unlit(fs::path(bakes_) / "pool_light_256_LoRes_none.bake");

@@ -24,22 +24,19 @@ class LiveRatesE2e : public ::testing::Test {
   }
   /// A protocol of one trial at this frame rate.
   void write_protocol(const std::string& mean_fps, const std::string& duration_s) {
-    std::string text = replaced(short_protocol(duration_s), "data/scenes/single_dam.toml", scene_);
-    text = replaced(text, "mean_fps = [20, 50]", "mean_fps = [" + mean_fps + "]");
-    text = replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [0]");
-    text = replaced(text, "fps_min = 4 ", "fps_min = 1 ");
-    text = replaced(text, "max_interval_ms = 250 ", "max_interval_ms = 1000 ");
-    text = replaced(text, "method = [\"HiRes\"]", "method = [\"LoRes\"]");
-    base::write_file_atomically(protocol_, replaced(text, "n_star = [\"32k\"]", "n_star = [\"64\"]"));
+    base::write_file_atomically(protocol_,
+                                with_keys(short_protocol(duration_s), {{"scene", "[\"" + scene_ + "\"]"},
+                                                                       {"mean_fps", "[" + mean_fps + "]"},
+                                                                       {"sd_fps", "[0]"},
+                                                                       {"fps_min", "1"},
+                                                                       {"max_interval_ms", "1000"},
+                                                                       {"method", "[\"LoRes\"]"},
+                                                                       {"n_star", "[\"64\"]"}}));
   }
   /// No machine makes a thousand such frames a second.
   void write_too_fast() { write_protocol("1000", "0.5"); }
   /// Trials are cut as soon as their time is over, so that even a machine that makes most frames cuts them.
-  void cut_at_once() {
-    const std::string text = base::read_file(protocol_, 1 << 20);
-    base::write_file_atomically(
-        protocol_, replaced(text, "late_after_ms = 0.5 ", "overrun_s = 0\nlate_after_ms = 0.5 "));
-  }
+  void cut_at_once() { replace_in(protocol_, "late_after_ms = 0.5 ", "overrun_s = 0\nlate_after_ms = 0.5 "); }
   std::function<void()> own_cache() {
     return [this] { ::setenv("VIP_CACHE_DIR", (folder_ / "cache").c_str(), 1); };
   }

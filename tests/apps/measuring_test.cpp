@@ -19,10 +19,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-study::Protocol pilot_with(const std::string& from, const std::string& to) {
-  std::string text = study::test::bytes_of(base::resource("protocols/ptpe_pilot.toml"));
-  text.replace(text.find(from), from.size(), to);
-  return study::parse_protocol(text, "pilot.toml");
+study::Protocol pilot_with(const std::string& key, const std::string& value) {
+  return study::parse_protocol(test::with_keys(test::shipped_text("ptpe_pilot"), {{key, value}}),
+                               "pilot.toml");
 }
 
 /// A stimulus and a display that take time on a virtual clock.
@@ -76,7 +75,7 @@ study::MeasuredReport judged(const study::Protocol& protocol, const study::StepT
 }
 
 TEST(Measure, GoesThroughTheLongestTrialAsASessionDoes) {
-  const auto protocol = pilot_with("start_frame = 0", "start_frame = 7");
+  const auto protocol = pilot_with("start_frame", "7");
   SlowStage stage([](std::int64_t step) { return 1e-5 * static_cast<double>(step); }, 0.004);
   const study::StepTimes times = measured(protocol, stage);
   // (50, 20) for 10 s: 500 frames; a session makes the first one before the trial.
@@ -109,7 +108,7 @@ TEST(Measure, GoesOnForTheCellsThatAreStillReached) {
 }
 
 TEST(Measure, SeesTheLaterFramesThatAreDearer) {
-  auto protocol = pilot_with("mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [20]");
+  auto protocol = pilot_with("mean_fps", "[20]");
   const auto dearer = [](std::int64_t step) { return step < 100 ? 0.02 : 0.09; };
   SlowStage stage(dearer, 0.001);
   const study::StepTimes times = measured(protocol, stage);
@@ -174,7 +173,7 @@ TEST(Rehearsal, ASlowMachineIsCutAsASessionWouldBe) {
 }
 
 TEST(Rehearsal, ASpreadThatTheMachineCannotFollowFailsThoughTheMeanIsReached) {
-  auto protocol = pilot_with("mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [50]");
+  auto protocol = pilot_with("mean_fps", "[50]");
   const auto report = judged(protocol, steps_of(0.015, 0.004));  // 52.6 frames/s
   const study::MeasuredCell& steady = report.cells.front();
   const study::MeasuredCell& spread = report.cells.back();
@@ -186,7 +185,7 @@ TEST(Rehearsal, ASpreadThatTheMachineCannotFollowFailsThoughTheMeanIsReached) {
 }
 
 TEST(Rehearsal, ContentInRealTimeComputesSeveralStepsForAFrame) {
-  auto protocol = pilot_with("mode = \"per_frame\"", "mode = \"real_time\"");
+  auto protocol = pilot_with("mode", "\"real_time\"");
   const FpsSetting slow{10, 0, 10}, fast{50, 0, 10};
   EXPECT_EQ(study::content_steps(protocol, slow, 0), study::content_steps(protocol, fast, 0));
   // A step of 1/60 s takes 20 ms: the six steps of a frame do not fit into 100 ms, while one or two fit into

@@ -27,7 +27,7 @@ std::string file(const std::filesystem::path& path) { return base::read_file(pat
 TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
   const TemporaryFolder folder;
   const auto at = [&](const char* name) { return (folder / name).string(); };
-  const std::string protocol = std::string(VIP_TEST_DIR) + "/apps/own_design.toml";
+  const std::string protocol = base::resource("tests/protocols/own_design.toml").string();
 
   const auto checked = typed("vip-study check " + protocol);
   EXPECT_EQ(checked.exit_code, 0) << checked.out;
@@ -104,7 +104,7 @@ TEST(OwnDesignE2e, GoesFromCheckToReportWithNothingFalse) {
 TEST(OwnDesignE2e, AMendedVersionStandsBesideTheFirst) {
   const TemporaryFolder folder;
   const auto at = [&](const char* name) { return (folder / name).string(); };
-  const std::string text = file(std::string(VIP_TEST_DIR) + "/apps/own_design.toml");
+  const std::string text = protocol_text("own_design");
   base::write_file_atomically(folder / "first.toml", text);
   base::write_file_atomically(folder / "mended.toml",
                               replaced(replaced(text, "\"1.0\"", "\"1.1\""), "Watch the water", "Watch it"));

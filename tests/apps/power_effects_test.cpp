@@ -20,9 +20,8 @@ using ::testing::HasSubstr;
 /// protocols/foam.toml with these methods and levels.
 study::PowerRequest foam_power(const std::string& methods, const std::string& levels, double effect,
                                int studies) {
-  std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
-  text = test::replaced(text, "[\"LoRes\", \"HiRes\"]", methods);
-  text = test::replaced(text, "[\"none\", \"foam\"]", levels);
+  const std::string text =
+      test::with_keys(test::shipped_text("foam"), {{"method", methods}, {"effects", levels}});
   study::PowerRequest request;
   request.file = "foam.toml";
   request.protocol = study::parse_protocol(text, request.file);

@@ -13,6 +13,7 @@
 #include "libstudy/power/shown.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 #include "stats/inference/power.hpp"
 #include "tests/apps/process.hpp"
 
@@ -377,26 +378,18 @@ TEST_F(PowerCommand, WritesWhatItPrints) {
 
 TEST_F(PowerCommand, RefusesWithAMendAndWritesNothing) {
   const auto json = (folder_ / "p.json").string();
-  const std::vector<std::vector<std::string>> cases{{"protocols/none.toml"},
-                                                    {"protocols/task2.toml", "--n", "60:10"},
-                                                    {"protocols/task2.toml", "--effect", "1.2"},
-                                                    {"protocols/task2.toml", "--world", "effect"},
-                                                    {"protocols/task2.toml", "--sd", "1"},
-                                                    {"protocols/task1.toml", "--world", "effect"},
-                                                    {"protocols/task1.toml", "--sd", "0.3"},
-                                                    {"protocols/task1.toml", "--person-by-method", "0.95"},
-                                                    {"protocols/task2.toml", "--person-by-method", "0.5"},
-                                                    {"protocols/task1.toml", "--earlier", "none.json"},
-                                                    {"protocols/task1.toml", "--precision-a", "1"},
-                                                    {"protocols/ptpe_pilot.toml", "--effect", "0.7"},
-                                                    {"protocols/ptpe_pilot.toml", "--observer", "frames"}};
-  for (auto arguments : cases) {
-    const std::string name = arguments[0] + (arguments.size() > 1 ? " " + arguments[1] : "");
+  for (const std::string words :
+       {"none.toml", "task2.toml --n 60:10", "task2.toml --effect 1.2", "task2.toml --world effect",
+        "task2.toml --sd 1", "task1.toml --world effect", "task1.toml --sd 0.3",
+        "task1.toml --person-by-method 0.95", "task2.toml --person-by-method 0.5",
+        "task1.toml --earlier none.json", "task1.toml --precision-a 1", "ptpe_pilot.toml --effect 0.7",
+        "ptpe_pilot.toml --observer frames"}) {
+    auto arguments = base::split("protocols/" + words, ' ');
     arguments.insert(arguments.end(), {"--json", json, "--studies", "2"});
     const auto ended = run(arguments);
-    EXPECT_EQ(ended.exit_code, 1) << name;
-    EXPECT_NE(ended.err.find("mend:"), std::string::npos) << name << ": " << ended.err;
-    EXPECT_FALSE(std::filesystem::exists(json)) << name;
+    EXPECT_EQ(ended.exit_code, 1) << words;
+    EXPECT_NE(ended.err.find("mend:"), std::string::npos) << words << ": " << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(json)) << words;
   }
 }
 

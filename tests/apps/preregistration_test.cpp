@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <set>
 #include <sstream>
 
@@ -16,6 +17,7 @@
 #include "tests/apps/made_task_study.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/simulated_pilot.hpp"
+#include "tests/common/protocols.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace apps {
@@ -53,19 +55,32 @@ struct Study {
   study::Json results;
 };
 
-Study answered(const study::report::Bundle& bundle, const study::Protocol& task1,
-               const study::Protocol& task2) {
+study::Protocol protocol(const std::string& name) {
+  return study::read_protocol(base::resource("protocols/" + name));
+}
+
+/// `change` gets the answers to Tasks 1 and 2.
+Study answered(const study::report::Bundle& bundle, const study::Protocol& task1 = protocol("task1.toml"),
+               const std::function<void(study::TaskProtocol&, study::TaskProtocol&)>& change = {}) {
+  const auto task2 = protocol("task2.toml");
   auto one = made_study::task1(12), two = made_study::task2(12);
   one.sha256 = task1.sha256;
   two.sha256 = task2.sha256;
+  if (change) change(one, two);
   return {{row_of(task1), row_of(task2)},
           study::make_results({{one, two}, 0},
                               {"study.db", {study::TaskKind::Task1, study::TaskKind::Task2}, "", bundle.plan})
               .json};
 }
 
-study::Protocol protocol(const std::string& name) {
-  return study::read_protocol(base::resource("protocols/" + name));
+study::Json compared(const study::report::Bundle& bundle, const Study& study) {
+  return study::report::compare_with_bundle(bundle, study.rows, study.results);
+}
+
+study::report::Bundle frozen(const fs::path& folder,
+                             const study::report::BundleRequest& request = both_tasks()) {
+  study::report::freeze_bundle(request, folder);
+  return study::report::read_bundle(folder);
 }
 
 TEST(Preregistration, ItsHashIsThatOfTheManifestAndTheManifestHoldsEveryFile) {
@@ -92,8 +107,7 @@ TEST(Preregistration, FixesAllSixHypothesesWithTheirMargins) {
   const TemporaryFolder folder;
   auto request = both_tasks();
   request.plan.margin_realism = 0.4;
-  study::report::freeze_bundle(request, folder / "bundle");
-  const auto bundle = study::report::read_bundle(folder / "bundle");
+  const auto bundle = frozen(folder / "bundle", request);
   std::vector<std::string> ids;
   std::vector<std::size_t> families;
   for (const auto& hypothesis : bundle.hypotheses) {
@@ -111,14 +125,12 @@ TEST(Preregistration, FixesAllSixHypothesesWithTheirMargins) {
 TEST(Preregistration, NamesTheLevelOfAPilotsCurve) {
   const TemporaryFolder folder;
   const auto freeze = [&](const std::string& level, const char* name) {
-    std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
-    const std::string scale = "scale = [1, 7]\n";
-    text.insert(text.find(scale) + scale.size(), level);
-    base::write_file_atomically(folder / "pilot.toml", text);
+    base::write_file_atomically(
+        folder / "pilot.toml",
+        ::test::replaced(::test::shipped_text("ptpe_pilot"), "scale = [1, 7]\n", "scale = [1, 7]\n" + level));
     study::report::BundleRequest request;
     request.protocols = {folder / "pilot.toml"};
-    study::report::freeze_bundle(request, folder / name);
-    return study::report::read_bundle(folder / name).plan.plan.levels;
+    return frozen(folder / name, request).plan.plan.levels;
   };
   EXPECT_EQ(freeze("", "middle"), (std::map<std::string, double>{{"satisfaction", 4}}));
   EXPECT_EQ(freeze("level = 4.5\n", "named"), (std::map<std::string, double>{{"satisfaction", 4.5}}));
@@ -145,10 +157,8 @@ TEST(Preregistration, NamesTheLevelOfAPilotsCurve) {
 
 TEST(Preregistration, AStudyThatKeepsToItDiffersInNothing) {
   const TemporaryFolder folder;
-  study::report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = study::report::read_bundle(folder / "bundle");
-  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto bundle = frozen(folder / "bundle");
+  const auto check = compared(bundle, answered(bundle));
   EXPECT_EQ(check.at("differences"), study::Json::array());
   EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", true}, {"task2", true}}));
   EXPECT_TRUE(check.at("holds").get<bool>());
@@ -156,24 +166,16 @@ TEST(Preregistration, AStudyThatKeepsToItDiffersInNothing) {
 
 /// Task 1's first answer is at `first`, Task 2's is long after the bundle.
 study::Json check_with_first_answer(const study::report::Bundle& bundle, const std::string& first) {
-  auto one = made_study::task1(12), two = made_study::task2(12);
-  const auto task1 = protocol("task1.toml"), task2 = protocol("task2.toml");
-  one.sha256 = task1.sha256;
-  two.sha256 = task2.sha256;
-  for (auto& session : one.sessions) session.first_answer_utc = "2999-12-31T00:00:00Z";
-  one.sessions[7].first_answer_utc = first;
-  for (auto& session : two.sessions) session.first_answer_utc = "2999-12-31T00:00:00Z";
-  const auto results =
-      study::make_results({{one, two}, 0},
-                          {"study.db", {study::TaskKind::Task1, study::TaskKind::Task2}, "", bundle.plan})
-          .json;
-  return study::report::compare_with_bundle(bundle, {row_of(task1), row_of(task2)}, results);
+  return compared(bundle, answered(bundle, protocol("task1.toml"), [&](auto& one, auto& two) {
+                    for (auto* task : {&one, &two})
+                      for (auto& session : task->sessions) session.first_answer_utc = "2999-12-31T00:00:00Z";
+                    one.sessions[7].first_answer_utc = first;
+                  }));
 }
 
 TEST(Preregistration, SaysWhetherTheBundleIsOlderThanTheFirstAnswer) {
   const TemporaryFolder folder;
-  study::report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = study::report::read_bundle(folder / "bundle");
+  const auto bundle = frozen(folder / "bundle");
   const std::string frozen = bundle.about.at("frozen_utc");
   const auto before = check_with_first_answer(bundle, "2999-01-01T00:00:00Z");
   EXPECT_TRUE(before.at("holds").get<bool>()) << before.dump(2);
@@ -206,28 +208,24 @@ TEST(Preregistration, OnlySessionsThatAreAnalysedHaveAFirstAnswer) {
 // A pilot beside the tasks is exploratory: a bundle of the tasks need not contain it.
 TEST(Preregistration, APilotBesideTheTasksIsNoDifference) {
   const TemporaryFolder folder;
-  study::report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = study::report::read_bundle(folder / "bundle");
-  auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
+  const auto bundle = frozen(folder / "bundle");
+  auto study = answered(bundle);
   const auto pilot = protocol("ptpe_pilot.toml");
   study.rows.push_back(row_of(pilot));
   study.results["study"]["protocols"].push_back({{"task", "pilot"},
                                                  {"title", "Pilot"},
                                                  {"sha256", pilot.sha256},
                                                  {"first_answer_utc", "2001-01-01T00:00:00Z"}});
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto check = compared(bundle, study);
   EXPECT_EQ(check.at("differences"), study::Json::array());
   EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", true}, {"task2", true}, {"pilot", false}}));
 }
 
 TEST(Preregistration, AChangedProtocolIsNamedLineByLine) {
   const TemporaryFolder folder;
-  study::report::freeze_bundle(both_tasks(), folder / "bundle");
-  const auto bundle = study::report::read_bundle(folder / "bundle");
-  auto text = protocol("task1.toml").text;
-  text.replace(text.find("duration_s = 30"), 15, "duration_s = 20");
-  const auto study = answered(bundle, study::parse_protocol(text, "task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto bundle = frozen(folder / "bundle");
+  const auto text = ::test::replaced(::test::shipped_text("task1"), "duration_s = 30", "duration_s = 20");
+  const auto check = compared(bundle, answered(bundle, study::parse_protocol(text, "task1.toml")));
   EXPECT_THAT(check.at("differences"), Contains("protocol task1, preregistered only: duration_s = 30"));
   EXPECT_THAT(check.at("differences"), Contains("protocol task1, used only: duration_s = 20"));
   EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));
@@ -236,11 +234,9 @@ TEST(Preregistration, AChangedProtocolIsNamedLineByLine) {
 
 TEST(Preregistration, AnotherMarginIsNamed) {
   const TemporaryFolder folder;
-  study::report::freeze_bundle(both_tasks(), folder / "bundle");
-  auto bundle = study::report::read_bundle(folder / "bundle");
+  auto bundle = frozen(folder / "bundle");
   bundle.plan.plan.margin_sickness = 0.5;
-  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto check = compared(bundle, answered(bundle));
   EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));
   EXPECT_THAT(check.at("differences").dump(),
               HasSubstr("H2, Ours - HiRes, sickness, 16k, margin: preregistered 0.25, tested 0.5"));
@@ -256,11 +252,9 @@ void freeze_as_before(const fs::path& folder) {
   std::string plan;
   for (std::string line; std::getline(lines, line);)
     if (!line.starts_with("decision") && !line.starts_with("directional")) plan += line + "\n";
-  std::string manifest = base::read_file(folder / "MANIFEST.sha256", 1 << 20);
   const auto before = base::sha256_hex(base::read_file(folder / "plan.toml", 1 << 20));
-  manifest.replace(manifest.find(before), before.size(), base::sha256_hex(plan));
   base::write_file_atomically(folder / "plan.toml", plan);
-  base::write_file_atomically(folder / "MANIFEST.sha256", manifest);
+  ::test::replace_in(folder / "MANIFEST.sha256", before, base::sha256_hex(plan));
 }
 
 TEST(Preregistration, AnEarlierBundleIsAnalysedUnderHolmAndDiffersInNothing) {
@@ -268,8 +262,8 @@ TEST(Preregistration, AnEarlierBundleIsAnalysedUnderHolmAndDiffersInNothing) {
   freeze_as_before(folder / "bundle");
   const auto bundle = study::report::read_bundle(folder / "bundle");
   ASSERT_THAT(bundle.altered, IsEmpty());
-  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto study = answered(bundle);
+  const auto check = compared(bundle, study);
   EXPECT_EQ(check.at("differences"), study::Json::array());
   EXPECT_EQ(study.results.at("plan").at("decision"), "holm");
   EXPECT_EQ(study.results.at("plan").at("directional"), "H2, H3 and H6");
@@ -282,8 +276,7 @@ TEST(Preregistration, AnotherDecisionRuleIsNamed) {
   freeze_as_before(folder / "bundle");
   auto bundle = study::report::read_bundle(folder / "bundle");
   bundle.plan.plan.decision = stats::DecisionRule::IntersectionUnion;
-  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto check = compared(bundle, answered(bundle));
   EXPECT_THAT(check.at("differences").dump(), HasSubstr("H1, rule: preregistered "));
   EXPECT_FALSE(check.at("holds").get<bool>());
 }
@@ -292,15 +285,12 @@ TEST(Preregistration, TestsByTheMixedModelAreFrozenAndNotTakenForPairedOnes) {
   const TemporaryFolder folder;
   auto request = both_tasks();
   request.plan.tests = stats::ScoreTests::Mixed;
-  study::report::freeze_bundle(request, folder / "bundle");
-  auto bundle = study::report::read_bundle(folder / "bundle");
+  auto bundle = frozen(folder / "bundle", request);
   EXPECT_EQ(bundle.plan.plan.tests, stats::ScoreTests::Mixed);
-  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  EXPECT_EQ(study::report::compare_with_bundle(bundle, study.rows, study.results).at("differences"),
-            study::Json::array());
+  const auto study = answered(bundle);
+  EXPECT_EQ(compared(bundle, study).at("differences"), study::Json::array());
   bundle.plan.plan.tests = stats::ScoreTests::Paired;
-  const auto other = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, other.rows, other.results);
+  const auto check = compared(bundle, answered(bundle));
   EXPECT_THAT(check.at("differences").dump(), HasSubstr("H1, rule: preregistered \\\"t tests of the mixed"));
   EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", true}}));
 }
@@ -313,8 +303,7 @@ TEST(Preregistration, ATouchedFileTakesTheNameAway) {
   fs::remove(folder / "bundle/PREREGISTRATION.txt");
   const auto bundle = study::report::read_bundle(folder / "bundle");
   EXPECT_EQ(bundle.altered, (std::vector<std::string>{"PREREGISTRATION.txt", "plan.toml"}));
-  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto check = compared(bundle, answered(bundle));
   EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", false}, {"task2", false}}));
 }
 
@@ -332,10 +321,8 @@ TEST(Preregistration, AProtocolThatIsNotInItIsExploratory) {
   const TemporaryFolder folder;
   auto request = both_tasks();
   request.protocols.pop_back();
-  study::report::freeze_bundle(request, folder / "bundle");
-  const auto bundle = study::report::read_bundle(folder / "bundle");
-  const auto study = answered(bundle, protocol("task1.toml"), protocol("task2.toml"));
-  const auto check = study::report::compare_with_bundle(bundle, study.rows, study.results);
+  const auto bundle = frozen(folder / "bundle", request);
+  const auto check = compared(bundle, answered(bundle));
   EXPECT_EQ(check.at("tasks"), (study::Json{{"task1", true}, {"task2", false}}));
 }
 

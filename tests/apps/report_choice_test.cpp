@@ -25,18 +25,14 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
+study::TaskProtocol of_two_methods(const std::string& name, char digit, bool pairs, int people) {
+  return {name, "1.0", std::string(64, digit), pairs, people, made_study::scenes, {"LoRes", "HiRes"}, {"1k"},
+          {},   {}};
+}
+
 /// Two methods in three scenes, each rated on two scales of 1 to 4.
 study::TaskProtocol comfort(int participants) {
-  study::TaskProtocol out{"comfort",
-                          "1.0",
-                          std::string(64, '4'),
-                          false,
-                          participants,
-                          made_study::scenes,
-                          {"LoRes", "HiRes"},
-                          {"1k"},
-                          {},
-                          {}};
+  auto out = of_two_methods("comfort", '4', false, participants);
   out.questions = {made_study::scale("comfort", 1, 4), made_study::scale("strain", 1, 4)};
   out.questions[0].text = "How comfortable was it, of 4?";
   for (int person = 0; person < participants; ++person) {
@@ -270,8 +266,7 @@ TEST(ReportChoice, AHypothesisAboutAMethodThatIsNotShownIsNotTested) {
 
 /// Each of six people judges one pair in three scenes. `alike`: all always choose HiRes.
 study::TaskProtocol pairs_over_scenes(bool alike) {
-  study::TaskProtocol pairs{
-      "pairs", "1.0", std::string(64, '7'), true, 6, made_study::scenes, {"LoRes", "HiRes"}, {"1k"}, {}, {}};
+  auto pairs = of_two_methods("pairs", '7', true, 6);
   study::Question choice;
   choice.id = "smoother";
   choice.kind = study::AnswerKind::Choice;

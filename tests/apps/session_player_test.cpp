@@ -14,28 +14,6 @@ namespace {
 using study::test::Scripted;
 using ::testing::HasSubstr;
 
-constexpr const char* consent_toml = R"(
-[[block]]
-kind = "consent"
-id = "consent"
-text = "Read this."
-
-[[block.question]]
-id = "take_part"
-kind = "choice"
-text = "I take part."
-anchors = {0 = "no", 1 = "yes"}
-accept = [1, 1]
-
-)";
-
-/// Consent, then pairs.
-study::Protocol consented() {
-  std::string text = study::test::paced_pairs().text;
-  text.insert(text.find("[[block]]"), consent_toml);
-  return study::parse_protocol(text, "consented.toml");
-}
-
 /// Plays sessions as a window does, but without one.
 class Played : public ::testing::Test {
  protected:
@@ -79,7 +57,7 @@ class Played : public ::testing::Test {
   }
 
   ::test::TemporaryFolder folder_;
-  const study::Protocol protocol_ = consented();
+  const study::Protocol protocol_ = study::test::consented();
   study::SessionSetup setup_;
   Scripted* person_ = nullptr;  ///< owned by setup_
   PlayOptions play_;

@@ -91,11 +91,12 @@ class SettingInStudy : public ::testing::Test {
  protected:
   SettingInStudy() {
     base::write_file_atomically(scene_, test::small_dam);
-    std::string text = replaced(test::short_protocol("0.5"), "data/scenes/single_dam.toml", scene_);
-    text = replaced(text, "mean_fps = [20, 50]", "mean_fps = [20]");
-    text = replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [0]");
-    text = replaced(text, "method = [\"HiRes\"]", "method = [\"LoRes\", \"Ours-TSp\"]");
-    base::write_file_atomically(protocol_, replaced(text, "n_star = [\"32k\"]", "n_star = [\"64\"]"));
+    base::write_file_atomically(
+        protocol_, test::with_keys(test::short_protocol("0.5"), {{"scene", "[\"" + scene_ + "\"]"},
+                                                                 {"mean_fps", "[20]"},
+                                                                 {"sd_fps", "[0]"},
+                                                                 {"method", "[\"LoRes\", \"Ours-TSp\"]"},
+                                                                 {"n_star", "[\"64\"]"}}));
     base::write_file_atomically(setting_, text_);
   }
   test::Ended run(const std::vector<std::string>& more) const {
@@ -212,8 +213,7 @@ TEST_F(SettingInStudyE2e, WhatIsNotComputedLiveHasNoSetting) {
   const auto baked = test::run_program({test::vip_study, "bake", scene_, "--out", bake, "--method", "LoRes",
                                         "--n-star", "64", "--frames", "60", "--backend", "cpu"});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
-  const std::string protocol = base::read_file(protocol_, 1 << 20);
-  base::write_file_atomically(protocol_, replaced(protocol, ", \"Ours-TSp\"]", "]"));
+  test::replace_in(protocol_, ", \"Ours-TSp\"]", "]");
   base::write_file_atomically(setting_, setting_text(sim::MethodKind::LoRes, 64));
   const auto played = run({"--stimulus", bake, "--setting", setting_});
   EXPECT_EQ(played.exit_code, 1);

@@ -21,12 +21,13 @@ class StimulusFolderE2e : public ::testing::Test {
   }
   /// One setting, trials of half a second; `more` comes first in the file.
   void write_protocol(const std::string& methods, const std::string& more = "") {
-    std::string text = replaced(short_protocol("0.5"), "data/scenes/single_dam.toml", scene_);
-    text = replaced(text, "mean_fps = [20, 50]", "mean_fps = [20]");
-    text = replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [5]");
-    text = replaced(text, "method = [\"HiRes\"]", "method = [" + methods + "]");
-    text = replaced(text, "n_star = [\"32k\"]", "n_star = [\"64\"]");
-    base::write_file_atomically(protocol_, replaced(text, "participants = ", more + "participants = "));
+    base::write_file_atomically(
+        protocol_, with_before(with_keys(short_protocol("0.5"), {{"scene", "[\"" + scene_ + "\"]"},
+                                                                 {"mean_fps", "[20]"},
+                                                                 {"sd_fps", "[5]"},
+                                                                 {"method", "[" + methods + "]"},
+                                                                 {"n_star", "[\"64\"]"}}),
+                               "participants = ", more));
   }
   Ended bake(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> all{vip_study, "bake",   "--protocol", protocol_,   "--out",
@@ -118,8 +119,7 @@ TEST_F(StimulusFolderE2e, LevelsThatFollowedAnotherPictureAreRefused) {
 TEST_F(StimulusFolderE2e, AnotherFluidIsRefused) {
   write_protocol("\"HiRes\"");
   ASSERT_EQ(bake().exit_code, 0);
-  const std::string text = base::read_file(protocol_, 1 << 20);
-  base::write_file_atomically(protocol_, replaced(text, "duration_s = 0.5", "duration_s = 0.8"));
+  replace_in(protocol_, "duration_s = 0.5", "duration_s = 0.8");
   const Ended ended = run_baked();
   EXPECT_EQ(ended.exit_code, 1);
   EXPECT_THAT(ended.err, HasSubstr("holds 10 frames instead of 16"));

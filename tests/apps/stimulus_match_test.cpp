@@ -22,10 +22,10 @@ class StimulusMatchE2e : public ::testing::Test {
   }
   /// A session under a protocol that names `scene`, `method` and `n_star`.
   Ended run(const std::string& scene, const std::string& method, const std::string& n_star) {
-    std::string text = replaced(short_protocol("1"), "data/scenes/single_dam.toml", scene);
-    text = replaced(text, "method = [\"HiRes\"]", "method = [\"" + method + "\"]");
     base::write_file_atomically(protocol_,
-                                replaced(text, "n_star = [\"32k\"]", "n_star = [\"" + n_star + "\"]"));
+                                with_keys(short_protocol("1"), {{"scene", "[\"" + scene + "\"]"},
+                                                                {"method", "[\"" + method + "\"]"},
+                                                                {"n_star", "[\"" + n_star + "\"]"}}));
     return run_program(run_arguments(protocol_, database_, {"--participants", "1", "--stimulus", bake_}));
   }
   std::int64_t test_sessions() {

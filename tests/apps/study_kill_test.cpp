@@ -12,132 +12,6 @@
 namespace apps::test {
 namespace {
 
-/// Every kind of page, practice, pairs in two groups, catch pages and repeats: 18 units with 39 answers, of
-/// which one is personal.
-constexpr const char* blocks_toml = R"(
-format = 2
-name = "blocks"
-version = "1"
-language = "en"
-participants = 4
-
-[design]
-scene = ["data/scenes/single_dam.toml", "data/scenes/faucet.toml"]
-method = ["LoRes", "Ours", "HiRes"]
-n_star = ["16k"]
-timing = "equal"
-mean_fps = [30]
-sd_fps = [5]
-duration_s = 2
-pairs = true
-groups = 2
-order = "shuffle"
-
-[pacing]
-mean = "harmonic"
-fps_min = 4
-fps_max = "none"
-max_interval_ms = 250
-order = "white"
-
-[content]
-mode = "per_frame"
-content_step_s = 0.02
-start_frame = 0
-at_end = "hold"
-
-[[block]]
-kind = "instructions"
-id = "welcome"
-text = "Welcome."
-seconds = 5
-
-[[block]]
-kind = "screening"
-id = "screening"
-
-[[block.question]]
-id = "epilepsy"
-kind = "choice"
-text = "Do flickering lights harm you?"
-anchors = {0 = "no", 1 = "yes"}
-accept = [0, 0]
-
-[[block.question]]
-id = "glasses"
-kind = "choice"
-text = "Do you wear glasses?"
-anchors = {0 = "no", 1 = "yes"}
-
-[[block]]
-kind = "demographics"
-id = "about"
-
-[[block.question]]
-id = "age"
-kind = "number"
-text = "How old are you?"
-scale = [18, 99]
-personal = true
-
-[[block]]
-kind = "ssq"
-id = "before"
-
-[[block]]
-kind = "practice"
-id = "warm_up"
-like = "pairs"
-count = 1
-
-[[block]]
-kind = "stimulus"
-id = "pairs"
-between_groups_s = 60
-steps = ["stimulus first", "black 5", "stimulus second", "ask preference", "rest 10", "ask sure"]
-
-[[block.question]]
-id = "preference"
-kind = "choice"
-text = "Which was better?"
-anchors = {1 = "first", 2 = "second"}
-
-[[block.question]]
-id = "sure"
-kind = "scale"
-text = "How sure are you?"
-scale = [1, 7]
-
-[[block]]
-kind = "catch"
-id = "attention"
-like = "pairs"
-count = 2
-
-[[block.question]]
-id = "attend"
-kind = "scale"
-text = "Answer 2."
-scale = [1, 7]
-expect = 2
-
-[[block]]
-kind = "rest"
-id = "rest"
-seconds = 30
-
-[[block]]
-kind = "repeat"
-id = "again"
-like = "pairs"
-count = 2
-
-[[block]]
-kind = "debrief"
-id = "thanks"
-text = "Thank you."
-)";
-
 /// Runs until `lines` units were acknowledged, waits for `delay`, then kills. Returns everything that was
 /// acknowledged.
 std::string run_and_kill(const std::vector<std::string>& arguments, int lines,
@@ -210,7 +84,7 @@ std::vector<std::string> personal_in(const std::string& database) {
 TEST(StudyKillE2e, TwentyInstantsOfASessionWithEveryBlock) {
   const TemporaryFolder folder;
   const std::string protocol = folder / "blocks.toml";
-  base::write_file_atomically(protocol, blocks_toml);
+  base::write_file_atomically(protocol, protocol_text("blocks"));
   const auto arguments = [&](const std::string& database) {
     return std::vector<std::string>{vip_study, "run",        protocol, "--db",   database, "--participants",
                                     "4",       "--observer", "random", "--seed", "5",      "--events"};

@@ -1,13 +1,13 @@
 #pragma once
-/// Helpers for end-to-end tests of vip-study: a folder, a short protocol, readers of a database.
+/// Helpers for end-to-end tests of vip-study: a folder, readers of a database.
 
 #include <map>
 #include <set>
 #include <tuple>
 
 #include "libstudy/store/file/sqlite.hpp"
-#include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/common/protocols.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace apps::test {
@@ -16,23 +16,7 @@ namespace fs = std::filesystem;
 
 inline const std::string vip_study = VIP_BIN_DIR "/vip-study";
 
-using ::test::TemporaryFolder;
-
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos) throw std::runtime_error("the pilot's protocol no longer holds: " + from);
-  return text.replace(at, from.size(), to);
-}
-
-/// The pilot with six settings, without the pause before them, and with trials of `duration_s`.
-inline std::string short_protocol(const std::string& duration_s) {
-  std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
-  text = replaced(text, "name = \"ptpe_pilot\"", "name = \"short\"");
-  text = replaced(text, "mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [20, 50]");
-  text = replaced(text, "sd_fps = [0, 5, 10, 15, 20]", "sd_fps = [0, 5, 10]");
-  text = replaced(text, "duration_s = 10 ", "duration_s = " + duration_s + " ");
-  return replaced(text, "\"black 3\", ", "");
-}
+using namespace ::test;
 
 inline std::vector<std::string> run_arguments(const std::string& protocol, const std::string& database,
                                               const std::vector<std::string>& more) {

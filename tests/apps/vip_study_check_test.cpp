@@ -108,9 +108,7 @@ TEST(VipStudyCheckE2e, MeasuringNeedsTheRefresh) {
 TEST(VipStudyCheckE2e, AMethodThatIsNotThereIsNamed) {
   const study::test::TemporaryFolder folder;
   const auto file = folder / "p.toml";
-  std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
-  text.replace(text.find("\"HiRes\""), 7, "\"Best\"");
-  std::ofstream(file) << text;
+  std::ofstream(file) << test::with_keys(test::shipped_text("ptpe_pilot"), {{"method", "[\"Best\"]"}});
   const auto outcome = vip_study("check " + file.string());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, testing::HasSubstr("'design.method[0]' = \"Best\""));

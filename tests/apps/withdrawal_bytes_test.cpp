@@ -130,18 +130,7 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
 }
 
 /// Pairs of methods, with a consent page that asks for gaze and sharing, free words and a personal question.
-study::Protocol asking_pairs() {
-  std::string text = study::test::pairs_toml;
-  std::string page = "[[block]]\nkind = \"consent\"\nid = \"consent\"\ntext = \"Read this.\"\n";
-  for (const std::string& id :
-       {std::string("take_part"), std::string(study::gaze_question), std::string(study::sharing_question)}) {
-    page += "\n[[block.question]]\nid = \"" + id +
-            "\"\nkind = \"choice\"\ntext = \"May we?\"\nanchors = {0 = \"no\", 1 = \"yes\"}\n";
-    if (id == "take_part") page += "accept = [1, 1]\n";
-  }
-  text.insert(text.find("[[block]]"), page + "\n");
-  return study::parse_protocol(text, "asking_pairs.toml");
-}
+study::Protocol asking_pairs() { return study::parse_protocol(protocol_text("pairs"), "asking_pairs.toml"); }
 
 /// One person's session of it: words, gaze, a note and an exclusion, all of which identify the person.
 void take_part(study::Store& store, const study::OpenSession& session) {

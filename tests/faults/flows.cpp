@@ -6,6 +6,7 @@
 #include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
+#include "tests/common/protocols.hpp"
 
 namespace faults {
 
@@ -254,90 +255,12 @@ const std::vector<Flow>& all_flows() {
 }
 
 std::string short_protocol() {
-  return R"(
-format = 2
-name = "short"
-version = "1"
-language = "en"
-participants = 4
-
-[design]
-scene = ["data/scenes/single_dam.toml"]
-method = ["HiRes"]
-n_star = ["512"]
-timing = "settings"
-mean_fps = [20, 30]
-sd_fps = [0, 3]
-duration_s = 1
-order = "shuffle"
-
-[pacing]
-mean = "harmonic"
-fps_min = 4
-max_interval_ms = 250
-order = "white"
-
-[content]
-mode = "per_frame"
-content_step_s = 0.02
-start_frame = 0
-at_end = "hold"
-
-[[block]]
-kind = "consent"
-id = "consent"
-text = "A test."
-
-[[block.question]]
-id = "take_part"
-kind = "choice"
-text = "I would like to go on."
-anchors = {0 = "no", 1 = "yes"}
-accept = [0, 1]
-
-[[block]]
-kind = "demographics"
-id = "person"
-
-[[block.question]]
-id = "age"
-kind = "number"
-text = "Your age in years"
-scale = [10, 110]
-personal = true
-
-[[block]]
-kind = "practice"
-id = "warm_up"
-like = "ratings"
-count = 1
-
-[[block]]
-kind = "stimulus"
-id = "ratings"
-steps = ["stimulus", "ask satisfaction smoothness"]
-
-[[block.question]]
-id = "satisfaction"
-kind = "scale"
-text = "How satisfied are you with the motion of the fluid?"
-scale = [1, 7]
-
-[[block.question]]
-id = "smoothness"
-kind = "choice"
-text = "Was it smooth?"
-anchors = {0 = "no", 1 = "yes"}
-
-[[block]]
-kind = "question"
-id = "remarks"
-
-[[block.question]]
-id = "remark"
-kind = "text"
-text = "Is there anything you would like to say?"
-)";
+  return test::with_keys(test::without(test::protocol_text("ratings"), {"gaze_kept", "data_shared", "town"}),
+                         {{"n_star", "[\"512\"]"},
+                          {"mean_fps", "[20, 30]"},
+                          {"sd_fps", "[0, 3]"},
+                          {"duration_s", "1"},
+                          {"accept", "[0, 1]"}});
 }
 
 }  // namespace faults

@@ -17,90 +17,14 @@ namespace fixture = study::test;
 
 namespace {
 
-constexpr const char* small_protocol = R"(
-format = 2
-name = "small"
-version = "1"
-language = "en"
-participants = 4
-
-[design]
-scene = ["data/scenes/single_dam.toml"]
-method = ["HiRes"]
-n_star = ["16k"]
-timing = "settings"
-mean_fps = [10, 20]
-sd_fps = [0]
-duration_s = 0.3
-order = "shuffle"
-
-[pacing]
-mean = "harmonic"
-fps_min = 4
-fps_max = "none"
-max_interval_ms = 250
-order = "white"
-
-[content]
-mode = "per_frame"
-content_step_s = 0.02
-start_frame = 0
-at_end = "hold"
-
-[[block]]
-kind = "consent"
-id = "consent"
-text = "Read this."
-
-[[block.question]]
-id = "take_part"
-kind = "choice"
-text = "I take part."
-anchors = {0 = "no", 1 = "yes"}
-accept = [1, 1]
-
-[[block.question]]
-id = "gaze_kept"
-kind = "choice"
-text = "May we keep where you look?"
-anchors = {0 = "no", 1 = "yes"}
-
-[[block.question]]
-id = "data_shared"
-kind = "choice"
-text = "May we share?"
-anchors = {0 = "no", 1 = "yes"}
-
-[[block]]
-kind = "demographics"
-id = "about"
-
-[[block.question]]
-id = "town"
-kind = "text"
-text = "Where are you from?"
-personal = true
-
-[[block]]
-kind = "stimulus"
-id = "trials"
-steps = ["stimulus", "ask rating"]
-
-[[block.question]]
-id = "rating"
-kind = "scale"
-text = "How was it?"
-scale = [1, 7]
-
-[[block]]
-kind = "question"
-id = "end"
-
-[[block.question]]
-id = "remarks"
-kind = "text"
-text = "Anything else?"
-)";
+const Protocol& small_protocol() {
+  static const Protocol protocol = parse_protocol(
+      fixture::with_keys(
+          fixture::without(fixture::protocol_text("ratings"), {"age", "warm_up", "smoothness"}),
+          {{"mean_fps", "[10, 20]"}, {"duration_s", "0.3"}}),
+      "small.toml");
+  return protocol;
+}
 
 /// A gaze and a head pose that do not move.
 class Still final : public GazeSource, public SlotSource {
@@ -217,7 +141,7 @@ void check_cleaned(const fs::path& database, std::vector<std::string> left, bool
 }
 
 void play(const fs::path& database, const std::vector<Person>& people, int units) {
-  const Protocol protocol = parse_protocol(small_protocol, "small.toml");
+  const Protocol& protocol = small_protocol();
   const auto there = known(database);
   Store store(database, sqlite::Open::Create);
   RunPlan run{protocol, "{}", {}};
@@ -232,7 +156,7 @@ void play(const fs::path& database, const std::vector<Person>& people, int units
 }
 
 void resume(const fs::path& database, const std::vector<Person>& people) {
-  const Protocol protocol = parse_protocol(small_protocol, "small.toml");
+  const Protocol& protocol = small_protocol();
   Store store(database, sqlite::Open::Write);
   play_open(database, store, protocol, people, 1000);
   check_cleaned(database, store.left_to_clean());

@@ -24,18 +24,8 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// protocols/foam.toml with other text in place of its factor.
 Protocol foam_with(const std::string& effects, const std::string& sets) {
-  std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    const auto at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << from;
-    text.replace(at, from.size(), to);
-  };
-  replace("effects = [\"none\", \"foam\"]", effects);
-  const auto begin = text.find("[[design.effect_set]]"), end = text.find("[pacing]");
-  text.replace(begin, end - begin, sets);
-  return parse_protocol(text, "p.toml");
+  return parse_protocol(test::foam_text(effects, sets), "p.toml");
 }
 
 TEST(EffectLevels, AreAFactorWithinTheGroupsLikeTheMethod) {
@@ -90,14 +80,12 @@ TEST(EffectLevels, EveryPairIsPlannedOnceAndEachOrderEquallyOften) {
 }
 
 TEST(EffectLevels, NeverAdjacentKeepsNeighboursApart) {
-  std::string text = base::read_file(base::resource("protocols/demo.toml"), 1 << 20);
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    text.replace(text.find(from), from.size(), to);
-  };
-  replace("never_adjacent = [\"method\"]", "never_adjacent = [\"effects\"]\neffects = [\"none\", \"scene\"]");
-  replace("method = [\"LoRes\", \"HiRes\"]", "method = [\"LoRes\", \"HiRes\", \"FovFluid\", \"Ours\"]");
-  replace("timing = \"settings\"\nmean_fps = [15, 30]\nsd_fps = [0, 5]",
-          "timing = \"equal\"\nmean_fps = [30]\nsd_fps = [5]");
+  const std::string text =
+      test::replaced(test::with_keys(test::shipped_text("demo"),
+                                     {{"never_adjacent", "[\"effects\"]\neffects = [\"none\", \"scene\"]"},
+                                      {"method", "[\"LoRes\", \"HiRes\", \"FovFluid\", \"Ours\"]"}}),
+                     "timing = \"settings\"\nmean_fps = [15, 30]\nsd_fps = [0, 5]",
+                     "timing = \"equal\"\nmean_fps = [30]\nsd_fps = [5]");
   const Protocol protocol = parse_protocol(text, "p.toml");
   const auto trials = test::design_trials(protocol, make_plan(protocol, "P01", 3, 0));
   ASSERT_EQ(trials.size(), 8u);
@@ -117,17 +105,14 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(EffectLevels, OneLevelAloneIsRefused) {
-  std::string text = base::read_file(base::resource("protocols/foam.toml"), 1 << 20);
-  const std::string from = "effects = [\"none\", \"foam\"]";
-  text.replace(text.find(from), from.size(), "effects = [\"foam\"]");
+  const std::string text = test::with_keys(test::shipped_text("foam"), {{"effects", "[\"foam\"]"}});
   EXPECT_THAT(error_of(text), AllOf(HasSubstr("p.toml:15:11: "), HasSubstr("holds one level"),
                                     HasSubstr("mend: name two levels or more")));
 }
 
 TEST(EffectLevels, OfAPilotAreRefused) {
-  std::string text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
-  const std::string from = "timing = \"settings\"";
-  text.replace(text.find(from), from.size(), from + "\neffects = [\"none\", \"scene\"]");
+  const std::string text = test::with_keys(test::shipped_text("ptpe_pilot"),
+                                           {{"timing", "\"settings\"\neffects = [\"none\", \"scene\"]"}});
   EXPECT_THAT(error_of(text),
               AllOf(HasSubstr("p.toml:"), HasSubstr("cannot vary under timing = \"settings\""),
                     HasSubstr("mend: use timing = \"equal\"")));

@@ -72,9 +72,8 @@ bool is_number(const std::string& field) {
 
 /// Every free text of a session is hostile; one question asks for words.
 void make_hostile_study(const fs::path& path) {
-  std::string text = test::pairs_toml;
   Store store(path, sqlite::Open::Create);
-  RunPlan plan = test::run_plan(parse_protocol(text, "pairs.toml"), {"P01"});
+  RunPlan plan = test::run_plan(test::pairs(), {"P01"});
   plan.sessions.at(0).station = "=station()";
   store.add_run(plan);
   const auto session = store.open_runs().at(0).sessions.at(0);

@@ -154,11 +154,9 @@ TEST(ExportCsv, TheDatabaseRemembersTheFolder) {
 TEST(ExportCsv, QuotesWhatNeedsIt) {
   const test::TemporaryFolder folder;
   make_study(folder);
-  Protocol protocol = test::pilot();
-  std::string text = protocol.text;
-  const std::string wording = "How satisfied are you with the step speed and the smoothness of the fluid?";
-  text.replace(text.find(wording), wording.size(), "Happy, \\\"or\\\" not?");
-  text.replace(text.find("\"2.0\""), 5, "\"2.1\"");
+  const std::string text = test::replaced(
+      test::with_keys(test::shipped_text("ptpe_pilot"), {{"version", "\"2.1\""}}),
+      "How satisfied are you with the step speed and the smoothness of the fluid?", "Happy, \\\"or\\\" not?");
   Store(folder / "study.db", sqlite::Open::Write)
       .add_run(test::run_plan(parse_protocol(text, "changed"), {"P01"}));
   export_csv(folder / "study.db", folder / "out");

@@ -11,6 +11,7 @@
 namespace study {
 namespace {
 
+using test::consented;
 using test::OneSession;
 using test::paced_pairs;
 using test::wish_at_frame_5;
@@ -21,32 +22,11 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
 
-constexpr const char* consent_toml = R"(
-[[block]]
-kind = "consent"
-id = "consent"
-text = "Read this."
-
-[[block.question]]
-id = "take_part"
-kind = "choice"
-text = "I take part."
-anchors = {0 = "no", 1 = "yes"}
-accept = [1, 1]
-)";
-
 constexpr const char* ssq_toml = R"(
 [[block]]
 kind = "ssq"
 id = "afterwards"
 )";
-
-/// Pairs after a consent page.
-Protocol consented() {
-  std::string text = paced_pairs().text;
-  text.insert(text.find("[[block]]"), std::string(consent_toml) + "\n");
-  return parse_protocol(text, "consented.toml");
-}
 
 /// The part of `seen` from the last line that begins with `begin`.
 std::vector<std::string> from(const std::vector<std::string>& seen, const std::string& begin) {

@@ -80,11 +80,10 @@ struct Validated : test::OneSession {
     person.says["rating"] = test::score(4);
   }
   static Protocol validating() {
-    std::string text = test::asking_protocol().text;
-    text.insert(text.find("[[block]]\nkind = \"stimulus\""),
-                "[[block]]\nkind = \"gaze_validation\"\nid = \"look\"\nextent_deg = 8\n"
-                "max_accuracy_deg = 1.5\ntries = 2\n\n");
-    return parse_protocol(text, "validating.toml");
+    return parse_protocol(test::with_before(test::asking_text(), "[[block]]\nkind = \"stimulus\"",
+                                            "[[block]]\nkind = \"gaze_validation\"\nid = \"look\"\n"
+                                            "extent_deg = 8\nmax_accuracy_deg = 1.5\ntries = 2\n\n"),
+                          "validating.toml");
   }
   void run() {
     SessionParts parts = desk.parts(person, store);

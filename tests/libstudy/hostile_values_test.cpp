@@ -17,6 +17,7 @@
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/hostile_values.hpp"
+#include "tests/common/protocols.hpp"
 
 namespace {
 
@@ -84,10 +85,7 @@ TEST(HostileValues, OfAnyKeyOfAProtocolAreTakenOrRefusedWithPlaceAndMend) {
 }
 
 TEST(HostileValues, ASpreadTooSmallToBeToldFromNoneIsRefused) {
-  const auto text = base::read_file(base::resource("protocols/ptpe_pilot.toml"), 1 << 20);
-  auto changed = text;
-  const std::string list = "sd_fps = [0, 5";
-  changed.replace(text.find(list), list.size(), "sd_fps = [0, 1e-308");
+  const auto changed = test::with_keys(test::shipped_text("ptpe_pilot"), {{"sd_fps", "[0, 1e-308]"}});
   EXPECT_THAT([&] { study::parse_protocol(changed, "p.toml"); },
               testing::ThrowsMessage<base::Error>(testing::AllOf(
                   HasSubstr("sd_fps[1]"), HasSubstr("too small"), HasSubstr("at least 0.001"))));

@@ -38,12 +38,9 @@ class LateDisplay final : public Display {
 
 /// Only the pilot's setting (50, 0): one trial of 500 frames of 20 ms.
 Protocol one_constant_setting() {
-  std::string text = test::bytes_of(base::resource("protocols/ptpe_pilot.toml"));
-  const std::pair<std::string, std::string> changes[] = {
-      {"mean_fps = [10, 20, 30, 40, 50]", "mean_fps = [50]"},
-      {"sd_fps = [0, 5, 10, 15, 20]", "sd_fps = [0]"}};
-  for (const auto& [from, to] : changes) text.replace(text.find(from), from.size(), to);
-  return parse_protocol(text, "one.toml");
+  return parse_protocol(
+      test::with_keys(test::shipped_text("ptpe_pilot"), {{"mean_fps", "[50]"}, {"sd_fps", "[0]"}}),
+      "one.toml");
 }
 
 using Delay = std::function<std::int64_t(std::int64_t)>;

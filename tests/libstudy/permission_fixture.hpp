@@ -10,70 +10,8 @@
 
 namespace study::test {
 
-/// A pilot of two settings with a consent page that asks gaze_kept, data_shared, both or neither.
 inline Protocol asking_protocol(bool gaze = true, bool sharing = true) {
-  std::string text = R"(
-format = 2
-name = "asking)" + std::string(gaze ? "" : "_no_gaze") +
-                     (sharing ? "" : "_no_sharing") + R"("
-version = "1.0"
-language = "en"
-participants = 4
-
-[design]
-scene = ["data/scenes/single_dam.toml"]
-method = ["HiRes"]
-n_star = ["16k"]
-timing = "settings"
-mean_fps = [20, 50]
-sd_fps = [0]
-duration_s = 0.5
-order = "shuffle"
-
-[pacing]
-mean = "harmonic"
-fps_min = 4
-fps_max = "none"
-max_interval_ms = 250
-order = "white"
-
-[content]
-mode = "per_frame"
-content_step_s = 0.02
-start_frame = 0
-at_end = "hold"
-
-[[block]]
-kind = "consent"
-id = "consent"
-text = "Read this."
-
-[[block.question]]
-id = "take_part"
-kind = "choice"
-text = "I take part."
-anchors = {0 = "no", 1 = "yes"}
-accept = [1, 1]
-)";
-  const auto box = [](const std::string& id) {
-    return "\n[[block.question]]\nid = \"" + id +
-           "\"\nkind = \"choice\"\ntext = \"May we?\"\nanchors = {0 = \"no\", 1 = \"yes\"}\n";
-  };
-  if (gaze) text += box(gaze_question);
-  if (sharing) text += box(sharing_question);
-  text += R"(
-[[block]]
-kind = "stimulus"
-id = "trials"
-steps = ["stimulus", "ask rating"]
-
-[[block.question]]
-id = "rating"
-kind = "scale"
-text = "How was it?"
-scale = [1, 7]
-)";
-  return parse_protocol(text, "asking.toml");
+  return parse_protocol(asking_text(gaze, sharing), "asking.toml");
 }
 
 /// Answers of a person on the consent page; none: not answered.

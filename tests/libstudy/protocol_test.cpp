@@ -13,17 +13,15 @@
 
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "tests/common/protocols.hpp"
 
 namespace {
 
+using test::shipped_text;
 using testing::HasSubstr;
 
-std::string shipped(const std::string& name) {
-  return base::read_file(base::resource("protocols/" + name + ".toml"), 1 << 20);
-}
-
 study::Protocol parsed(const std::string& name) {
-  return study::parse_protocol(shipped(name), name + ".toml");
+  return study::parse_protocol(shipped_text(name), name + ".toml");
 }
 
 const study::Block& block_of(const study::Protocol& protocol, study::BlockKind kind) {
@@ -56,7 +54,7 @@ TEST(Protocol, PilotIsThatOfThePaper) {
   EXPECT_EQ(protocol.content.content_step_s, 1.0 / 60);
   EXPECT_FALSE(protocol.needs_gaze);
   EXPECT_FALSE(protocol.test_data);
-  EXPECT_EQ(protocol.sha256, base::sha256_hex(shipped("ptpe_pilot")));
+  EXPECT_EQ(protocol.sha256, base::sha256_hex(shipped_text("ptpe_pilot")));
   const auto& ratings = block_of(protocol, study::BlockKind::Stimulus);
   ASSERT_EQ(ratings.steps.size(), 3u);
   EXPECT_EQ(ratings.steps[0].kind, study::StepKind::Black);
@@ -252,7 +250,7 @@ TEST(Protocol, SsqHasTheSixteenSymptoms) {
 
 TEST(Protocol, AHeadsetsRulesAreRead) {
   using study::Hold;
-  const std::string pilot = shipped("ptpe_pilot");
+  const std::string pilot = shipped_text("ptpe_pilot");
   const auto with = [&](const std::string& keys) {
     return study::parse_protocol(pilot + "\n[headset]\n" + keys, "p.toml").headset;
   };
@@ -298,7 +296,7 @@ TEST(Protocol, QuestionsComeWithTheirBlocksInOrder) {
 
 /// Task 1 with this number of scenes, at native frame rates.
 std::string large_design(int scenes, int groups) {
-  std::string text = shipped("task1");
+  std::string text = shipped_text("task1");
   const auto put = [&](const std::string& from, const std::string& end, const std::string& to) {
     const auto at = text.find(from);
     text.replace(at, text.find(end, at) + end.size() - at, to);

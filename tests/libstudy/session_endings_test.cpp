@@ -20,10 +20,8 @@ using ::testing::ElementsAre;
 
 /// The pilot of one setting, with consent, a symptom scale that stops at 12 and a refusable screening.
 Protocol guarded() {
-  Protocol protocol = test::pilot();
-  std::string text = protocol.text;
-  const std::string before = "[[block]]\nkind = \"stimulus\"";
-  text.insert(text.find(before), R"([[block]]
+  return parse_protocol(
+      test::with_before(test::shipped_text("ptpe_pilot"), "[[block]]\nkind = \"stimulus\"", R"([[block]]
 kind = "screening"
 id = "screening"
 
@@ -39,8 +37,8 @@ kind = "fms"
 id = "sickness"
 stop_at = 12
 
-)");
-  return parse_protocol(text, "guarded.toml");
+)"),
+      "guarded.toml");
 }
 
 TEST(Session, RefusedConsentEndsItAndKeepsNoAnswer) {

@@ -110,18 +110,22 @@ class Scripted final : public Participant {
   }
 };
 
-/// pairs() at one frame rate for all, shown by its own clock, with a rest within each trial. `policy`: its
-/// on_interruption; `more`: further blocks.
-inline Protocol paced_pairs(const std::string& policy = "", const std::string& more = "") {
-  std::string text = pairs_toml + more;
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    text.replace(text.find(from), from.size(), to);
-  };
-  replace("timing = \"native\"", "timing = \"equal\"\nmean_fps = [20]\nsd_fps = [0]");
-  if (!policy.empty()) replace("id = \"judge\"\n", "id = \"judge\"\non_interruption = \"" + policy + "\"\n");
-  replace("\"ask preference ease\"", "\"ask preference\", \"rest 9\", \"ask ease\"");
-  return parse_protocol(text, "pairs.toml");
+/// `text` of pairs at one frame rate for all, shown by its own clock, with a rest within each trial.
+inline Protocol paced(const std::string& text) {
+  return parse_protocol(replaced(with_keys(text, {{"timing", "\"equal\"\nmean_fps = [20]\nsd_fps = [0]"}}),
+                                 "\"ask preference ease\"", "\"ask preference\", \"rest 9\", \"ask ease\""),
+                        "pairs.toml");
 }
+
+/// pairs() paced. `policy`: its on_interruption; `more`: further blocks.
+inline Protocol paced_pairs(const std::string& policy = "", const std::string& more = "") {
+  const std::string text = pairs_text() + more, judge = "id = \"judge\"\n";
+  return paced(policy.empty() ? text
+                              : replaced(text, judge, judge + "on_interruption = \"" + policy + "\"\n"));
+}
+
+/// The same after a consent page that asks only whether one takes part.
+inline Protocol consented() { return paced(without(protocol_text("pairs"), {"gaze_kept", "data_shared"})); }
 
 /// One session of a protocol in its own database.
 struct OneSession {

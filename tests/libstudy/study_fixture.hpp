@@ -10,11 +10,12 @@
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/store.hpp"
 #include "stats/base/file.hpp"
+#include "tests/common/protocols.hpp"
 #include "tests/common/temporary_folder.hpp"
 
 namespace study::test {
 
-using ::test::TemporaryFolder;
+using namespace ::test;
 
 inline std::string bytes_of(const std::filesystem::path& path) { return base::read_file(path, 1u << 30); }
 
@@ -47,88 +48,7 @@ inline RunPlan run_plan(const Protocol& protocol, const std::vector<std::string>
   return run;
 }
 
-/// A protocol of pairs with a practice block, several questions, free text and a personal question.
-inline constexpr const char* pairs_toml = R"(
-format = 2
-name = "pairs"
-version = "1.0"
-language = "en"
-participants = 4
-
-[design]
-scene = ["data/scenes/single_dam.toml"]
-method = ["LoRes", "Ours", "HiRes"]
-n_star = ["16k"]
-timing = "native"
-duration_s = 1
-pairs = true
-order = "shuffle"
-
-[pacing]
-mean = "harmonic"
-fps_min = 4
-fps_max = "none"
-max_interval_ms = 250
-order = "white"
-
-[content]
-mode = "per_frame"
-content_step_s = 0.02
-start_frame = 0
-at_end = "hold"
-
-[[block]]
-kind = "demographics"
-id = "about"
-
-[[block.question]]
-id = "age"
-kind = "number"
-text = "How old are you?"
-scale = [16, 120]
-personal = true
-
-[[block.question]]
-id = "games"
-kind = "choice"
-text = "Do you play?"
-anchors = {0 = "no", 1 = "yes"}
-
-[[block]]
-kind = "practice"
-id = "warm_up"
-like = "judge"
-count = 1
-
-[[block]]
-kind = "stimulus"
-id = "judge"
-steps = ["stimulus first", "black 1", "stimulus second", "ask preference ease"]
-
-[[block.question]]
-id = "preference"
-kind = "choice"
-text = "Which was better?"
-anchors = {1 = "first", 2 = "second"}
-
-[[block.question]]
-id = "ease"
-kind = "scale"
-text = "How easy was it?"
-scale = [1, 7]
-
-[[block]]
-kind = "question"
-id = "end"
-
-[[block.question]]
-id = "remarks"
-kind = "text"
-text = "Anything else?"
-required = false
-)";
-
-inline Protocol pairs() { return parse_protocol(pairs_toml, "pairs.toml"); }
+inline Protocol pairs() { return parse_protocol(pairs_text(), "pairs.toml"); }
 
 inline TimingVerdict verdict() {
   TimingVerdict verdict;

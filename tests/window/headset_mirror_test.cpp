@@ -237,12 +237,7 @@ TEST_F(HeadsetMirrorGl, WithoutAScreenThereIsOneClearError) {
 class HeadsetMirrorE2e : public test::HeadsetRuns {
  protected:
   test::Ended session(const std::vector<std::string>& more, const std::string& profile = "") {
-    std::string text = test::short_protocol("10");
-    text = test::replaced(text, "mean_fps = [20, 50]", "mean_fps = [10]");
-    text = test::replaced(text, "sd_fps = [0, 5, 10]", "sd_fps = [0]");
-    text = test::replaced(text, "accept_approximate = false", "accept_approximate = true");
-    text = test::replaced(text, "seconds = 5 ", "seconds = 1 ");
-    base::write_file_atomically(folder_ / "pilot.toml", text);
+    base::write_file_atomically(folder_ / "pilot.toml", test::short_protocol_at("[10]"));
     std::vector<std::string> all{"run",
                                  folder_ / "pilot.toml",
                                  "--db",
