@@ -25,9 +25,9 @@ docs/methods.md|vip-view --headless data/scenes/crates.toml|s/frames 81 --every 
 docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/3/; s/150/2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
-docs/results.md|vip-bench accuracy|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it takes more than a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|key=|quick s/--quick/--quick --n-star 64 --seconds 0.2/|it settles water for long|DocsSlow.docs/results.md
-docs/results.md|snakemake -s scripts/sweep.smk --cores 2|slow s/--quick/--quick --n-star 64 --seconds 0.2/|it takes more than a minute on two cores|DocsSlow.docs/results.md
+docs/results.md|vip-bench accuracy|quick s/--quick/--quick --n-star 64 --seconds 0.1 --seeds 1/|it takes more than a minute on two cores|DocsSlow.docs/results.md
+docs/results.md|key=|quick s/--quick/--quick --n-star 64 --seconds 0.1 --seeds 1/|it settles water for long|DocsSlow.docs/results.md
+docs/results.md|snakemake -s scripts/sweep.smk --cores 2|slow s/--quick/--quick --n-star 64 --seconds 0.1 --seeds 1/|it takes more than a minute on two cores|DocsSlow.docs/results.md
 docs/results.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|slow s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|DocsSlow.docs/results.md
 docs/results.md|vip-bench table1|slow s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|DocsSlow.docs/results.md
 docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 4k|quick s/4k/64/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/results.md

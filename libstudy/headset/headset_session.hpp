@@ -106,7 +106,8 @@ struct HeadsetLayers {
   float light = 1;       ///< factor of the picture's levels, [0, 1]
   const sim::Offscreen* page = nullptr;  ///< of the chosen size; in front of the picture. Null: no page
   HeadsetPage place{};                   ///< of the page
-  /// Content that keeps its number is copied to the runtime once, however many slots show it; 0: in each slot.
+  /// Content that keeps its number is copied to the runtime once, however many slots show it; 0: in each
+  /// slot.
   std::uint64_t picture_number = 0, page_number = 0;
 };
 

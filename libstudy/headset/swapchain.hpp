@@ -23,8 +23,8 @@ class Swapchain {
 
   std::int64_t format() const { return format_; }
   /// Copies a part of a picture, of the image's size, into the next image and releases that to the runtime.
-  /// Does nothing if the last image holds that part of the picture of this number; 0: a new picture each time.
-  /// base::Error if the runtime holds all images for longer than `limit`.
+  /// Does nothing if the last image holds that part of the picture of this number; 0: a new picture each
+  /// time. base::Error if the runtime holds all images for longer than `limit`.
   void write(const sim::Offscreen& picture, const PicturePart& part, std::uint64_t number,
              std::chrono::nanoseconds limit);
   /// The whole image, for a layer.

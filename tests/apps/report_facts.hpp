@@ -22,17 +22,17 @@ struct Fact {
 };
 
 inline Change set(const std::string& pointer, Json value) {
-  return [=](Json& json) { json[Json::json_pointer(pointer)] = value; };
+  return [pointer, value = std::move(value)](Json& json) { json[Json::json_pointer(pointer)] = value; };
 }
 inline Change none(const std::string& list) { return set(list, Json::array()); }
 inline Change refused(const std::string& part) { return set(part, {{"refused", "no answer counts"}}); }
 inline Change all(std::vector<Change> changes) {
-  return [=](Json& json) {
+  return [changes = std::move(changes)](Json& json) {
     for (const auto& change : changes) change(json);
   };
 }
 inline Change each(const std::string& list, const std::string& key, Json value) {
-  return [=](Json& json) {
+  return [list, key, value = std::move(value)](Json& json) {
     for (auto& one : json[Json::json_pointer(list)]) one[key] = value;
   };
 }

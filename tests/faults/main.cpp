@@ -102,7 +102,7 @@ void side_by_side(int jobs, Table& table, Work work) {
   for (auto& thread : threads) thread.join();
 }
 
-/// Each kind of fault at every so-manieth call, at one at least. Different kinds fall on different calls.
+/// Each kind of fault at every n-th call, at one at least. Different kinds fall on different calls.
 /// `number`: of the flow.
 std::vector<Fault> faults_of_each(const Flow& flow, std::size_t number, const Bench& bench, long every) {
   constexpr Kind kinds[] = {Kind::Kill, Kind::Tear,   Kind::Error, Kind::ErrorsOn,
@@ -118,7 +118,7 @@ std::vector<Fault> faults_of_each(const Flow& flow, std::size_t number, const Be
   return all;
 }
 
-/// Tries every so-manieth call of each command, with each kind of fault.
+/// Tries every n-th call of each command, with each kind of fault.
 void try_each(const Options& options, const fs::path& folder, Table& table) {
   for (std::size_t number = 0; number < all_flows().size(); ++number) {
     const Flow& flow = all_flows()[number];
@@ -203,7 +203,7 @@ void add_library_commands(CLI::App& app, std::function<long()>& run) {
   auto crashes = std::make_shared<CrashOptions>();
   CLI::App& cuts = *app.add_subcommand("crashes", "What a power cut may leave of each command, call by call");
   cuts.add_option("--command", crashes->commands, "This command only; may be repeated");
-  cuts.add_option("--every", crashes->every, "Cut after every so-manieth call only")
+  cuts.add_option("--every", crashes->every, "Cut after every n-th call only")
       ->check(CLI::PositiveNumber);
   cuts.add_option("--states", crashes->seeds, "States by chance after each call, under each model");
   cuts.add_option("--kills", crashes->kills, "So many kills at random calls instead, each under both models");
@@ -235,7 +235,7 @@ int main(int argc, char** argv) {
     return &sub;
   };
   CLI::App* each = command("each", "Fail at, or stop before, each call of each command", try_each);
-  each->add_option("--every", options.every, "Try every so-manieth call only")->check(CLI::PositiveNumber);
+  each->add_option("--every", options.every, "Try every n-th call only")->check(CLI::PositiveNumber);
   CLI::App* killed =
       command("kills", "Kill at random calls and instants, with full disks among them", try_kills);
   CLI::App* starts =

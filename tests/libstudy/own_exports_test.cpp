@@ -250,7 +250,7 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
 TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   const StateAt state(folder / "state");
   int stops = 0;
-  for (long at = 1;; at += 53) {
+  for (long at = 1;; at += 61) {
     const std::string code = "QXJ" + std::to_string(at);
     add(path, {code});
     export_csv(path, csv);

@@ -209,8 +209,8 @@ void set_version(Connection& database, std::size_t version) {
   database.execute("PRAGMA user_version = " + std::to_string(version));
 }
 
-/// Makes the schema of this version at once: the steps give the same, but take 20 times as long, because SQLite
-/// reads the whole schema again for each renamed table.
+/// Makes the schema of this version at once: the steps give the same, but take 20 times as long, because
+/// SQLite reads the whole schema again for each renamed table.
 void make_schema(Connection& database, std::size_t version) {
   // A commit of its own: a journal that makes a file empty again is ours only beside a file without tables
   // (holds_nothing).
