@@ -2,11 +2,11 @@
 # Installs the Debian packages that ViP-Lab needs. Safe to run again.
 # usage: scripts/setup.sh [PART ...]     without a part: all of them
 #   build    what builds and runs the programs
-#   tests    what the tests are compiled with besides
+#   tests    libraries that the tests are compiled with
 #   tools    programs that the tests run
 #   slow     programs that tests of the label slow run besides
 #   sweeps   Snakemake, for scripts/sweep.smk and its tests
-#   lint     clang-tidy, for scripts/tidy.sh
+#   lint     clang-tidy, which scripts/tidy.sh runs
 set -euo pipefail
 
 build=(

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ./scripts/setup.sh build tests
-# The programs that tests run are installed while those under test are compiled; first, where sudo asks for a password.
+# Install the programs that tests run during the build. Where sudo asks for a password, install them before it.
 mkdir -p build
 if [ "$(id -u)" -eq 0 ] || sudo -n true 2>/dev/null; then
   ./scripts/setup.sh tools >build/setup.log 2>&1 &
@@ -18,7 +18,7 @@ installed() {
   tools=
   [ -z "$pid" ] || wait "$pid" || { cat build/setup.log >&2; return 1; }
 }
-trap installed EXIT  # an installation is never cut off
+trap installed EXIT  # wait for the installation, also after an error
 cmake --preset dev
 cmake --build --preset dev
 installed

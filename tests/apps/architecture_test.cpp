@@ -98,8 +98,8 @@ const std::vector<Rule> rules{
     {{"cuda", "cub/", "thrust/"}, {"libsim/exec/"}},
 };
 
-/// Rooms of libstudy that include parts of libsim only: displays draw by OpenGL, and analyses read files of
-/// settings and fits. None of them runs a fluid.
+/// Rooms of libstudy that may include these rooms of libsim alone. Displays draw with OpenGL; analyses read
+/// settings and fits from files. None of them runs a fluid.
 const std::vector<std::pair<std::string, std::vector<std::string>>> parts_of_libsim{
     {"libstudy/analysis/", {"libsim/ptpe/", "libsim/setting/"}},
     {"libstudy/headset/", {"libsim/render/"}},

@@ -184,7 +184,8 @@ inline study::PlanInForce quick_plan() {
   return plan;
 }
 
-/// The results of all parts. `question`: of a pilot; empty: all.
+/// The results of the pilot, both tasks and own designs. `question`: id of the pilot's question to analyse;
+/// empty: all its questions.
 inline study::Json results_of(const study::TaskStudy& study, const study::PlanInForce& plan = quick_plan(),
                               const std::string& question = "") {
   study::ResultsRequest request{

@@ -109,7 +109,7 @@ TEST(ReportSentences, EachStandsWhereItsFactHoldsAlone) {
   EXPECT_EQ(lines_of(printed) + lines_of(after), "") << "sentences that rest on no fact";
 }
 
-// "A photodiode, B display feedback, C compositor, D submission by the program"
+// The report explains the grades by their letters, A to D, as the database stores them.
 TEST(ReportSentences, GradesMeanWhatTheStoreMeans) {
   EXPECT_EQ(static_cast<char>(study::TimingGrade::Photodiode), 'A');
   EXPECT_EQ(static_cast<char>(study::TimingGrade::DisplayFeedback), 'B');

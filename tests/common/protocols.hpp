@@ -1,6 +1,6 @@
 #pragma once
-/// The protocols of the tests, tests/protocols, and the small changes that a test makes to one of them or to
-/// a shipped one. A change that no longer finds its place throws.
+/// Reads the protocols of tests/protocols and those that are shipped, and edits them. An edit throws if the
+/// text that it looks for is gone.
 
 #include <filesystem>
 #include <initializer_list>
@@ -82,7 +82,7 @@ inline std::string short_protocol_at(const std::string& means) {
       {{"mean_fps", means}, {"sd_fps", "[0]"}, {"accept_approximate", "true"}, {"seconds", "1"}});
 }
 
-/// The shipped foam.toml with another line in place of its factor, and other sets of effects.
+/// The shipped foam.toml. `effects` replaces its line of that name; `sets` replaces its sets of effects.
 inline std::string foam_text(const std::string& effects, const std::string& sets) {
   std::string text = replaced(shipped_text("foam"), "effects = [\"none\", \"foam\"]", effects);
   const auto begin = found_in(text, "[[design.effect_set]]");

@@ -4,8 +4,8 @@
 /// the states after a power cut can be made later (crash_states.hpp). It covers all code of the program
 /// alike: SQLite, the standard library, the journal, personal data, exports, chores and locks.
 ///
-/// The source is used in two ways: compiled into a test program, which arms it, mostly in a child, or as a
-/// library for LD_PRELOAD, which reads its plan from the environment (file_calls_environment.cpp).
+/// A test program links the source and arms it, mostly in a forked child. Whole programs load it as a library
+/// by LD_PRELOAD; it then reads its plan from the environment (file_calls_environment.cpp).
 ///
 /// It counts open for writing, write, sync, truncate, rename, link, remove, mkdir and their stdio
 /// equivalents, but not writes through a mapping (the index of SQLite's log, which every opening rebuilds).

@@ -246,7 +246,7 @@ std::vector<std::string> files_with(const fs::path& folder, const std::string& t
   return names;
 }
 
-// An export over an earlier one is killed between all its steps.
+// Kills an export that replaces an earlier one, at calls spread over its whole length.
 TEST_F(OwnExports, StoppedAnywhereHoldNobodyWhoWithdrewThen) {
   const StateAt state(folder / "state");
   int stops = 0;

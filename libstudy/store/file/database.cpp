@@ -209,11 +209,11 @@ void set_version(Connection& database, std::size_t version) {
   database.execute("PRAGMA user_version = " + std::to_string(version));
 }
 
-/// Makes the schema of this version at once: the steps give the same, but take 20 times as long, because
-/// SQLite reads the whole schema again for each renamed table.
+/// Makes the schema of this version at once. The steps give the same schema, but SQLite reads the whole
+/// schema again for each table that they rename.
 void make_schema(Connection& database, std::size_t version) {
-  // A commit of its own: a journal that makes a file empty again is ours only beside a file without tables
-  // (holds_nothing).
+  // Commit the identity first. A journal that would empty the file is trusted only while the file has no
+  // tables (holds_nothing).
   sqlite::Transaction named(database);
   set_version(database, 0);
   named.commit();
