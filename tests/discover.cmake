@@ -1,6 +1,6 @@
 # cmake -P, after a test program is linked: writes its ctest entries to ENTRIES. A suite of the label `unit` is one entry, since its
-# tests take less time than a start of the program and of ctest's bookkeeping for each; GoogleTest names the test that failed. Every
-# other test is an entry, and with ONE_BY_ONE these too: it runs side by side with others of its suite, with a time limit of its own.
+# tests take less time than a start of the program and of ctest's bookkeeping for each; GoogleTest names the test that failed. So is
+# one of `sharing`. Every other test is an entry, and with ONE_BY_ONE these too: it runs side by side with others of its suite, with a time limit of its own.
 # A test in real time counts as two, so that fewer others run beside it. Tests that slow_tests.txt lists get the label slow and an
 # entry of their own.
 cmake_minimum_required(VERSION 3.25)
@@ -17,6 +17,7 @@ foreach(line IN LISTS lines)
   string(REGEX REPLACE "^[^ ]+ ([^ ]+) .*" "\\1" name "${line}")
   list(APPEND slow ${name})
 endforeach()
+set(sharing TaskCommandsE2e)  # its tests share a database, which takes longer to make than they do
 set(met "")
 set(entries "")
 set(suites "")
@@ -40,21 +41,25 @@ foreach(line IN LISTS listed)
     if(subject MATCHES "(Gl|Gpu|Slow|E2e)$")
       string(TOLOWER ${CMAKE_MATCH_1} label)
     endif()
-    if(label STREQUAL unit AND NOT ONE_BY_ONE AND NOT subject IN_LIST suites)
+    set(together FALSE)
+    if((label STREQUAL unit AND NOT ONE_BY_ONE) OR subject IN_LIST sharing)
+      set(together TRUE)
+    endif()
+    if(together AND NOT subject IN_LIST suites)
       list(APPEND suites ${subject})
       set(others ${slow})
       list(FILTER others INCLUDE REGEX "(^|/)${subject}\\.")
       list(TRANSFORM others PREPEND ":")
       string(REGEX REPLACE "^;?:" "-" others "${others}")
       string(REPLACE ";" "" others "${others}")
-      add_entry(${subject} "${subject}.*:*/${subject}.*${others}" unit 900)
+      add_entry(${subject} "${subject}.*:*/${subject}.*${others}" ${label} 900)
     endif()
   elseif(line MATCHES "^  ([^ ]+)$")
     set(name ${suite}.${CMAKE_MATCH_1})
     if(name IN_LIST slow)
       list(APPEND met ${name})
       add_entry(${name} ${name} slow 1800)
-    elseif(ONE_BY_ONE OR NOT label STREQUAL unit)
+    elseif(NOT together)
       if(label STREQUAL LABEL)
         set(timeout 300)
       else()
