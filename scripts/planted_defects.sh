@@ -48,7 +48,7 @@ defect viscosity-by-step "viscosity acts once a substep, however long" $stages/x
 defect viscosity-by-size "viscosity acts alike on particles of any size" $stages/xsph_monaghan1989.cpp sim_test 'Xsph.*' \
   'spread * reciprocal(kernel.h2)' 'spread * 11'
 defect speed-guard "the guard on speed stands at 0.5 h a substep" libsim/solver/choices.cpp stability_test 'S09Jet.*' \
-  'fall + 3 * capillary_speed(scene.effects, resolution.finest_spacing_m)' 'resolution.finest_spacing_m / static_cast<double>(parameters.dt)'
+  '3 * fall_speed + 3 * capillary_speed(scene.effects, d)' 'd / static_cast<double>(parameters.dt)'
 defect cells-by-number "cells weigh particles by number, not by mass" $stages/coarse_pressure.cpp sim_test 'CoarsePressure.*' \
   'float volume = mass_of(p.w, 1) / unit_volume;' 'float volume = unit_volume > 0 ? 1 : 0;'
 defect cells-leak "cells of a wall take part in the pressure" libsim/pressure/coarse_slope.hpp sim_test 'CoarsePressure.*' \

@@ -11,24 +11,51 @@ bool lists_heat(const Scene& scene) {
                      [](const Effect& effect) { return effect.kind == EffectKind::Heat; });
 }
 
-double reference_temperature(const Scene& scene) {
-  const auto options = coefficients_of(scene.effects).options;
-  return options[static_cast<std::size_t>(EffectOption::HeatReference)];
+namespace {
+
+double option_of(const Scene& scene, EffectOption option) {
+  return coefficients_of(scene.effects).options[static_cast<std::size_t>(option)];
 }
+
+void include(TemperatureRange& range, double kelvin) {
+  range.least_k = std::min(range.least_k, kelvin);
+  range.most_k = std::max(range.most_k, kelvin);
+}
+
+bool holds_all_water(const WarmBox& box, const Scene& scene) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (box.min_m[k] > scene.fill_min_m[k] || box.max_m[k] < scene.fill_max_m[k]) return false;
+  return true;
+}
+
+}  // namespace
+
+double reference_temperature(const Scene& scene) { return option_of(scene, EffectOption::HeatReference); }
 
 TemperatureRange temperatures_of(const Scene& scene) {
   const double reference = reference_temperature(scene);
   TemperatureRange out{reference, reference};
-  const auto include = [&](double kelvin) {
-    if (kelvin == 0) return;
-    out.least_k = std::min(out.least_k, kelvin);
-    out.most_k = std::max(out.most_k, kelvin);
-  };
-  include(coefficients_of(scene.effects).options[static_cast<std::size_t>(EffectOption::HeatWall)]);
-  for (const Nozzle& nozzle : scene.nozzles) include(nozzle.temperature_k);
-  for (const WarmBox& box : scene.warm) include(box.temperature_k);
+  if (const double wall = option_of(scene, EffectOption::HeatWall); wall > 0) include(out, wall);
+  for (const Nozzle& nozzle : scene.nozzles)
+    if (nozzle.temperature_k > 0) include(out, nozzle.temperature_k);
+  for (const WarmBox& box : scene.warm) include(out, box.temperature_k);
   out.most_k = std::max(out.most_k, out.least_k + 1);
   return out;
+}
+
+double widest_difference_k(const Scene& scene) {
+  // Later boxes count: what is before one that holds all water has no effect.
+  const auto last = std::find_if(scene.warm.rbegin(), scene.warm.rend(),
+                                 [&](const WarmBox& box) { return holds_all_water(box, scene); });
+  const bool covered = last != scene.warm.rend();
+  const auto first = covered ? last.base() - 1 : scene.warm.begin();
+  const double start = covered ? first->temperature_k : reference_temperature(scene);
+  TemperatureRange out{start, start};
+  for (auto box = first; box != scene.warm.end(); ++box) include(out, box->temperature_k);
+  for (const Nozzle& nozzle : scene.nozzles)
+    include(out, nozzle.temperature_k > 0 ? nozzle.temperature_k : reference_temperature(scene));
+  if (const double wall = option_of(scene, EffectOption::HeatWall); wall > 0) include(out, wall);
+  return out.most_k - out.least_k;
 }
 
 }  // namespace sim

@@ -7,6 +7,7 @@
 #include "libsim/scene/mesh_reader.hpp"
 #include "libsim/scene/vector.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
 namespace sim {
@@ -186,6 +187,21 @@ void read_warm(const base::TomlTable& root, Scene& scene) {
   }
 }
 
+/// The mean temperature lies between the lowest and the highest, so that this bounds every lift.
+void check_expansion(const base::TomlTable& root, const Scene& scene) {
+  if (!lists_heat(scene)) return;
+  const auto& options = coefficients_of(scene.effects).options;
+  const double beta = options[static_cast<std::size_t>(EffectOption::HeatExpansion)];
+  const double kelvin = widest_difference_k(scene);
+  if (beta * kelvin <= most_expansion) return;
+  root.fail("effect",
+            "heat: temperatures " + base::shortest(kelvin) +
+                " K apart times expansion_per_k = " + base::shortest(beta) + " give more than " +
+                base::shortest(most_expansion) + ", beyond what Boussinesq's buoyancy is meant for",
+            "lower expansion_per_k, or bring the temperatures of [[warm]], [[nozzle]], wall_k and "
+            "reference_k closer together");
+}
+
 std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& origin_m) {
   std::vector<VisibleBox> out;
   for (const auto& table : root.tables("visible")) {
@@ -265,6 +281,7 @@ Scene parse_scene(std::string_view text, const std::string& name,
   read_warm(root, scene);
   scene.obstacles = read_obstacles(root, scene.tank_size_m, scene.origin_m, scene.v_ref_m_s, beside);
   read_nozzles(root, scene);
+  check_expansion(root, scene);
   scene.outlets = read_outlets(root, scene.tank_size_m, scene.origin_m);
   scene.view = camera(root.table("view"), scene.origin_m);
   scene.overview =

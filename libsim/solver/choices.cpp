@@ -181,12 +181,27 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
   return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height + swing * swing);
 }
 
+namespace {
+
+/// u a / d of the obstacle for which it is largest. Continuity under a plate of half width a: u a leaves
+/// through the gap. A narrower gap than d holds no particle.
+double squeeze_speed(const Scene& scene, double finest_spacing_m) {
+  double out = 0;
+  for (const Obstacle& o : scene.obstacles) {
+    const auto half = half_sides_m(o);
+    const double half_width = *std::max_element(half.begin(), half.end()) + o.radius_m;
+    out = std::max(out, top_speed(o) * half_width / finest_spacing_m);
+  }
+  return out;
+}
+
+}  // namespace
+
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters) {
-  const double fall = 3 * fall_speed;
-  const double most = fall > 0 ? fall + 3 * capillary_speed(scene.effects, resolution.finest_spacing_m)
-                               : 4 * resolution.finest_spacing_m / static_cast<double>(parameters.dt);
-  return static_cast<float>(most);
+  const double d = resolution.finest_spacing_m;
+  if (!(fall_speed > 0)) return static_cast<float>(4 * d / static_cast<double>(parameters.dt));
+  return static_cast<float>(3 * fall_speed + 3 * capillary_speed(scene.effects, d) + squeeze_speed(scene, d));
 }
 
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start) {

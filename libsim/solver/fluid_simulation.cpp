@@ -59,8 +59,12 @@ class FluidSimulation final : public Simulation {
     } else {
       const double edge = static_cast<double>(state_.parameters.coarse_edge) * 2 * resolution_.spacing_m;
       check_extent(scene, options.method, options.n_star, edge);
-      open(filled(scene, options, resolution_.level));
+      const auto start = filled(scene, options, resolution_.level);
+      open(start);
+      const int substeps = state_.parameters.substeps;
+      set_substeps(substep_rule(scene_, options_, resolution_, 0, start_acceleration(scene_, start)).next());
       settle(state_, scene_, options_);
+      set_substeps(substeps);
       state_.one_level = !adaptive();
     }
     if (options.resume_from.empty()) warm_up(state_, scene_);

@@ -34,8 +34,10 @@ double start_acceleration(const Scene& scene, const std::vector<ParticleState>& 
 /// obstacles.
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
                          double fastest, double acceleration);
-/// Speed limit, m/s: three times fall_speed, plus three times the capillary speed. Water that strikes a wall
-/// shoots up at twice fall_speed (PeersDam: 8.7 m/s with a fall of 4.4); higher speeds are not physical.
+/// Speed limit, m/s: three times fall_speed, plus three times the capillary speed, plus the squeeze of
+/// obstacles that turn or swing. Water that strikes a wall shoots up at twice fall_speed (PeersDam: 8.7 m/s
+/// with a fall of 4.4); higher speeds are not physical. Squeeze: an obstacle of half width a and top speed u
+/// drives the water before it through a gap of at least one spacing d, at most at u a / d.
 /// Without gravity and speed, the limit is two supports of the finest particles per substep.
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters);
@@ -94,8 +96,8 @@ void begin_foam(FluidState& state, const Scene& scene);
 /// Updates effect state after the list of effects has changed: allocates these columns, and memory only for
 /// the listed effects. Remaining effects keep their values.
 void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns);
-/// Lets the water come to rest, at one level and behind the gate if there is one; afterwards the walls are
-/// the tank's. base::Error if a particle became non-finite.
+/// Lets the water come to rest, at one level and behind the gate if there is one, in substeps of
+/// state.parameters; afterwards the walls are the tank's. base::Error if a particle became non-finite.
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options);
 /// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
 /// is below 0.2 %. Velocities do not change.

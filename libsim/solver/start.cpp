@@ -214,7 +214,10 @@ void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns) 
   state.particles.change_columns(columns);
   const bool warm = state.particles.has(Column::Temperature);
   if (warm && !was_warm) warm_up(state, scene);
-  if (!warm) state.heat = {};
+  if (!warm) {
+    state.heat = {};
+    state.buoyancy = {};
+  }
   if (!(e[EffectKind::Viscosity] > 0)) {
     state.conjugate_gradient = {};
     state.obstacles.rows = {};

@@ -29,12 +29,15 @@ struct SubstepLimits {
   double support_m = 0;          ///< h of the finest particles that the method can hold
   double courant = 0.5;          ///< maximum distance of the fastest particle per substep, as a share of h
   double acceleration_m_s2 = 0;  ///< from gravity and the central force
+  /// Maximum of acceleration times the substep squared, as a share of h: what the projections of a substep
+  /// must push back in water at rest (docs/decisions.md).
+  double push = 0.04;
   int least = 1;
   int most = 1;  ///< >= least
 };
 
 /// Follows the fastest particle: v dt <= courant h, with its speed two frames ago plus what the forces may
-/// have added since.
+/// have added since. Also a dt^2 <= push h, with a the acceleration by the forces.
 class SubstepRule {
  public:
   SubstepRule() = default;
@@ -51,7 +54,10 @@ class SubstepRule {
   /// Substeps that the next frame needs; next() limits this to `most`.
   int wished() const {
     const double speed = fastest_.value() + 2 * limits_.acceleration_m_s2 * limits_.frame_dt_s;
-    const double steps = speed * limits_.frame_dt_s / (limits_.courant * limits_.support_m);
+    const double by_way = speed * limits_.frame_dt_s / (limits_.courant * limits_.support_m);
+    const double by_push =
+        limits_.frame_dt_s * std::sqrt(limits_.acceleration_m_s2 / (limits_.push * limits_.support_m));
+    const double steps = by_way < by_push ? by_push : by_way;
     // Also for non-finite speeds, which the guards repair.
     const double counted = steps < 1e6 ? std::ceil(steps - 1e-9) : 1e6;
     return std::max(limits_.least, static_cast<int>(counted));

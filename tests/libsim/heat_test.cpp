@@ -67,6 +67,27 @@ TEST(Heat, ErrorsNameThePlaceAndTheMend) {
   EXPECT_THAT(error("", heat_table + "wall_k = -1.0\n"), HasSubstr("out of range"));
 }
 
+TEST(Heat, WaterThatWouldLoseHalfOfItsWeightIsRefused) {
+  NEEDS_EFFECTS;
+  const std::string strong = heat_table + "expansion_per_k = 0.002\nreference_k = 300.0\n";
+  const auto error = [&](const std::string& nozzle, const std::string& tables) {
+    return fluid_test::scene_error(faucet_with(nozzle, strong + tables));
+  };
+  const auto refused = AllOf(HasSubstr("scene.toml:"), HasSubstr("260 K apart times expansion_per_k = 0.002"),
+                             HasSubstr("more than 0.5"), HasSubstr("lower expansion_per_k"));
+  EXPECT_EQ(error("", warm_table("550.0")), "no error");
+  EXPECT_THAT(error("", warm_table("560.0")), refused);
+  EXPECT_THAT(error("temperature_k = 560.0\n", ""), refused);
+  EXPECT_THAT(error("", "wall_k = 560.0\n"), refused);
+  // Where all water, from the start and from nozzles, is as warm, nothing has the reference temperature.
+  const std::string all =
+      "[[warm]]\nmin_m = [0.0, 0.0, 0.0]\nmax_m = [21.0, 3.0, 21.0]\ntemperature_k = 560.0\n";
+  EXPECT_THAT(error("", all), refused);
+  EXPECT_EQ(error("temperature_k = 560.0\n", all), "no error");
+  EXPECT_EQ(error("temperature_k = 560.0\n", warm_table("300.0") + all), "no error") << "later boxes count";
+  EXPECT_THAT(error("temperature_k = 560.0\n", all + warm_table("300.0")), refused);
+}
+
 TEST(Heat, StepsAreAsShortAsConductionNeeds) {
   EXPECT_NEAR(sim::longest_step({{EffectKind::Heat, 0.05}}, 0.1).seconds, 0.2 * 0.01 / 0.05, 1e-12);
 }
@@ -155,6 +176,32 @@ void ledgers(Backend backend) {
   for (const auto method : {MethodKind::HiRes, MethodKind::Ours}) the_ledger_closes(backend, method);
 }
 
+/// 507 K above the reference, where expansion times kelvin is above 1.
+void uniform_warmth_changes_nothing(Backend backend) {
+  NEEDS_EFFECTS;
+  for (const auto method : {MethodKind::HiRes, MethodKind::Ours}) {
+    const auto height_after = [&](double kelvin) {
+      auto scene = fluid_test::tank({1, 1.2, 0.6}, {1, 0.6, 0.6}, 60);
+      scene.viscosity_m2_s = 0.001;
+      sim::Effect heat{EffectKind::Heat, 0.001};
+      heat.options[static_cast<std::size_t>(EffectOption::HeatExpansion)] = 0.0021;
+      scene.effects = {heat};
+      scene.warm = {{{-1, -1, -1}, {2, 2, 2}, kelvin}};
+      sim::SimulationOptions options;
+      options.backend = backend;
+      options.method = method;
+      options.n_star = 128;
+      const auto fluid = sim::make_simulation(scene, options);
+      for (int frame = 0; frame < 120; ++frame) fluid->step_frame();
+      EXPECT_FALSE(fluid->divergence());
+      return fluid_test::centre_height(fluid->read_state());
+    };
+    EXPECT_NEAR(height_after(800) / height_after(293.15), 1, 0.01) << sim::method_name(method);
+  }
+}
+
+TEST(Heat, UniformWarmthChangesNothing) { uniform_warmth_changes_nothing(Backend::Cpu); }
+TEST(HeatGpu, UniformWarmthChangesNothing) { uniform_warmth_changes_nothing(Backend::Cuda); }
 TEST(Heat, TheTotalStaysThroughSplitsMergesAndRest) { the_total_stays(Backend::Cpu); }
 TEST(Heat, TheLedgerClosesWithNozzleOutletAndWalls) { ledgers(Backend::Cpu); }
 TEST(HeatGpu, TheTotalStaysThroughSplitsMergesAndRest) { the_total_stays(Backend::Cuda); }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "stats/base/error.hpp"
+#include "tests/libsim/obstacle_scenes.hpp"
 #include "tests/stability/stability_helpers.hpp"
 
 namespace {
@@ -238,6 +239,35 @@ void sound_runs_have_none(Backend backend, std::int64_t n_star, int frames) {
 }
 TEST(Divergence, SoundRunsHaveNone) { sound_runs_have_none(Backend::Cpu, 128, 30); }
 TEST(DivergenceGpu, SoundRunsHaveNone) { sound_runs_have_none(Backend::Cuda, 4096, 120); }
+
+/// A box of 1 m swings into a pool of 1.2 m: water leaves through gaps of 0.1 m beside it, faster than the
+/// box by more than three times.
+void a_stamp(Backend backend) {
+  auto scene = fluid_test::tank({1.2, 1.6, 1.2}, {1.2, 0.4, 1.2}, 30);
+  scene.v_ref_m_s = 8;
+  scene.viscosity_m2_s = 0.001;
+  auto stamp = obstacle_test::box({0.6, 0.8, 0.6}, {1, 0.3, 1});
+  stamp.motion = sim::ObstacleMotion::Swings;
+  stamp.way_m = {0, -0.55, 0};
+  sim::SimulationOptions options;
+  options.backend = backend;
+  options.n_star = 512;
+  for (const double period_s : {0.5, 1.0}) {
+    stamp.period_s = period_s;
+    scene.obstacles = {stamp};
+    const auto fluid = sim::make_simulation(scene, options);
+    double fastest = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+      fluid->step_frame();
+      fastest = std::max(fastest, fluid->report().speed_max_m_s);
+    }
+    const auto found = fluid->divergence();
+    EXPECT_FALSE(found) << sim::in_words(*found);
+    EXPECT_GT(fastest, 3 * sim::top_speed(stamp)) << "or the scene squeezes nothing";
+  }
+}
+TEST(Divergence, WaterThatAStampSqueezesOutIsNotBraked) { a_stamp(Backend::Cpu); }
+TEST(DivergenceGpu, WaterThatAStampSqueezesOutIsNotBraked) { a_stamp(Backend::Cuda); }
 
 TEST(Divergence, IsSaidInWords) {
   sim::Divergence found{.frame = 12, .particle = 40, .cause = Trouble::NotFinite, .where_m = {}, .count = 3};

@@ -63,20 +63,43 @@ void warm_at_walls(FluidState& state, WarmView p) {
                        .widest = state.widest_support(EffectOption::HeatCoarsest)});
 }
 
-/// Boussinesq: dv / dt = g beta theta upwards, with beta the expansion per kelvin. It acts on the particles
-/// on which gravity acts.
+struct MassOf {
+  const std::uint8_t* level;
+  int coarsest;  ///< coarsest level that takes part
+  SIM_FN float operator()(int i) const {
+    return level[i] > coarsest ? 0.0f : static_cast<float>(1 << level[i]);
+  }
+};
+struct WarmthOf {
+  MassOf mass;
+  const float* temperature;
+  SIM_FN float operator()(int i) const { return mass(i) * temperature[i]; }
+};
+struct TakeMass {
+  MeanWarmth* mean;
+  SIM_FN void operator()(float sum) const { mean->mass = sum; }
+};
+struct TakeWarmth {
+  MeanWarmth* mean;
+  SIM_FN void operator()(float sum) const { mean->warmth = mean->mass > 0 ? sum / mean->mass : 0; }
+};
+
+/// Boussinesq: dv / dt = g beta (theta - mean theta) upwards, with beta the expansion per kelvin and the mean
+/// by mass over the water that takes part. So uniform warmth changes nothing, and the lifts of that water sum
+/// to zero. It acts on the particles on which gravity acts.
 template <class Selection>
 struct Rise {
   Selection select;
   const float* temperature;
   const std::uint8_t* level;
+  const MeanWarmth* mean;
   Vec4* velocity;
   float lift;    ///< g beta dt
   int coarsest;  ///< coarsest level that takes part
 
   SIM_FN void operator()(int i) const {
     if (level[i] > coarsest) return;
-    float dv = lift * temperature[i];
+    float dv = lift * (temperature[i] - mean->warmth);
     if constexpr (!Selection::everyone) dv *= select.falls(i);
     velocity[i].y += dv;
   }
@@ -86,20 +109,31 @@ using RiseView =
     ColumnView<columns(Column::Level, Column::Temperature, Column::Velocity), columns(Column::Velocity)>;
 
 template <class Selection>
-void launch(FluidState& state, RiseView p, Selection select) {
+void launch(FluidState& state, RiseView p, Selection select, int coarsest) {
   const auto& k = state.parameters;
   for_each("buoyancy", p.size(),
            Rise<Selection>{.select = select,
                            .temperature = p.temperature(),
                            .level = p.level(),
+                           .mean = state.buoyancy.mean.data(),
                            .velocity = p.velocity(),
                            .lift = k.gravity * k.dt * k.effects[EffectOption::HeatExpansion],
-                           .coarsest = static_cast<int>(k.effects[EffectOption::HeatCoarsest])});
+                           .coarsest = coarsest});
+}
+
+void take_mean(Buoyancy& buoyancy, RiseView p, int capacity, int coarsest) {
+  buoyancy.mean.resize(1);
+  MeanWarmth* const mean = buoyancy.mean.data();
+  const MassOf mass{p.level(), coarsest};
+  buoyancy.sum("mass with heat", p.size(), capacity, mass, TakeMass{mean});
+  buoyancy.sum("mean warmth", p.size(), capacity, WarmthOf{mass, p.temperature()}, TakeWarmth{mean});
 }
 
 void rise(FluidState& state, RiseView p) {
   if (state.parameters.effects[EffectOption::HeatExpansion] == 0) return;
-  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+  const auto coarsest = static_cast<int>(state.parameters.effects[EffectOption::HeatCoarsest]);
+  take_mean(state.buoyancy, p, state.particles.capacity(), coarsest);
+  state.all_active ? launch(state, p, AllParticles{}, coarsest) : launch(state, p, state.active(), coarsest);
 }
 
 }  // namespace

@@ -110,6 +110,20 @@ struct TakeTurn {
   }
 };
 
+// State of buoyancy between its passes.
+
+/// On the device, of the water that takes part in heat.
+struct MeanWarmth {
+  float mass;    ///< m_*
+  float warmth;  ///< mean by mass, K above the reference
+};
+
+/// Empty until the first pass.
+struct Buoyancy {
+  OrderedSum sum;
+  Array<MeanWarmth> mean;
+};
+
 // Timers for the parts of a frame, and for its passes.
 
 /// The parts of the paper's Table 2 to which stages are assigned.
@@ -200,7 +214,8 @@ struct FluidState {
   Outflow outflow;
   Drained drained;         ///< since the run began
   Array<HeatLedger> heat;  ///< one element, if particles have a temperature
-  FoamPool foam;           ///< capacity 0 if the scene lists none
+  Buoyancy buoyancy;
+  FoamPool foam;  ///< capacity 0 if the scene lists none
   SaliencyState saliency;
   LevelState levels;
   /// False while solving a frame that leaves particles out: its passes run over active() and lists belong to

@@ -237,19 +237,33 @@ SIM_TEST(Heat, OneLevelAndMixedKernelsAgreeAndALinearCourseStays) {
   EXPECT_GT(after[0][0], theta[0] + 1e-3f) << "at the rim it levels out";
 }
 
-SIM_TEST(Heat, WarmWaterIsLiftedAndColdWaterIsNot) {
+SIM_TEST(Heat, WarmWaterRisesAndColdWaterSinksAboutTheirMeanByMass) {
   NEEDS_EFFECTS;
   auto state = state_of({{0, 0, 0, 0.1f}, {5, 0, 0, 0.2f}}, false);
+  state.particles.all().level.from_host({0, 3});
   auto& effects = state.parameters.effects;
+  const auto set = [&](EffectOption option, double value) {
+    effects.options[static_cast<std::size_t>(option)] = value;
+  };
   effects.values[index_of(EffectKind::Heat)] = 1e-6f;
-  effects.options[static_cast<std::size_t>(EffectOption::HeatExpansion)] = 0.01;
-  temperatures_after(state, {10, 0});
+  set(EffectOption::HeatExpansion, 0.01);
+  temperatures_after(state, {9, 0});
+  // The second is eight times as heavy: the mean is 1 K above the reference.
   const auto v = state.particles.all().velocity.to_host();
-  EXPECT_NEAR(v[0].y, 9.81f * 0.1f * state.parameters.dt, 1e-6f);
-  EXPECT_EQ(v[1].y, 0);
-  effects.options[static_cast<std::size_t>(EffectOption::HeatExpansion)] = 0;
-  temperatures_after(state, {10, 0});
-  EXPECT_EQ(state.particles.all().velocity.to_host()[0].y, v[0].y);
+  EXPECT_NEAR(v[0].y, 9.81f * 0.08f * state.parameters.dt, 1e-6f);
+  EXPECT_NEAR(v[1].y, -9.81f * 0.01f * state.parameters.dt, 1e-6f);
+  const auto stays = [&](const std::vector<float>& temperatures) {
+    temperatures_after(state, temperatures);
+    const auto now = state.particles.all().velocity.to_host();
+    EXPECT_EQ(now[0].y, v[0].y);
+    EXPECT_EQ(now[1].y, v[1].y);
+  };
+  stays({500, 500});
+  set(EffectOption::HeatCoarsest, 0);
+  stays({9, 0});  // the only one that takes part has the mean temperature
+  set(EffectOption::HeatCoarsest, 3);
+  set(EffectOption::HeatExpansion, 0);
+  stays({9, 0});
 }
 
 }  // namespace
