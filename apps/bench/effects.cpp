@@ -100,7 +100,9 @@ std::vector<measure::EffectCost> costs_of(const sim::Scene& scene, const Effects
   const auto bare = all.front().fluid->read_state();
   std::vector<measure::EffectCost> costs;
   for (Running& running : all) {
-    sim::check_finite(*running.fluid, scene.name + ", effects: " + running.cost.name);
+    const std::string place = scene.name + ", effects: " + running.cost.name;
+    sim::check_finite(*running.fluid, place);
+    sim::tell_guards(place, *running.fluid);
     running.cost.same_state = same(bare, running.fluid->read_state());
     count_launches(running);
     costs.push_back(running.cost);

@@ -13,6 +13,7 @@
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "libsim/measure/render_timer.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libsim/simulation.hpp"
 #include "libstudy/headset/headset_session.hpp"
 #include "libstudy/headset/system.hpp"
@@ -71,6 +72,7 @@ class HeadsetBench {
     }
   }
 
+  void tell_guards() const { sim::tell_guards(fluid_->description(), fluid_->simulation()); }
   base::Json facts() const {
     const study::HeadsetRate rate = session_.rate();
     return {{"headset", session_.description()}, {"refresh_hz", rate.measured_hz},
@@ -126,6 +128,7 @@ void run_headset(const HeadsetBenchOptions& options) {
   Stages stages;
   bench.run(options.warm_up, nullptr);
   bench.run(options.frames, &stages);
+  bench.tell_guards();
   base::Json result = bench.facts();
   result["program"] = "vip-bench headset";
   result["version"] = base::version();

@@ -8,6 +8,7 @@
 #include "apps/study/commands.hpp"
 #include "apps/study/live_rates.hpp"
 #include "libsim/methods/method.hpp"
+#include "libsim/scene/extent.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libstudy/pages/gui/page_fonts.hpp"
 #include "libstudy/protocol/find_protocol.hpp"
@@ -42,8 +43,8 @@ void check_stimuli(const study::Protocol& protocol, const std::string& file) {
   for (const auto& what : study::stimuli_of(protocol)) {
     try {
       sim::parse_method(what.method);
-      sim::parse_n_star(what.n_star);
-      sim::read_scene(base::find_input(what.scene));
+      const std::int64_t n_star = sim::parse_n_star(what.n_star);
+      sim::check_ways(sim::read_scene(base::find_input(what.scene)), n_star);
     } catch (const base::Error& error) {
       throw base::Error(file + ": design", error.what(), "");
     }

@@ -12,6 +12,7 @@
 
 #include "apps/study/clean_up.hpp"
 #include "apps/study/station_warnings.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libstudy/console/certificate.hpp"
 #include "libstudy/console/console.hpp"
 #include "libstudy/console/progress.hpp"
@@ -291,7 +292,10 @@ const char* const exit_status_help =
 RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
                 study::SessionSetup& setup, const PlayOptions& options) {
   std::vector<EndedEarly> early;
-  const auto tell = [&] { return tell_ends(run, early, options.database); };
+  const auto tell = [&] {
+    sim::tell_guards("live fluid", setup.stimuli->guards(), {});
+    return tell_ends(run, early, options.database);
+  };
   try {
     play_sessions(store, run, protocol, setup, options, early);
   } catch (const study::Stopped&) {

@@ -10,6 +10,7 @@
 
 #include "apps/view/options.hpp"
 #include "libsim/render/gl_context.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libstudy/headset/headset_recorder.hpp"
 #include "libstudy/stimulus/fluid_stimulus.hpp"
 #include "stats/base/error.hpp"
@@ -44,7 +45,8 @@ struct Shown {
 class HeadsetViewer {
  public:
   HeadsetViewer(study::HeadsetDisplay& display, const ViewOptions& options)
-      : frames_(options.frames),
+      : scene_(options.scene),
+        frames_(options.frames),
         display_(display),
         clock_(display),
         recorder_(display,
@@ -72,6 +74,7 @@ class HeadsetViewer {
       if (display_.facts().state != study::HeadsetState::Exiting) throw;
       shown.ended = "the headset's software asked to leave";
     }
+    if (shown.frames > 0) sim::tell_guards(scene_, fluid_->simulation());
     return shown;
   }
 
@@ -110,6 +113,7 @@ class HeadsetViewer {
     return state == study::HeadsetState::Visible || state == study::HeadsetState::Focused;
   }
 
+  std::string scene_;  ///< its file
   std::optional<int> frames_;
   study::HeadsetDisplay& display_;
   study::HeadsetClock clock_;

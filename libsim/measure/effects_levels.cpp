@@ -169,7 +169,9 @@ std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, con
   }
   std::vector<LevelCost> out;
   for (Running& running : all) {
-    sim::check_finite(*running.fluid, scene.name + ", " + running.cost.effect + " at " + running.cost.levels);
+    const std::string place = scene.name + ", " + running.cost.effect + " at " + running.cost.levels;
+    sim::check_finite(*running.fluid, place);
+    sim::tell_guards(place, *running.fluid);
     const auto first = std::find_if(all.begin(), all.end(), [&](const Running& other) {
       return other.cost.effect == running.cost.effect;
     });

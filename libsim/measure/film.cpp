@@ -6,6 +6,7 @@
 #include "libsim/measure/masks.hpp"
 #include "libsim/measure/onlooker.hpp"
 #include "libsim/scene/gaze.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "stats/base/progress.hpp"
 #include "stats/image/flicker.hpp"
 #include "stats/image/ssim.hpp"
@@ -29,6 +30,7 @@ class Reel {
 
   void step(const sim::Vec3d& gaze_m) {
     eye_.step(*fluid_, method_, gaze_m, true);
+    if (const auto& met = fluid_->account().guards) guards = sim::sum(guards, *met);
     std::swap(before_, now_);
     now_ = eye_.picture();
   }
@@ -40,6 +42,7 @@ class Reel {
   stats::FrameStep change() const { return {before_.view(), now_.view()}; }
 
   double ssim = 0, flicker = 0, flicker_periphery = 0;  ///< sums over frames
+  sim::GuardCounts guards;
 
  private:
   sim::MethodKind method_;
@@ -95,6 +98,12 @@ class Film {
     }
   }
 
+  sim::GuardCounts guards() const {
+    sim::GuardCounts out = reference_.guards;
+    for (const auto& reel : reels_) out = sim::sum(out, reel->guards);
+    return out;
+  }
+
   void put(int frames, ScoreBlock& block) const {
     const auto pixels = reference_.now().view().pixels();
     for (std::size_t m = 0; m < reels_.size(); ++m) {
@@ -121,6 +130,7 @@ void run_film(const sim::CellScene& scene, const CellSize& size, const Table1Opt
               ScoreBlock& block) {
   const int frames = options.cumul_frames;
   base::Progress progress("frames of the film", static_cast<std::size_t>(frames * options.film_starts));
+  sim::GuardCounts met;
   for (int start = 1; start <= options.film_starts; ++start) {
     Film film(scene, size, options, block, start);
     for (int frame = 1; frame <= frames; ++frame) {
@@ -128,7 +138,9 @@ void run_film(const sim::CellScene& scene, const CellSize& size, const Table1Opt
       progress.update(static_cast<std::size_t>((start - 1) * frames + frame));
     }
     film.put(frames, block);
+    met = sim::sum(met, film.guards());
   }
+  sim::tell_guards(scene.name + ", n_* " + size.word + ", film", met, {});
 }
 
 }  // namespace measure

@@ -9,6 +9,7 @@
 #include "libsim/measure/masks.hpp"
 #include "libsim/measure/onlooker.hpp"
 #include "libsim/scene/fill.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "stats/image/psnr.hpp"
 #include "stats/image/ssim.hpp"
 
@@ -59,6 +60,7 @@ class Stills {
     }
     for (const auto& checkpoint : checkpoints) compare_all(checkpoint);
     for (auto& start : result_.starts) start.particles_share /= start.starts;
+    sim::tell_guards(scene_.name + ", n_* " + size_.word + ", stills", guards_, {});
     return std::move(result_);
   }
 
@@ -175,6 +177,7 @@ class Stills {
       for (int frame = 1; frame <= options_.frames_after; ++frame)
         eye_.step(*fluid, method, gaze_m, frame == options_.frames_after);
       out.push_back(take_shot(*fluid, reference, repeat == 1 && !options_.pictures.empty()));
+      guards_ = sim::sum(guards_, fluid->report().guards);
       done_();
     }
     return out;
@@ -244,6 +247,7 @@ class Stills {
   Onlooker eye_;
   std::vector<sim::Vec3d> gazes_;
   StillResult result_;
+  sim::GuardCounts guards_;  ///< of all shots
 };
 
 }  // namespace

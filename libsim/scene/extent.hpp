@@ -9,8 +9,15 @@
 
 namespace sim {
 
-/// base::Error that names the key if the water is thinner than a particle, a frame takes more than 1000
-/// substeps, or the tank is so much larger than its water that the cells of the coarse pressure, of
+/// base::Error that names an obstacle whose swing leaves the water no room: it closes the tank, as all its
+/// gaps to the walls are narrower than the finest spacing, and at its lowest the water that was below it at
+/// the start is deeper than the room there by more than that spacing. Scenes with a nozzle, which takes water
+/// from the floor, or with an outlet that begins below the obstacle pass. A mesh closes the tank only where
+/// it is solid throughout.
+void check_ways(const Scene& scene, std::int64_t n_star);
+
+/// check_ways, and base::Error that names the key if the water is thinner than a particle, a frame takes more
+/// than 1000 substeps, or the tank is so much larger than its water that the cells of the coarse pressure, of
 /// `cell_edge_m`, would outnumber particles sixteen times (a million are always allowed).
 void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, double cell_edge_m);
 

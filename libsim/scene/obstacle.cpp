@@ -36,19 +36,6 @@ Vector turned(const Quaternion& q, const Vector& v) {
 }
 Quaternion back(const Quaternion& q) { return {-q[0], -q[1], -q[2], q[3]}; }
 
-/// Extent of the shape from its centre along each axis of the world.
-Vector reach(const Obstacle& o, const Pose& pose) {
-  const Vector half = half_sides_m(o);
-  Vector out{o.radius_m, o.radius_m, o.radius_m};
-  for (std::size_t k = 0; k < 3; ++k) {
-    Vector side{};
-    side[k] = half[k];
-    const Vector way = turned(pose.turn, side);
-    for (std::size_t a = 0; a < 3; ++a) out[a] += std::abs(way[a]);
-  }
-  return out;
-}
-
 bool in_tank(const Mesh& mesh, const Pose& pose, const Vector& tank_size_m) {
   return std::all_of(mesh.places_m().begin(), mesh.places_m().end(), [&](const Vector& own) {
     const Vector at = in_world(pose, own);
@@ -58,7 +45,7 @@ bool in_tank(const Mesh& mesh, const Pose& pose, const Vector& tank_size_m) {
 }
 bool in_tank(const Obstacle& o, const Pose& pose, const Vector& tank_size_m) {
   if (o.mesh) return in_tank(*o.mesh, pose, tank_size_m);
-  const Vector far = reach(o, pose);
+  const Vector far = reach_m(o, pose);
   for (std::size_t a = 0; a < 3; ++a) {
     if (pose.centre_m[a] - far[a] < -1e-9) return false;
     if (a != 1 && pose.centre_m[a] + far[a] > tank_size_m[a] + 1e-9) return false;  // open at the top
@@ -192,6 +179,18 @@ Vector half_sides_m(const Obstacle& o) {
   }
   if (o.shape == ObstacleShape::Box) return {o.size_m[0] / 2, o.size_m[1] / 2, o.size_m[2] / 2};
   return {0, o.shape == ObstacleShape::Capsule ? o.length_m / 2 : 0, 0};
+}
+
+Vector reach_m(const Obstacle& o, const Pose& pose) {
+  const Vector half = half_sides_m(o);
+  Vector out{o.radius_m, o.radius_m, o.radius_m};
+  for (std::size_t k = 0; k < 3; ++k) {
+    Vector side{};
+    side[k] = half[k];
+    const Vector way = turned(pose.turn, side);
+    for (std::size_t a = 0; a < 3; ++a) out[a] += std::abs(way[a]);
+  }
+  return out;
 }
 
 Vector in_world(const Pose& pose, const Vector& own_m) {

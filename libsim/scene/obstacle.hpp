@@ -85,6 +85,8 @@ bool holds(const Obstacle& obstacle, const Pose& pose, const std::array<double, 
 /// Half sides of the box that the shape extends by radius_m, along its own axes: for a box half its sides,
 /// for a capsule half its axis. A mesh lies in that box.
 std::array<double, 3> half_sides_m(const Obstacle& obstacle);
+/// Extent of the shape from its centre along each axis of the world; of a mesh, of the box that holds it.
+std::array<double, 3> reach_m(const Obstacle& obstacle, const Pose& pose);
 double volume_m3(const Obstacle& obstacle);
 /// Moments of inertia about its own axes divided by its mass, for uniform density, m2.
 std::array<double, 3> inertia_m2(const Obstacle& obstacle);

@@ -1,8 +1,12 @@
 #include "libsim/setting/finite_water.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
+#include <cstdio>
 
 #include "stats/base/error.hpp"
+#include "stats/base/streams.hpp"
 
 namespace sim {
 
@@ -11,7 +15,44 @@ std::string first_of(const Simulation& fluid) {
   const auto divergence = fluid.divergence();
   return divergence ? "; first trouble: " + in_words(*divergence) : "";
 }
+
+std::string part_of(std::uint64_t count, const char* one, const char* many, const char* what) {
+  return count == 0 ? "" : fmt::format(", {} {} {}", count, count == 1 ? one : many, what);
+}
 }  // namespace
+
+GuardCounts sum(const GuardCounts& a, const GuardCounts& b) {
+  return {.speed_limited = a.speed_limited + b.speed_limited,
+          .coincident_pairs = a.coincident_pairs + b.coincident_pairs,
+          .not_finite = a.not_finite + b.not_finite,
+          .neighbours_dropped = a.neighbours_dropped + b.neighbours_dropped,
+          .wall_projected = a.wall_projected + b.wall_projected,
+          .nozzle_waited = a.nozzle_waited + b.nozzle_waited,
+          .saliency_not_finite = a.saliency_not_finite + b.saliency_not_finite,
+          .gaze_lost = a.gaze_lost + b.gaze_lost};
+}
+
+std::string in_words(const GuardCounts& met) {
+  const std::string parts =
+      part_of(met.speed_limited, "particle-substep", "particle-substeps", "braked by the limit on speed") +
+      part_of(met.coincident_pairs, "pair", "pairs", "of particles in one place") +
+      part_of(met.not_finite, "particle", "particles", "not finite or far outside the tank") +
+      part_of(met.neighbours_dropped, "neighbour", "neighbours", "without room in a list") +
+      part_of(met.saliency_not_finite, "saliency", "saliencies", "not finite");
+  return parts.empty() ? "" : "guards stepped in: " + parts.substr(2);
+}
+
+void tell_guards(const std::string& place, const GuardCounts& met, const std::optional<Divergence>& first) {
+  std::string told = in_words(met);
+  if (first) told += (told.empty() ? "" : "; ") + ("first trouble: " + in_words(*first));
+  if (told.empty()) return;
+  std::fflush(stdout);
+  std::fprintf(stderr, "%s: %s\n", base::for_terminal(place).c_str(), told.c_str());
+}
+
+void tell_guards(const std::string& place, Simulation& fluid) {
+  tell_guards(place, fluid.report().guards, fluid.divergence());
+}
 
 void check_finite(Simulation& fluid, const std::string& place) {
   const FrameReport report = fluid.report();

@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "libsim/scene/extent.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libstudy/display/null.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -48,6 +50,10 @@ CellStimuli::CellStimuli(const RunOptions& options, const Protocol& protocol, co
   choice_.model = model;
   choice_.viewing = std::move(viewing);
   if (shown_) check_words(protocol);
+  for (const Cell& cell : protocol.design.cells)
+    if (is_live(cell))
+      sim::check_ways(sim::read_scene(base::find_input(cell.stimulus.scene)),
+                      sim::parse_n_star(cell.stimulus.n_star));
   check_settings_live(protocol);
   description_ = describe(protocol);
 }
@@ -111,10 +117,16 @@ std::unique_ptr<Stimulus> CellStimuli::make(const Cell& cell, const Made& wanted
   return make_stimulus(choice);
 }
 
+sim::GuardCounts CellStimuli::guards() const {
+  const auto* live = dynamic_cast<const LiveFluid*>(stimulus_.get());
+  return live ? sim::sum(former_guards_, live->guards()) : former_guards_;
+}
+
 Stimulus& CellStimuli::stimulus(const Cell& cell) {
   const Made wanted = wanted_for(cell);
   if (made_ != wanted) {
     made_.reset();
+    former_guards_ = guards();
     stimulus_.reset();
     stimulus_ = make(cell, wanted);
     made_ = wanted;

@@ -25,6 +25,8 @@ class CellStimuli final : public StimulusSource {
   bool is_live(const Cell& cell) const { return shown_ && !bakes_.of(cell); }
   /// Description of all cells, for the record; independent of which were shown.
   std::string description() const { return description_; }
+  /// Of all live fluid that was computed.
+  sim::GuardCounts guards() const;
   const SessionBakes& bakes() const { return bakes_; }
   const SessionSettings& settings() const { return settings_; }
   /// The choice from which the live fluid of a cell is made.
@@ -52,6 +54,7 @@ class CellStimuli final : public StimulusSource {
   std::string description_;
   std::optional<Made> made_;
   std::unique_ptr<Stimulus> stimulus_;
+  sim::GuardCounts former_guards_;  ///< of the stimuli before
 };
 
 }  // namespace study

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "libsim/scene/picture_effects_text.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 
@@ -225,6 +226,7 @@ void LiveFluid::tell_frame_time() {
 void LiveFluid::advance() {
   look();
   simulation_->step_frame();
+  if (const auto& met = simulation_->account().guards) guards_ = sim::sum(guards_, *met);
 }
 
 /// Before the first picture a method looks along the axis of the scene's camera.

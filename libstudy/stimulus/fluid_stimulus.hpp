@@ -90,6 +90,8 @@ class LiveFluid final : public Stimulus {
   void draw(const Canvas& canvas) override;
   /// The simulation at the prepared step; exists from the first start() or prepare() on.
   sim::Simulation& simulation() { return *simulation_; }
+  /// Of all frames since the stimulus was made, also those before a rewind.
+  const sim::GuardCounts& guards() const { return guards_; }
   /// True if the method uses the picture of the last frame, so that every frame must be drawn.
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
   /// Depth of the last picture, lowest row first; infinite where there is no fluid (GBuffer::depth).
@@ -111,6 +113,7 @@ class LiveFluid final : public Stimulus {
   Viewing viewing_;
   sim::RenderOptions options_;
   std::unique_ptr<sim::Simulation> simulation_;
+  sim::GuardCounts guards_;
   std::int64_t step_ = 0;
   bool started_ = false;  ///< start() was called, and no step was prepared since
   std::optional<std::chrono::steady_clock::time_point> prepared_;

@@ -7,6 +7,7 @@
 
 #include "libstudy/store/read/task_answers.hpp"
 #include "stats/base/json.hpp"
+#include "tests/apps/small_dam.hpp"
 #include "tests/apps/study_test_support.hpp"
 
 namespace apps::test {
@@ -52,6 +53,22 @@ class LiveRatesE2e : public ::testing::Test {
   std::string scene_ = folder_ / "faucet.toml", protocol_ = folder_ / "short.toml";
   std::string database_ = folder_ / "study.db", size_ = "640x360", clock_ = "real";
 };
+
+// A plate that closes the tank above its water.
+TEST_F(LiveRatesE2e, ASceneWhoseObstacleLeavesTheWaterNoRoomIsRefusedBeforeAnythingIsWritten) {
+  base::write_file_atomically(
+      scene_, replaced(replaced(small_dam, "format = 1", "format = 2"), "max_m = [1.0,", "max_m = [2.0,") +
+                  "[[obstacle]]\nshape = \"box\"\ncentre_m = [1.0, 1.5, 0.5]\nsize_m = [1.96, 1.0, 0.96]\n"
+                  "motion = \"swings\"\nway_m = [0.0, -0.9, 0.0]\nperiod_s = 4.0\n");
+  write_protocol("30", "0.5");
+  const Ended checked = run_program({vip_study, "check", protocol_});
+  EXPECT_EQ(checked.exit_code, 1);
+  EXPECT_THAT(checked.err, AllOf(HasSubstr("obstacle 1 (box)"), HasSubstr("mend: make it narrower by")));
+  const Ended ran = run();
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("obstacle 1 (box)"), HasSubstr("mend: make it narrower by")));
+  EXPECT_FALSE(fs::exists(database_));
+}
 
 TEST_F(LiveRatesE2e, CellsThatAreNotReachedAreRefusedBeforeAnythingIsWritten) {
   write_too_fast();

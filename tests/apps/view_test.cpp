@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,6 +66,38 @@ TEST_F(ViewE2e, WritesEverySecondPicture) {
   EXPECT_EQ(first.width, 64);
   EXPECT_EQ(first.height, 48);
   EXPECT_NE(first.rgba, third.rgba);  // the water moved
+}
+
+TEST_F(ViewE2e, ASoundRunTellsOfNoGuard) {
+  const auto outcome = small_run("");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_EQ(outcome.out.find("guards stepped in"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("first trouble"), std::string::npos) << outcome.out;
+}
+
+// Half plates that together close the tank leave the water above them no way out but through the gaps.
+TEST_F(ViewE2e, ARunInWhichAGuardStepsInEndsWithOneLineOnStandardError) {
+  std::string text = apps::test::small_dam;
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("format = 1", "format = 2");
+  put("max_m = [1.0,", "max_m = [2.0,");
+  for (const char* x : {"0.5", "1.5"})
+    text += std::string("[[obstacle]]\nshape = \"box\"\ncentre_m = [") + x +
+            ", 1.31, 0.5]\nsize_m = [0.99, 1.0, 0.99]\nmotion = \"swings\"\nway_m = [0.0, -0.6, 0.0]\n"
+            "period_s = 1.2\n";
+  base::write_file_atomically(scene(), text);
+  const auto outcome =
+      apps::test::run_program({VIP_BIN_DIR "/vip-view", "--headless", scene(), "--method", "HiRes",
+                               "--n-star", "64", "--backend", "cpu", "--size", "64x48", "--frames", "20"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              ::testing::ContainsRegex(
+                  "dam.toml: guards stepped in: [0-9]+ particle-substeps braked by the limit on speed"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("; first trouble: frame "));
+  const auto told = outcome.err.find("guards stepped in");
+  EXPECT_EQ(outcome.err.find("guards stepped in", told + 1), std::string::npos) << outcome.err;
 }
 
 TEST_F(ViewE2e, ExplainsItsSchedule) {

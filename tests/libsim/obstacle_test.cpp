@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "libsim/scene/extent.hpp"
 #include "stats/base/error.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/libsim/obstacle_scenes.hpp"
@@ -60,6 +61,142 @@ TEST(Obstacles, ErrorsNameThePlaceAndTheMend) {
               HasSubstr("out of the tank"));
   EXPECT_THAT(error(sphere_table + "rotation_deg = 20.0\nrotation_axis = [0.0, 0.0, 0.0]\n"),
               HasSubstr("has no direction"));
+}
+
+/// A plate of 0.99 m by 0.99 m that swings over the water of a tank of 1 m by 1 m.
+sim::Scene press() {
+  auto scene = fluid_test::tank({1, 2.2, 1}, {1, 0.8, 1}, 60);
+  scene.v_ref_m_s = 2;
+  Obstacle plate = box({0.5, 1.2, 0.5}, {0.99, 0.3, 0.99});
+  plate.motion = ObstacleMotion::Swings;
+  plate.way_m = {0, -0.5, 0};
+  plate.period_s = 4;
+  scene.obstacles = {plate};
+  return scene;
+}
+
+std::string way_error(const sim::Scene& scene, std::int64_t n_star = 4096) {
+  try {
+    sim::check_ways(scene, n_star);
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Of 4,096 n_* the finest spacing is cbrt(0.8 / 32768) = 0.0290 m: gaps of 0.005 m are 0.0240 m too narrow on
+// either side. At its lowest the plate's underside is 0.55 m high; 0.25 m less way leaves it on the water.
+TEST(Obstacles, AWayThatLeavesTheWaterNoRoomIsRefusedForEveryMethodWithMends) {
+  for (const auto& traits : sim::all_methods()) {
+    sim::SimulationOptions options;
+    options.method = traits.kind;
+    options.n_star = 4096;
+    EXPECT_THAT([&] { sim::make_simulation(press(), options); },
+                testing::ThrowsMessage<base::Error>(
+                    AllOf(HasSubstr("n_* 4096, obstacle 1 (box)"), HasSubstr("0.55 m3 have room"),
+                          HasSubstr("0.8 m3 of water"), HasSubstr("mend: make it narrower by 0.0481 m"),
+                          HasSubstr("shorten way_m to a length of 0.25 m"))));
+  }
+  auto narrower = press();
+  narrower.obstacles[0].size_m[2] -= 0.0481;
+  EXPECT_EQ(way_error(narrower), "");
+  auto shorter = press();
+  shorter.obstacles[0].way_m[1] = -0.25;
+  EXPECT_EQ(way_error(shorter), "");
+}
+
+TEST(Obstacles, APressIsRefusedUpwardsFirstTiltedUnderWaterAndAsAMesh) {
+  auto upwards = press();
+  upwards.obstacles[0].way_m[1] = 0.5;
+  EXPECT_NE(way_error(upwards), "");
+  auto tilted = press();
+  tilted.obstacles[0].start.turn = {0, 0, std::sin(0.05), std::cos(0.05)};  // by 0.1 about z
+  EXPECT_NE(way_error(tilted), "");
+  auto sunk = press();
+  sunk.obstacles[0].start.centre_m[1] = 0.6;
+  sunk.obstacles[0].way_m[1] = 0.2;
+  EXPECT_THAT(way_error(sunk), HasSubstr("let it start above the water"));
+  auto mesh_press = press();
+  mesh_press.obstacles[0].shape = ObstacleShape::Mesh;
+  mesh_press.obstacles[0].mesh = mesh_of(mesh_test::box_text({0, 0, 0}, {0.99, 0.3, 0.99}));
+  EXPECT_THAT(way_error(mesh_press), HasSubstr("obstacle 1 (mesh)"));
+}
+
+TEST(Obstacles, WaysThatWaterCanFollowAreTaken) {
+  const auto taken = [](const auto& change) {
+    auto scene = press();
+    change(scene, scene.obstacles[0]);
+    return way_error(scene);
+  };
+  EXPECT_EQ(taken([](auto&, Obstacle& o) { o.size_m[0] = o.size_m[2] = 0.8; }), "") << "a stamp";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) { o.size_m[0] = 0.9; }), "") << "a gap at two walls";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) { o.size_m[0] = 0.95, o.start.centre_m[0] = 0.478; }), "")
+      << "a gap at one wall";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) { o.way_m = {0, -0.24, 0}; }), "") << "it stops above the water";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) { o.way_m = {0.004, 0, 0}; }), "") << "sideways";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) {
+              o.size_m = {0.3, 1.6, 0.99};
+              o.start.centre_m = {0.2, 0.81, 0.5};
+              o.way_m = {0.05, 0, 0};
+            }),
+            "")
+      << "a wave maker";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) {
+              o.motion = ObstacleMotion::Turns;
+              o.about_m = o.start.centre_m;
+            }),
+            "")
+      << "a paddle";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) { o.motion = ObstacleMotion::Free; }), "") << "a lid that floats";
+  EXPECT_EQ(taken([](auto& scene, auto&) {
+              scene.outlets = {{.min_m = {0.4, 0.4}, .max_m = {0.6, 0.6}}};
+            }),
+            "")
+      << "an outlet in the floor";
+  EXPECT_EQ(taken([](auto& scene, auto&) { scene.fill_max_m[0] = 0.5; }), "") << "half of the water";
+  EXPECT_EQ(taken([](auto&, Obstacle& o) {
+              o.shape = ObstacleShape::Sphere;
+              o.radius_m = 0.495;
+            }),
+            "")
+      << "a ball: water passes at the corners";
+  EXPECT_EQ(way_error(press(), 1 << 20), "") << "gaps wider than particles";
+  EXPECT_NE(taken([](auto& scene, auto&) {
+              scene.outlets = {{.wall = sim::Wall::LowX, .min_m = {1.4, 0.4}, .max_m = {1.6, 0.6}}};
+            }),
+            "")
+      << "an outlet above the plate lets none of the water below it out";
+}
+
+// A grate: four bars of a mesh round a hole.
+TEST(Obstacles, AMeshWithAHoleThatWaterPassesIsNoPress) {
+  auto scene = press();
+  const auto ring = [](double hole) {
+    std::string text;
+    for (const double y : {0.0, 0.3})
+      for (const double half : {0.495, hole / 2})
+        for (const auto& [x, z] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+          text += "v " + std::to_string(x * half) + " " + std::to_string(y) + " " + std::to_string(z * half) +
+                  "\n";
+    // Vertices 1-4: outer, below; 5-8: inner, below; 9-12 and 13-16: above.
+    for (int k = 0; k < 4; ++k) {
+      const int n = (k + 1) % 4;
+      const auto face = [&](int a, int b, int c, int d) {
+        text += "f " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + " " +
+                std::to_string(d) + "\n";
+      };
+      face(1 + k, 1 + n, 5 + n, 5 + k);
+      face(9 + n, 9 + k, 13 + k, 13 + n);
+      face(1 + n, 1 + k, 9 + k, 9 + n);
+      face(5 + k, 5 + n, 13 + n, 13 + k);
+    }
+    return text;
+  };
+  scene.obstacles[0].shape = ObstacleShape::Mesh;
+  scene.obstacles[0].mesh = mesh_of(ring(0.06));
+  EXPECT_EQ(way_error(scene), "");
+  scene.obstacles[0].mesh = mesh_of(ring(0.01));
+  EXPECT_NE(way_error(scene), "");
 }
 
 TEST(Obstacles, ThinOnesAreRefused) {

@@ -12,6 +12,7 @@
 #include "apps/bench/commands.hpp"
 #include "apps/common/options.hpp"
 #include "libsim/measure/timed_run.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libsim/setting/named_scenes.hpp"
 #include "libstudy/sweep/run/accuracy_page.hpp"
 #include "libstudy/sweep/run/budget.hpp"
@@ -104,6 +105,11 @@ study::StoredCell run(const Job& job, const study::SweepCell& cell) {
   return {cell, job.origin, study::run_cell(cell, job.scene.scene, job.backend)};
 }
 
+/// What a sweep stores of the guards.
+void tell_braked(const Job& job, std::int64_t braked) {
+  sim::tell_guards(job.scene.name, {.speed_limited = static_cast<std::uint64_t>(braked)}, {});
+}
+
 void print_list(const Job& job) {
   for (const auto& cell : job.cells)
     std::printf("%s %s\n", job.key(cell).c_str(), study::to_text(cell).c_str());
@@ -117,7 +123,10 @@ void run_one(const Job& job, const AccuracyOptions& options) {
                       "copy one from --list, given with the same program and options");
   }
   study::SweepFile file(options.out, Open::Create);
-  if (!file.keys(job.origin.machine).contains(options.cell)) file.add(run(job, *found));
+  if (file.keys(job.origin.machine).contains(options.cell)) return;
+  const auto cell = run(job, *found);
+  file.add(cell);
+  tell_braked(job, cell.run.braked);
 }
 
 /// Stores each finished cell, so that an interrupted run can continue.
@@ -129,10 +138,14 @@ void run_missing(const Job& job, study::SweepFile& file, const std::vector<study
   if (missing.empty()) return;
   base::Progress progress("cells", missing.size());
   std::size_t finished = 0;
+  std::int64_t braked = 0;
   for (const auto& cell : missing) {
-    file.add(run(job, cell));
+    const auto ran = run(job, cell);
+    file.add(ran);
+    braked += ran.run.braked;
     progress.update(++finished);
   }
+  tell_braked(job, braked);
 }
 
 /// Reports missing cells, including those that only another machine has run: tables and choices lack them.

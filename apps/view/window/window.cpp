@@ -16,6 +16,7 @@
 #include "libsim/render/offscreen.hpp"
 #include "libsim/render/png.hpp"
 #include "libsim/scene/gaze.hpp"
+#include "libsim/setting/finite_water.hpp"
 #include "libstudy/window/glfw_window.hpp"
 #include "stats/base/error.hpp"
 
@@ -76,6 +77,7 @@ class Viewer {
  private:
   std::unique_ptr<Running> make_fluid(const ViewOptions& options);
   void take(std::unique_ptr<Running> fluid);
+  void tell_end() const { sim::tell_guards(running_.scene, *fluid_->prepared.fluid); }
   void begin_anew();
   void follow_keys();
   void follow_choices();
@@ -145,7 +147,9 @@ void Viewer::begin_anew() {
     controls_.chosen.effects_off.clear();
   }
   try {
-    take(make_fluid(controls_.chosen));
+    auto fluid = make_fluid(controls_.chosen);
+    tell_end();
+    take(std::move(fluid));
     running_ = controls_.chosen;
     figures_.said.clear();
   } catch (const base::Error& error) {
@@ -290,6 +294,7 @@ void Viewer::run() {
     follow_choices();
     follow_schedule();
   }
+  tell_end();
 }
 
 }  // namespace
