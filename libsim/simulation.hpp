@@ -45,6 +45,11 @@ struct TemporalOptions {
   bool always = false;  ///< also for methods without temporal acceleration, in tests and comparisons
 };
 
+/// True if every particle is solved in every frame, whatever the frame times.
+inline bool stays_off(const TemporalOptions& options) {
+  return ToleranceSwitch(options.model, options.fixed_tau, options.fixed_rate).stays_off();
+}
+
 /// Numbers of the solver that a program may set; solver_numbers() lists their units and ranges. A
 /// negative value selects the scene's number or the measured default (libsim/solver/stages/fluid_state.hpp).
 struct SolverNumbers {
@@ -83,10 +88,12 @@ struct SimulationOptions : SolverNumbers {
   bool saliency_parts = false;
   std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
   std::int64_t particle_capacity = 0;          ///< for methods that split and merge; 0 = 8 n_*
-  int levels = most_levels;  ///< N, 1 .. 4: methods that split and merge use levels 0 .. N - 1
+  /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 nothing splits or merges,
+  /// except coarser particles of `start`, and saliency is measured only for outputs.
+  int levels = most_levels;
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
-  /// method; ids are unique, and below the capacity (8 n_*) for methods that split and merge.
+  /// method; ids are unique, and below the capacity (8 n_*) where particles split and merge.
   std::optional<std::vector<ParticleState>> start;
   /// Frames before the start: nozzles continue from this frame. >= 0.
   int start_frame = 0;
@@ -146,7 +153,7 @@ struct TemporalReport {
 /// Particle counts of a frame and how the solver solved it. Costs almost no time.
 struct FrameAccount {
   std::vector<std::int64_t> particles_by_level;  ///< one count per radius of Simulation::radii_m
-  std::optional<TemporalReport> temporal;        ///< none = the method solves every particle, or no frame yet
+  std::optional<TemporalReport> temporal;        ///< none = the method has no tau, or no frame yet
   std::optional<GuardCounts> guards;             ///< of this frame only; none = no frame yet
 
   std::int64_t particles() const {
@@ -349,8 +356,8 @@ class Simulation {
   virtual std::string explain() const = 0;
 };
 
-/// Minimum number of substeps per frame: from the scene or the options, and from its effects. base::Error if
-/// the options allow too few for an effect, or an effect needs too many.
+/// Minimum number of substeps per frame: from the scene or the options, and from its acting effects.
+/// base::Error if the options allow too few for an effect, or an effect needs too many.
 int least_substeps(const Scene& scene, const SimulationOptions& options);
 
 /// Fills, settles and returns the scene at frame 0. Errors are base::Error.

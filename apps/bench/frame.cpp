@@ -12,6 +12,7 @@
 #include "libsim/measure/timed_run.hpp"
 #include "libsim/particles/divergence.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
+#include "libsim/scene/fill.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "libsim/simulation.hpp"
 #include "libstudy/display/stimulus.hpp"
@@ -95,7 +96,10 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
     if (options.look) throw;
     return {nullptr, error.what()};
   }
-  return {std::make_unique<measure::RenderTimer>(std::move(*context), scene, size, options.views), ""};
+  return {std::make_unique<measure::RenderTimer>(std::move(*context),
+                                                 sim::acting_scene(scene, sim::parse_method(options.method)),
+                                                 size, options.views),
+          ""};
 }
 
 /// The accounts of all frames, with mean number of particles and mean fraction solved.
@@ -220,7 +224,7 @@ base::Json run_frames(const FrameOptions& options) {
         {"neighbours_dropped", report.guards.neighbours_dropped},
         {"wall_projected", report.guards.wall_projected},
         {"nozzle_waited", report.guards.nozzle_waited}}},
-      {"effects", measure::effect_books(scene, report)},
+      {"effects", measure::effect_books(sim::acting_scene(scene, sim::parse_method(options.method)), report)},
       {"divergence", divergence_json(fluid->divergence())},
       {"accounts", accounts.all},
       {"launches", passes.launches},

@@ -45,7 +45,7 @@ class PictureFolder {
   void write(int frame, const PreparedFluid& prepared, sim::FluidPicture& picture, const sim::View& view,
              const sim::Offscreen& target) {
     sim::Simulation& fluid = *prepared.fluid;
-    OverlayPainter painter(prepared.scene, prepared.finest_spacing_m);
+    OverlayPainter painter(drawn(prepared), prepared.finest_spacing_m);
     legends_.clear();
     for (std::size_t i = 0; i < overlays_.size(); ++i) {
       if (i > 0) picture.draw(fluid, view, target.framebuffer());
@@ -122,7 +122,7 @@ void run_headless(const ViewOptions& options) {
   PictureFolder pictures(options);
   const PreparedFluid prepared = prepare_fluid(options);
   std::printf("OpenGL: %s\n", sim::gl_description().c_str());
-  sim::FluidPicture picture(prepared.scene);
+  sim::FluidPicture picture(drawn(prepared));
   const sim::View view = sim::make_view(prepared.camera, options.size.width, options.size.height);
 
   Timing timing;

@@ -54,6 +54,8 @@ struct PreparedFluid {
   double frame_dt_s = 0;         ///< of the fluid
   sim::SolverSetting setting;    ///< in force at frame 0
 };
+/// What is drawn of a scene: with the effects that act in the method's water.
+sim::Scene drawn(const PreparedFluid& prepared);
 /// Takes method, n_star, levels, alpha, iterations and tau from best.toml. Its other numbers apply as long as
 /// method, n_star, levels and preset are unchanged.
 void take_setting(ViewOptions& options, const std::string& path);

@@ -107,7 +107,7 @@ void OverlayPainter::paint(OverlayKind kind, sim::Simulation& fluid, sim::FluidP
       break;
     case OverlayKind::Temperature:
       if (!temperatures_.heat()) {
-        legend_ = "temperature: heat is not listed, or off";
+        legend_ = "temperature: heat is not listed, or off, or idle";
         return;
       }
       field(sim::ParticleField::Temperature);

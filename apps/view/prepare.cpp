@@ -63,6 +63,10 @@ std::vector<std::string> price_lines(const ViewOptions& options, const sim::Solv
   return study::in_words(study::prices_of(*options.sweep, setting, scene.sha256));
 }
 
+sim::Scene drawn(const PreparedFluid& prepared) {
+  return sim::acting_scene(prepared.scene, prepared.setting.method);
+}
+
 PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void(int, int)>& settling) {
   PreparedFluid prepared;
   prepared.scene = sim::read_scene(base::find_input(options.scene));
@@ -81,7 +85,6 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   prepared.setting = sim::setting_of(prepared.scene, choice);
   prepared.finest_spacing_m =
       sim::resolution_of(prepared.scene, choice.method, choice.n_star).finest_spacing_m;
-  prepared.follows_picture = sim::traits_of(choice.method).target == sim::TargetSource::Saliency;
   prepared.follows_rate =
       (choice.temporal.always || sim::traits_of(choice.method).temporal) && !choice.temporal.fixed_tau;
   {
@@ -90,6 +93,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
         settling ? settling : [&](int done, int) { progress.update(static_cast<std::size_t>(done)); };
     prepared.fluid = sim::make_simulation(prepared.scene, choice);
   }
+  prepared.follows_picture = prepared.fluid->follows_picture();
   std::printf("%s, %s, n_* %lld: %lld particles on %s\n", prepared.scene.name.c_str(),
               sim::method_name(choice.method).c_str(), static_cast<long long>(choice.n_star),
               static_cast<long long>(prepared.fluid->particle_count()),
@@ -103,7 +107,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
   for (const auto& line : price_lines(options, prepared.setting, prepared.scene))
     std::printf("sweep  %s\n", line.c_str());
   if (options.explain) {
-    std::printf("%s%s\n", prepared.fluid->explain().c_str(), sim::passes_in_words(prepared.scene).c_str());
+    std::printf("%s%s\n", prepared.fluid->explain().c_str(), sim::passes_in_words(drawn(prepared)).c_str());
   }
   return prepared;
 }

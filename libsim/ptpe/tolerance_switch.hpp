@@ -50,6 +50,8 @@ class ToleranceSwitch {
   /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability that a
   /// particle is solved.
   double beta() const;
+  /// True if beta is 1 in every frame, whatever the frame times.
+  bool stays_off() const { return fixed_ && beta() >= 1; }
   std::uint64_t left_out() const { return left_out_; }
   /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>

@@ -119,6 +119,18 @@ std::optional<EffectKind> effect_named(const std::string& word) {
   return static_cast<EffectKind>(found - words.begin());
 }
 
+bool is_idle(const Effect& effect, const std::vector<Effect>& among, int finest_level) {
+  const auto option = coarsest_level_of(effect.kind);
+  return option && finest_level > static_cast<int>(coefficients_of(among)[*option]);
+}
+
+std::vector<Effect> acting_effects(const std::vector<Effect>& effects, int finest_level) {
+  std::vector<Effect> out;
+  for (const Effect& effect : effects)
+    if (!is_idle(effect, effects, finest_level)) out.push_back(effect);
+  return out;
+}
+
 std::string format_effects(const std::vector<Effect>& effects) {
   std::string out;
   for (const Effect& effect : effects) {

@@ -149,6 +149,11 @@ struct EffectCoefficients {
 };
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 
+/// True if the effect leaves out all water of this level and coarser.
+bool is_idle(const Effect& effect, const std::vector<Effect>& among, int finest_level);
+/// The effects that are not idle, in water of this level and coarser.
+std::vector<Effect> acting_effects(const std::vector<Effect>& effects, int finest_level);
+
 /// Reads the tables [[effect]] of a scene file of format 2, except picture effects (picture_effects.hpp).
 /// Errors are base::Error at file:line:column: unknown, listed twice, missing an effect that it needs, out of
 /// range, or a program built without effects. kept: effects already listed.

@@ -15,6 +15,16 @@ Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_s
   return out;
 }
 
+Scene acting_scene(Scene scene, int finest_level) {
+  scene.effects = acting_effects(scene.effects, finest_level);
+  return scene;
+}
+
+// No method makes finer particles than those it begins with.
+Scene acting_scene(Scene scene, MethodKind method) {
+  return acting_scene(std::move(scene), traits_of(method).start_level);
+}
+
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star) {
   const double d = resolution_of(scene, method, n_star).spacing_m;
   const double lx = scene.fill_max_m[0] - scene.fill_min_m[0];

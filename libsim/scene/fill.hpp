@@ -16,6 +16,11 @@ struct Resolution {
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 
+/// The scene without the effects that are idle in water of this level and coarser: what is simulated.
+Scene acting_scene(Scene scene, int finest_level);
+/// The same for water that the method fills in: what is drawn.
+Scene acting_scene(Scene scene, MethodKind method);
+
 /// Exactly particle_count(method, n_star) points, minus those inside obstacles: layers from the floor up, the
 /// last layer partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);

@@ -62,29 +62,15 @@ double slump_speed(const Scene& scene, const SimulationOptions& options) {
   return scene.gravity_m_s2 * frame_dt_of(scene, options) / substeps_needed(scene, options);
 }
 
-/// One line for each effect whose coarsest level is finer than all water.
-std::string idle_in_words(const std::vector<Effect>& effects, int finest_level) {
-  const EffectCoefficients all = coefficients_of(effects);
-  std::string out;
-  for (const Effect& effect : effects) {
-    const auto option = coarsest_level_of(effect.kind);
-    if (!option || effect.coefficient == 0) continue;
-    const auto coarsest = static_cast<int>(all[*option]);
-    if (finest_level <= coarsest) continue;
-    out += std::string("  ") + traits_of(effect.kind).word + ": does nothing, as no water is of level " +
-           (coarsest > 0 ? "0 to " : "") + std::to_string(coarsest) + "\n";
-  }
-  return out;
-}
-
 }  // namespace
 
-std::string effects_in_words(const Scene& scene, const SimulationOptions& options, int finest_level) {
-  if (scene.effects.empty() && scene.obstacles.empty()) return "";
+std::string effects_in_words(const std::vector<Effect>& listed, const Scene& scene,
+                             const SimulationOptions& options) {
+  if (listed.empty() && scene.obstacles.empty()) return "";
   const double d = resolution_of(scene, MethodKind::HiRes, options.n_star).finest_spacing_m;
   std::ostringstream out;
-  if (!scene.effects.empty()) out << "  effects: ";
-  for (const Effect& effect : scene.effects) {
+  if (!listed.empty()) out << "  effects: ";
+  for (const Effect& effect : listed) {
     const auto& traits = traits_of(effect.kind);
     out << traits.word << " " << traits.key << " = " << base::shortest(effect.coefficient)
         << options_in_words(effect) << ", ";
@@ -92,7 +78,7 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
   const EffectStep longest = longest_step(scene.effects, d);
   if (longest.of != no_effect) {
     out << "substeps of at most " << longest.seconds << " s (" << traits_of(longest.of).word << ")\n";
-  } else if (!scene.effects.empty()) {
+  } else if (!listed.empty()) {
     out << "which ask for no shorter substeps\n";
   }
   const Scales scales = scales_of(scene, options.n_star);
@@ -107,7 +93,6 @@ std::string effects_in_words(const Scene& scene, const SimulationOptions& option
     out << "  viscosity: however viscous, fluid slumps at up to about " << speed
         << " m/s (g dt); more substeps make it slower\n";
   }
-  out << idle_in_words(scene.effects, finest_level);
   return out.str();
 }
 
@@ -130,6 +115,10 @@ int substeps_needed(const Scene& scene, const SimulationOptions& options) {
          << ", raise frames_per_s, or use a smaller n_* (--n-star, or n_star in a protocol)";
   }
   throw base::Error(std::string("effect ") + traits_of(longest.of).word, problem.str(), mend.str());
+}
+
+int least_substeps(const Scene& scene, const SimulationOptions& options) {
+  return substeps_needed(acting_scene(scene, levels_at_start(scene, options).first), options);
 }
 
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options) {
@@ -224,11 +213,13 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
   return {out, fastest};
 }
 
-Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters) {
+Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters,
+                 std::pair<int, int> levels) {
   const MethodTraits& method = traits_of(options.method);
   Demand out;
   out.parameters = parameters;
   out.effects = scene.effects;
+  out.finest_level = levels.first;
   out.nozzles = !scene.nozzles.empty();
   out.outlets = !scene.outlets.empty();
   out.moving_obstacles = std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& o) {
@@ -236,12 +227,14 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   });
   out.free_obstacles = any_free(scene.obstacles);
   out.obstacles_meet = any_meet(scene.obstacles);
-  out.levels = method.adaptive();
-  out.forced_targets = options.forced_targets.has_value();
-  out.gaze_targets = method.target == TargetSource::Gaze && !out.forced_targets;
-  out.saliency = method.target == TargetSource::Saliency && !out.forced_targets;
+  out.activation = (method.temporal || options.temporal.always) && !stays_off(options.temporal);
+  out.levels = method.adaptive() && levels.first < levels.second;
+  out.forced_targets = out.levels && options.forced_targets;
   out.saliency_parts = options.saliency_parts;
-  out.activation = method.temporal || options.temporal.always;
+  // Activation weighs by saliency.
+  const bool looks = !options.forced_targets && (out.levels || out.saliency_parts || out.activation);
+  out.gaze_targets = looks && method.target == TargetSource::Gaze;
+  out.saliency = looks && method.target == TargetSource::Saliency;
   out.wall_impulse = options.wall_impulse || !options.gauges.empty();
   return out;
 }

@@ -38,11 +38,12 @@ class FluidSimulation final : public Simulation {
           "use 1 to 4 levels");
     }
     check_effects(scene.effects);
-    state_.parameters = solver_parameters(scene, options);
+    if (options.resume_from.empty()) begin_with(levels_at_start(scene, options));
     if (options.time_parts) state_.clock.switch_on();
     state_.saliency.readings = options.readings;
     state_.saliency.levels = options.levels;
-    if (follows_gaze()) state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
+    if (traits_of(options.method).target != TargetSource::None)
+      state_.saliency.input.look_by_default(make_view(scene.view, 1280, 720));
     state_.levels.rules = LevelRules(options.readings, options.levels);
     if (options.forced_targets) force_targets(*options.forced_targets);
     state_.activation.rules = ActivationRules(options.readings);
@@ -62,10 +63,12 @@ class FluidSimulation final : public Simulation {
       const auto start = filled(scene, options, resolution_.level);
       open(start);
       const int substeps = state_.parameters.substeps;
-      set_substeps(substep_rule(scene_, options_, resolution_, 0, start_acceleration(scene_, start)).next());
+      set_substeps(substep_rule(acting_scene(scene_, levels_.first), options_, resolution_, 0,
+                                start_acceleration(scene_, start))
+                       .next());
       settle(state_, scene_, options_);
       set_substeps(substeps);
-      state_.one_level = !adaptive();
+      state_.one_level = is_of_one_level();
     }
     if (options.resume_from.empty()) warm_up(state_, scene_);
     if (options.wall_impulse || !options.gauges.empty())
@@ -75,14 +78,14 @@ class FluidSimulation final : public Simulation {
   bool look(const Looks& looks) override {
     // GL has finished drawing: map the coming frame's buffers now, to avoid a separate switch of ownership.
     gl_.map_again();
-    if (!follows_gaze()) return true;
+    if (!looks_) return true;
     SaliencyInput& input = state_.saliency.input;
     return input.look(looks, follows_picture() && state_.levels.turns.would_be(state_.saliency.readings,
                                                                                input.turned_deg(looks)));
   }
 
   bool follows_picture() const override {
-    return traits_of(options_.method).target == TargetSource::Saliency && !options_.forced_targets;
+    return traits_of(options_.method).target == TargetSource::Saliency && looks_;
   }
   int frame() const override { return frame_; }
   double time_s() const override { return frame_ * frame_dt(); }
@@ -94,8 +97,7 @@ class FluidSimulation final : public Simulation {
     state_.activation.frame = static_cast<std::uint32_t>(frame_);
     substeps_taken_ = {substeps_.next(), substeps_.wished()};
     set_substeps(substeps_taken_.taken);
-    if (follows_gaze() && !options_.forced_targets)
-      state_.saliency.begin_frame(state_.levels.turns, frame_dt());
+    if (looks_) state_.saliency.begin_frame(state_.levels.turns, frame_dt());
     state_.compressed = compression_.value() > calm_compression;
     run_frame(schedule_, state_);
     momentum_ = state_.impulse.end_frame(state_.parameters.rest_density, state_.parameters.dt);
@@ -145,16 +147,17 @@ class FluidSimulation final : public Simulation {
     Scene scene = scene_;
     scene.effects = effects;
     check_effects(effects);
-    const SolverParameters numbers = solver_parameters(scene, options_);
+    const Scene acting = acting_scene(scene, levels_.first);
+    const SolverParameters numbers = solver_parameters(acting, options_);
     check_foam(state_, numbers.effects, scene, frame_dt());
-    Schedule schedule = compile_schedule(demand_of(scene, options_, numbers));
+    Schedule schedule = compile_schedule(demand_of(scene, options_, numbers, levels_));
     // From here on only memory can fail.
     scene_ = std::move(scene);
     schedule_ = std::move(schedule);
     state_.parameters.effects = numbers.effects;
-    state_.parameters.most_speed = most_speed(fall_speed_, scene_, resolution_, numbers);
+    state_.parameters.most_speed = most_speed(fall_speed_, acting, resolution_, numbers);
     set_substeps(numbers.substeps);
-    substeps_.take_bounds(substep_rule(scene_, options_, resolution_, 0, 0));
+    substeps_.take_bounds(substep_rule(acting, options_, resolution_, 0, 0));
     exchange_effects(state_, scene_, schedule_.columns);
     time_passes(timing_passes_);
   }
@@ -172,7 +175,7 @@ class FluidSimulation final : public Simulation {
     out.frame = frame_;
     out.substeps = substeps_taken_;
     out.time_s = time_s();
-    if (adaptive()) out.levels = events_of(state_.levels.counts.to_host()[0]);
+    if (changes_levels_) out.levels = events_of(state_.levels.counts.to_host()[0]);
     out.temporal = account().temporal.value_or(TemporalReport{{}, {}, 1, particle_count()});
     out.start = relaxed_;
     return out;
@@ -212,7 +215,7 @@ class FluidSimulation final : public Simulation {
 
   std::vector<float> radii_m() const override {
     std::vector<float> out;
-    for (int level = finest_level_; level <= coarsest_level_; ++level)
+    for (int level = levels_.first; level <= levels_.second; ++level)
       out.push_back(radius_per_support * state_.supports.h[level]);
     return out;
   }
@@ -258,7 +261,7 @@ class FluidSimulation final : public Simulation {
     StateWriter out;
     int n = state_.particles.size();
     int capacity = state_.particles.capacity();
-    out(n, capacity, finest_level_, coarsest_level_);
+    out(n, capacity, levels_.first, levels_.second);
     keep(out);
     write_state_file(path, run_key(scene_, options_), out.bytes());
   }
@@ -279,12 +282,12 @@ class FluidSimulation final : public Simulation {
            std::to_string(k.substeps) + " substeps x " + std::to_string(k.iterations) + " iterations, " +
            std::to_string(particle_count()) + " particles of " + levels_in_words() + ", " +
            std::to_string(particle_bytes()) + " bytes\n" + obstacles_in_words(scene_.obstacles) +
-           effects_in_words(scene_, options_, finest_level_) + schedule_.explanation;
+           effects_in_words(scene_.effects, acting_scene(scene_, levels_.first), options_) +
+           schedule_.explanation;
   }
 
  private:
-  bool follows_gaze() const { return traits_of(options_.method).target != TargetSource::None; }
-  bool adaptive() const { return traits_of(options_.method).adaptive(); }
+  bool is_of_one_level() const { return !changes_levels_ && levels_.first == levels_.second; }
 
   SaliencyState make_observer() const {
     SaliencyState out;
@@ -295,12 +298,12 @@ class FluidSimulation final : public Simulation {
 
   /// Inputs of temporal acceleration in the last frame, before its frame_time is reported.
   std::optional<TemporalReport> went_by() const {
-    if (!state_.particles.has(Column::Active)) return {};
+    if (!traits_of(options_.method).temporal && !options_.temporal.always) return {};
     return TemporalReport{tolerance_.tau(), tolerance_.rate(), tolerance_.beta(), 0};
   }
 
   std::string levels_in_words() const {
-    if (adaptive()) return "levels 0 to " + std::to_string(options_.levels - 1);
+    if (changes_levels_) return "levels 0 to " + std::to_string(options_.levels - 1);
     return state_.one_level ? "level " + std::to_string(resolution_.level) : "mixed levels";
   }
 
@@ -308,7 +311,18 @@ class FluidSimulation final : public Simulation {
   int capacity_for(std::size_t start) const {
     const std::int64_t room =
         options_.particle_capacity > 0 ? options_.particle_capacity : 8 * options_.n_star;
-    return static_cast<int>(std::max<std::int64_t>(static_cast<std::int64_t>(start), adaptive() ? room : 0));
+    return static_cast<int>(
+        std::max<std::int64_t>(static_cast<std::int64_t>(start), changes_levels_ ? room : 0));
+  }
+
+  /// Chooses what the possible levels of particles call for.
+  void begin_with(std::pair<int, int> levels) {
+    levels_ = levels;
+    state_.parameters = solver_parameters(acting_scene(scene_, levels.first), options_);
+    const Demand demand = demand_of(scene_, options_, state_.parameters, levels);
+    changes_levels_ = demand.levels;
+    looks_ = demand.saliency || demand.gaze_targets;
+    schedule_ = compile_schedule(demand);
   }
 
   void open(const std::vector<ParticleState>& start) {
@@ -317,28 +331,25 @@ class FluidSimulation final : public Simulation {
       throw base::Error("particles", "are too many", "use a smaller n_* (--n-star, or n_star in a protocol)");
     }
     const int capacity = capacity_for(start.size());
-    check_start(start, capacity, adaptive());
-    const auto [finest, coarsest] = levels_of(start, resolution_.level);
-    finest_level_ = adaptive() ? 0 : finest;
-    coarsest_level_ = adaptive() ? std::max(coarsest, options_.levels - 1) : coarsest;
+    check_start(start, capacity, changes_levels_);
     lay_out(static_cast<int>(start.size()), capacity);
-    keeper_.begin(start, finest_level_, coarsest_level_);
+    keeper_.begin(start, levels_.first, levels_.second);
     fall_speed_ = fall_speed(scene_, start);
-    state_.parameters.most_speed = most_speed(fall_speed_, scene_, resolution_, state_.parameters);
-    substeps_ = substep_rule(scene_, options_, resolution_, start_speed(scene_, start),
+    const Scene acting = acting_scene(scene_, levels_.first);
+    state_.parameters.most_speed = most_speed(fall_speed_, acting, resolution_, state_.parameters);
+    substeps_ = substep_rule(acting, options_, resolution_, start_speed(scene_, start),
                              start_acceleration(scene_, start));
     put_in(state_, start);
-    if (adaptive()) state_.levels.begin(NewLevelsView(state_.particles));
+    if (changes_levels_) state_.levels.begin(NewLevelsView(state_.particles));
   }
 
   /// Allocates columns, and sets up walls and jets, for n particles of the possible levels.
   void lay_out(int n, int capacity) {
-    schedule_ = compile_schedule(demand_of(scene_, options_, state_.parameters));
     state_.particles.allocate(schedule_.columns, n, capacity);
-    state_.one_level = !adaptive() && finest_level_ == coarsest_level_;
+    state_.one_level = is_of_one_level();
     state_.supports = level_supports(2 * resolution_.finest_spacing_m);
     state_.finest_support = state_.supports.h[0];
-    state_.lightest_support = state_.supports.h[finest_level_];
+    state_.lightest_support = state_.supports.h[levels_.first];
     state_.domain = {{0, 0, 0},
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
@@ -359,10 +370,12 @@ class FluidSimulation final : public Simulation {
     StateReader in(body);
     int n = 0;
     int capacity = 0;
-    in(n, capacity, finest_level_, coarsest_level_);
-    if (n < 0 || capacity < n || finest_level_ < 0 || coarsest_level_ < finest_level_ ||
-        coarsest_level_ >= most_levels)
+    std::pair<int, int> levels;
+    in(n, capacity, levels.first, levels.second);
+    if (n < 0 || capacity < n || levels.first < 0 || levels.second < levels.first ||
+        levels.second >= most_levels)
       StateReader::fail("holds no particles");
+    begin_with(levels);
     lay_out(n, capacity);
     keep(in);
     in.finish();
@@ -388,8 +401,10 @@ class FluidSimulation final : public Simulation {
   ToleranceSwitch tolerance_;
   GlSharing gl_{GlSharing::Access::Overwrite}, foam_gl_{GlSharing::Access::Overwrite};
   int frame_;
-  TwoFramesAgo<double> compression_;           ///< mean of max(rho / rho_0 - 1, 0)
-  int finest_level_ = 0, coarsest_level_ = 0;  ///< possible levels of particles
+  TwoFramesAgo<double> compression_;  ///< mean of max(rho / rho_0 - 1, 0)
+  std::pair<int, int> levels_;        ///< finest and coarsest level that particles may have
+  bool changes_levels_ = false;       ///< particles split and merge
+  bool looks_ = false;                ///< something reads saliency or the gaze
   AccountKeeper keeper_;
 };
 

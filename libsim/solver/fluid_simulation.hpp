@@ -19,9 +19,12 @@ double frame_dt_of(const Scene& scene, const SimulationOptions& options);
 /// Minimum number of substeps per frame: from the scene or the options, and from its effects. base::Error if
 /// the options allow too few for an effect, or an effect needs too many.
 int substeps_needed(const Scene& scene, const SimulationOptions& options);
-/// Text that lists the scene's effects, their step and scale-dependent numbers, and the effects that act on
-/// no level because the water has only finest_level and coarser; empty without effects and obstacles.
-std::string effects_in_words(const Scene& scene, const SimulationOptions& options, int finest_level);
+/// The same for the scene's acting effects.
+int least_substeps(const Scene& scene, const SimulationOptions& options);
+/// Text that lists the effects, and the step and the scale-dependent numbers of those in `scene`, which act;
+/// empty without effects and obstacles.
+std::string effects_in_words(const std::vector<Effect>& listed, const Scene& scene,
+                             const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
 /// sqrt(v0^2 + 2 g H + (Omega R)^2), m/s: upper bound on the speed of water that starts at v0 and falls to
@@ -43,8 +46,9 @@ float most_speed(double fall_speed, const Scene& scene, const Resolution& resolu
                  const SolverParameters& parameters);
 /// Speed of the fastest of the start, the nozzles and the obstacles, m/s.
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
-/// The stages that the method needs while it runs.
-Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters);
+/// The stages that the method needs while it runs, in water of these levels, finest and coarsest.
+Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters,
+                 std::pair<int, int> levels);
 /// base::Error for an unknown level.
 TargetSphere sphere_of(const TargetRegion& region);
 /// The tank's floor and sides with their outlets. While the water settles, outlets are shut, and if there is
@@ -76,8 +80,9 @@ std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& o
 /// base::Error for a start that the solver cannot hold: unknown levels and, if particles split and merge, ids
 /// that repeat or reach the capacity.
 void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive);
-/// The finest and the coarsest level of the particles; `level` twice when there are none.
-std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level);
+/// The finest and the coarsest level that particles may have in a run that does not resume: those of its
+/// start, of the nozzles, and of what splits and merges.
+std::pair<int, int> levels_at_start(const Scene& scene, const SimulationOptions& options);
 /// Stores the particles of a start in columns with room for them, and counts their mass units.
 void put_in(FluidState& state, const std::vector<ParticleState>& start);
 /// Sets the temperatures at frame 0 from the scene's boxes, and an empty heat ledger; does nothing if no

@@ -8,7 +8,7 @@ namespace sim {
 // Each back end is a separate namespace, compiled from the same source (libsim/exec/space.hpp).
 namespace cpu {
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
-int substeps_needed(const Scene& scene, const SimulationOptions& options);
+int least_substeps(const Scene& scene, const SimulationOptions& options);
 }  // namespace cpu
 #ifdef SIM_HAS_CUDA
 namespace cuda {
@@ -29,7 +29,7 @@ std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const Simulation
 
 // Both back ends use the same rule.
 int least_substeps(const Scene& scene, const SimulationOptions& options) {
-  return cpu::substeps_needed(scene, options);
+  return cpu::least_substeps(scene, options);
 }
 
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {

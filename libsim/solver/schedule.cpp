@@ -118,7 +118,7 @@ const Effect* listed(const Demand& demand, EffectKind kind) {
 std::string reason_for(const Stage& stage, const Demand& demand) {
   if (stage.effect == no_effect) return stage.called_for(demand);
   const Effect* effect = listed(demand, stage.effect);
-  if (!effect || effect->coefficient == 0) return "";
+  if (!effect || effect->coefficient == 0 || is_idle(*effect, demand.effects, demand.finest_level)) return "";
   if (stage.called_for && stage.called_for(demand).empty()) return "";
   return std::string("the scene lists ") + traits_of(effect->kind).key + " = " +
          base::shortest(effect->coefficient);
@@ -126,8 +126,13 @@ std::string reason_for(const Stage& stage, const Demand& demand) {
 
 std::string why_not(const Stage& stage, const Demand& demand) {
   const Effect* effect = stage.effect == no_effect ? nullptr : listed(demand, stage.effect);
-  if (!effect || effect->coefficient > 0) return "not called for";
-  return std::string("dropped: the scene lists ") + traits_of(effect->kind).key + " = 0";
+  if (!effect) return "not called for";
+  if (effect->coefficient == 0)
+    return std::string("dropped: the scene lists ") + traits_of(effect->kind).key + " = 0";
+  if (!is_idle(*effect, demand.effects, demand.finest_level)) return "not called for";
+  const int coarsest = static_cast<int>(coefficients_of(demand.effects)[*coarsest_level_of(effect->kind)]);
+  return std::string("idle: ") + traits_of(effect->kind).word + " is for level " +
+         (coarsest > 0 ? "0 to " : "") + std::to_string(coarsest) + ", and no water is so fine";
 }
 
 }  // namespace

@@ -74,11 +74,19 @@ void check_start(const std::vector<ParticleState>& start, int capacity, bool ada
   }
 }
 
-std::pair<int, int> levels_of(const std::vector<ParticleState>& start, int level) {
-  if (start.empty()) return {level, level};
-  const auto [least, most] = std::minmax_element(
-      start.begin(), start.end(), [](const auto& a, const auto& b) { return a.level < b.level; });
-  return {least->level, most->level};
+std::pair<int, int> levels_at_start(const Scene& scene, const SimulationOptions& options) {
+  const MethodTraits& method = traits_of(options.method);
+  std::pair<int, int> out{method.start_level, method.start_level};
+  if (options.start && !options.start->empty()) {
+    const auto [least, most] =
+        std::minmax_element(options.start->begin(), options.start->end(),
+                            [](const auto& a, const auto& b) { return a.level < b.level; });
+    out = {least->level, most->level};
+  }
+  if (method.adaptive()) return {0, std::max(out.second, options.levels - 1)};
+  // Nozzles reuse particles of one level, and make those of mixed levels anew.
+  if (scene.nozzles.empty() || out.first == out.second) return out;
+  return {std::min(out.first, method.start_level), std::max(out.second, method.start_level)};
 }
 
 void put_in(FluidState& state, const std::vector<ParticleState>& start) {

@@ -11,7 +11,7 @@
 namespace sim {
 
 /// Increase when the layout of the body or the contents of the key change.
-inline constexpr int state_file_format = 4;
+inline constexpr int state_file_format = 5;
 
 /// SHA-256 of everything that a state belongs to: scene, method, n_*, back end, levels, readings and numbers
 /// of the solver. Runs with equal keys continue identically from one state.

@@ -12,6 +12,7 @@
 #include "libsim/render/offscreen.hpp"
 #include "libsim/render/png.hpp"
 #include "libsim/render/temperature_scale.hpp"
+#include "libsim/scene/fill.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/progress.hpp"
@@ -27,20 +28,20 @@ constexpr Colour kept{0, 150, 60}, lost{220, 30, 30}, fovea{250, 170, 0};
 sim::Image draw_fluid(const FramedScene& framed, bool paint_temperature) {
   sim::SimulationOptions options;
   options.method = sim::MethodKind::LoRes;
+  const sim::Scene acting = sim::acting_scene(framed.scene, options.method);
   options.n_star = particles;
   options.backend = sim::choose_backend("auto");
   options.cache = sim::default_cache_folder();
   const auto fluid = sim::make_simulation(framed.scene, options);
   const int frames = framed.scene.checkpoints.empty() ? 0 : framed.scene.checkpoints.front();
   for (int frame = 0; frame < frames; ++frame) fluid->step_frame();
-  sim::FluidPicture picture(framed.scene);
+  sim::FluidPicture picture(acting);
   const sim::Offscreen target(framed.view.viewport.width, framed.view.viewport.height);
   picture.draw(*fluid, framed.view, target.framebuffer());
-  if (paint_temperature) {
+  if (const sim::TemperatureScale scale(acting); paint_temperature && scale.heat()) {
     std::vector<float> temperature_k;
     fluid->read_field(sim::ParticleField::Temperature, temperature_k);
-    picture.renderer().paint(sim::TemperatureScale(framed.scene).overlay(temperature_k),
-                             target.framebuffer());
+    picture.renderer().paint(scale.overlay(temperature_k), target.framebuffer());
   }
   return target.read();
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/fill.hpp"
 #include "libsim/scene/picture_effects_text.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "libsim/solver/settled_state.hpp"
@@ -157,7 +158,7 @@ void BakedPictures::draw(const Canvas& canvas) {
 BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing,
                                const sim::RenderOptions& options, bool paint_temperature)
     : bake_(std::move(bake)),
-      scene_(sim::baked_scene(bake_->header())),
+      scene_(sim::acting_scene(sim::baked_scene(bake_->header()), sim::parse_method(bake_->header().method))),
       viewing_(std::move(viewing)),
       options_(options),
       painted_(painted(scene_, paint_temperature && bake_->header().reference_k)) {
@@ -292,8 +293,8 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
     if (!options.start) options.start = simulation->read_state();
     return simulation;
   };
-  return std::make_unique<LiveFluid>(scene, dt, description, make, choice.viewing, choice.render,
-                                     choice.paint_temperature);
+  return std::make_unique<LiveFluid>(sim::acting_scene(scene, options.method), dt, description, make,
+                                     choice.viewing, choice.render, choice.paint_temperature);
 }
 
 std::unique_ptr<Stimulus> make_stimulus(const StimulusChoice& choice) {

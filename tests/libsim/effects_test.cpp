@@ -308,7 +308,8 @@ TEST(Effects, ExplainStatesTheLimitsOfThickFluid) {
   options.substeps = 4;
   std::ostringstream speed;
   speed << scene.gravity_m_s2 * scene.frame_dt_s / 4;
-  EXPECT_THAT(sim::make_simulation(scene, options)->explain(), HasSubstr(slump + speed.str() + " m/s (g dt)"));
+  EXPECT_THAT(sim::make_simulation(scene, options)->explain(),
+              HasSubstr(slump + speed.str() + " m/s (g dt)"));
   scene.gravity_m_s2 = 0;
   EXPECT_THAT(says(), Not(AnyOf(HasSubstr(words), HasSubstr(slump))));
   scene.gravity_m_s2 = 9.81;

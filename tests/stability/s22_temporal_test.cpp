@@ -43,7 +43,7 @@ void beta_one_changes_no_bit(Backend backend) {
   auto options = dam_options(backend, 256);
   options.start = settled_dam(scene, options);
   const auto off = sim::make_simulation(scene, options);
-  options.temporal = fixed(0);
+  options.temporal.always = true;  // a measured tau
   const auto on = sim::make_simulation(scene, options);
   EXPECT_NE(on->explain().find("frame start  activation"), std::string::npos);
   EXPECT_NE(off->explain().find("-  activation"), std::string::npos);
@@ -51,6 +51,8 @@ void beta_one_changes_no_bit(Backend backend) {
   for (int frame = 0; frame < 90; ++frame) {
     off->step_frame();
     on->step_frame();
+    on->frame_time(10);
+    EXPECT_EQ(on->account().temporal->beta, 1);
   }
   EXPECT_TRUE(same(off->read_state(), on->read_state()));
 }
@@ -205,13 +207,14 @@ void ours_tsp(Backend backend) {
   ours.method = sim::MethodKind::Ours;
   options.temporal.fixed_tau = -40;
   const auto with = sim::make_simulation(scene, options);
-  options.temporal.fixed_tau = 5;
+  options.temporal.fixed_tau.reset();
   const auto idle = sim::make_simulation(scene, options);
   const auto without = sim::make_simulation(scene, ours);
   EXPECT_EQ(without->explain().find("frame start  activation"), std::string::npos);
   std::int64_t least = 0;
   for (int frame = 0; frame < 60; ++frame) {
     for (const auto& fluid : {with.get(), idle.get(), without.get()}) fluid->step_frame();
+    idle->frame_time(10);
     const auto report = with->report();
     EXPECT_EQ(report.mass_units, 8 * 256);
     EXPECT_LT(report.density_max, 1.3);

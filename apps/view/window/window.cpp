@@ -41,7 +41,7 @@ struct Running {
   explicit Running(PreparedFluid fluid)
       : prepared(std::move(fluid)),
         picture(as_listed(prepared)),
-        painter(prepared.scene, prepared.finest_spacing_m) {}
+        painter(drawn(prepared), prepared.finest_spacing_m) {}
 
   PreparedFluid prepared;
   sim::FluidPicture picture;
@@ -190,7 +190,7 @@ void Viewer::exchange_effects() {
     if (chosen != prepared.scene.effects) {
       prepared.fluid->set_effects(chosen);
       prepared.scene.effects = chosen;
-      fluid_->painter = OverlayPainter(prepared.scene, prepared.finest_spacing_m);
+      fluid_->painter = OverlayPainter(drawn(prepared), prepared.finest_spacing_m);
       std::printf("frame %d: %zu passes, with %s\n", figures_.frame, prepared.fluid->passes().size(),
                   in_words(chosen).c_str());
       std::fflush(stdout);

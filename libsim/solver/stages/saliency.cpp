@@ -8,6 +8,12 @@ using SurroundingsView =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                columns(Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density)>;
 
+/// Who reads saliency.
+std::string reader(const Demand& demand, const char* of_levels) {
+  if (demand.levels) return of_levels;
+  return demand.activation ? "the choice of solved particles weighs by it" : "an output asks for it";
+}
+
 /// Inputs of saliency; the caller sets the outputs.
 SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
   const auto& k = state.parameters;
@@ -97,7 +103,7 @@ Stage saliency_stage() {
                                  .source = "ViP-Fluid 3.2, Eq. 1-9",
                                  .phase = Phase::FrameStart,
                                  .called_for = [](const Demand& demand) -> std::string {
-                                   return demand.saliency ? "levels follow what is seen" : "";
+                                   return demand.saliency ? reader(demand, "levels follow what is seen") : "";
                                  },
                                  .part = Part::Saliency});
 }
@@ -148,7 +154,8 @@ Stage gaze_targets_stage() {
                                      .source = "FovFluid-like: fovea, band, periphery",
                                      .phase = Phase::FrameStart,
                                      .called_for = [](const Demand& demand) -> std::string {
-                                       return demand.gaze_targets ? "levels follow the gaze" : "";
+                                       return demand.gaze_targets ? reader(demand, "levels follow the gaze")
+                                                                  : "";
                                      },
                                      .part = Part::Saliency});
 }

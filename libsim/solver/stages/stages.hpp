@@ -15,6 +15,7 @@ namespace sim::SIM_BACKEND {
 struct Demand {
   SolverParameters parameters;
   std::vector<Effect> effects;    ///< that the scene lists
+  int finest_level = 0;           ///< of all water that may be present: effects of finer levels are idle
   bool nozzles = false;           ///< the scene has one
   bool outlets = false;           ///< the scene has one
   bool moving_obstacles = false;  ///< the scene has one that moves along a given path

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/scene/fill.hpp"
 #include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
@@ -110,12 +111,14 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   header.frame_dt_s = order.fluid.content_step_s > 0 ? order.fluid.content_step_s : scene.frame_dt_s;
   header.tank_size_m = scene.tank_size_m;
   header.effects = sim::format_effects(scene.effects);
-  header.max_foam = foam_of(scene);
-  if (sim::TemperatureScale(scene).heat()) header.reference_k = sim::reference_temperature(scene);
+  const sim::Scene acting = sim::acting_scene(scene, traits.kind);
+  header.max_foam = foam_of(acting);
+  if (sim::TemperatureScale(acting).heat()) header.reference_k = sim::reference_temperature(scene);
   if (order.fluid.paint_temperature) {
     if (!header.reference_k)
-      throw base::Error(order.fluid.scene.string(), "has no heat, and so no temperatures to paint",
-                        "list heat as an [[effect]], or leave the overlay out");
+      throw base::Error(order.fluid.scene.string(),
+                        "has no heat, and so no temperatures to paint, with " + header.method,
+                        "list heat as an [[effect]] for that water, or leave the overlay out");
     header.overlay = "temperature";
   }
   header.view = view_of(order, scene, traits.adaptive());

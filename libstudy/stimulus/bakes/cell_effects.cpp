@@ -4,6 +4,7 @@
 #include <set>
 
 #include "libsim/render/temperature_scale.hpp"
+#include "libsim/scene/fill.hpp"
 #include "libsim/scene/picture_effects_text.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -173,24 +174,29 @@ void check_levels(const Protocol& protocol, const sim::Scene& scene) {
   }
 }
 
-/// Temperature scale of each level's water, or of the scene's own.
-std::vector<sim::TemperatureScale> scales_of(const Protocol& protocol, const sim::Scene& scene) {
-  if (protocol.design.effects.empty()) return {sim::TemperatureScale(scene)};
-  std::vector<sim::TemperatureScale> out;
-  for (const EffectSet& level : protocol.design.effects) {
-    out.emplace_back(scene_with(scene, effects_of(protocol, level.name, scene)));
-  }
+/// The scene with each level's effects, or with its own.
+std::vector<sim::Scene> scenes_of_levels(const Protocol& protocol, const sim::Scene& scene) {
+  if (protocol.design.effects.empty()) return {scene};
+  std::vector<sim::Scene> out;
+  for (const EffectSet& level : protocol.design.effects)
+    out.push_back(scene_with(scene, effects_of(protocol, level.name, scene)));
   return out;
 }
 
-/// Checks that all levels have temperatures, painted in the same colours.
-void check_temperatures(const Protocol& protocol, const sim::Scene& scene) {
-  const auto scales = scales_of(protocol, scene);
+/// Checks that all levels have temperatures with this method, painted in the same colours.
+void check_temperatures(const Protocol& protocol, const sim::Scene& scene, sim::MethodKind method) {
+  std::vector<sim::TemperatureScale> scales;
+  std::vector<bool> idle;
+  for (const sim::Scene& of_level : scenes_of_levels(protocol, scene)) {
+    scales.emplace_back(sim::acting_scene(of_level, method));
+    idle.push_back(!scales.back().heat() && sim::TemperatureScale(of_level).heat());
+  }
   const auto& levels = protocol.design.effects;
   for (std::size_t i = 0; i < scales.size(); ++i) {
     const sim::TemperatureScale& scale = scales[i];
     const std::string where =
-        "scene " + scene.name + (levels.empty() ? "" : " at level \"" + levels[i].name + "\"");
+        "scene " + scene.name + (levels.empty() ? "" : " at level \"" + levels[i].name + "\"") +
+        (idle[i] ? " in the water of " + sim::method_name(method) + ", by its coarsest_level" : "");
     if (!scale.heat()) {
       design_of(protocol).fail("overlay",
                                "= \"temperature\" needs the effect heat, which is missing in " + where,
@@ -234,17 +240,18 @@ CellEffects cell_effects(const Protocol& protocol, const StimulusSpec& what) {
 
 void check_cell_effects(const Protocol& protocol) {
   if (protocol.design.effects.empty() && !protocol.design.paint_temperature) return;
-  std::set<std::string> scenes;
+  std::set<std::pair<std::string, std::string>> waters;
   for (const Cell& cell : protocol.design.cells) {
-    if (!scenes.insert(cell.stimulus.scene).second) continue;
+    if (!waters.emplace(cell.stimulus.scene, cell.stimulus.method).second) continue;
     const sim::Scene scene = sim::read_scene(base::find_input(cell.stimulus.scene));
     check_levels(protocol, scene);
-    if (protocol.design.paint_temperature) check_temperatures(protocol, scene);
+    if (protocol.design.paint_temperature)
+      check_temperatures(protocol, scene, sim::parse_method(cell.stimulus.method));
   }
 }
 
 std::string temperatures_in_words(const Protocol& protocol, const sim::Scene& scene) {
-  return scales_of(protocol, scene).front().words();
+  return sim::TemperatureScale(scenes_of_levels(protocol, scene).front()).words();
 }
 
 std::string levels_in_words(const Protocol& protocol, const sim::Scene& scene) {

@@ -14,6 +14,7 @@
 #include "libsim/methods/preset.hpp"
 #include "libsim/render/gl_context.hpp"
 #include "libsim/render/png.hpp"
+#include "libsim/scene/fill.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libsim/setting/finite_water.hpp"
@@ -88,7 +89,8 @@ bool keeps_picture(std::size_t sample) { return sample % 3 != 2; }
 
 std::unique_ptr<measure::RenderTimer> pictures(const SweepCell& cell, const sim::Scene& scene) {
   if (cell.size.empty()) return nullptr;
-  return std::make_unique<measure::RenderTimer>(sim::GlContext::make_headless(), scene,
+  return std::make_unique<measure::RenderTimer>(sim::GlContext::make_headless(),
+                                                sim::acting_scene(scene, cell.setting.method),
                                                 base::parse_picture_size(cell.size), 1);
 }
 
