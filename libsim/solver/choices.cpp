@@ -239,6 +239,24 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   return out;
 }
 
+void check_levels(int levels) {
+  if (levels >= 1 && levels <= most_levels) return;
+  throw base::Error(
+      "N = " + std::to_string(levels),
+      "is not a number of levels: a particle splits into at most 2^3 in one step, the corners of "
+      "a cube",
+      "use 1 to 4 levels");
+}
+
+int capacity_for(std::size_t start, const SimulationOptions& options, bool splits) {
+  // Particles and their cells are indexed with int.
+  if (start > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::most_per_particle) {
+    throw base::Error("particles", "are too many", "use a smaller n_* (--n-star, or n_star in a protocol)");
+  }
+  const std::int64_t room = options.particle_capacity > 0 ? options.particle_capacity : 8 * options.n_star;
+  return static_cast<int>(std::max(static_cast<std::int64_t>(start), splits ? room : 0));
+}
+
 TargetSphere sphere_of(const TargetRegion& region) {
   if (std::min(region.inside, region.outside) < 0 || std::max(region.inside, region.outside) >= most_levels) {
     throw base::Error("forced targets", "name a level that does not exist", "use levels 0 to 3");

@@ -1,7 +1,5 @@
 #include "libsim/solver/fluid_simulation.hpp"
 
-#include <algorithm>
-#include <limits>
 
 #include "libsim/exec/gl_sharing.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
@@ -30,13 +28,7 @@ class FluidSimulation final : public Simulation {
         frame_(options.start_frame),
         // A start at frame 0 may be compressed; a start in the middle of a run continues as it was.
         compression_(options.start_frame == 0 ? 1 : 0) {
-    if (options.levels < 1 || options.levels > most_levels) {
-      throw base::Error(
-          "N = " + std::to_string(options.levels),
-          "is not a number of levels: a particle splits into at most 2^3 in one step, the corners "
-          "of a cube",
-          "use 1 to 4 levels");
-    }
+    check_levels(options.levels);
     check_effects(scene.effects);
     if (options.resume_from.empty()) begin_with(levels_at_start(scene, options));
     if (options.time_parts) state_.clock.switch_on();
@@ -307,14 +299,6 @@ class FluidSimulation final : public Simulation {
     return state_.one_level ? "level " + std::to_string(resolution_.level) : "mixed levels";
   }
 
-  /// Methods that split have capacity for 8 n_* particles, the number if all water is at level 0.
-  int capacity_for(std::size_t start) const {
-    const std::int64_t room =
-        options_.particle_capacity > 0 ? options_.particle_capacity : 8 * options_.n_star;
-    return static_cast<int>(
-        std::max<std::int64_t>(static_cast<std::int64_t>(start), changes_levels_ ? room : 0));
-  }
-
   /// Chooses what the possible levels of particles call for.
   void begin_with(std::pair<int, int> levels) {
     levels_ = levels;
@@ -326,11 +310,7 @@ class FluidSimulation final : public Simulation {
   }
 
   void open(const std::vector<ParticleState>& start) {
-    // Particles and their cells are indexed with int.
-    if (start.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::most_per_particle) {
-      throw base::Error("particles", "are too many", "use a smaller n_* (--n-star, or n_star in a protocol)");
-    }
-    const int capacity = capacity_for(start.size());
+    const int capacity = capacity_for(start.size(), options_, changes_levels_);
     check_start(start, capacity, changes_levels_);
     lay_out(static_cast<int>(start.size()), capacity);
     keeper_.begin(start, levels_.first, levels_.second);

@@ -49,6 +49,11 @@ double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// The stages that the method needs while it runs, in water of these levels, finest and coarsest.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters,
                  std::pair<int, int> levels);
+/// base::Error for an N outside 1 .. 4.
+void check_levels(int levels);
+/// Room for particles: 8 n_*, the number if all water is at level 0, or the option's, if they split, and at
+/// least that of the start. base::Error if the start has too many to index.
+int capacity_for(std::size_t start, const SimulationOptions& options, bool splits);
 /// base::Error for an unknown level.
 TargetSphere sphere_of(const TargetRegion& region);
 /// The tank's floor and sides with their outlets. While the water settles, outlets are shut, and if there is
