@@ -33,13 +33,13 @@ docs/results.md|vip-bench table1|slow s/all/Faucet/; s/32k/64/; s/repeats 5/repe
 docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 4k|quick s/4k/64/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/results.md
 docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 4k --backend cpu|quick s/4k/256/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/results.md
 docs/results.md|vip-bench frame --peers --backend cpu|quick s/cpu/cpu --frames 2/|it takes most of a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|vip-bench effects data/scenes/splash.toml --levels|s/512/64 --frames 2/; s/480x360/120x90/|it takes minutes on two cores|
+docs/results.md|vip-bench effects data/scenes/splash.toml --levels|slow s/512/64 --frames 2/; s/480x360/120x90/|it takes minutes on two cores|DocsSlow.docs/results.md
 docs/results.md|vip-bench effects|s/4k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
-docs/results.md|vip-bench growth|s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
-docs/results.md|vip-bench frame data/scenes/pool_light.toml|s/2k/64/; s/frames [0-9]*/frames 2/; s/960x540/160x90/|it takes a minute on two cores|
-docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/; s/2064x2208/64x64/|it needs a GPU|
+docs/results.md|vip-bench growth|slow s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|DocsSlow.docs/results.md
+docs/results.md|vip-bench frame data/scenes/pool_light.toml|slow s/2k/64/; s/frames [0-9]*/frames 2/; s/960x540/160x90/|it takes a minute on two cores|DocsSlow.docs/results.md
+docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 32k|slow s/32k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/; s/2064x2208/64x64/|it needs a GPU|DocsSlow.docs/results.md
 docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/|it needs a GPU|
-docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
+docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|slow s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|DocsSlow.docs/results.md
 docs/results.md|vip-bench frame --peers --backend cuda|s/cuda/cpu --frames 2/|it needs a GPU|
 docs/results.md|vip-bench stability --case S9,S11,S12|slow s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|DocsSlow.docs/results.md
 docs/results.md|vip-view data/scenes/single_dam.toml --headless --frames 3 --n-star 256|quick s/256/64/|it settles water for long|DocsSlow.docs/results.md
