@@ -4,7 +4,7 @@
 #   build    what builds and runs the programs
 #   tests    libraries that the tests are compiled with
 #   tools    programs that the tests run
-#   slow     programs that tests of the label slow run besides
+#   slow     further programs, which only the slow tests run
 #   sweeps   Snakemake, for scripts/sweep.smk and its tests
 #   lint     clang-tidy, which scripts/tidy.sh runs
 set -euo pipefail

@@ -102,7 +102,7 @@ std::vector<measure::EffectCost> costs_of(const sim::Scene& scene, const Effects
   for (Running& running : all) {
     const std::string place = scene.name + ", effects: " + running.cost.name;
     sim::check_finite(*running.fluid, place);
-    sim::tell_guards(place, *running.fluid);
+    sim::print_guards(place, *running.fluid);
     running.cost.same_state = same(bare, running.fluid->read_state());
     count_launches(running);
     costs.push_back(running.cost);

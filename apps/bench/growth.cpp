@@ -60,7 +60,7 @@ measure::GrowthRow run_size(const sim::Scene& scene, const measure::CellSize& si
   }
   const std::string place = scene.name + ", n_* " + size.word;
   sim::check_finite(*fluid, place);
-  sim::tell_guards(place, *fluid);
+  sim::print_guards(place, *fluid);
   const double all_ms = std::accumulate(frame_ms.begin(), frame_ms.end(), 0.0);
   out.substeps_mean = substeps.mean(options.frames);
   out.ms_substep_mean = all_ms / substeps.taken;

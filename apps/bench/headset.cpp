@@ -72,7 +72,7 @@ class HeadsetBench {
     }
   }
 
-  void tell_guards() const { sim::tell_guards(fluid_->description(), fluid_->simulation()); }
+  void print_guards() const { sim::print_guards(fluid_->description(), fluid_->simulation()); }
   base::Json facts() const {
     const study::HeadsetRate rate = session_.rate();
     return {{"headset", session_.description()}, {"refresh_hz", rate.measured_hz},
@@ -128,7 +128,7 @@ void run_headset(const HeadsetBenchOptions& options) {
   Stages stages;
   bench.run(options.warm_up, nullptr);
   bench.run(options.frames, &stages);
-  bench.tell_guards();
+  bench.print_guards();
   base::Json result = bench.facts();
   result["program"] = "vip-bench headset";
   result["version"] = base::version();

@@ -108,7 +108,7 @@ CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& c
     run.seen_ms += (looked - start) / (options.frames - options.warm_up);
   }
   sim::check_finite(fluid, scene.name);
-  sim::tell_guards(
+  sim::print_guards(
       scene.name + ", " + sim::method_name(choice.method) + ", n_* " + std::to_string(choice.n_star), fluid);
   run.seen_way = fluid.report().seen.way;
   return run;

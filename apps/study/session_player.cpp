@@ -293,7 +293,7 @@ RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Pro
                 study::SessionSetup& setup, const PlayOptions& options) {
   std::vector<EndedEarly> early;
   const auto tell = [&] {
-    sim::tell_guards("live fluid", setup.stimuli->guards(), {});
+    sim::print_guards("live fluid", setup.stimuli->guards(), {});
     return tell_ends(run, early, options.database);
   };
   try {

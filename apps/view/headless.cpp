@@ -165,7 +165,7 @@ void run_headless(const ViewOptions& options) {
   if (timing.draws) print_render_counts(picture.renderer().counts());
   if (prepared.ptpe) print_tolerance(*prepared.ptpe, timing.window.moments());
   pictures.print();
-  sim::tell_guards(options.scene, *prepared.fluid);
+  sim::print_guards(options.scene, *prepared.fluid);
 }
 
 }  // namespace apps

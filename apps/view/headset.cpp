@@ -74,7 +74,7 @@ class HeadsetViewer {
       if (display_.facts().state != study::HeadsetState::Exiting) throw;
       shown.ended = "the headset's software asked to leave";
     }
-    if (shown.frames > 0) sim::tell_guards(scene_, fluid_->simulation());
+    if (shown.frames > 0) sim::print_guards(scene_, fluid_->simulation());
     return shown;
   }
 

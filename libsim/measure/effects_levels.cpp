@@ -171,7 +171,7 @@ std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, con
   for (Running& running : all) {
     const std::string place = scene.name + ", " + running.cost.effect + " at " + running.cost.levels;
     sim::check_finite(*running.fluid, place);
-    sim::tell_guards(place, *running.fluid);
+    sim::print_guards(place, *running.fluid);
     const auto first = std::find_if(all.begin(), all.end(), [&](const Running& other) {
       return other.cost.effect == running.cost.effect;
     });

@@ -140,7 +140,7 @@ void run_film(const sim::CellScene& scene, const CellSize& size, const Table1Opt
     film.put(frames, block);
     met = sim::sum(met, film.guards());
   }
-  sim::tell_guards(scene.name + ", n_* " + size.word + ", film", met, {});
+  sim::print_guards(scene.name + ", n_* " + size.word + ", film", met, {});
 }
 
 }  // namespace measure

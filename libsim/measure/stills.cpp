@@ -60,7 +60,7 @@ class Stills {
     }
     for (const auto& checkpoint : checkpoints) compare_all(checkpoint);
     for (auto& start : result_.starts) start.particles_share /= start.starts;
-    sim::tell_guards(scene_.name + ", n_* " + size_.word + ", stills", guards_, {});
+    sim::print_guards(scene_.name + ", n_* " + size_.word + ", stills", guards_, {});
     return std::move(result_);
   }
 

@@ -9,11 +9,11 @@
 
 namespace sim {
 
-/// base::Error that names an obstacle whose swing leaves the water no room: it closes the tank, as all its
-/// gaps to the walls are narrower than the finest spacing, and at its lowest the water that was below it at
-/// the start is deeper than the room there by more than that spacing. Scenes with a nozzle, which takes water
-/// from the floor, or with an outlet that begins below the obstacle pass. A mesh closes the tank only where
-/// it is solid throughout.
+/// base::Error that names an obstacle whose swing leaves the water no room. Such an obstacle closes the tank:
+/// all its gaps to the walls are narrower than the finest spacing, and a mesh has no hole. At the lowest
+/// point of its swing, the water that was below it at the start would be deeper than the space below it by
+/// more than that spacing. A scene with a nozzle is accepted, because nozzles take water from the floor. So
+/// is one with an outlet below the obstacle.
 void check_ways(const Scene& scene, std::int64_t n_star);
 
 /// check_ways, and base::Error that names the key if the water is thinner than a particle, a frame takes more

@@ -20,7 +20,7 @@ Scene acting_scene(Scene scene, int finest_level) {
   return scene;
 }
 
-// No method makes finer particles than those it begins with.
+// The particles at the start are the finest of the run.
 Scene acting_scene(Scene scene, MethodKind method) {
   return acting_scene(std::move(scene), traits_of(method).start_level);
 }

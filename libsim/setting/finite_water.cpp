@@ -42,16 +42,16 @@ std::string in_words(const GuardCounts& met) {
   return parts.empty() ? "" : "guards stepped in: " + parts.substr(2);
 }
 
-void tell_guards(const std::string& place, const GuardCounts& met, const std::optional<Divergence>& first) {
-  std::string told = in_words(met);
-  if (first) told += (told.empty() ? "" : "; ") + ("first trouble: " + in_words(*first));
-  if (told.empty()) return;
+void print_guards(const std::string& place, const GuardCounts& met, const std::optional<Divergence>& first) {
+  std::string line = in_words(met);
+  if (first) line += (line.empty() ? "" : "; ") + ("first trouble: " + in_words(*first));
+  if (line.empty()) return;
   std::fflush(stdout);
-  std::fprintf(stderr, "%s: %s\n", base::for_terminal(place).c_str(), told.c_str());
+  std::fprintf(stderr, "%s: %s\n", base::for_terminal(place).c_str(), line.c_str());
 }
 
-void tell_guards(const std::string& place, Simulation& fluid) {
-  tell_guards(place, fluid.report().guards, fluid.divergence());
+void print_guards(const std::string& place, Simulation& fluid) {
+  print_guards(place, fluid.report().guards, fluid.divergence());
 }
 
 void check_finite(Simulation& fluid, const std::string& place) {

@@ -124,7 +124,7 @@ TEST(OwnLevels, FineWaterIsThatOfEffectsAtAllLevels) {
   EXPECT_FALSE(same_bits(run(MethodKind::Ours, effects_to(0)), run(MethodKind::Ours, effects_to(3))));
 }
 
-/// What a run takes: launches over two frames, substeps and memory.
+/// Cost of a run: launches in two frames, substeps and memory.
 struct Price {
   std::int64_t launches = 0;
   int substeps = 0;
@@ -162,7 +162,7 @@ double brisk(EffectKind kind) {
   return 1;
 }
 
-/// The effect up to this level, with what it needs.
+/// The effect for levels up to this one, and the effect that it requires.
 std::vector<sim::Effect> alone(EffectKind kind, int coarsest) {
   std::vector<sim::Effect> out{{kind, brisk(kind)}};
   if (const EffectKind needs = sim::traits_of(kind).needs; needs != sim::no_effect)

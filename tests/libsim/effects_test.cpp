@@ -280,19 +280,6 @@ TEST(Effects, ThePageQuotesTheSources) {
   EXPECT_EQ(blocks, 3);
 }
 
-TEST(Effects, EachHasOneStageFileAndOneRowInTheDocs) {
-  const std::string root = std::string(VIP_TEST_DIR) + "/../";
-  std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(root + "libsim/solver/effects"))
-    files += entry.path().extension() == ".cpp";
-  EXPECT_EQ(files, sim::effect_count);
-  const std::string page = base::read_file(root + "docs/methods.md", 1 << 20);
-  for (std::size_t k = 0; k < sim::effect_count; ++k) {
-    const auto& traits = sim::traits_of(static_cast<EffectKind>(k));
-    EXPECT_THAT(page, HasSubstr(std::string("| `") + traits.word + "` | `" + traits.key + "` |"));
-  }
-}
-
 TEST(Effects, ExplainStatesTheLimitsOfThickFluid) {
   NEEDS_EFFECTS;
   auto scene = small_dam();

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "libsim/scene/effects.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
 #include "stats/base/toml.hpp"
 #include "tests/common/needs_effects.hpp"
 #include "tests/libsim/fluid_helpers.hpp"
@@ -58,6 +61,19 @@ TEST(Effects, BesideOthersMayNeedThemAndNotRepeatThem) {
   EXPECT_THAT([&] { read("[[effect]]\nkind = \"cohesion\"\ntension_n_m = 10\n"); },
               testing::ThrowsMessage<base::Error>(
                   testing::AllOf(testing::HasSubstr("e.toml:2:8"), testing::HasSubstr("listed twice"))));
+}
+
+TEST(Effects, EachHasOneStageFileAndOneRowInTheDocs) {
+  const std::string root = std::string(VIP_TEST_DIR) + "/../";
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(root + "libsim/solver/effects"))
+    files += entry.path().extension() == ".cpp";
+  EXPECT_EQ(files, sim::effect_count);
+  const std::string page = base::read_file(root + "docs/methods.md", 1 << 20);
+  for (std::size_t k = 0; k < sim::effect_count; ++k) {
+    const auto& traits = sim::traits_of(static_cast<EffectKind>(k));
+    EXPECT_THAT(page, testing::HasSubstr(std::string("| `") + traits.word + "` | `" + traits.key + "` |"));
+  }
 }
 
 }  // namespace

@@ -106,8 +106,8 @@ study::StoredCell run(const Job& job, const study::SweepCell& cell) {
 }
 
 /// What a sweep stores of the guards.
-void tell_braked(const Job& job, std::int64_t braked) {
-  sim::tell_guards(job.scene.name, {.speed_limited = static_cast<std::uint64_t>(braked)}, {});
+void print_braked(const Job& job, std::int64_t braked) {
+  sim::print_guards(job.scene.name, {.speed_limited = static_cast<std::uint64_t>(braked)}, {});
 }
 
 void print_list(const Job& job) {
@@ -126,7 +126,7 @@ void run_one(const Job& job, const AccuracyOptions& options) {
   if (file.keys(job.origin.machine).contains(options.cell)) return;
   const auto cell = run(job, *found);
   file.add(cell);
-  tell_braked(job, cell.run.braked);
+  print_braked(job, cell.run.braked);
 }
 
 /// Stores each finished cell, so that an interrupted run can continue.
@@ -145,7 +145,7 @@ void run_missing(const Job& job, study::SweepFile& file, const std::vector<study
     braked += ran.run.braked;
     progress.update(++finished);
   }
-  tell_braked(job, braked);
+  print_braked(job, braked);
 }
 
 /// Reports missing cells, including those that only another machine has run: tables and choices lack them.

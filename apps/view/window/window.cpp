@@ -77,7 +77,7 @@ class Viewer {
  private:
   std::unique_ptr<Running> make_fluid(const ViewOptions& options);
   void take(std::unique_ptr<Running> fluid);
-  void tell_end() const { sim::tell_guards(running_.scene, *fluid_->prepared.fluid); }
+  void tell_end() const { sim::print_guards(running_.scene, *fluid_->prepared.fluid); }
   void begin_anew();
   void follow_keys();
   void follow_choices();

@@ -91,7 +91,7 @@ sim::BakeSizes write_bake(const BakeOrder& order, sim::BakeHeader header, const 
     if (hooks.frames) hooks.frames(frame + 1);
   }
   sim::check_finite(fluid->simulation(), out.string());
-  sim::tell_guards(out.string(), fluid->simulation());
+  sim::print_guards(out.string(), fluid->simulation());
   return writer.finish();
 }
 
