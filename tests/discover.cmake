@@ -1,6 +1,6 @@
 # cmake -P, after a test program is linked: writes its ctest entries to ENTRIES. A suite of the label `unit` is one entry, since its
-# tests take less time than a start of the program and of ctest's bookkeeping for each; GoogleTest names the test that failed. So is
-# one of `sharing`. Every other test is an entry, and with ONE_BY_ONE these too: it runs side by side with others of its suite, with a time limit of its own.
+# tests share what they prepare, or take less time than a start of the program and of ctest's bookkeeping for each; GoogleTest names
+# the test that failed. So is one of `sharing`. Every other test is an entry: it runs side by side with others of its suite.
 # A test in real time counts as two, so that fewer others run beside it. Tests that slow_tests.txt lists get the label slow and an
 # entry of their own.
 cmake_minimum_required(VERSION 3.25)
@@ -42,7 +42,7 @@ foreach(line IN LISTS listed)
       string(TOLOWER ${CMAKE_MATCH_1} label)
     endif()
     set(together FALSE)
-    if((label STREQUAL unit AND NOT ONE_BY_ONE) OR subject IN_LIST sharing)
+    if(label STREQUAL unit OR subject IN_LIST sharing)
       set(together TRUE)
     endif()
     if(together AND NOT subject IN_LIST suites)
