@@ -61,6 +61,7 @@ struct SolverNumbers {
   double tensile = -1;
   double viscosity_m2_s = -1;
   double momentum = -1;
+  double still_speed = -1;
   double courant = -1;
   int coarse_cycles = -1;
   double coarse_edge = -1;

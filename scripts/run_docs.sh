@@ -4,7 +4,7 @@
 # below with the reason; what is skipped names the test that runs it instead, which must exist.
 # usage: scripts/run_docs.sh [PAGE ...]      default: every page; copies, logs and durations go to out/docs
 # Takes the programs from $VIP_BUILD (default: build/dev). README.md alone starts from nothing: it builds its own.
-# VIP_DOCS_QUICK=1 leaves out what the table calls slow, and changes what it calls quick.
+# VIP_DOCS_QUICK=1 leaves out what the table calls slow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$PWD
@@ -14,9 +14,8 @@ export VIP_STATE_DIR=$out/state  # no export of theirs in the register of whoeve
 [ $# -gt 0 ] || set -- README.md docs/*.md
 
 # PAGE | HOW A COMMAND BEGINS | WHAT RUNS INSTEAD | WHY | TEST
-# What runs instead: "person" (the command, answered by keys on a virtual screen), a sed script that changes it, "skip", "slow"
-# (the command, but not in a quick run), "slow" and a sed script that changes it (the same), or "quick" and a sed script that
-# changes it in a quick run alone.
+# What runs instead: "person" (the command, answered by keys on a virtual screen), a sed script that changes it, "skip", or "slow"
+# (the command, but not in a quick run).
 table="
 README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
 README.md|vip-study run|person||
@@ -25,24 +24,18 @@ docs/methods.md|vip-view --headless data/scenes/crates.toml|s/frames 81 --every 
 docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/pool_light.toml|s/2k/64/; s/151/3/; s/150/2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-bench table1|s/32k/64/|a GPU works on it for minutes|
-docs/results.md|vip-bench accuracy|quick s/--quick/--quick --n-star 64 --seconds 0.1 --seeds 1/|it takes more than a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|key=|quick s/--quick/--quick --n-star 64 --seconds 0.1 --seeds 1/|it settles water for long|DocsSlow.docs/results.md
-docs/results.md|snakemake -s scripts/sweep.smk --cores 2|slow s/--quick/--quick --n-star 64 --seconds 0.1 --seeds 1/|it takes more than a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|slow s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|DocsSlow.docs/results.md
-docs/results.md|vip-bench table1|slow s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|DocsSlow.docs/results.md
-docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 4k|quick s/4k/64/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 4k --backend cpu|quick s/4k/256/; s/frames 20/frames 4/|it takes most of a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|vip-bench frame --peers --backend cpu|quick s/cpu/cpu --frames 2/|it takes most of a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|vip-bench effects data/scenes/splash.toml --levels|slow s/512/64 --frames 2/; s/480x360/120x90/|it takes minutes on two cores|DocsSlow.docs/results.md
+docs/results.md|snakemake -s scripts/sweep.smk --cores 2|s/--quick/--quick --n-star 64 --seconds 0.1 --seeds 1/|it takes more than a minute on two cores|
+docs/results.md|vip-bench table1 --scene all --n-star 32k --repeats 5 --cumul-frames 0|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --size 160x90/; s/cuda/cpu/|a GPU works on it for minutes|
+docs/results.md|vip-bench table1|s/all/Faucet/; s/32k/64/; s/repeats 5/repeats 1 --cumul-frames 0/; s/cuda/cpu/|a GPU works on it for minutes|
+docs/results.md|vip-bench effects data/scenes/splash.toml --levels|s/512/64 --frames 2/; s/480x360/120x90/|it takes minutes on two cores|
 docs/results.md|vip-bench effects|s/4k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
-docs/results.md|vip-bench growth|slow s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|DocsSlow.docs/results.md
-docs/results.md|vip-bench frame data/scenes/pool_light.toml|slow s/2k/64/; s/frames [0-9]*/frames 2/; s/960x540/160x90/|it takes a minute on two cores|DocsSlow.docs/results.md
-docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 32k|slow s/32k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/; s/2064x2208/64x64/|it needs a GPU|DocsSlow.docs/results.md
+docs/results.md|vip-bench growth|s/4k,16k,32k,128k/64,128,256/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
+docs/results.md|vip-bench frame data/scenes/pool_light.toml|s/2k/64/; s/frames [0-9]*/frames 2/; s/960x540/160x90/|it takes a minute on two cores|
+docs/results.md|vip-bench frame data/scenes/single_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/; s/2064x2208/64x64/|it needs a GPU|
 docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 32k|s/32k/64/; s/cuda/cpu/|it needs a GPU|
-docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|slow s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|DocsSlow.docs/results.md
+docs/results.md|vip-bench frame data/scenes/peers_dam.toml --n-star 128k|s/128k/64/; s/cuda/cpu/; s/frames [0-9]*/frames 2/|it needs a GPU|
 docs/results.md|vip-bench frame --peers --backend cuda|s/cuda/cpu --frames 2/|it needs a GPU|
-docs/results.md|vip-bench stability --case S9,S11,S12|slow s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|DocsSlow.docs/results.md
-docs/results.md|vip-view data/scenes/single_dam.toml --headless --frames 3 --n-star 256|quick s/256/64/|it settles water for long|DocsSlow.docs/results.md
+docs/results.md|vip-bench stability --case S9,S11,S12|s/S9,S11,S12/S9 --method HiRes --quick/|it takes minutes on two cores|
 docs/results.md|vip-bench stability|s/--csv/--case S9 --method HiRes --quick --csv/|every core works on it for minutes|
 docs/results.md|vip-bench frame out/dam_foam.toml|s/32k/64/; s/cuda/cpu/; s/frames 240/frames 2/|it needs a GPU|
 docs/session.md|vip-study check|slow|it draws a picture of each cell|DocsSlow.docs/session.md
@@ -127,8 +120,6 @@ run_command() {  # run_command COMMAND: in the page's folder
   fi
   case $how in
     slow) [ -n "${VIP_DOCS_QUICK:-}" ] && how=skip || how='' ;;
-    "slow "*) [ -n "${VIP_DOCS_QUICK:-}" ] && how=skip || how=${how#slow } ;;
-    "quick "*) [ -n "${VIP_DOCS_QUICK:-}" ] && how=${how#quick } || how='' ;;
   esac
   case $how in
     skip) printf '%6s  %s\n        (%s; %s)\n' - "$command" "$why" "$test"; return ;;

@@ -138,6 +138,7 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   out.viscosity = static_cast<float>(viscosity_of(scene, options.n_star));
   choose(out.viscosity, options.viscosity_m2_s);
   choose(out.momentum, options.momentum);
+  choose(out.still_speed, options.still_speed);
   if (options.coarse_cycles >= 0) out.coarse_cycles = options.coarse_cycles;
   choose(out.coarse_edge, options.coarse_edge);
   return out;

@@ -21,7 +21,7 @@ constexpr bool as_many_members(std::index_sequence<I...>) {
 }  // namespace
 
 std::span<const SolverNumber> solver_numbers() {
-  static constexpr std::array<SolverNumber, 11> all{{
+  static constexpr std::array<SolverNumber, 12> all{{
       {"iterations", "Projections a substep; 0 = the scene's", 0, LiveNumbers::most_iterations,
        &SolverNumbers::iterations},
       {"substeps", "Substeps in every frame; 0 = as many as the fastest particle needs", 0, 64,
@@ -36,6 +36,8 @@ std::span<const SolverNumber> solver_numbers() {
        &SolverNumbers::viscosity_m2_s},
       {"momentum", "Factor of the last projection's step that is taken again", 0, 100,
        &SolverNumbers::momentum},
+      {"still-speed", "Speed below which water counts as still and is calmed, in sqrt(g d); 0 = never", 0, 10,
+       &SolverNumbers::still_speed},
       {"courant", "Longest way of the fastest particle in a substep, in h; the scene's when left out", 0.05,
        4, &SolverNumbers::courant},
       {"coarse-cycles", "V-cycles of the coarse pressure; 0 = none", 0, 16, &SolverNumbers::coarse_cycles},

@@ -1,5 +1,5 @@
-/// Levels in water at rest with a fixed gaze: splits and merges must not stir it, and the damping of their
-/// kicks must not brake moving water.
+/// Water at rest. Neither the projections (S1) nor splits and merges under a fixed gaze may stir it, and what
+/// calms it must not brake moving water.
 
 #include "libsim/cases/water.hpp"
 #include "tests/libsim/levels_helpers.hpp"
@@ -98,6 +98,56 @@ void still_water_stays_calm(Backend backend, const std::vector<double>& gazes) {
 TEST(StillWater, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cpu, {1.2}); }
 TEST(StillWaterSlow, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cpu, all_gazes); }
 TEST(StillWaterGpu, StaysCalmUnderLevels) { still_water_stays_calm(Backend::Cuda, all_gazes); }
+
+/// Numbers of the solver for a pool at rest.
+struct Steps {
+  double viscosity_m2_s;
+  int substeps, iterations;
+};
+/// A settled pool of particles of one size, 1 m deep, must stay below the speed that S1 allows.
+void one_level_stays_still(Backend backend, MethodKind method, std::int64_t particles,
+                           const std::vector<Steps>& all) {
+  auto scene = fluid_test::tank({1.2, 1.6, 1.2}, {1.2, 1, 1.2}, 60);
+  scene.gate = false;
+  for (const auto& [viscosity, substeps, iterations] : all) {
+    sim::SimulationOptions options;
+    options.method = method;
+    options.n_star = particles;
+    options.backend = backend;
+    options.viscosity_m2_s = viscosity;
+    options.substeps = substeps;
+    options.iterations = iterations;
+    const auto fluid = sim::make_simulation(scene, options);
+    double rms = 0;
+    for (int frame = 1; frame <= 240; ++frame) {
+      fluid->step_frame();
+      if (frame > 180 && frame % 10 == 0) rms += sim::cases::rms_speed(fluid->read_state()) / 6;
+    }
+    std::printf("%s, %lld finest, %g m2/s, %d substeps, %d iterations: v_rms %.4f m/s\n",
+                sim::method_name(method).c_str(), static_cast<long long>(8 * particles), viscosity, substeps,
+                iterations, rms);
+    EXPECT_LT(rms, 0.063) << viscosity << " m2/s, " << substeps << " x " << iterations;
+  }
+}
+/// Viscosity, substeps and iterations, each in both directions from the default of 2 x 4.
+std::vector<Steps> all_steps() {
+  std::vector<Steps> out;
+  for (const double viscosity : {0., 0.001, 0.01})
+    for (const int substeps : {2, 3, 4, 8})
+      for (const int iterations : {2, 4, 8, 16}) out.push_back({viscosity, substeps, iterations});
+  return out;
+}
+TEST(StillWater, OfOneLevelStaysStill) {
+  one_level_stays_still(Backend::Cpu, MethodKind::HiRes, n_star, {{0, 2, 4}, {0, 4, 4}});
+}
+TEST(StillWaterSlow, OfOneLevelStaysStill) {
+  one_level_stays_still(Backend::Cpu, MethodKind::HiRes, n_star, all_steps());
+  one_level_stays_still(Backend::Cpu, MethodKind::HiRes, 4 * n_star, {{0, 2, 4}, {0, 8, 4}});
+}
+TEST(StillWaterGpu, OfOneLevelStaysStill) {
+  one_level_stays_still(Backend::Cuda, MethodKind::HiRes, n_star, all_steps());
+  one_level_stays_still(Backend::Cuda, MethodKind::HiRes, 64 * n_star, {{0, 2, 4}, {0, 4, 4}});
+}
 
 void dams_keep_their_energy(Backend backend, const std::vector<double>& depths) {
   std::vector<double> shares;

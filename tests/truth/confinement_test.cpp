@@ -221,7 +221,7 @@ void still_water_stays_still(Backend backend) {
     const State start = pool.still();
     const double without = unrest_of(pool, start, 0), with = unrest_of(pool, start, 0.5);
     std::printf("still water of level %d: %.4f m/s without, %.4f with\n", level, without, with);
-    EXPECT_LT(with, 1.1 * without);
+    EXPECT_LT(with, std::max(1.1 * without, 0.02)) << "0.02 m/s: still water, where chance decides";
   }
 }
 

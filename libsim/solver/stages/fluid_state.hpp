@@ -46,6 +46,9 @@ struct SolverParameters {
   /// Share of the previous projection's step that is repeated (momentum); not used in a substep's first
   /// projection.
   float momentum = 0.4f;
+  /// Speed below which water counts as still, as a share of sqrt(g d_*): its particles take the mean velocity
+  /// of their neighbours, because the projections stir them (docs/decisions.md, "Still water of one size").
+  float still_speed = 0.15f;
   /// V-cycles of the coarse pressure before the projections; 0 omits the pass.
   int coarse_cycles = 2;
   /// Edge of its cells in units of the finest h, before fitting between the walls.

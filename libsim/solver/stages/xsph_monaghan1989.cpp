@@ -5,10 +5,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A filter of velocities in addition to the viscosity: none, or one that calms resting water after splits
-/// and merges. New particles overlap their neighbours, the projections separate them, and the velocity of
-/// that separation is not a motion of the fluid. Velocity changes near new particles are averaged over
-/// neighbours. The average conserves momentum and common changes, such as gravity and pressure. The remaining
+/// A filter of velocities in addition to the viscosity. Water of one level has none (docs/decisions.md,
+/// "Still water of one size", describes what calms it). With levels one calms resting water after splits and
+/// merges. New particles overlap their neighbours, the projections separate them, and the velocity of that
+/// separation is not a motion of the fluid. Velocity changes near new particles are averaged over neighbours.
+/// The average conserves momentum and common changes, such as gravity and pressure. The remaining
 /// irregularities sink for a second or two and stir the water; a stronger viscosity damps them. Water that
 /// moved before is filtered less and has no such viscosity, because it would lose energy.
 struct NoFilter {
@@ -51,6 +52,7 @@ struct Xsph {
   Neighbours neighbours;
   Vec4* next;
   float spread;  ///< 22 nu dt, m2
+  Calm still;    ///< water whose particles take the mean velocity of their neighbours
   Filter filter;
 
   /// The particle whose neighbours are summed.
@@ -58,6 +60,7 @@ struct Xsph {
     int i;
     Vec4 at, velocity;
     float density;
+    float still;  ///< 0 to 1
     PairKernel<OneLevel> pair;
     Vec4 kick{};     ///< with a filter
     float rest = 0;  ///< with a filter
@@ -83,7 +86,9 @@ struct Xsph {
       vy += share * (kick.y - me.kick.y);
       vz += share * (kick.z - me.kick.z);
     }
-    const float flow = at_most(thicker * spread * reciprocal(kernel.h2), most_share) * weight;
+    const float viscous = at_most(thicker * spread * reciprocal(kernel.h2), most_share);
+    const float calmed = at_most(me.still, still(v.x, v.y, v.z));
+    const float flow = (viscous + calmed * (1 - viscous)) * weight;
     vx += flow * (v.x - me.velocity.x);
     vy += flow * (v.y - me.velocity.y);
     vz += flow * (v.z - me.velocity.z);
@@ -99,7 +104,7 @@ struct Xsph {
       }
     }
     const Vec4 own = velocity[i];
-    Self me{i, position[i], own, density[i], PairKernel<OneLevel>(position[i].w)};
+    Self me{i, position[i], own, density[i], still(own.x, own.y, own.z), PairKernel<OneLevel>(position[i].w)};
     if constexpr (Filter::filters) {
       me.kick = filter.kick[i];
       me.rest = filter.rest(own, i);
@@ -128,6 +133,10 @@ using XsphColumns =
 template <bool OneLevel, class Filter, class Selection>
 void launch(FluidState& state, XsphColumns p, Filter filter, Selection select) {
   const auto& k = state.parameters;
+  // The jitter of coarse particles is as much larger as they are: twice at level 3.
+  const double share = (OneLevel ? 1 : 2) * static_cast<double>(k.still_speed);
+  const Calm still =
+      calm_below(share, static_cast<double>(k.gravity), static_cast<double>(state.finest_support) / 2);
   for_each_team("xsph", p.size(),
                 Xsph<OneLevel, Filter, Selection>{.select = select,
                                                   .position = p.position(),
@@ -136,6 +145,7 @@ void launch(FluidState& state, XsphColumns p, Filter filter, Selection select) {
                                                   .neighbours = state.neighbours.view(),
                                                   .next = p.velocity_next(),
                                                   .spread = 22 * k.viscosity * k.dt,
+                                                  .still = still,
                                                   .filter = filter});
   p.swap<Column::Velocity, Column::VelocityNext>();
 }
@@ -175,8 +185,10 @@ Stage xsph_stage() {
                              .source = "Monaghan 1989; Macklin and Mueller 2013, Eq. 17",
                              .phase = Phase::SubstepEnd,
                              .called_for = [](const Demand& demand) -> std::string {
-                               return demand.parameters.viscosity > 0 && !demand.levels ? "viscosity > 0"
-                                                                                        : "";
+                               const SolverParameters& k = demand.parameters;
+                               if (demand.levels) return "";
+                               if (k.viscosity > 0) return "viscosity > 0";
+                               return k.still_speed > 0 && k.gravity > 0 ? "gravity: water can be still" : "";
                              },
                              .changes = Change::Viscosity});
 }

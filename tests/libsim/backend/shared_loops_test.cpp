@@ -91,11 +91,11 @@ SIM_TEST(SharedLoop, IsTakenWhereBothEffectsAreListed) {
   NEEDS_EFFECTS;
   const auto both = compile_schedule(demand_of({{EffectKind::Cohesion, 20}, {EffectKind::Heat, 0.02}}));
   EXPECT_THAT(names_of(both.substep_end),
-              ElementsAre("velocity", "normals and heat", "cohesion", "warm at walls", "buoyancy"));
+              ElementsAre("velocity", "xsph", "normals and heat", "cohesion", "warm at walls", "buoyancy"));
   EXPECT_THAT(both.explanation, HasSubstr("one loop     normals and heat"));
   const auto heat = compile_schedule(demand_of({{EffectKind::Cohesion, 0}, {EffectKind::Heat, 0.02}}));
   EXPECT_THAT(names_of(heat.substep_end),
-              ElementsAre("velocity", "conduct heat", "warm at walls", "buoyancy"));
+              ElementsAre("velocity", "xsph", "conduct heat", "warm at walls", "buoyancy"));
   EXPECT_THAT(heat.explanation, testing::Not(HasSubstr("one loop")));
 }
 
