@@ -150,7 +150,8 @@ void check_apart(const std::filesystem::path& database, const std::map<std::stri
       {std::filesystem::weakly_canonical(database), "the database"}};
   for (const auto& [option, path] : outputs) {
     if (path.empty()) continue;
-    const auto [other, added] = taken.emplace(std::filesystem::weakly_canonical(path), option);
+    const auto [other, added] =
+        taken.emplace(std::filesystem::weakly_canonical(path), "the file of " + option);
     if (!added)
       throw base::Error(option + " " + path, "is " + other->second, "give each output its own path");
   }

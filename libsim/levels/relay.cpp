@@ -4,8 +4,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Worth of a relay's bid to a stranded particle, which takes the largest: random, drawn anew each frame.
-/// Never 0.
+/// Value of a relay's bid for a stranded particle, which accepts the largest bid. The value is random, new in
+/// each frame, and never 0.
 SIM_FN std::uint64_t worth_of(int relay_id, std::uint32_t frame) {
   const auto id = static_cast<std::uint32_t>(relay_id);
   return ~(static_cast<std::uint64_t>(random_bits(id, frame, 0x3e1u)) << 32 | id);
@@ -69,13 +69,14 @@ struct Bid {
     atomic_max(&taken[a], worth);
     atomic_max(&taken[b], worth);
   }
-  /// The nearest one of the coarsest level that has any; -1: none.
+  /// Index of the stranded neighbour nearest to relay j, of the coarsest level that has one; -1: none.
   template <class Team>
   SIM_FN int nearest(int j, Team team) const {
     const Stranded found = first_after({most_levels, 0, -1}, j, -1, team);
     return found.place < 0 ? -1 : neighbours(j, found.place);
   }
-  /// The nearest one that may join `other` and has its level; -1: none.
+  /// Index of the stranded neighbour nearest to relay j that has the level of `other` and may merge with it;
+  /// -1: none.
   template <class Team>
   SIM_FN int second_beside(int j, int other, Team team) const {
     for (Stranded tried{most_levels, 0, -1};;) {

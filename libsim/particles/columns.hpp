@@ -125,7 +125,7 @@ constexpr ColumnSet all_columns() { return {(std::uint32_t{1} << static_cast<uns
 
 // What splits and merges make of columns whose rule needs no other code, for kernels.
 
-/// True for rules that need no code specific to the column.
+/// True for the rules that kernels carry out alike for every column: mean by mass, sum, maximum, reset.
 constexpr bool by_rule(Descent rule) {
   return rule == Descent::MassMean || rule == Descent::Sum || rule == Descent::Max || rule == Descent::Reset;
 }

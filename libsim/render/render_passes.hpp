@@ -28,7 +28,7 @@ void bind_storage(std::initializer_list<unsigned> buffers);
 void dispatch_pixels(int width, int height);
 void dispatch_particles(std::int64_t count);
 
-/// True if the scene lists a picture effect with a strength above 0.
+/// True if the scene needs FloorLight: it lists shadows or caustics with a strength above 0.
 bool lights_the_floor(const Scene& scene);
 /// The parts of shaders/obstacles.glsl that the scene needs, as #define lines.
 std::string obstacle_defines(const Scene& scene);

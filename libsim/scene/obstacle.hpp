@@ -99,11 +99,11 @@ double thickness_m(const Obstacle& obstacle);
 /// Speed that no point of it ever exceeds, m/s; 0 (unknown) for a free one.
 double top_speed(const Obstacle& obstacle);
 
-/// The tables [[obstacle]] of a scene file of format 2. Errors are base::Error at file:line:column: unknown
-/// key, a size that is not positive, an axis without direction, a position or a path outside the tank, more
-/// than most_obstacles, faster than most_speed_m_s, a free one that starts inside another or contains
-/// another; for a mesh at file:line. origin_m: Scene::origin_m, subtracted from positions. beside: the folder
-/// to which mesh files are relative, if the text has one.
+/// Reads the tables [[obstacle]] of a scene file of format 2. origin_m (Scene::origin_m) is subtracted from
+/// positions. Mesh files are relative to the folder `beside`. base::Error at file:line:column for what the
+/// format forbids, for example an obstacle or its path outside the tank, more than most_obstacles, a speed
+/// above most_speed_m_s, or a free obstacle that overlaps another one. Errors in a mesh file name that file
+/// and its line.
 std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
                                      const std::array<double, 3>& origin_m, double most_speed_m_s,
                                      const std::optional<std::filesystem::path>& beside = {});

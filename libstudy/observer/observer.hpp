@@ -47,8 +47,8 @@ int random_score(const Question& question, const Occasion& occasion);
 int bystander_score(const Question& question, const Occasion& occasion);
 
 /// Makes an observer from "ptpe:a=31,b=0.035", "random", "constant:4", "dropout:0.2[,OBSERVER]" or
-/// "frames[:key=number,...]". The frames observer reads `features`, which must outlive it. base::Error naming
-/// the place.
+/// "frames[:key=number,...]". The frames observer reads `features`, which must outlive it. base::Error names
+/// the character at which the text is wrong.
 std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features);
 
 /// One sentence for each scale of the trials that lacks the score of a constant observer such as "constant:9"

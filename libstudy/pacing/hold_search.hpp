@@ -41,8 +41,10 @@ struct HoldList {
 HoldList search_holds(const HoldTarget& target, std::int64_t total);
 
 /// Bounds on the standard deviation of any list, of any length, with exactly the target's mean and holds in
-/// its range. Linear programming over distributions: Var f = min_c E (f - c)^2, and for fixed c an extreme
-/// distribution with a given mean has at most two holds. Empty (low > high) when no list has that mean.
+/// its range. Both come from lists of two holds, which are the extreme points of all lists with that mean.
+/// low is the smallest deviation of such a pair. high is the square root of the least value, over c, of the
+/// largest mean of (rate - c)^2 of a pair, since a variance is the minimum of that mean over c. low > high:
+/// no list has that mean.
 struct SdBounds {
   double low = 1, high = 0;
 };

@@ -41,8 +41,8 @@ struct Question {
   bool operator==(const Question&) const = default;
 };
 
-/// Properties of a kind of answer. Code that depends on a kind asks these; only drawing a question and taking
-/// its keys differ by kind, in exhaustive switches (apps/study).
+/// Properties of a kind of answer. Other code asks these and not the kind, with two exceptions: the reader of
+/// questions (read_questions.cpp) and the page (libstudy/pages), where each kind has its own drawing and keys.
 struct AnswerKindTraits {
   AnswerKind kind{};
   const char* word = "";   ///< in protocols, databases and exports

@@ -62,8 +62,8 @@ bool sees_eyes(const Running& run, double within_s, const Check& check);
 /// Stores the headset's facts and the distance between the eyes, e.g. at the start of a session.
 void record_headset(const Running& run);
 
-/// Logs the headset's events since the last call and stores its current facts. Returns the events,
-/// comma-separated.
+/// Logs the headset's events since the last call. If there were any, stores the headset's current facts.
+/// Returns the events, separated by ", "; empty without events or without a headset.
 std::string log_news(const Running& run);
 
 }  // namespace study

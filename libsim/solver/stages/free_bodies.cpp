@@ -71,7 +71,8 @@ struct Push {
     force += share * (given - force);
     left += given - force;
   }
-  /// Pressure does not turn a body about an axis about which it is round; the cells alone would.
+  /// The moment without its part along axes about which the body is round. Pressure cannot turn the body
+  /// about such an axis, but a moment that is summed over cells could.
   SIM_FN static Vec3 turning(const Body& body, const MeshGrid* mesh, Vec3 moment) {
     if (mesh) {
       const Vec3 own = turned(turned_back(body.turn), moment);

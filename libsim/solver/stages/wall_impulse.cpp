@@ -61,10 +61,11 @@ void record_held_back(FluidState& state, MovingView p) {
                            : held_back(state, p, state.walls, state.impulse.record_to());
 }
 
-/// Delta p_i = w_i lambda_i grad_i C_wall of the next displacement, wall by wall.
+/// Factor on the density that walls miss; 1 in scenes without obstacles.
 SIM_FN float beside_bodies(const Walls&, Vec3, float) { return 1; }
 SIM_FN float beside_bodies(const Solids& solids, Vec3 x, float h) { return solids.beside_bodies(x, h); }
 
+/// Records Delta p_i = w_i lambda_i grad_i C_wall of the next displacement, for each wall.
 template <class Boundary>
 struct MissingDensity {
   const Vec4* predicted;

@@ -121,7 +121,8 @@ Identity identify(Connection& database) {
           database.integer("SELECT EXISTS (SELECT 1 FROM sqlite_schema)") == 0};
 }
 
-/// A power cut in the first transaction leaves arbitrary bytes and a journal that makes the file empty again.
+/// True if the rollback journal says that the file had no pages. A power cut in the first transaction leaves
+/// such a journal beside arbitrary bytes; SQLite empties the file with it.
 bool was_empty_before(const fs::path& journal) {
   // The head of a rollback journal (sqlite.org/fileformat.html, section 3): 8 bytes of magic; at byte 16, the
   // number of pages that the file had.
@@ -280,7 +281,8 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
 bool holds_nothing(const fs::path& path) {
   if (!has_bytes(path)) return true;
   if (!was_empty_before(path.string() + "-journal")) return false;
-  // Such a journal beside a database with more than its first step belongs to another file.
+  // This journal says that the file was empty. A database of a schema version above 1 was committed before,
+  // so that the journal belongs to another file.
   std::string head(salvaging::header_bytes, '\0');
   const bool whole = bool(std::ifstream(path, std::ios::binary).read(head.data(), salvaging::header_bytes));
   return !whole || !head.starts_with(salvaging::database_magic) ||
