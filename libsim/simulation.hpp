@@ -7,10 +7,8 @@
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "libsim/exec/backend.hpp"
@@ -18,6 +16,7 @@
 #include "libsim/impulse/momentum_account.hpp"
 #include "libsim/methods/method.hpp"
 #include "libsim/methods/preset.hpp"
+#include "libsim/methods/solver_numbers.hpp"
 #include "libsim/particles/divergence.hpp"
 #include "libsim/particles/particle_state.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
@@ -49,36 +48,6 @@ struct TemporalOptions {
 inline bool stays_off(const TemporalOptions& options) {
   return ToleranceSwitch(options.model, options.fixed_tau, options.fixed_rate).stays_off();
 }
-
-/// Numbers of the solver that a program may set; solver_numbers() lists their units and ranges. A
-/// negative value selects the scene's number or the measured default (libsim/solver/stages/fluid_state.hpp).
-struct SolverNumbers {
-  int iterations = 0;     ///< constraint projections per substep; 0 = the scene's
-  int substeps = 0;       ///< per frame; 0 = as many as the fastest particle needs (scene.hpp)
-  int most_substeps = 0;  ///< limit per frame if substeps is 0; 0 = 32, or the scene's minimum if larger
-  double frame_dt_s = 0;  ///< 0 = the scene's
-  double relaxation = -1;
-  double tensile = -1;
-  double viscosity_m2_s = -1;
-  double momentum = -1;
-  double still_speed = -1;
-  double courant = -1;
-  int coarse_cycles = -1;
-  double coarse_edge = -1;
-};
-
-/// Describes one of SolverNumbers.
-struct SolverNumber {
-  const char* name;    ///< of the option of programs, without "--"
-  const char* help;    ///< meaning, unit and default
-  double least, most;  ///< allowed values
-  std::variant<int SolverNumbers::*, double SolverNumbers::*> value;
-};
-/// All of SolverNumbers, once each. Options of programs, keys of settled states and of saved runs come from
-/// this list.
-std::span<const SolverNumber> solver_numbers();
-/// " iterations=4 ...", exact: equal texts mean equal numbers.
-std::string in_words(const SolverNumbers& numbers);
 
 struct SimulationOptions : SolverNumbers {
   MethodKind method = MethodKind::HiRes;
@@ -241,7 +210,7 @@ struct LiveNumbers {
   double alpha = 0;    ///< Eq. 1: weight of the temporal feature, 0 .. 1
   int iterations = 0;  ///< constraint projections per substep, 1 .. most_iterations
 
-  static constexpr int most_iterations = 64;
+  static constexpr int most_iterations = SolverNumbers::most_iterations;
 };
 
 class Simulation {

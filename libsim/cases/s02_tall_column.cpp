@@ -16,9 +16,10 @@ Outcome run_s02(const Setting& setting) {
   options.n_star = std::lround(10 * 10 * height / d / 8);
   if (setting.substeps == 0) options.substeps = 2;
   // With levels the water keeps splitting and merging, and 40 layers of LoRes fall as far as 80.
-  const bool fine = setting.method == MethodKind::HiRes;
+  const MethodTraits& method = traits_of(setting.method);
+  const bool fine = !method.adaptive() && method.start_level == 0;
   // With temporal acceleration the largest density is chaotic: 1.13 to 1.19 for eight seeds of its choice.
-  const bool temporal = traits_of(setting.method).temporal;
+  const bool temporal = method.temporal;
   Watch watch(with_effects(scene, setting), options, {.density = fine ? 1.15 : temporal ? 1.25 : 1.2});
   const double filled = centre_height(watch.state());
   double top = 0, fastest_rms = 0;

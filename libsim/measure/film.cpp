@@ -75,12 +75,13 @@ class Film {
     const auto settled = reference_.fluid().read_state();
     for (const auto& scores : block.methods) {
       auto choice = choose_(scores.method);
-      // LoRes fills and settles by itself; the others start from HiRes' particles.
-      if (scores.method == sim::MethodKind::LoRes) {
+      const auto& method = sim::traits_of(scores.method);
+      // A coarser method fills and settles by itself; the others start from HiRes' particles.
+      if (method.start_level > 0) {
         if (start > 1)
           choice.start = perturbed(sim::make_simulation(scene.scene, choice)->read_state(), start);
       } else {
-        const bool moved = start > 1 || (scores.method == sim::MethodKind::HiRes && !options.unperturbed);
+        const bool moved = start > 1 || (!method.adaptive() && !options.unperturbed);
         choice.start = perturbed(settled, moved ? start : 0);
       }
       reels_.push_back(std::make_unique<Reel>(scene, options, choice));

@@ -69,7 +69,7 @@ std::int64_t parse_n_star(std::string_view text) {
 }
 
 std::int64_t particle_count(MethodKind method, std::int64_t n_star) {
-  return traits_of(method).start_level == 3 ? n_star : 8 * n_star;
+  return (8 * n_star) >> traits_of(method).start_level;
 }
 
 }  // namespace sim

@@ -47,7 +47,7 @@ std::string method_names();
 /// base::Error.
 std::int64_t parse_n_star(std::string_view text);
 
-/// Particles at frame 0: n_* for LoRes, 8 n_* for the others. LoRes and HiRes keep this number in all frames.
+/// Particles at frame 0: 8 n_* of level 0, n_* of level 3. LoRes and HiRes keep this number in all frames.
 std::int64_t particle_count(MethodKind method, std::int64_t n_star);
 
 }  // namespace sim

@@ -130,17 +130,12 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   out.dt = static_cast<float>(frame_dt / out.substeps);
   out.gravity = static_cast<float>(scene.gravity_m_s2);
   if (scene.central_force) out.pull = pull_of(*scene.central_force);
-  const auto choose = [](float& number, double wish) {
-    if (wish >= 0) number = static_cast<float>(wish);
-  };
-  choose(out.relaxation, options.relaxation);
-  choose(out.tensile, options.tensile);
   out.viscosity = static_cast<float>(viscosity_of(scene, options.n_star));
-  choose(out.viscosity, options.viscosity_m2_s);
-  choose(out.momentum, options.momentum);
-  choose(out.still_speed, options.still_speed);
-  if (options.coarse_cycles >= 0) out.coarse_cycles = options.coarse_cycles;
-  choose(out.coarse_edge, options.coarse_edge);
+  if (options.viscosity_m2_s >= 0) out.viscosity = static_cast<float>(options.viscosity_m2_s);
+#define SIM_CHOOSE(Type, member, ...) \
+  if (options.member >= 0) out.member = static_cast<Type>(options.member);
+  SIM_SOLVER_NUMBERS(SIM_CHOOSE)
+#undef SIM_CHOOSE
   return out;
 }
 

@@ -9,8 +9,6 @@ namespace study {
 
 namespace {
 
-using study::AnswerKind;
-
 bool is_blank(const std::string& words) { return words.find_first_not_of(" \t\r\n") == std::string::npos; }
 
 }  // namespace
@@ -29,7 +27,7 @@ PageState::PageState(std::span<const Question> questions, double least_s, std::i
 
 void PageState::press(PageKey key, std::int64_t now_ns) {
   if (guarded(now_ns)) return;
-  const bool list = focus_ < size() && questions_[focus_].kind == AnswerKind::Choice;
+  const bool list = focus_ < size() && traits_of(questions_[focus_].kind).labelled;
   switch (key) {
     case PageKey::Left:
       return move_cursor(-1);
@@ -96,7 +94,7 @@ void PageState::choose(std::size_t question, int score, std::int64_t now_ns) {
 void PageState::digit(int digit, std::int64_t now_ns) {
   if (guarded(now_ns) || focus_ == size() || digit < 0 || digit > 9) return;
   const Question& question = questions_[focus_];
-  if (question.kind == AnswerKind::Number) {
+  if (traits_of(question.kind).typed()) {
     PageItem& item = items_[focus_];
     if (item.typed.size() >= 9) return;
     item.typed += static_cast<char>('0' + digit);
@@ -108,7 +106,7 @@ void PageState::digit(int digit, std::int64_t now_ns) {
 }
 
 void PageState::minus(std::int64_t now_ns) {
-  if (guarded(now_ns) || focus_ == size() || questions_[focus_].kind != AnswerKind::Number) return;
+  if (guarded(now_ns) || focus_ == size() || !traits_of(questions_[focus_].kind).typed()) return;
   PageItem& item = items_[focus_];
   if (!item.typed.empty() || questions_[focus_].scale_min >= 0) return;
   item.typed = "-";
@@ -156,7 +154,7 @@ void PageState::write(std::size_t question, const std::string& words, std::int64
 
 bool PageState::put(std::size_t question, const std::string& words, std::int64_t now_ns) {
   if (guarded(now_ns) || question >= size() || words.size() > most_bytes) return false;
-  if (questions_[question].kind != AnswerKind::Text || items_[question].typed == words) return false;
+  if (traits_of(questions_[question].kind).scored || items_[question].typed == words) return false;
   items_[question].typed = words;
   mark_changed(items_[question], now_ns);
   return true;
@@ -181,21 +179,13 @@ std::optional<int> PageState::number(std::size_t question) const {
 }
 
 bool PageState::answered(std::size_t question) const {
-  switch (questions_[question].kind) {
-    case AnswerKind::Number:
-      return number(question).has_value();
-    case AnswerKind::Text:
-      return !is_blank(items_[question].typed);
-    case AnswerKind::Scale:
-    case AnswerKind::Choice:
-      break;
-  }
-  return items_[question].chosen.has_value();
+  const AnswerKindTraits& traits = traits_of(questions_[question].kind);
+  if (traits.listed) return items_[question].chosen.has_value();
+  return traits.typed() ? number(question).has_value() : !is_blank(items_[question].typed);
 }
 
 bool PageState::out_of_range(std::size_t question) const {
-  return questions_[question].kind == AnswerKind::Number && !items_[question].typed.empty() &&
-         !number(question);
+  return traits_of(questions_[question].kind).typed() && !items_[question].typed.empty() && !number(question);
 }
 
 std::size_t PageState::missing() const {
@@ -221,9 +211,10 @@ std::vector<TimedAnswer> PageState::answers() const {
   for (std::size_t i = 0; i < size(); ++i) {
     TimedAnswer timed;
     const bool given = answered(i);
-    if (given && !traits_of(questions_[i].kind).scored) timed.answer.words = items_[i].typed;
-    if (given && traits_of(questions_[i].kind).listed) timed.answer.score = items_[i].chosen;
-    if (given && questions_[i].kind == AnswerKind::Number) timed.answer.score = number(i);
+    const AnswerKindTraits& traits = traits_of(questions_[i].kind);
+    if (given && !traits.scored) timed.answer.words = items_[i].typed;
+    if (given && traits.listed) timed.answer.score = items_[i].chosen;
+    if (given && traits.typed()) timed.answer.score = number(i);
     const std::int64_t end_ns = given ? items_[i].changed_ns : *confirmed_ns_;
     timed.response_time_s = 1e-9 * static_cast<double>(end_ns - shown_ns_);
     timed.input = given ? items_[i].input : confirmed_by_;

@@ -41,23 +41,29 @@ struct Question {
   bool operator==(const Question&) const = default;
 };
 
-/// Properties of a kind of answer. Other code asks these and not the kind, with two exceptions: the reader of
-/// questions (read_questions.cpp) and the page (libstudy/pages), where each kind has its own drawing and keys.
+/// Properties of a kind of answer. Code that depends on a kind asks these: what it reads from a protocol,
+/// which keys it takes, how it is stored and analysed. Only drawing a question differs by kind, in an
+/// exhaustive switch (libstudy/pages/gui).
 struct AnswerKindTraits {
   AnswerKind kind{};
-  const char* word = "";   ///< in protocols, databases and exports
-  bool scored = true;      ///< the answer is a whole number, stored as a score; otherwise words
-  bool listed = false;     ///< the participant chooses one of scores_of()
-  bool labelled = false;   ///< every score has words, which stand for it in exports; it has no mean
-  bool required = true;    ///< default of `required`
-  double answering_s = 5;  ///< expected time to answer
+  const char* word = "";     ///< in protocols, databases and exports
+  const char* meaning = "";  ///< of the word, in the reference of protocols
+  bool scored = true;        ///< the answer is a whole number, stored as a score; otherwise words
+  bool listed = false;       ///< the participant chooses one of scores_of()
+  bool labelled = false;     ///< every score has words, which stand for it in exports; it has no mean
+  bool required = true;      ///< default of `required`
+  double answering_s = 5;    ///< expected time to answer
 
   /// A rating: scores with equal distances, which have means.
   bool rated() const { return listed && !labelled; }
+  /// A whole number that the participant types.
+  bool typed() const { return scored && !listed; }
 };
 /// A row for each AnswerKind, in its order.
 const std::array<AnswerKindTraits, 4>& answer_kinds();
 const AnswerKindTraits& traits_of(AnswerKind kind);
+/// "scale, choice or number": the words of those kinds for which `is` holds; `last` stands before the last.
+std::string kind_words(bool (*is)(const AnswerKindTraits&), const char* last);
 
 /// All possible scores in ascending order; none for free text.
 std::vector<int> scores_of(const Question& question);

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "libstudy/protocol/readers.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -53,7 +54,8 @@ std::pair<int, int> read_span(const base::TomlTable& table, std::string_view key
 }
 
 void read_scores(const base::TomlTable& table, Question& question) {
-  if (question.kind == AnswerKind::Choice) {
+  const AnswerKindTraits& traits = traits_of(question.kind);
+  if (traits.labelled) {
     question.anchors = read_anchors(table, 0, 100);
     if (question.anchors.size() < 2)
       table.fail("anchors", "offer fewer than two answers", "write anchors = {0 = \"no\", 1 = \"yes\"}");
@@ -64,11 +66,10 @@ void read_scores(const base::TomlTable& table, Question& question) {
   std::tie(question.scale_min, question.scale_max) = read_span(table, "scale", {0, 10000});
   if (question.scale_max <= question.scale_min)
     table.fail("scale", "does not ascend", "write the scale as [low, high]");
-  if (question.kind == AnswerKind::Scale && question.scale_max - question.scale_min > 100)
+  if (traits.rated() && question.scale_max - question.scale_min > 100)
     table.fail("scale", "has more than 101 scores", "use kind = \"number\"");
-  if (question.kind == AnswerKind::Scale)
-    question.anchors = read_anchors(table, question.scale_min, question.scale_max);
-  if (question.kind == AnswerKind::Scale && table.has("level")) {
+  if (traits.rated()) question.anchors = read_anchors(table, question.scale_min, question.scale_max);
+  if (traits.rated() && table.has("level")) {
     question.level = table.number("level");
     if (!(*question.level > question.scale_min && *question.level < question.scale_max)) {
       table.fail("level",
@@ -146,7 +147,8 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   question.required = table.boolean_or("required", traits_of(question.kind).required);
   if (!traits_of(question.kind).scored) {
     if (block == BlockKind::Catch)
-      table.fail("kind", "= \"text\" gives no score to expect", "use scale, choice or number");
+      table.fail("kind", std::string("= \"") + traits_of(question.kind).word + "\" gives no score to expect",
+                 "use " + kind_words([](const AnswerKindTraits& one) { return one.scored; }, " or "));
     return question;
   }
   read_scores(table, question);
@@ -159,7 +161,8 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
 /// Why the program cannot obey the answers to a question; empty if it can.
 std::string why_not_obeyed(BlockKind block, const Question& question) {
   if (block != BlockKind::Consent) return "is in a block of kind " + block_kind_name(block);
-  if (!traits_of(question.kind).labelled) return "is not of kind choice";
+  // As the database's views of permissions ask.
+  if (question.kind != AnswerKind::Choice) return "is not of kind choice";
   if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
     return "has other answers than 0 and 1";
   return question.personal ? "is personal" : "";
@@ -192,15 +195,30 @@ std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kin
 const std::array<AnswerKindTraits, 4>& answer_kinds() {
   using enum AnswerKind;
   static constexpr std::array<AnswerKindTraits, 4> all{{
-      {.kind = Scale, .word = "scale", .listed = true},
-      {.kind = Choice, .word = "choice", .listed = true, .labelled = true},
-      {.kind = Number, .word = "number", .answering_s = 10},
-      {.kind = Text, .word = "text", .scored = false, .required = false, .answering_s = 30},
+      {.kind = Scale, .word = "scale", .meaning = "a row of scores", .listed = true},
+      {.kind = Choice, .word = "choice", .meaning = "one of `anchors`", .listed = true, .labelled = true},
+      {.kind = Number, .word = "number", .meaning = "typed", .answering_s = 10},
+      {.kind = Text,
+       .word = "text",
+       .meaning = "free words",
+       .scored = false,
+       .required = false,
+       .answering_s = 30},
   }};
   return all;
 }
 
 const AnswerKindTraits& traits_of(AnswerKind kind) { return answer_kinds()[static_cast<std::size_t>(kind)]; }
+
+std::string kind_words(bool (*is)(const AnswerKindTraits&), const char* last) {
+  std::vector<std::string> words;
+  for (const AnswerKindTraits& traits : answer_kinds())
+    if (is(traits)) words.emplace_back(traits.word);
+  if (words.size() < 2) return base::joined(words);
+  const std::string end = last + words.back();
+  words.pop_back();
+  return base::joined(words) + end;
+}
 
 std::vector<int> scores_of(const Question& question) {
   const AnswerKindTraits& traits = traits_of(question.kind);

@@ -1,6 +1,8 @@
 #include "libstudy/protocol/reference.hpp"
 
+#include "libstudy/protocol/names.hpp"
 #include "libstudy/protocol/protocol.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -85,6 +87,21 @@ may stand beside them.
   return texts;
 }
 
+bool is_rated(const AnswerKindTraits& one) { return one.rated(); }
+
+std::string kinds_in_quotes() {
+  std::vector<std::string> out;
+  for (const AnswerKindTraits& one : answer_kinds()) out.push_back("\"" + std::string(one.word) + "\"");
+  return base::joined(out);
+}
+
+std::string kind_meanings() {
+  std::string out;
+  for (const AnswerKindTraits& one : answer_kinds())
+    out += (out.empty() ? "" : ". ") + std::string(one.word) + ": " + one.meaning;
+  return out;
+}
+
 std::string row_of(const KeyReference& key) {
   const std::string values = key.values.empty() ? "" : ", " + key.values;
   const std::string fallback = key.fallback.empty() ? "needed" : key.fallback;
@@ -98,7 +115,8 @@ const std::vector<KeyReference>& protocol_reference() {
       {"", "format", "whole number", "", "", "2"},
       {"", "name", "text", "", "", "of the study; stored with the data"},
       {"", "version", "text", "", "", "of the study, such as \"1.0\"; another text needs another version"},
-      {"", "language", "text", "", "", "of all texts, such as \"en\"; of fonts that have a character, the one for this language is taken"},
+      {"", "language", "text", "", "",
+       "of all texts, such as \"en\"; of fonts that have a character, the one for this language is taken"},
       {"", "participants", "whole number", "[1, 100000]", "",
        "planned; `vip-study check` says what the number leaves unbalanced"},
       {"", "accept_approximate", "true or false", "", "false",
@@ -126,7 +144,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "settings: all of mean_fps and sd_fps (pilot). native: as fast as each method runs. equal: one "
        "mean_fps and sd_fps for all. table2: each cell's own of `moments`"},
       {"design", "scene", "list of texts", "", "", "scene files"},
-      {"design", "method", "list of texts", "", "", "LoRes, HiRes, FovFluid, Ours, Ours-TSp"},
+      {"design", "method", "list of texts", "", "", base::joined(method_names())},
       {"design", "n_star", "list of texts", "", "",
        "number of particles if all were at the coarsest level; \"32k\" = 32,768"},
       {"design", "effects", "list of texts", "", "not varied",
@@ -270,19 +288,22 @@ const std::vector<KeyReference>& protocol_reference() {
        "above"},
       {"block.question", "text", "text", "", "", "the exact wording"},
       {"block.question", "language", "text", "", "that of the file", "of the wording"},
-      {"block.question", "kind", "text", "\"scale\", \"choice\", \"number\", \"text\"", "",
-       "scale: a row of scores. choice: one of `anchors`. number: typed. text: free words"},
+      {"block.question", "kind", "text", kinds_in_quotes(), "", kind_meanings()},
       {"block.question", "scale", "list of numbers", "[0, 10000]", where_needed,
-       "needed by scale and number: [lowest, highest], whole; a scale has 101 scores at most"},
+       "needed by " +
+           kind_words([](const AnswerKindTraits& one) { return one.scored && !one.labelled; }, " and ") +
+           ": [lowest, highest], whole; a " + kind_words(is_rated, " or a ") + " has 101 scores at most"},
       {"block.question", "anchors", "table", "", "none",
-       "words by score, ascending; needed by choice, from 0 to 100"},
+       "words by score, ascending; needed by " +
+           kind_words([](const AnswerKindTraits& one) { return one.labelled; }, " and ") + ", from 0 to 100"},
       {"block.question", "level", "number", "within the scale", "the scale's middle",
-       "scale: the score at which the curve of a pilot's frame rates is fitted: by fit-ptpe, report and "
-       "power, "
-       "and named in the preregistered plan; refused for other kinds"},
+       kind_words(is_rated, " and ") + ": the score at which the curve of a pilot's frame rates is fitted: "
+                                       "by fit-ptpe, report and power, and "
+                                       "named in the preregistered plan; refused for other kinds"},
       {"block.question", "personal", "true or false", "", "false",
        "the answer goes to the file of personal data alone; only on pages"},
-      {"block.question", "required", "true or false", "", "true; false for text",
+      {"block.question", "required", "true or false", "",
+       "true; false for " + kind_words([](const AnswerKindTraits& one) { return !one.required; }, " and "),
        "false: it may be left empty"},
       {"block.question", "accept", "list of numbers", "two scores", "all",
        "screening, consent and demographics before the first trials: an answer outside [lowest, highest] "

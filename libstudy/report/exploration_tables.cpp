@@ -49,7 +49,7 @@ std::string people_tables(const Field& root) {
       if (part["task"].words() == key) table.group(title);
     for (const Field& question : part["questions"].entries())
       table.row({words(question["text"]), count(question["n"]), count(question["missing"]),
-                 question["kind"].words() == "choice" ? choices_of(question) : numbers_of(question)});
+                 question["groups"].json().is_array() ? choices_of(question) : numbers_of(question)});
   }
   if (table.empty()) return "";
   const Field first = parts.front();

@@ -15,8 +15,8 @@ constexpr double plot_px = 420;
 constexpr double bar_px = 16;
 constexpr double group_px = 26;
 constexpr double value_px = 80;
-constexpr const char* colours[] = {svg::colour::sky, svg::colour::grey, svg::colour::green,
-                                   svg::colour::orange, svg::colour::blue};
+constexpr const char* colours[] = {svg::colour::sky,    svg::colour::grey, svg::colour::green,
+                                   svg::colour::orange, svg::colour::blue, svg::colour::purple};
 
 /// An interval across the bar whose top is at y: a line with a stroke at each end.
 std::string whisker(double low, double high, double y) {

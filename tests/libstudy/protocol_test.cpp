@@ -219,6 +219,7 @@ TEST(Protocol, EveryKindOfAnswerHasItsRow) {
   for (std::size_t i = 0; i < study::answer_kinds().size(); ++i) {
     EXPECT_EQ(static_cast<std::size_t>(study::answer_kinds()[i].kind), i);
     EXPECT_TRUE(words.insert(study::answer_kinds()[i].word).second);
+    EXPECT_STRNE(study::answer_kinds()[i].meaning, "") << "the reference lacks it";
   }
   const auto scores = [](study::AnswerKind kind) {
     study::Question question;

@@ -13,6 +13,7 @@
 #include "libsim/foam/foam_pool.hpp"
 #include "libsim/impulse/impulse_recorder.hpp"
 #include "libsim/levels/level_state.hpp"
+#include "libsim/methods/solver_numbers.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
 #include "libsim/particles/kernels.hpp"
 #include "libsim/particles/walls.hpp"
@@ -39,20 +40,9 @@ struct SolverParameters {
   int substeps = 3;           ///< per frame
   double frame_s() const { return static_cast<double>(dt) * substeps; }
   int iterations = 4;  ///< constraint projections per substep
-  /// Dimensionless relaxation, one number for all levels: epsilon_i = relaxation / (m_i d_i^2).
-  float relaxation = 0.01f;
-  /// Dimensionless s_corr: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 removes the term from the kernel.
-  float tensile = 0;
-  /// Share of the previous projection's step that is repeated (momentum); not used in a substep's first
-  /// projection.
-  float momentum = 0.4f;
-  /// Speed below which water counts as still, as a share of sqrt(g d_*): its particles take the mean velocity
-  /// of their neighbours, because the projections stir them (docs/decisions.md, "Still water of one size").
-  float still_speed = 0.15f;
-  /// V-cycles of the coarse pressure before the projections; 0 omits the pass.
-  int coarse_cycles = 2;
-  /// Edge of its cells in units of the finest h, before fitting between the walls.
-  float coarse_edge = 2;
+#define SIM_MEMBER(Type, member, name, usual, ...) Type member = usual;
+  SIM_SOLVER_NUMBERS(SIM_MEMBER)
+#undef SIM_MEMBER
   /// Kinematic viscosity nu, m2/s; 0 omits the pass.
   float viscosity = 0;
   EffectCoefficients effects;  ///< SI; 0 = no such stage runs

@@ -21,7 +21,7 @@ std::vector<std::string> letters(const std::string& row) {
 }  // namespace
 
 Pad::Pad(const Question& question) {
-  if (question.kind == AnswerKind::Text) {
+  if (!traits_of(question.kind).scored) {
     for (const char* row : {"1234567890", "qwertyuiop", "asdfghjkl?", "zxcvbnm,. "})
       rows_.push_back(letters(row));
     if (question.language.starts_with("de")) rows_.push_back(letters("äöüß"));
@@ -35,7 +35,7 @@ Pad::Pad(const Question& question) {
 void Pad::type(const std::string& key, PageState& state, std::int64_t now_ns) const {
   if (key == erase) return state.press(PageKey::Erase, now_ns);
   if (key == minus) return state.minus(now_ns);
-  if (state.focus() < state.size() && state.question(state.focus()).kind == AnswerKind::Text)
+  if (state.focus() < state.size() && !traits_of(state.question(state.focus()).kind).scored)
     return state.type(key, now_ns);
   state.digit(key[0] - '0', now_ns);
 }

@@ -35,7 +35,7 @@ std::size_t end_of_table(const PageState& state, std::size_t first) {
 }  // namespace
 
 bool PageView::fills_words(const PageState& state) {
-  return state.focus() < state.size() && state.question(state.focus()).kind == AnswerKind::Text;
+  return state.focus() < state.size() && !traits_of(state.question(state.focus()).kind).scored;
 }
 
 bool PageView::typing(const PageState& state) const { return !gui_.by_hand() && fills_words(state); }
@@ -182,9 +182,9 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   std::string how;
   if (state.focus() < state.size() && !gui_.by_hand()) {
     const Question& question = state.question(state.focus());
-    const bool listed = traits_of(question.kind).listed;
-    if (listed) how = one_digit_does(question) ? words_.digits : words_.arrows;
-    if (question.kind == AnswerKind::Text) how = words_.tab;
+    const AnswerKindTraits& traits = traits_of(question.kind);
+    if (traits.listed) how = one_digit_does(question) ? words_.digits : words_.arrows;
+    if (!traits.scored) how = words_.tab;
   }
   draw_centred(how, {screen.x / 2, to.y + 0.35F * size}, column_, colour::faint);
   draw_corner(gui_, text_.corner);

@@ -3,6 +3,7 @@
 #include <map>
 #include <sstream>
 
+#include "libstudy/protocol/question.hpp"
 #include "libstudy/store/export/bids_writer.hpp"
 #include "libstudy/store/export/sickness_table.hpp"
 
@@ -98,6 +99,12 @@ void add_fms(const SicknessTable& summary, const LabelledSession& session, Quest
   }
 }
 
+/// True for the word of a kind of answer that is a score.
+bool scored(const std::string& word) {
+  return std::any_of(answer_kinds().begin(), answer_kinds().end(),
+                     [&](const AnswerKindTraits& one) { return one.word == word && one.scored; });
+}
+
 }  // namespace
 
 Json question_column(const Item& item) {
@@ -112,14 +119,16 @@ Json question_column(const Item& item) {
 
 std::vector<Item> items(Connection& database, std::int64_t session, const std::string& of) {
   Statement row(database,
-                "SELECT DISTINCT q.question_id, q.code, q.wording, q.anchors FROM question q "
+                "SELECT DISTINCT q.question_id, q.code, q.wording, q.anchors, q.kind FROM question q "
                 "JOIN ask k USING (question_id) JOIN session s ON s.protocol_id = q.protocol_id "
                 "JOIN unit u ON u.session_id = s.session_id AND u.block = k.block "
-                "WHERE s.session_id = ? AND q.personal = 0 AND q.kind <> 'text' AND " +
+                "WHERE s.session_id = ? AND q.personal = 0 AND " +
                     of + " ORDER BY q.question_id");
   row.bind_all(session);
   std::vector<Item> found;
-  while (row.step()) found.push_back({row.integer(0), row.text(1), row.text(2), row.text(3)});
+  while (row.step()) {
+    if (scored(row.text(4))) found.push_back({row.integer(0), row.text(1), row.text(2), row.text(3)});
+  }
   return found;
 }
 

@@ -1,0 +1,55 @@
+#pragma once
+/// Numbers of the solver that a program may set.
+
+#include <span>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+namespace sim {
+
+// Numbers with a measured default (docs/decisions.md), one row each: NUMBER(type, member, option of programs
+// without "--", default, least, most, meaning with its unit). A row makes the member of SolverNumbers, that
+// of SolverParameters which stages read, the option, and a part of the keys of settled states and of saved
+// runs. relaxation: one number for all levels, epsilon_i = relaxation / (m_i d_i^2). tensile: s_ij = -tensile
+// m_i m_j d^2 (W / W(0.2 h))^4; 0 removes the term from the kernel. momentum: not used in a substep's first
+// projection. coarse_cycles: 0 omits the pass. coarse_edge: before the cells are fitted between the walls.
+#define SIM_SOLVER_NUMBERS(NUMBER)                                                                   \
+  NUMBER(float, relaxation, "relaxation", 0.01f, 0, 100, "Constraint relaxation")                    \
+  NUMBER(float, tensile, "tensile", 0, 0, 100, "s_corr strength")                                    \
+  NUMBER(float, momentum, "momentum", 0.4f, 0, 100,                                                  \
+         "Factor of the last projection's step that is taken again")                                 \
+  NUMBER(float, still_speed, "still-speed", 0.15f, 0, 10,                                            \
+         "Speed below which water counts as still and is calmed, in sqrt(g d); 0 = never")           \
+  NUMBER(int, coarse_cycles, "coarse-cycles", 2, 0, 16, "V-cycles of the coarse pressure; 0 = none") \
+  NUMBER(float, coarse_edge, "coarse-edge", 2, 0.5, 8, "Edge of the coarse pressure's cells, in h")
+
+/// What a program asks for. The numbers before the table's follow the scene and the speed of the water; those
+/// of the table are the measured default if negative.
+struct SolverNumbers {
+  static constexpr int most_iterations = 64;
+  int iterations = 0;          ///< constraint projections per substep; 0 = the scene's
+  int substeps = 0;            ///< per frame; 0 = as many as the fastest particle needs (scene.hpp)
+  int most_substeps = 0;       ///< limit per frame if substeps is 0; 0 = 32, or the scene's minimum if larger
+  double frame_dt_s = 0;       ///< 0 = the scene's
+  double viscosity_m2_s = -1;  ///< negative = the scene's
+  double courant = -1;         ///< likewise
+#define SIM_WISH(Type, member, ...) std::conditional_t<std::is_same_v<Type, int>, int, double> member = -1;
+  SIM_SOLVER_NUMBERS(SIM_WISH)
+#undef SIM_WISH
+};
+
+/// Describes one of SolverNumbers.
+struct SolverNumber {
+  const char* name;    ///< of the option of programs, without "--"
+  const char* help;    ///< meaning, unit and default
+  double least, most;  ///< allowed values
+  std::variant<int SolverNumbers::*, double SolverNumbers::*> value;
+};
+/// All of SolverNumbers, once each. Options of programs, keys of settled states and of saved runs come from
+/// this list.
+std::span<const SolverNumber> solver_numbers();
+/// " iterations=4 ...", exact: equal texts mean equal numbers.
+std::string in_words(const SolverNumbers& numbers);
+
+}  // namespace sim
