@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "apps/common/options.hpp"
 #include "apps/common/program.hpp"
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
+#include "libsim/scene/reference.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
 
@@ -68,6 +70,13 @@ int main(int argc, char** argv) {
   app.add_option(
       "--effects-off", options.effects_off,
       "Effects of the scene to switch off, together with those that need them: kinds separated by commas");
+  app.add_flag_callback(
+      "--reference",
+      [] {
+        std::fputs(sim::scene_reference_page().c_str(), stdout);
+        throw CLI::Success();
+      },
+      "Print every key of a scene file, as Markdown");
   app.add_flag("--explain", options.explain, "Print each pass of the solver with why it runs");
   app.callback([&] {
     if (headless) options.display = "headless";

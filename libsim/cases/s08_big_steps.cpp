@@ -41,7 +41,7 @@ Outcome collapse(const Setting& setting) {
 
 Outcome dam(const Setting& setting) {
   Scene scene = read_scene(base::resource("data/scenes/peers_dam.toml"));
-  scene.fill_max_m[1] *= setting.scale;
+  scene.water.front().max_m[1] *= setting.scale;
   SimulationOptions options = options_of(setting);
   options.n_star = setting.size == Size::Small ? 1024 : 128 * 1024;
   const double seconds = setting.size == Size::Small ? 100.0 / 120 : 2;

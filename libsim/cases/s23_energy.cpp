@@ -18,7 +18,7 @@ double energy(const State& state) {
 
 Outcome run_s23(const Setting& setting) {
   Scene scene = read_scene(base::resource("data/scenes/peers_dam.toml"));
-  scene.fill_max_m[1] *= setting.scale;
+  scene.water.front().max_m[1] *= setting.scale;
   SimulationOptions options = options_of(setting);
   options.n_star = setting.size == Size::Small ? 512 : setting.backend == Backend::Cpu ? 4096 : 32 * 1024;
   Watch watch(with_effects(scene, setting), options, {.density = 1.5, .outside_m = 0.1 * d});

@@ -47,7 +47,7 @@ Outcome run_s24(const Setting& setting) {
       fixation = frames_of(setting, 0.1 + 0.5 * draw(), scene.frame_dt_s);
       Vec3d point{};
       for (std::size_t k = 0; k < 3; ++k)
-        point[k] = draw() * (k == 1 ? scene.fill_max_m : scene.tank_size_m)[k];
+        point[k] = draw() * (k == 1 ? scene.water.front().max_m : scene.tank_size_m)[k];
       watch.fluid().look(look_at(scene, point));
     }
     if (!watch.step()) break;

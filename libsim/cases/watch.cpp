@@ -72,8 +72,8 @@ SimulationOptions options_of(const Setting& setting) {
 
 SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start) {
   // 512 finest particles in the box from which the spacing follows.
-  scene.fill_min_m = {0, 0, 0};
-  scene.fill_max_m = {8 * d, 8 * d, 8 * d};
+  scene.water.front().min_m = {0, 0, 0};
+  scene.water.front().max_m = {8 * d, 8 * d, 8 * d};
   SimulationOptions out = options_of(setting);
   out.n_star = 64;
   out.start = start;

@@ -12,7 +12,7 @@ Scene tank(const Vec3d& size, const Vec3d& water, int settle_frames) {
   Scene scene;
   scene.name = "tank";
   scene.tank_size_m = size;
-  scene.fill_max_m = water;
+  scene.water.front().max_m = water;
   scene.settle_frames = settle_frames;
   const double distance = 2 + std::max(size[0], size[1]) / 2;
   scene.view.eye_m = {size[0] / 2, water[1] / 2 + 0.5, size[2] + distance};

@@ -13,7 +13,6 @@ namespace sim {
 
 namespace {
 
-constexpr double largest = 1e6;
 constexpr std::string_view coarsest_level = "coarsest_level";
 constexpr const char* without_effects = "is an effect, and this program was built without them";
 constexpr const char* build_them = "build it with -DVIP_EFFECTS=ON, or take the effect out of the scene";
@@ -166,7 +165,7 @@ std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
     const EffectKind kind = *named;
     if (!has_effects()) table.fail("kind", without_effects, build_them);
     if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");
-    Effect effect{kind, table.number(traits_of(kind).key, {0, largest})};
+    Effect effect{kind, table.number(traits_of(kind).key, {0, largest_coefficient})};
     for (std::size_t k = 0; k < option_count; ++k) {
       const OptionTraits& option = option_traits[k];
       if (option.of != kind) continue;
@@ -191,7 +190,7 @@ void check_effects(const std::vector<Effect>& effects) {
     };
     if (!has_effects()) fail(without_effects, build_them);
     if (find(effects, effect.kind) != &effect) fail("is listed twice", "keep one of the two");
-    if (!(effect.coefficient >= 0 && effect.coefficient <= largest))
+    if (!(effect.coefficient >= 0 && effect.coefficient <= largest_coefficient))
       fail(std::string(traits_of(effect.kind).key) + " is out of range", "use 0 to 1e6");
     for (std::size_t k = 0; k < option_count; ++k) {
       const OptionTraits& option = option_traits[k];

@@ -15,6 +15,8 @@ class TomlTable;
 namespace sim {
 
 inline constexpr double rest_density_kg_m3 = 1000;
+/// In the unit of each effect.
+inline constexpr double largest_coefficient = 1e6;
 
 /// Unit of an effect's coefficient c. It determines the natural time T of the explicit step, with the rest
 /// density rho_0 and the finest spacing d.

@@ -21,14 +21,28 @@ constexpr double cells_per_particle = 16;
 constexpr int most_substeps = 1000;
 constexpr int most_looks = 1024;  ///< along a side of the tank
 
-void check_water(const Scene& scene, const std::string& place, double spacing) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double side = scene.fill_max_m[k] - scene.fill_min_m[k];
-    if (side >= spacing) continue;
-    throw base::Error(
-        place + "water.max_m",
-        fmt::format("makes the water {:.3g} m thin, where particles are {:.3g} m apart", side, spacing),
-        "make the water thicker, or use a larger n_* (--n-star, or n_star in a protocol)");
+void check_water(const Scene& scene, const std::string& place, const Resolution& resolution) {
+  const bool several = scene.water.size() > 1;
+  if (several && scene.gate) throw base::Error(place + "water.gate", gate_of_several, no_gate);
+  constexpr const char* mend =
+      "make the water thicker, or use a larger n_* (--n-star, or n_star in a protocol)";
+  for (std::size_t b = 0; b < scene.water.size(); ++b) {
+    const WaterBlock& block = scene.water[b];
+    const std::string key = several ? fmt::format("water.block[{}].max_m", b) : "water.max_m";
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double side = block.max_m[k] - block.min_m[k];
+      if (side >= resolution.finest_spacing_m) continue;
+      throw base::Error(place + key,
+                        fmt::format("makes the water {:.3g} m thin, where particles are {:.3g} m apart", side,
+                                    resolution.finest_spacing_m),
+                        mend);
+    }
+    const double particle = std::pow(resolution.spacing_m, 3);
+    if (!several || volume_m3(block) >= 0.999 * particle) continue;
+    throw base::Error(place + key,
+                      fmt::format("makes {:.3g} m3 of water, less than a particle of {:.3g} m3",
+                                  volume_m3(block), particle),
+                      mend);
   }
 }
 
@@ -164,7 +178,7 @@ void check_ways(const Scene& scene, std::int64_t n_star) {
 
 void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, double cell_edge_m) {
   const std::string place = "scene " + scene.name + ", n_* " + std::to_string(n_star) + ", ";
-  check_water(scene, place, resolution_of(scene, method, n_star).finest_spacing_m);
+  check_water(scene, place, resolution_of(scene, method, n_star));
   check_substeps(scene, place, n_star);
   double cells = 1;
   for (const double side : scene.tank_size_m) cells *= side / cell_edge_m;

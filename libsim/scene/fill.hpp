@@ -8,6 +8,14 @@
 
 namespace sim {
 
+/// Of all blocks, with what obstacles displace.
+double water_volume_m3(const Scene& scene);
+double volume_m3(const WaterBlock& block);
+
+/// Why a gate round several blocks is refused, and the mend.
+inline constexpr const char* gate_of_several = "encloses one block of water, and there are several";
+inline constexpr const char* no_gate = "write gate = false";
+
 /// Resolution that follows from a scene's fixed volume and n_*.
 struct Resolution {
   double finest_spacing_m = 0;  ///< d_* = 2 r_*: cbrt(V / (8 n_*))
@@ -21,8 +29,9 @@ Scene acting_scene(Scene scene, int finest_level);
 /// The same for water that the method fills in: what is drawn.
 Scene acting_scene(Scene scene, MethodKind method);
 
-/// Exactly particle_count(method, n_star) points, minus those inside obstacles: layers from the floor up, the
-/// last layer partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
+/// Exactly particle_count(method, n_star) points, minus those inside obstacles, block by block. Each block
+/// has its share of the volume, rounded by largest remainders. In a block, layers from its floor up, the last
+/// layer partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
 
 /// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.
@@ -33,9 +42,9 @@ int substeps_of(const Scene& scene, std::int64_t n_star);
 /// water at rest; it goes to zero with h.
 double viscosity_of(const Scene& scene, std::int64_t n_star);
 
-/// Dimensionless numbers of a scene, from L = the water's shortest side, v = time.v_ref_m_s, the viscosity of
-/// the water and of the effect, gravity and tension. 0 without motion or gravity; otherwise infinite if the
-/// divisor is absent.
+/// Dimensionless numbers of a scene, from L = the shortest side of any block, v = time.v_ref_m_s, the
+/// viscosity of the water and of the effect, gravity and tension. 0 without motion or gravity; otherwise
+/// infinite if the divisor is absent.
 struct Scales {
   double length_m = 0, speed_m_s = 0;
   double viscosity_m2_s = 0;  ///< nu, of the water and of the effect

@@ -23,9 +23,11 @@ void include(TemperatureRange& range, double kelvin) {
 }
 
 bool holds_all_water(const WarmBox& box, const Scene& scene) {
-  for (std::size_t k = 0; k < 3; ++k)
-    if (box.min_m[k] > scene.fill_min_m[k] || box.max_m[k] < scene.fill_max_m[k]) return false;
-  return true;
+  return std::all_of(scene.water.begin(), scene.water.end(), [&](const WaterBlock& block) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (box.min_m[k] > block.min_m[k] || box.max_m[k] < block.max_m[k]) return false;
+    return true;
+  });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "libsim/scene/fill.hpp"
 #include "libsim/scene/mesh_reader.hpp"
 #include "libsim/scene/vector.hpp"
 #include "stats/base/file.hpp"
@@ -18,6 +19,7 @@ constexpr int newest_format = 2;
 // A double resolves 1e-10 m at this distance.
 constexpr double farthest_origin_m = 1e6;
 constexpr double hottest_k = 1e4;
+constexpr double most_settle_frames = 10'000;
 
 Vec3d vector(const base::TomlTable& table, const char* key, base::Range range) {
   const auto v = table.numbers(key, 3, range);
@@ -98,20 +100,76 @@ std::vector<Outlet> read_outlets(const base::TomlTable& scene, const std::array<
   return out;
 }
 
-void read_water(const base::TomlTable& table, Scene& scene) {
-  scene.fill_min_m = place(table, "min_m", scene.origin_m);
-  scene.fill_max_m = place(table, "max_m", scene.origin_m);
+int settle_frames(const base::TomlTable& table, double frame_dt_s) {
+  const bool in_frames = table.has("settle_frames"), in_seconds = table.has("settle_s");
+  if (in_frames && in_seconds)
+    table.fail("settle_s", "is given together with settle_frames", "keep one of settle_s and settle_frames");
+  if (!in_frames && !in_seconds)
+    table.fail("", "has neither settle_s nor settle_frames", "give one of the two; settle_s = 0.0 is none");
+  if (in_frames) return static_cast<int>(table.integer("settle_frames", {0, most_settle_frames}));
+  // 0.7 s at 60 frames/s are 42 frames, however the quotient is rounded.
+  const double frames = std::ceil(table.number("settle_s", {0, most_settle_frames}) / frame_dt_s - 1e-9);
+  if (frames > most_settle_frames)
+    table.fail("settle_s", "makes " + base::shortest(frames) + " frames of settling",
+               "lower it: at most " + base::shortest(most_settle_frames) + " are computed");
+  return static_cast<int>(frames);
+}
+
+WaterBlock read_block(const base::TomlTable& table, const Scene& scene) {
+  WaterBlock out{place(table, "min_m", scene.origin_m), place(table, "max_m", scene.origin_m)};
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!(scene.fill_max_m[k] - scene.fill_min_m[k] >= 1e-3)) {
+    if (!(out.max_m[k] - out.min_m[k] >= 1e-3)) {
       table.fail("max_m", "leaves no room for water", "make each entry at least 1 mm larger than in min_m");
     }
     const bool above = k == 1;  // the tank is open at the top
-    if (scene.fill_min_m[k] < -1e-9 || (!above && scene.fill_max_m[k] > scene.tank_size_m[k] + 1e-9)) {
+    if (out.min_m[k] < -1e-9 || (!above && out.max_m[k] > scene.tank_size_m[k] + 1e-9)) {
       table.fail("max_m", "reaches outside the tank", "keep the block within tank.size_m from tank.origin_m");
     }
   }
+  return out;
+}
+
+/// Along the axis along which the blocks overlap least; blocks that touch do not overlap.
+void check_block_apart(const base::TomlTable& table, const std::vector<WaterBlock>& water) {
+  const WaterBlock& last = water.back();
+  for (std::size_t b = 0; b + 1 < water.size(); ++b) {
+    double deep = farthest_m;
+    std::size_t along = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double common =
+          std::min(last.max_m[k], water[b].max_m[k]) - std::max(last.min_m[k], water[b].min_m[k]);
+      if (common < deep) deep = common, along = k;
+    }
+    if (deep <= 1e-9) continue;
+    table.fail("min_m",
+               "makes block " + std::to_string(water.size()) + " of the water overlap block " +
+                   std::to_string(b + 1),
+               "move one of them by " + base::shortest(std::ceil(deep * 1e5) / 1e5) + " m along " +
+                   std::string(1, "xyz"[along]) + ", or make them smaller");
+  }
+}
+
+std::vector<WaterBlock> read_blocks(const base::TomlTable& table, const Scene& scene) {
+  const auto tables = table.tables("block");
+  if (tables.empty()) return {read_block(table, scene)};
+  for (const char* key : {"min_m", "max_m"})
+    if (table.has(key))
+      table.fail(key, "is given together with [[water.block]]", "make it one more [[water.block]]");
+  std::vector<WaterBlock> out;
+  for (const auto& block : tables) {
+    if (out.size() == most_water_blocks)
+      block.fail("", "is one block too many", "use at most " + std::to_string(most_water_blocks));
+    out.push_back(read_block(block, scene));
+    check_block_apart(block, out);
+  }
+  return out;
+}
+
+void read_water(const base::TomlTable& table, Scene& scene) {
+  scene.water = read_blocks(table, scene);
   scene.gate = table.boolean("gate");
-  scene.settle_frames = static_cast<int>(table.integer("settle_frames", {0, 10'000}));
+  if (scene.gate && scene.water.size() > 1) table.fail("gate", gate_of_several, no_gate);
+  scene.settle_frames = settle_frames(table, scene.frame_dt_s);
   if (table.has("viscosity_m2_s")) scene.viscosity_m2_s = table.number("viscosity_m2_s", {0, 1e3});
 }
 
@@ -243,14 +301,18 @@ std::array<std::size_t, 2> axes_of(Wall wall) {
 
 Scene parse_scene(std::string_view text, const std::string& name,
                   const std::optional<std::filesystem::path>& beside) {
-  const auto root = base::parse_toml(text, name);
+  Scene scene = read_scene_table(base::parse_toml(text, name), beside);
+  scene.sha256 = base::sha256_hex(text);
+  return scene;
+}
+
+Scene read_scene_table(const base::TomlTable& root, const std::optional<std::filesystem::path>& beside) {
   const std::int64_t format = root.integer("format");
   if (format < 1 || format > newest_format) {
     root.fail("format", "is not a format that this program reads (1 or 2)",
               "use a program of the file's version");
   }
   Scene scene;
-  scene.sha256 = base::sha256_hex(text);
   scene.name = root.string("name");
   if (scene.name.empty() || scene.name.size() > 64)
     root.fail("name", "is empty or too long", "use 1 to 64 characters");
@@ -262,14 +324,13 @@ Scene parse_scene(std::string_view text, const std::string& name,
   if (tank.has("origin_m"))
     scene.origin_m = vector(tank, "origin_m", {-farthest_origin_m, farthest_origin_m});
   scene.central_force = read_central_force(root, scene.origin_m);
-  read_water(root.table("water"), scene);
-
   const auto time = root.table("time");
   scene.frame_dt_s = 1 / time.number("frames_per_s", {1, 10'000});
   scene.v_ref_m_s = time.number("v_ref_m_s", {0, 1000});
   scene.min_substeps = static_cast<int>(time.integer("min_substeps", {1, 64}));
   scene.solver_iterations = static_cast<int>(time.integer("iterations", {1, 64}));
-  if (time.has("courant")) scene.courant = time.number("courant", {0.05, 4});
+  scene.courant = time.number_or("courant", scene.courant, {0.05, 4});
+  read_water(root.table("water"), scene);
 
   if (format < 2 && root.has("effect"))
     root.fail("format", "has no effects: [[effect]] came with format 2", "write format = 2");

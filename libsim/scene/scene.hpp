@@ -1,6 +1,6 @@
 #pragma once
 /// The contents of a scene file: tank, water, time step, views, gaze. SI units; y points up; gravity acts
-/// along -y.
+/// along -y. docs/scenes.md lists every key of the file.
 
 #include <array>
 #include <cstddef>
@@ -54,15 +54,18 @@ std::array<std::size_t, 2> axes_of(Wall wall);
 
 /// A rectangle in which a wall is open. Water that passes the wall's plane in it leaves the simulation at the
 /// end of that frame. Outlets are closed while the water settles.
-/// The tables [[outlet]] of a scene file hold wall = "x_low", "x_high", "z_low", "z_high" or "y_low", and
-/// min_m and max_m, two numbers each, such as y and z of x_low. Errors are base::Error: unknown key, another
-/// wall, no area, a rectangle that exceeds the wall, more than most_outlets.
 struct Outlet {
   Wall wall = Wall::Floor;
   std::array<double, 2> min_m{}, max_m{};  ///< corners along axes_of(wall); each side at least 1 mm
 };
 
 inline constexpr std::size_t most_outlets = 4;
+
+/// A box that is filled with water before frame 0.
+struct WaterBlock {
+  Vec3d min_m{}, max_m{};
+};
+inline constexpr std::size_t most_water_blocks = 16;
 
 struct Scene {
   std::string name;
@@ -73,18 +76,16 @@ struct Scene {
   /// Inner size of the tank; glass walls and floor, open at the top (y is only the drawn height of the
   /// walls).
   Vec3d tank_size_m{};
-  /// Box that is filled with water before frame 0.
-  Vec3d fill_min_m{};
-  Vec3d fill_max_m{};
+  std::vector<WaterBlock> water{WaterBlock{}};  ///< 1 to most_water_blocks that do not overlap
   double gravity_m_s2 = 9.81;
   std::optional<CentralForce> central_force;   ///< in addition to gravity
   std::vector<Effect> effects;                 ///< each kind once; includes dropped effects (coefficient 0)
   std::vector<PictureEffect> picture_effects;  ///< each kind once; the solver ignores them
   std::vector<WarmBox> warm;                   ///< only with the effect heat
   double frame_dt_s = 1.0 / 60;
-  /// Reference speed for the number of substeps (the rule is documented at its key in data/scenes).
+  /// Reference speed for the number of substeps (substeps_of in libsim/scene/fill.hpp).
   double v_ref_m_s = 0;
-  /// True: walls enclose the water block until it has settled.
+  /// True: walls enclose the water block until it has settled; only for a single one.
   bool gate = false;
   int settle_frames = 0;
   int solver_iterations = 4;
@@ -112,6 +113,8 @@ struct Scene {
 /// incompatible. beside: the folder to which mesh files are relative, if the text has one.
 Scene parse_scene(std::string_view text, const std::string& name,
                   const std::optional<std::filesystem::path>& beside = {});
+/// The same without sha256.
+Scene read_scene_table(const base::TomlTable& root, const std::optional<std::filesystem::path>& beside = {});
 Scene read_scene(const std::filesystem::path& path);
 /// The file's text in self-contained form, including the triangles of its meshes. Scene::sha256 is its hash.
 std::string scene_text(const std::filesystem::path& path);

@@ -50,7 +50,8 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
 /// (docs/results.md). 0 without the effect or gravity.
 double least_shear(const Scene& scene) {
   const auto nu = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
-  const double height = scene.fill_max_m[1] - scene.fill_min_m[1];
+  double height = 0;
+  for (const WaterBlock& block : scene.water) height = std::max(height, block.max_m[1] - block.min_m[1]);
   return nu > 0 ? 0.1 * scene.gravity_m_s2 * height / 2 / nu : 0;
 }
 
@@ -152,7 +153,8 @@ double start_speed(const Scene& scene, const std::vector<ParticleState>& start) 
 }
 
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
-  double height = scene.fill_max_m[1];
+  double height = 0;
+  for (const WaterBlock& block : scene.water) height = std::max(height, block.max_m[1]);
   for (const Obstacle& o : scene.obstacles) {
     if (o.motion == ObstacleMotion::Free) height = std::max(height, o.start.centre_m[1]);
   }
@@ -189,6 +191,18 @@ float most_speed(double fall_speed, const Scene& scene, const Resolution& resolu
   return static_cast<float>(3 * fall_speed + 3 * capillary_speed(scene.effects, d) + squeeze_speed(scene, d));
 }
 
+namespace {
+
+/// The usual step, the finest spacing d, stays outside the middle of what is 2 d thick. Thinner obstacles
+/// need shorter steps by this share.
+double share_for_thin_obstacles(const Scene& scene, double finest_spacing_m) {
+  double out = 1;
+  for (const Obstacle& o : scene.obstacles) out = std::min(out, thickness_m(o) / (2 * finest_spacing_m));
+  return out;
+}
+
+}  // namespace
+
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start) {
   const double omega = scene.central_force ? scene.central_force->omega_per_s : 0;
   return scene.gravity_m_s2 + omega * omega * reach_of(scene, start);
@@ -200,6 +214,7 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
   SubstepLimits out;
   out.frame_dt_s = frame_dt_of(scene, options);
   out.courant = options.courant > 0 ? options.courant : scene.courant;
+  out.courant *= share_for_thin_obstacles(scene, resolution.finest_spacing_m);
   out.acceleration_m_s2 = acceleration;
   const MethodTraits& method = traits_of(options.method);
   out.support_m = 2 * (method.adaptive() ? resolution.finest_spacing_m : resolution.spacing_m);
@@ -281,9 +296,9 @@ Opening opening_of(const Outlet& outlet) {
 Walls walls_of(const Scene& scene, bool settling) {
   Vec3d low{0, 0, 0};
   Vec3d high = scene.tank_size_m;
-  if (settling && scene.gate) {
-    low = scene.fill_min_m;
-    high = scene.fill_max_m;
+  if (settling && scene.gate) {  // check_extent has refused several blocks
+    low = scene.water.front().min_m;
+    high = scene.water.front().max_m;
   }
   const auto f = [](double value) { return static_cast<float>(value); };
   // In the order of Wall.

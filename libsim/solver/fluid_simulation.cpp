@@ -1,6 +1,5 @@
 #include "libsim/solver/fluid_simulation.hpp"
 
-
 #include "libsim/exec/gl_sharing.hpp"
 #include "libsim/ptpe/tolerance_switch.hpp"
 #include "libsim/scene/extent.hpp"
@@ -334,7 +333,8 @@ class FluidSimulation final : public Simulation {
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
     state_.walls = walls_of(scene_, false);
-    begin_obstacles(state_, scene_, time_s(), options_.wall_impulse || !options_.gauges.empty());
+    begin_obstacles(state_, scene_, levels_.second, time_s(),
+                    options_.wall_impulse || !options_.gauges.empty());
     begin_jets(state_, scene_, options_, resolution_, frame_);
     check_foam(state_, state_.parameters.effects, scene_, frame_dt());
     if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, scene_);

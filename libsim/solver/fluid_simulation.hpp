@@ -60,9 +60,10 @@ TargetSphere sphere_of(const TargetRegion& region);
 /// a gate the walls enclose the water block. Open at the top.
 Walls walls_of(const Scene& scene, bool settling);
 
-/// Places the scene's obstacles, at rest, at this time; `told`: record what they give the water. base::Error
-/// if one is thinner than the coarsest particles' spacing: water would pass through it.
-void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool recorded);
+/// Places the scene's obstacles, at rest, at this time; `recorded`: record what they give the water.
+/// base::Error if one is thinner than the spacing of particles of the coarsest level that the run may hold:
+/// water would pass through it.
+void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s, bool recorded);
 /// Adds what the obstacles gave the water in the frame.
 void count_obstacles(const FluidState& state, MomentumAccount& account);
 /// The scene's obstacles at this time.

@@ -51,17 +51,19 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
 
 }  // namespace
 
-void begin_obstacles(FluidState& state, const Scene& scene, double time_s, bool recorded) {
+void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s,
+                     bool recorded) {
   auto& o = state.obstacles;
-  // A substep moves a particle at most by the finest spacing.
-  const auto least = static_cast<double>(state.finest_support);
+  // Substeps are short enough for it (substep_rule). Supports are rounded to floats.
+  const double least = (1 - 1e-6) * static_cast<double>(state.supports.h[coarsest_level]) / 2;
   for (const Obstacle& obstacle : scene.obstacles) {
     if (thickness_m(obstacle) >= least) continue;
     throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
                       "is " + base::shortest(thickness_m(obstacle)) +
                           " m thick: particles of this size could pass through it",
                       "make it at least " + base::shortest(least) +
-                          " m thick, or use a larger n_* (--n-star, or n_star in a protocol)");
+                          " m thick, or use a larger n_* (--n-star, or n_star in a protocol)" +
+                          (coarsest_level > 0 ? ", or HiRes, which has the finest particles alone" : ""));
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     if (obstacle.motion != ObstacleMotion::Free) continue;

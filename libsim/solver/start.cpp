@@ -180,10 +180,8 @@ namespace {
 /// Edge of the cells for foam's closing speeds: the scene's length, but at least 1.5 spacings of the coarsest
 /// particles that a method may have at this n_*, and at most the maximum number of cells.
 float foam_length(const FluidState& state, const EffectCoefficients& e, const Scene& scene) {
-  double volume = 1;
-  for (std::size_t k = 0; k < 3; ++k) volume *= scene.fill_max_m[k] - scene.fill_min_m[k];
   const float asked = e[EffectOption::FoamLength];
-  const float wish = std::max(asked > 0 ? asked : static_cast<float>(std::cbrt(volume) / 6),
+  const float wish = std::max(asked > 0 ? asked : static_cast<float>(std::cbrt(water_volume_m3(scene)) / 6),
                               0.75f * state.supports.h[most_levels - 1]);
   return MeetingCells::edge_of(state.domain, wish);
 }

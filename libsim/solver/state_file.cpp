@@ -41,8 +41,12 @@ void add(std::ostream& text, const Readings& r) {
 void add(std::ostream& text, const Scene& s) {
   text << s.sha256 << ' ' << s.gravity_m_s2 << ' ' << s.frame_dt_s << ' ' << s.v_ref_m_s << ' '
        << s.solver_iterations << ' ' << s.min_substeps << ' ' << s.courant << ' ' << s.viscosity_m2_s;
-  for (const Vec3d& v : {s.tank_size_m, s.fill_min_m, s.fill_max_m})
-    text << ' ' << v[0] << ' ' << v[1] << ' ' << v[2];
+  const auto add_place = [&](const Vec3d& v) { text << ' ' << v[0] << ' ' << v[1] << ' ' << v[2]; };
+  add_place(s.tank_size_m);
+  for (const WaterBlock& block : s.water) {
+    add_place(block.min_m);
+    add_place(block.max_m);
+  }
   for (const Nozzle& n : s.nozzles)
     text << " nozzle " << n.diameter_m << ' ' << n.position_m[0] << ' ' << n.position_m[1] << ' '
          << n.position_m[2] << ' ' << n.speed_m_s << ' ' << n.on_frames << ' ' << n.off_frames << ' '

@@ -8,17 +8,10 @@ namespace study {
 
 namespace {
 
-// Fallback text of keys that only some files need.
-constexpr const char* where_needed = "see right";
+using base::where_needed;
 
-struct TableText {
-  const char* table;
-  const char* heading;
-  const char* text;
-};
-
-const std::vector<TableText>& table_texts() {
-  static const std::vector<TableText> texts{
+const std::vector<base::TableReference>& protocol_tables() {
+  static const std::vector<base::TableReference> tables{
       {"", "The file itself", "Stands before the first table."},
       {"design", "[design]",
        R"(What is shown. Every scene, n_*, method and level of effects, and under `settings`
@@ -84,7 +77,7 @@ may stand beside them.
 | all | | questions of kind number, choice and scale in blocks of kind demographics, screening and question, such as `age` and `gender`, unless a trial asks them too: the report gives the answers in summary |)"},
       {"block.question.anchors", "anchors",
        R"(Words by score, as in `anchors = {1 = "poor", 7 = "good"}`.)"}};
-  return texts;
+  return tables;
 }
 
 bool is_rated(const AnswerKindTraits& one) { return one.rated(); }
@@ -100,12 +93,6 @@ std::string kind_meanings() {
   for (const AnswerKindTraits& one : answer_kinds())
     out += (out.empty() ? "" : ". ") + std::string(one.word) + ": " + one.meaning;
   return out;
-}
-
-std::string row_of(const KeyReference& key) {
-  const std::string values = key.values.empty() ? "" : ", " + key.values;
-  const std::string fallback = key.fallback.empty() ? "needed" : key.fallback;
-  return "| `" + key.key + "` | " + key.type + values + " | " + fallback + " | " + key.meaning + " |\n";
 }
 
 }  // namespace
@@ -319,22 +306,14 @@ const std::vector<KeyReference>& protocol_reference() {
 }
 
 std::string protocol_reference_page() {
-  std::string out = "# Protocol files, format " + std::to_string(Protocol::format_version) +
-                    R"(
+  return "# Protocol files, format " + std::to_string(Protocol::format_version) +
+         R"(
 
 Written by `vip-study reference`; `vip-study check FILE` checks a file and prints what it describes. Files are
 TOML. Units are in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per second. An unknown key, a
 wrong type, a value out of range and keys that contradict each other are errors at line and column. Every
 byte of a file enters the SHA-256 that is stored with the data.
-)";
-  for (const auto& text : table_texts()) {
-    out += std::string("\n## ") + text.heading + "\n\n" + text.text +
-           "\n\n| key | type | default | meaning |\n|---|---|---|---|\n";
-    for (const auto& key : protocol_reference()) {
-      if (key.table == text.table) out += row_of(key);
-    }
-  }
-  return out;
+)" + base::reference_sections(protocol_tables(), protocol_reference());
 }
 
 }  // namespace study

@@ -4,16 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "stats/base/key_reference.hpp"
+
 namespace study {
 
-struct KeyReference {
-  std::string table;  ///< "", "design", "block.question": the [table] or [[tables]] that holds it
-  std::string key;
-  std::string type;      ///< as base::AskedKey::type; several with " or "
-  std::string values;    ///< range or choices; empty: any
-  std::string fallback;  ///< value of an absent key; empty: the key is required
-  std::string meaning;
-};
+using base::KeyReference;
 
 const std::vector<KeyReference>& protocol_reference();
 

@@ -13,7 +13,7 @@ TEST(FluidPictureGl, SaliencySeesTheLastFrameAndTheRecordSaysHow) {
   const auto context = sim::GlContext::make_headless();
   sim::Scene scene;
   scene.tank_size_m = {4.8, 4, 2.4};
-  scene.fill_max_m = {2.4, 2.4, 1.2};
+  scene.water.front().max_m = {2.4, 2.4, 1.2};
   scene.gate = false;
   scene.settle_frames = 0;
   scene.v_ref_m_s = 4;
@@ -57,7 +57,7 @@ TEST(FluidPictureGl, ShowsAFreeObstacleWhereItIs) {
   const auto context = sim::GlContext::make_headless();
   sim::Scene scene;
   scene.tank_size_m = {2, 3, 2};
-  scene.fill_max_m = {0.5, 0.25, 0.5};
+  scene.water.front().max_m = {0.5, 0.25, 0.5};
   scene.settle_frames = 0;
   scene.v_ref_m_s = 4;
   scene.view.eye_m = {1, 1.5, 6};

@@ -100,6 +100,12 @@ TEST_F(ViewE2e, ARunInWhichAGuardStepsInEndsWithOneLineOnStandardError) {
   EXPECT_EQ(outcome.err.find("guards stepped in", told + 1), std::string::npos) << outcome.err;
 }
 
+TEST_F(ViewE2e, PrintsTheReferenceOfSceneFiles) {
+  const auto outcome = view("--reference");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out, base::read_file(VIP_TEST_DIR "/../docs/scenes.md", 1 << 20));
+}
+
 TEST_F(ViewE2e, ExplainsItsSchedule) {
   const auto outcome = small_run("--explain");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.out;

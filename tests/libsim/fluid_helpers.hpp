@@ -27,7 +27,7 @@ inline sim::Scene tank(sim::Vec3d size, sim::Vec3d water, int settle_frames = 0)
   sim::Scene scene;
   scene.name = "test tank";
   scene.tank_size_m = size;
-  scene.fill_max_m = water;
+  scene.water.front().max_m = water;
   scene.settle_frames = settle_frames;
   return scene;
 }

@@ -192,7 +192,7 @@ TEST(ObstacleContact, ABallAfloatStaysOutOfAPost) {
   // The post rises above the water, and the sloping floor lets the ball drift onto it.
   const Obstacle post = box({1.0, 0.5, 0.5}, {0.3, 1.0, 0.3});
   auto scene = pool({post, free_one(sphere({0.62, 0.62, 0.5}, 0.15), 400)});
-  scene.fill_max_m = {0.7, 0.9, 1};  // water runs towards the post
+  scene.water.front().max_m = {0.7, 0.9, 1};  // water runs towards the post
   scene.gate = true;
   scene.obstacles[1].start.centre_m = {0.5, 1.1, 0.5};
   const auto fluid = sim::make_simulation(scene, options_of());

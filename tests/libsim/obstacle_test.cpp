@@ -153,7 +153,7 @@ TEST(Obstacles, WaysThatWaterCanFollowAreTaken) {
             }),
             "")
       << "an outlet in the floor";
-  EXPECT_EQ(taken([](auto& scene, auto&) { scene.fill_max_m[0] = 0.5; }), "") << "half of the water";
+  EXPECT_EQ(taken([](auto& scene, auto&) { scene.water.front().max_m[0] = 0.5; }), "") << "half of the water";
   EXPECT_EQ(taken([](auto&, Obstacle& o) {
               o.shape = ObstacleShape::Sphere;
               o.radius_m = 0.495;
@@ -199,10 +199,59 @@ TEST(Obstacles, AMeshWithAHoleThatWaterPassesIsNoPress) {
   EXPECT_NE(way_error(scene), "");
 }
 
-TEST(Obstacles, ThinOnesAreRefused) {
+/// The error of making this fluid; empty if there is none.
+std::string making_error(const sim::Scene& scene, const sim::SimulationOptions& options) {
+  try {
+    sim::make_simulation(scene, options);
+  } catch (const base::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Obstacles, AreAsThickAsTheCoarsestParticlesThatTheRunMayHoldAreApart) {
   auto scene = pool();
-  scene.obstacles[0].size_m[0] = 0.05;
-  EXPECT_THROW(sim::make_simulation(scene, options_of()), base::Error);
+  const double d = sim::resolution_of(scene, sim::MethodKind::HiRes, options_of().n_star).finest_spacing_m;
+  const auto error = [&](double thickness, sim::MethodKind method, int levels = 4) {
+    auto options = options_of(method);
+    options.levels = levels;
+    scene.obstacles[0].size_m[0] = thickness;
+    return making_error(scene, options);
+  };
+  EXPECT_EQ(error(d, sim::MethodKind::HiRes), "");
+  EXPECT_EQ(error(1.01 * d, sim::MethodKind::Ours, 1), "") << "all its particles are the finest";
+  EXPECT_EQ(error(1.27 * d, sim::MethodKind::Ours, 2), "") << "cbrt(2) = 1.26";
+  EXPECT_NE(error(1.25 * d, sim::MethodKind::Ours, 2), "");
+  EXPECT_NE(error(0.99 * d, sim::MethodKind::HiRes), "");
+  for (const auto& traits : sim::all_methods()) {
+    EXPECT_EQ(error(2.01 * d, traits.kind), "") << traits.name;
+    if (traits.kind == sim::MethodKind::HiRes) continue;
+    EXPECT_THAT(error(1.99 * d, traits.kind),
+                AllOf(HasSubstr("obstacle: box"), HasSubstr("could pass through it"),
+                      HasSubstr("make it at least 0.18"), HasSubstr("or HiRes")))
+        << traits.name;
+  }
+}
+
+/// A column breaks and strikes a plate of one spacing across the tank.
+TEST(Obstacles, NoWaterPassesAFixedPlateOfOneSpacingUnderHiRes) {
+  auto options = options_of();
+  options.n_star = 256;
+  auto scene = fluid_test::tank({2, 2, 0.4}, {0.5, 1, 0.4}, 0);
+  scene.v_ref_m_s = 5;
+  const double d = sim::resolution_of(scene, options.method, options.n_star).finest_spacing_m;
+  scene.obstacles = {box({1.2, 1, 0.2}, {d, 2, 0.4})};
+  const auto fluid = sim::make_simulation(scene, options);
+  double fastest = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    fluid->step_frame();
+    for (const auto& p : fluid->read_state()) {
+      ASSERT_LT(static_cast<double>(p.x_m), 1.2) << "frame " << frame << ", particle " << p.id;
+      fastest = std::max(fastest, static_cast<double>(p.vx_m_s));
+    }
+  }
+  EXPECT_GT(fastest, 2) << "it struck the plate";
+  EXPECT_EQ(fluid->report().guards.not_finite, 0u);
 }
 
 TEST(Obstacles, WaterInsideIsLeftOutAndStaysOut) {

@@ -45,7 +45,7 @@ class Run {
 
  private:
   double fall_speed() const {
-    double height = scene_.fill_max_m[1], speed = 0;
+    double height = scene_.water.front().max_m[1], speed = 0;
     for (const auto& nozzle : scene_.nozzles) {
       height = std::max(height, nozzle.position_m[1]);
       speed = std::max(speed, nozzle.speed_m_s);

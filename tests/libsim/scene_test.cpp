@@ -61,6 +61,31 @@ TEST(Scene, DeclaresWhatMustStayVisible) {
               testing::HasSubstr("is empty or too long"));
 }
 
+TEST(Scene, SettlesForSecondsAtTheFrameRateOfTheFile) {
+  const auto frames = [](const std::string& settling, const std::string& rate = "60.0") {
+    const auto text = replaced(dam_text(), "settle_frames = 120", settling);
+    return sim::parse_scene(replaced(text, "frames_per_s = 60.0", "frames_per_s = " + rate), "scene.toml")
+        .settle_frames;
+  };
+  EXPECT_EQ(frames("settle_s = 2.0"), 120);
+  EXPECT_EQ(frames("settle_s = 2.0", "1000.0"), 2000);
+  EXPECT_EQ(frames("settle_s = 0.051"), 4) << "rounded up";
+  for (int whole = 0; whole <= 600; whole += 6)  // in tenths of a second, which are no binary fractions
+    EXPECT_EQ(frames("settle_s = " + std::to_string(whole / 60.0)), whole);
+  const auto error = [](const std::string& settling) {
+    return error_of(replaced(dam_text(), "settle_frames = 120", settling));
+  };
+  EXPECT_THAT(
+      error("settle_frames = 120\nsettle_s = 2.0"),
+      testing::AllOf(testing::HasSubstr("scene.toml:16:"), testing::HasSubstr("'water.settle_s'"),
+                     testing::HasSubstr("together with settle_frames"), testing::HasSubstr("keep one")));
+  EXPECT_THAT(error(""), testing::AllOf(testing::HasSubstr("neither settle_s nor settle_frames"),
+                                        testing::HasSubstr("give one")));
+  EXPECT_THAT(error("settle_s = 170.0"),
+              testing::AllOf(testing::HasSubstr("makes 10200 frames"), testing::HasSubstr("at most 10000")));
+  EXPECT_THAT(error("settle_s = -1.0"), testing::HasSubstr("out of range"));
+}
+
 TEST(Scene, SubstepsFollowTheRule) {
   const auto scene = dam();
   EXPECT_EQ(sim::substeps_of(scene, 4 * 1024), 2);
@@ -102,7 +127,7 @@ TEST(Extent, ATankThatIsAllAirIsRefused) {
 TEST(Extent, WaterThinnerThanAParticleIsRefused) {
   auto scene = dam();
   scene.tank_size_m = {1e4, 10, 1e4};
-  scene.fill_max_m = {1e4, 0.1, 1e4};
+  scene.water.front().max_m = {1e4, 0.1, 1e4};
   const auto error = extent_error(scene, MethodKind::HiRes, 1024);
   EXPECT_THAT(error, testing::AllOf(testing::HasSubstr("water.max_m"), testing::HasSubstr("0.1 m thin"),
                                     testing::HasSubstr("--n-star")));
@@ -110,7 +135,7 @@ TEST(Extent, WaterThinnerThanAParticleIsRefused) {
 
 TEST(Extent, MoreSubstepsThanAnybodyWaitsForAreRefused) {
   auto scene = dam();
-  scene.fill_max_m = {0.1, 0.1, 0.1};
+  scene.water.front().max_m = {0.1, 0.1, 0.1};
   scene.tank_size_m = {0.2, 0.2, 0.2};
   scene.v_ref_m_s = 1000;
   scene.frame_dt_s = 1;

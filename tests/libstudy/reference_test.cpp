@@ -2,14 +2,11 @@
 
 #include "libstudy/protocol/reference.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <regex>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -17,6 +14,7 @@
 #include "libstudy/protocol/readers.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "tests/common/asked_keys.hpp"
 
 namespace {
 
@@ -40,9 +38,9 @@ std::string without_scores(const std::string& name) {
 }
 
 /// All keys that are asked for when all protocols of the source tree are read.
-const std::map<std::string, std::vector<base::AskedKey>>& asked_keys() {
+const test::AskedKeys& asked_keys() {
   static const auto asked = [] {
-    std::map<std::string, std::vector<base::AskedKey>> out;
+    test::AskedKeys out;
     auto files = toml_files(tests / "../protocols");
     for (const auto& file : toml_files(tests / "fuzz/corpus/protocol")) files.push_back(file);
     for (const auto& file : files) {
@@ -58,21 +56,8 @@ const std::map<std::string, std::vector<base::AskedKey>>& asked_keys() {
   return asked;
 }
 
-std::string name_of(const study::KeyReference& key) {
-  return key.table.empty() ? key.key : key.table + "." + key.key;
-}
-
-std::set<std::string> reference_names() {
-  std::set<std::string> out;
-  for (const auto& key : study::protocol_reference()) out.insert(name_of(key));
-  return out;
-}
-
 TEST(Reference, NamesExactlyTheKeysThatReadersAskFor) {
-  std::set<std::string> asked;
-  for (const auto& [name, what] : asked_keys()) asked.insert(name);
-  EXPECT_EQ(reference_names(), asked);
-  EXPECT_EQ(reference_names().size(), study::protocol_reference().size()) << "a key stands there twice";
+  test::expect_names_exactly(study::protocol_reference(), asked_keys());
 }
 
 std::vector<std::string> choices_of(const std::string& name) {
@@ -99,12 +84,12 @@ std::string with(const std::string& protocol, const study::KeyReference& key, co
 
 // The files do not use each word of each choice, and a word may have keys of its own.
 TEST(Reference, NamesWhatEachWordOfAChoiceBrings) {
-  const auto known = reference_names();
+  const auto known = test::names_of(study::protocol_reference());
   int words = 0, keys = 0;
   for (const auto& file : toml_files(tests / "../protocols")) {
     const std::string text = base::read_file(file, 1 << 20);
     for (const auto& key : study::protocol_reference()) {
-      for (const std::string& word : choices_of(name_of(key))) {
+      for (const std::string& word : choices_of(test::name_of(key))) {
         const auto root = base::parse_toml(with(text, key, word), file.filename());
         try {
           study::read_protocol_table(root);
@@ -122,35 +107,8 @@ TEST(Reference, NamesWhatEachWordOfAChoiceBrings) {
   EXPECT_GT(keys, 50 * words) << "they are refused early";
 }
 
-std::string in_words(const std::vector<std::string>& choices) {
-  std::string out;
-  for (const auto& word : choices) out += (out.empty() ? "\"" : ", \"") + word + "\"";
-  return out;
-}
-
-/// Empty fields of `asked` agree with everything.
-void expect_agrees(const study::KeyReference& key, const base::AskedKey& asked) {
-  const std::string name = name_of(key);
-  EXPECT_THAT(key.type, testing::HasSubstr(asked.type)) << name;
-  EXPECT_THAT(key.values, testing::HasSubstr(in_words(asked.choices))) << name;
-  EXPECT_THAT(key.fallback, testing::HasSubstr(asked.fallback)) << name;
-  const bool is_range = key.values.starts_with('[') || key.values.starts_with('(');
-  if (asked.range && is_range && key.values.find(" or ") == std::string::npos) {
-    EXPECT_EQ(key.values, base::range_text(*asked.range)) << name;
-  }
-}
-
 TEST(Reference, HasTheTypesRangesAndDefaultsOfTheReaders) {
-  for (const auto& key : study::protocol_reference()) {
-    const std::string name = name_of(key);
-    ASSERT_TRUE(asked_keys().count(name)) << name;
-    bool typed = false;
-    for (const auto& asked : asked_keys().at(name)) {
-      typed = typed || !asked.type.empty();
-      expect_agrees(key, asked);
-    }
-    EXPECT_TRUE(typed) << name;
-  }
+  test::expect_types_ranges_and_defaults(study::protocol_reference(), asked_keys());
 }
 
 TEST(Reference, PageIsTheOneInDocs) {

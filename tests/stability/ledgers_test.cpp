@@ -28,7 +28,7 @@ void books_close(Backend backend, const Case& run, std::int64_t n_star, int fram
   const bool adaptive = sim::traits_of(run.method).adaptive();
   const auto& size = scene.tank_size_m;
   const double reach = size[0] / 4;
-  const sim::Vec3d middle{size[0] / 3, scene.fill_max_m[1] / 2, size[2] / 2};
+  const sim::Vec3d middle{size[0] / 3, scene.water.front().max_m[1] / 2, size[2] / 2};
   if (adaptive) options.forced_targets = sim::TargetRegion{middle, reach, 0, 3};
   const auto fluid = sim::make_simulation(scene, options);
   Ledger ledger(*fluid, scene, n_star);

@@ -58,8 +58,8 @@ TEST(S16FarOrigin, EveryPlaceCountsFromTheTanksCorner) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-11);
   };
   same(near.tank_size_m, far.tank_size_m);
-  same(near.fill_min_m, far.fill_min_m);
-  same(near.fill_max_m, far.fill_max_m);
+  same(near.water.front().min_m, far.water.front().min_m);
+  same(near.water.front().max_m, far.water.front().max_m);
   same(near.nozzles[0].position_m, far.nozzles[0].position_m);
   same(near.view.eye_m, far.view.eye_m);
   same(near.view.target_m, far.view.target_m);

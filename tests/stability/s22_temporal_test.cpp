@@ -178,7 +178,7 @@ void dam_with_rest(Backend backend, std::int64_t n_star, int frames, const std::
     std::vector<double> centre, kinetic;
     for (std::uint32_t seed = 1; seed <= draws; ++seed) {
       const auto run = run_dam(scene, options, gate.beta, frames, seed);
-      centre.push_back(centre_error(run, full, scene.fill_max_m[1]));
+      centre.push_back(centre_error(run, full, scene.water.front().max_m[1]));
       kinetic.push_back(kinetic_ratio(run, full));
       std::printf(
           "dam, %lld particles, beta %.2f: solved %.3f, max rho %.3f (full %.3f), within 0.3 d %.4f (full "

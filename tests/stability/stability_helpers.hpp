@@ -28,7 +28,7 @@ inline std::vector<ParticleState> block(int nx, int ny, int nz, const sim::Vec3d
 inline std::unique_ptr<sim::Simulation> start_from(Backend backend, sim::Scene scene,
                                                    const std::vector<ParticleState>& start,
                                                    sim::SimulationOptions options = {}) {
-  scene.fill_max_m = {8 * d, 8 * d, 8 * d};
+  scene.water.front().max_m = {8 * d, 8 * d, 8 * d};
   options.n_star = 64;  // 512 particles in the block: spacing d
   options.backend = backend;
   options.start = start;

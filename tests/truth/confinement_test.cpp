@@ -72,8 +72,8 @@ std::unique_ptr<sim::Simulation> run_of(const Pool& pool, const State& start, do
   options.start = start;
   const double finest_cells = total_mass(start) / mass(ParticleState{});
   options.n_star = static_cast<std::int64_t>(finest_cells / 8) + 1;
-  scene.fill_max_m = {2 * pool.finest() * static_cast<double>(options.n_star), 2 * pool.finest(),
-                      2 * pool.finest()};
+  scene.water.front().max_m = {2 * pool.finest() * static_cast<double>(options.n_star), 2 * pool.finest(),
+                               2 * pool.finest()};
   if (pool.targets) {
     options.forced_targets = *pool.targets;
     auto& region = *options.forced_targets;

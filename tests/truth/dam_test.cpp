@@ -75,7 +75,7 @@ Collapse collapse(const Run& run, const std::filesystem::path& path, std::int64_
   options.method = run.method;
   options.n_star = n_star;
   const auto fluid = sim::make_simulation(scene, options);
-  const Vec3d base = scene.fill_max_m;
+  const Vec3d base = scene.water.front().max_m;
   const double unit = std::sqrt(base[0] / scene.gravity_m_s2),
                d = sim::resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m;
   Collapse out;

@@ -50,13 +50,15 @@ sim::Scene pool_scene(const Vec3d& size, const sim::Effect& effect) {
   return scene;
 }
 /// Sets the half x < middle to 310 K; the rest is at 300 K.
-void warm_left(sim::Scene& scene) { scene.warm = {{{-1, -1, -1}, {scene.fill_max_m[0] / 2, 100, 100}, 310}}; }
+void warm_left(sim::Scene& scene) {
+  scene.warm = {{{-1, -1, -1}, {scene.water.front().max_m[0] / 2, 100, 100}, 310}};
+}
 
 std::unique_ptr<sim::Simulation> start_of(const Pool& pool, const sim::Scene& scene) {
   sim::SimulationOptions options;
   options.backend = pool.backend;
   options.method = pool.method;
-  const Vec3d& size = scene.fill_max_m;
+  const Vec3d& size = scene.water.front().max_m;
   options.n_star = std::llround(size[0] * size[1] * size[2] / (8 * d * d * d));
   options.forced_targets = pool.targets;
   rest_at(pool.beta, options);

@@ -25,7 +25,7 @@ void dam_strikes(Run run, const TruthFile& file, std::int64_t n_star) {
   options.backend = run.backend;
   options.method = run.method;
   options.n_star = n_star;
-  const double height = scene.fill_max_m[1], unit = std::sqrt(height / scene.gravity_m_s2);
+  const double height = scene.water.front().max_m[1], unit = std::sqrt(height / scene.gravity_m_s2);
   const double d = sim::resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m;
   const Vec3d& tank = scene.tank_size_m;
   options.gauges = {{"sensor", sim::Wall::HighX, {tank[0], 0, 0}, {tank[0], 3 * d, tank[2]}}};

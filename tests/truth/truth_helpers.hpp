@@ -88,7 +88,8 @@ inline State moving(State state, const std::function<Vec3d(const Vec3d&)>& speed
 inline void begin_with(State start, int level, double d, sim::Scene& scene, sim::SimulationOptions& options) {
   for (auto& p : start) p.level = level;
   options.n_star = static_cast<std::int64_t>(start.size() << level) / 8 + 1;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};  // 8 n_* cells of d
+  scene.water.front().max_m = {2 * d * static_cast<double>(options.n_star), 2 * d,
+                               2 * d};  // 8 n_* cells of d
   options.start = std::move(start);
 }
 
@@ -104,7 +105,8 @@ inline void rest_at(double beta, sim::SimulationOptions& options) {
 inline std::unique_ptr<sim::Simulation> start_from(const Run& run, sim::Scene scene, double d,
                                                    const State& start, sim::SimulationOptions options = {}) {
   options.n_star = (static_cast<std::int64_t>(start.size()) + 7) / 8;
-  scene.fill_max_m = {2 * d * static_cast<double>(options.n_star), 2 * d, 2 * d};  // 8 n_* cells of d
+  scene.water.front().max_m = {2 * d * static_cast<double>(options.n_star), 2 * d,
+                               2 * d};  // 8 n_* cells of d
   const Vec3d middle{mean(start, [](auto& p) { return place(p)[0]; }),
                      mean(start, [](auto& p) { return place(p)[1]; }), scene.tank_size_m[2] / 2};
   scene.view.target_m = middle;

@@ -30,7 +30,7 @@ std::unique_ptr<Simulation> make(const Choice& choice, MethodKind method) {
   Scene scene;
   scene.name = "tank";
   scene.tank_size_m = {choice.tank_length, 40 * d, 16 * d};
-  scene.fill_max_m = {choice.block_length, choice.height, 16 * d};
+  scene.water.front().max_m = {choice.block_length, choice.height, 16 * d};
   scene.settle_frames = choice.settle_frames;
   SimulationOptions options;
   options.n_star = 1024;

@@ -17,8 +17,8 @@ sim::Scene dam() {
   sim::Scene scene;
   scene.name = "dam";
   scene.tank_size_m = {4.8, 4, 2.4};
-  scene.fill_min_m = {0, 0, 0};
-  scene.fill_max_m = {2.4, 2.4, 1.2};
+  scene.water.front().min_m = {0, 0, 0};
+  scene.water.front().max_m = {2.4, 2.4, 1.2};
   scene.gate = false;
   scene.settle_frames = 0;
   scene.v_ref_m_s = 4;
