@@ -30,7 +30,7 @@ enum class EffectUnit {
 
 // The registry, one row per effect: EFFECT(enumerator, word in the scene file, key of its coefficient, unit,
 // longest stable substep in T, a required effect or none, source). The stages of a row come from the function
-// WORD_stages() in one file of libsim/solver/effects; they run in the table's order, after the viscosity.
+// WORD_stages() in one file of libsim/solver/effects; they run in the table's order.
 #define SIM_EFFECTS(EFFECT)                                                        \
   EFFECT(Viscosity, viscosity, viscosity_m2_s, Unlimited, 1, no_effect,            \
          "Weiler et al. 2018, implicit, of pairs of any size")                     \
@@ -59,10 +59,10 @@ inline constexpr std::size_t effect_count = static_cast<std::size_t>(EffectKind:
 inline constexpr EffectKind no_effect = EffectKind::count;
 
 // Further parameters of effects, one row each: OPTION(enumerator, its effect, key, default, minimum,
-// maximum). wall_k = 0 means insulating walls; length_m = 0 means a sixth of the edge of a cube that holds
-// the water.
+// maximum). cg_steps = 0 means as many as converge. wall_k = 0 means insulating walls; length_m = 0 means a
+// sixth of the edge of a cube that holds the water.
 #define SIM_EFFECT_OPTIONS(OPTION)                                  \
-  OPTION(ViscositySteps, Viscosity, cg_steps, 16, 1, 200)           \
+  OPTION(ViscositySteps, Viscosity, cg_steps, 0, 0, 200)            \
   OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                 \
   OPTION(ViscosityCoarsest, Viscosity, coarsest_level, 3, 0, 3)     \
   OPTION(CohesionCoarsest, Cohesion, coarsest_level, 3, 0, 3)       \

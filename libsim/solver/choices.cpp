@@ -55,14 +55,6 @@ double least_shear(const Scene& scene) {
   return nu > 0 ? 0.1 * scene.gravity_m_s2 * height / 2 / nu : 0;
 }
 
-/// Speed, m/s, at which fluid slumps under its own weight however viscous it is: about g dt, measured
-/// (docs/decisions.md). Gravity moves the particles before the implicit step brakes them. 0 without the
-/// effect.
-double slump_speed(const Scene& scene, const SimulationOptions& options) {
-  if (!(coefficients_of(scene.effects)[EffectKind::Viscosity] > 0)) return 0;
-  return scene.gravity_m_s2 * frame_dt_of(scene, options) / substeps_needed(scene, options);
-}
-
 }  // namespace
 
 std::string effects_in_words(const std::vector<Effect>& listed, const Scene& scene,
@@ -89,10 +81,6 @@ std::string effects_in_words(const std::vector<Effect>& listed, const Scene& sce
   if (const double shear = least_shear(scene); shear > 0) {
     out << "  viscosity: particles of one size resist shear slower than " << shear
         << " /s by more than a quarter beyond it\n";
-  }
-  if (const double speed = slump_speed(scene, options); speed > 0) {
-    out << "  viscosity: however viscous, fluid slumps at up to about " << speed
-        << " m/s (g dt); more substeps make it slower\n";
   }
   return out.str();
 }

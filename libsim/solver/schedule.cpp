@@ -118,7 +118,7 @@ const Effect* listed(const Demand& demand, EffectKind kind) {
 std::string reason_for(const Stage& stage, const Demand& demand) {
   if (stage.effect == no_effect) return stage.called_for(demand);
   const Effect* effect = listed(demand, stage.effect);
-  if (!effect || effect->coefficient == 0 || is_idle(*effect, demand.effects, demand.finest_level)) return "";
+  if (!acts(demand, stage.effect)) return "";
   if (stage.called_for && stage.called_for(demand).empty()) return "";
   return std::string("the scene lists ") + traits_of(effect->kind).key + " = " +
          base::shortest(effect->coefficient);

@@ -290,18 +290,11 @@ TEST(Effects, ExplainStatesTheLimitsOfThickFluid) {
   std::ostringstream shear;  // 0.1 g h / nu at half the height below the surface
   shear << 0.1 * scene.gravity_m_s2 * (scene.water.front().max_m[1] - scene.water.front().min_m[1]) / 2 / 0.5;
   EXPECT_THAT(says(), HasSubstr(words + shear.str() + " /s by more than a quarter"));
-  const std::string slump = "slumps at up to about ";
-  auto options = options_of();
-  options.substeps = 4;
-  std::ostringstream speed;
-  speed << scene.gravity_m_s2 * scene.frame_dt_s / 4;
-  EXPECT_THAT(sim::make_simulation(scene, options)->explain(),
-              HasSubstr(slump + speed.str() + " m/s (g dt)"));
   scene.gravity_m_s2 = 0;
-  EXPECT_THAT(says(), Not(AnyOf(HasSubstr(words), HasSubstr(slump))));
+  EXPECT_THAT(says(), Not(HasSubstr(words)));
   scene.gravity_m_s2 = 9.81;
   scene.effects = {{EffectKind::Viscosity, 0}};
-  EXPECT_THAT(says(), Not(AnyOf(HasSubstr(words), HasSubstr(slump))));
+  EXPECT_THAT(says(), Not(HasSubstr(words)));
 }
 
 /// The numbers in the comments of the demo scenes.

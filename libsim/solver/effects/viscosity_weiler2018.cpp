@@ -1,4 +1,9 @@
-/// Viscosity of fluids as thick as honey: implicit, so that it is stable for any step.
+/// Viscosity of fluids as thick as honey: implicit, so that it is stable for any step. It acts on velocities
+/// that hold the substep's forces, before the particles move: otherwise gravity would move them by g dt^2 in
+/// each substep however viscous they are. What projections add is damped in the next substep.
+
+#include <algorithm>
+#include <cmath>
 
 #include "libsim/solver/effects/sticking.hpp"
 #include "libsim/solver/stages/stages.hpp"
@@ -253,6 +258,20 @@ Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, Visc
           .widest = state.widest_support(EffectOption::ViscosityCoarsest)};
 }
 
+/// As many as the scene says, or as many as converge: in proportion to the root of the condition number, the
+/// stiffest pair's rate over that of the slowest shear between opposite walls (docs/decisions.md).
+int steps_of(const FluidState& state) {
+  const auto& k = state.parameters;
+  const float asked = k.effects[EffectOption::ViscositySteps];
+  if (asked > 0) return static_cast<int>(asked);
+  const Vec3 size = state.domain.high - state.domain.low;
+  const float width = at_most(size.x, size.z);
+  const float d = state.lightest_support / 2;
+  const float diffusion = k.dt * k.effects[EffectKind::Viscosity];
+  const float needed = 3.5f / (d * std::sqrt(1 / diffusion + 1 / (width * width)));
+  return static_cast<int>(std::ceil(std::min(std::max(16.0f, needed), 200.0f)));
+}
+
 template <bool OneLevel, class Selection, class Bodies>
 void solve(FluidState& state, ViscosityColumns p, Selection select, Bodies bodies) {
   const int n = p.size();
@@ -273,7 +292,7 @@ void solve(FluidState& state, ViscosityColumns p, Selection select, Bodies bodie
   for_each_team("viscous residual", n, friction_of<true, OneLevel>(state, p, select, bodies));
   solver.sum("viscous rest", n, p.capacity(), Product{p.position(), residual, residual, finest, widest},
              TakeRest<Bodies>{{step}, bodies});
-  const int steps = static_cast<int>(state.parameters.effects[EffectOption::ViscositySteps]);
+  const int steps = steps_of(state);
   for (int s = 0; s < steps; ++s) {
     if (s > 0) for_each("viscous turn", n, Turn{residual, direction, step});
     for_each_team("viscous pairs", n, friction_of<false, OneLevel>(state, p, select, bodies));
@@ -327,6 +346,9 @@ void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
 /// random step, and the next projections correct the density. Velocities do not change, and so momentum is
 /// conserved.
 constexpr float loosening = 0.04f;  ///< maximum step along each axis, in spacings
+/// Maximum nu dt / d^2 with steps of this length. Thicker fluid flows less in a substep, by 1 / nu, and
+/// random steps loosen by their square; longer ones would swell it faster than it flows (docs/decisions.md).
+constexpr float loosened_in_full = 2;
 template <class Selection>
 struct Loosen {
   Selection select;
@@ -334,6 +356,7 @@ struct Loosen {
   const float* density;
   const int* id;
   float widest;  ///< largest support that takes part, m
+  float less;    ///< maximum step along each axis if it is the smaller one, as a share of h^2, 1/m
 
   SIM_FN void operator()(int slot) const {
     const int i = select(slot);
@@ -344,7 +367,7 @@ struct Loosen {
     const Vec4 at = position[i];
     if (at.w > widest) return;
     const Vec3 step{along(i, 0, at.x), along(i, 1, at.y), along(i, 2, at.z)};
-    position[i] = with_w(xyz(at) + (loosening / 2 * at.w) * step, at.w);
+    position[i] = with_w(xyz(at) + at_most(loosening / 2, less * at.w) * at.w * step, at.w);
   }
   /// Uniform in [-1, 1). The position replaces the time in the hash, so that a run resumed from a saved state
   /// takes the same steps.
@@ -362,12 +385,15 @@ using LoosenView =
 
 template <class Selection>
 void loosen(FluidState& state, LoosenView p, Selection select) {
+  const auto& k = state.parameters;
+  const float diffusion = k.dt * k.effects[EffectKind::Viscosity];
   for_each("loosen", p.size(),
            Loosen<Selection>{.select = select,
                              .position = p.position(),
                              .density = p.density(),
                              .id = p.id(),
-                             .widest = state.widest_support(EffectOption::ViscosityCoarsest)});
+                             .widest = state.widest_support(EffectOption::ViscosityCoarsest),
+                             .less = loosening / 4 * std::sqrt(loosened_in_full / diffusion)});
 }
 
 /// Without gravity there is no pressure. Mixed sizes form no lattice.
@@ -384,7 +410,7 @@ void run_viscosity(FluidState& state, ViscosityColumns p) {
 }  // namespace
 
 std::vector<Stage> viscosity_stages() {
-  return {stage_of<run_viscosity>({.name = "viscosity", .phase = Phase::SubstepEnd}),
+  return {stage_of<run_viscosity>({.name = "viscosity", .phase = Phase::Substep}),
           stage_of<run_loosen>({.name = "loosening of the lattice", .phase = Phase::SubstepEnd})};
 }
 

@@ -38,15 +38,24 @@ std::vector<SharedLoop> shared_loops() { return {}; }
 #endif
 
 std::vector<Stage> all_stages() {
-  std::vector<Stage> out{
-      frame_neighbours_stage(), gaze_targets_stage(), saliency_stage(), saliency_parts_stage(),
-      forced_targets_stage(), graded_targets_stage(), split_and_merge_stage(),
-      // After all stages that use the last substep's neighbours, which pouring invalidates.
-      nozzle_stage(), activation_stage(), obstacles_stage(), bodies_move_stage(), bodies_meet_stage(),
-      predict_stage(), held_at_walls_stage(), neighbours_stage(), ease_stage(), pre_stabilisation_stage(),
-      parting_stage(), coarse_pressure_stage(), wall_cells_stage(), density_stage(), missing_density_stage(),
-      displacement_stage(), velocity_stage(), xsph_stage(), xsph_of_levels_stage()};
-  for (Stage& stage : effect_stages()) out.push_back(stage);
+  const std::vector<Stage> effects = effect_stages();
+  std::vector<Stage> out{frame_neighbours_stage(), gaze_targets_stage(), saliency_stage(),
+                         saliency_parts_stage(), forced_targets_stage(), graded_targets_stage(),
+                         split_and_merge_stage(),
+                         // After all stages that use the last substep's neighbours, which pouring
+                         // invalidates.
+                         nozzle_stage(), activation_stage(), obstacles_stage(), bodies_move_stage(),
+                         bodies_meet_stage(), forces_stage(), present_neighbours_stage()};
+  const auto add = [&](bool before_moves) {
+    for (const Stage& stage : effects)
+      if ((stage.phase == Phase::Substep) == before_moves) out.push_back(stage);
+  };
+  add(true);
+  out.insert(out.end(), {predict_stage(), held_at_walls_stage(), neighbours_stage(), ease_stage(),
+                         pre_stabilisation_stage(), parting_stage(), coarse_pressure_stage(),
+                         wall_cells_stage(), density_stage(), missing_density_stage(), displacement_stage(),
+                         velocity_stage(), xsph_stage(), xsph_of_levels_stage()});
+  add(false);
   // After all stages that push bodies.
   out.insert(out.end(), {bodies_pushed_stage(), velocity_grid_stage(), settling_stage(), outflow_stage()});
   return out;

@@ -193,7 +193,8 @@ struct FluidState {
   bool one_level = true;   ///< all particles have one level throughout the run
   bool compressed = true;  ///< the water is or may be compressed: frames begin with a pre-stabilisation
   int substep = 0;
-  int iteration = 0;  ///< projection within the substep
+  bool forces_acted = false;  ///< the substep's forces are in the velocities: predict adds none
+  int iteration = 0;          ///< projection within the substep
   Particles particles;
   Grid grid;
   NeighbourList neighbours;

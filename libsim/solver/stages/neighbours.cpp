@@ -38,6 +38,18 @@ void run_substep(FluidState& state, SubstepView p) {
   state.all_active ? find_neighbours(state, p) : list_active(state, p);
 }
 
+using PresentView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
+                               columns(Column::Predicted, Column::Neighbours), columns(Column::Active),
+                               columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
+
+/// Later substeps use the lists of the one before: what the search found then covers the moves since. A frame
+/// searches anew, so that its lists depend on nothing but the particles.
+void run_present(FluidState& state, PresentView p) {
+  if (state.substep > 0) return;
+  p.copy<Column::Predicted, Column::Position>();
+  run_substep(state, p);
+}
+
 using FrameView = ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                              columns(Column::Predicted, Column::Neighbours)>;
 
@@ -63,6 +75,13 @@ Stage neighbours_stage() {
        .source = "compact grid and one combined list a substep",
        .phase = Phase::Substep,
        .called_for = [](const Demand&) -> std::string { return "the density constraint needs neighbours"; }});
+}
+
+Stage present_neighbours_stage() {
+  return stage_of<run_present>({.name = "present neighbours",
+                                .source = "the same at the positions that the forces found",
+                                .phase = Phase::Substep,
+                                .called_for = if_thick});
 }
 
 Stage frame_neighbours_stage() {

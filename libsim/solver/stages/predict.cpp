@@ -20,18 +20,22 @@ struct GravityAndPull {
   }
 };
 
-/// An unsolved particle moves at its inherited velocity, which includes forces and pressure.
+/// Of a substep whose forces have acted.
+struct NoForces {
+  SIM_FN void act(Vec3, Vec3&, float) const {}
+};
+
+/// What acts on a velocity before the particle moves: quarantine, forces and speed limit.
 template <class Selection, class Forces, class Boundary>
-struct Predict {
+struct Drive {
   Selection select;
   Forces forces;
   Vec4* position;
   Vec4* velocity;
-  Vec4* predicted;
   Boundary walls;
   Vec3 refuge;
   Brake brake;
-  float dt, wall_gap;
+  float dt;
   float reach;  ///< a position farther beyond a wall is lost, m
 
   SIM_FN void operator()(int i) const {
@@ -45,11 +49,7 @@ struct Predict {
     } else {
       forces.act(x, v, select.falls(i) * dt);
     }
-    v = brake.limited(v, h, i);
-    velocity[i] = with_w(v, 0);
-    if (walls.hold_back(x, fused(x, dt, v), wall_gap * h / 2))
-      atomic_add(&brake.witness.guards->wall_projected, std::uint64_t{1});
-    predicted[i] = with_w(x, h);
+    velocity[i] = with_w(brake.limited(v, h, i), 0);
   }
 
   /// Sets the velocity to zero. Moves the particle to the refuge if its position is not finite, or so far
@@ -67,47 +67,90 @@ struct Predict {
   }
 };
 
+/// An unsolved particle moves at its inherited velocity, which includes forces and pressure.
+template <class Selection, class Forces, class Boundary>
+struct Predict {
+  Drive<Selection, Forces, Boundary> drive;
+  Vec4* predicted;
+  float wall_gap;
+
+  SIM_FN void operator()(int i) const {
+    drive(i);
+    const float h = drive.position[i].w;
+    Vec3 x = xyz(drive.position[i]);
+    if (drive.walls.hold_back(x, fused(x, drive.dt, xyz(drive.velocity[i])), wall_gap * h / 2))
+      atomic_add(&drive.brake.witness.guards->wall_projected, std::uint64_t{1});
+    predicted[i] = with_w(x, h);
+  }
+};
+
+using DriveColumns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
+                                columns(Column::Position, Column::Velocity)>;
+
+/// Calls then(drive).
+template <class Selection, class Forces, class Boundary, class Then>
+void with_drive(FluidState& state, DriveColumns p, Selection select, Forces forces, Boundary boundary,
+                Then then) {
+  const Vec3 size = state.domain.high - state.domain.low;
+  const float longest = at_least(size.x, at_least(size.y, size.z));
+  then(Drive<Selection, Forces, Boundary>{.select = select,
+                                          .forces = forces,
+                                          .position = p.position(),
+                                          .velocity = p.velocity(),
+                                          .walls = boundary,
+                                          .refuge = state.refuge,
+                                          .brake = state.brake(p.id(), 0),
+                                          .dt = state.parameters.dt,
+                                          .reach = 10 * longest});
+}
+
+template <class Selection, class Forces, class Then>
+void with_drive(FluidState& state, DriveColumns p, Selection select, Forces forces, Then then) {
+  state.obstacles.exists() ? with_drive(state, p, select, forces, state.solids(), then)
+                           : with_drive(state, p, select, forces, state.walls, then);
+}
+
+template <class Forces, class Then>
+void with_drive(FluidState& state, DriveColumns p, Forces forces, Then then) {
+  state.all_active ? with_drive(state, p, AllParticles{}, forces, then)
+                   : with_drive(state, p, state.active(), forces, then);
+}
+
+template <class Then>
+void with_forces(FluidState& state, DriveColumns p, Then then) {
+  const auto& k = state.parameters;
+  const Gravity down{k.gravity};
+  k.pull.strength > 0 ? with_drive(state, p, GravityAndPull{down, k.pull}, then)
+                      : with_drive(state, p, down, then);
+}
+
+void run_forces(FluidState& state, DriveColumns p) {
+  with_forces(state, p, [&](auto drive) { for_each("forces", p.size(), drive); });
+  state.forces_acted = true;
+}
+
 using PredictColumns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
                                   columns(Column::Predicted, Column::Position, Column::Velocity)>;
 
-template <class Selection, class Forces, class Boundary>
-void launch(FluidState& state, PredictColumns p, Selection select, Forces forces, Boundary boundary) {
-  const auto& k = state.parameters;
-  const Vec3 size = state.domain.high - state.domain.low;
-  const float longest = at_least(size.x, at_least(size.y, size.z));
-  for_each("predict", p.size(),
-           Predict<Selection, Forces, Boundary>{.select = select,
-                                                .forces = forces,
-                                                .position = p.position(),
-                                                .velocity = p.velocity(),
-                                                .predicted = p.predicted(),
-                                                .walls = boundary,
-                                                .refuge = state.refuge,
-                                                .brake = state.brake(p.id(), 0),
-                                                .dt = k.dt,
-                                                .wall_gap = k.wall_gap,
-                                                .reach = 10 * longest});
-}
-
-template <class Selection, class Forces>
-void launch(FluidState& state, PredictColumns p, Selection select, Forces forces) {
-  state.obstacles.exists() ? launch(state, p, select, forces, state.solids())
-                           : launch(state, p, select, forces, state.walls);
-}
-
-template <class Selection>
-void launch(FluidState& state, PredictColumns p, Selection select) {
-  const auto& k = state.parameters;
-  const Gravity down{k.gravity};
-  k.pull.strength > 0 ? launch(state, p, select, GravityAndPull{down, k.pull})
-                      : launch(state, p, select, down);
-}
-
 void run_predict(FluidState& state, PredictColumns p) {
-  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+  const auto move =
+      [&]<class Selection, class Forces, class Boundary>(Drive<Selection, Forces, Boundary> drive) {
+        for_each("predict", p.size(),
+                 Predict<Selection, Forces, Boundary>{drive, p.predicted(), state.parameters.wall_gap});
+      };
+  state.forces_acted ? with_drive(state, p, NoForces{}, move) : with_forces(state, p, move);
+  state.forces_acted = false;
 }
 
 }  // namespace
+
+Stage forces_stage() {
+  return stage_of<run_forces>({.name = "forces",
+                               .source = "Macklin and Mueller 2013, Alg. 1 line 2",
+                               .phase = Phase::Substep,
+                               .called_for = if_thick,
+                               .changes = Change::Forces});
+}
 
 Stage predict_stage() {
   return stage_of<run_predict>({.name = "predict",

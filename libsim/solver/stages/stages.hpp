@@ -2,6 +2,7 @@
 /// The stages of the solver and the passes that they share. A stage is data, and a function that accesses
 /// only the columns it declares.
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,14 @@ struct Demand {
   bool activation = false;        ///< temporal acceleration selects the solved particles
   bool wall_impulse = false;      ///< an output needs the walls' impulse on the water
 };
+
+/// True if the scene lists the effect with a coefficient, and not only for levels finer than all water.
+inline bool acts(const Demand& demand, EffectKind kind) {
+  return std::any_of(demand.effects.begin(), demand.effects.end(), [&](const Effect& effect) {
+    return effect.kind == kind && effect.coefficient != 0 &&
+           !is_idle(effect, demand.effects, demand.finest_level);
+  });
+}
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
 
@@ -87,6 +96,11 @@ inline std::string if_activation(const Demand& demand) {
   return demand.activation && !demand.settling ? "the method accelerates in time" : "";
 }
 
+/// Thick fluid must feel its viscosity before the forces have moved it.
+inline std::string if_thick(const Demand& demand) {
+  return acts(demand, EffectKind::Viscosity) ? "viscosity acts before the particles move" : "";
+}
+
 /// Moves the lowest water of the corner columns into the jets.
 Stage nozzle_stage();
 /// Saliency and target levels from the eyes, the last picture and the fluid.
@@ -111,7 +125,12 @@ Stage bodies_move_stage();
 Stage bodies_meet_stage();
 /// Applies what the water gave the free obstacles.
 Stage bodies_pushed_stage();
-/// Gravity and the explicit step to predicted positions; speed limit; quarantine of non-finite particles.
+/// Forces alone, without a move, for the effect viscosity, which comes next; with quarantine and speed limit.
+Stage forces_stage();
+/// Neighbours at the positions that the forces found, for the same effect.
+Stage present_neighbours_stage();
+/// Forces, unless they have acted, and the explicit step to predicted positions; speed limit; quarantine of
+/// non-finite particles.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
