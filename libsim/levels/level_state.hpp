@@ -58,6 +58,8 @@ struct LevelRules {
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
   /// Number of position-only projections near particles that just split or merged.
   int partings = 3;
+  /// The same in weightless water, of all particles: nothing brings back water that was pushed away.
+  int weightless_partings = 10;
 };
 
 /// Event counts on the device since the simulation was made.

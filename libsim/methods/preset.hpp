@@ -28,7 +28,8 @@ enum class ThicknessWeight { Min, Max };
 /// the maximum.
 enum class Normalisation { Percentile, MinMax };
 
-/// Every switch. Units and readings: the equations they name.
+/// Every switch. Units and readings: the equations they name. Without gravity, a hundredth of d_* per frame
+/// stands for the speed sqrt(g d_*) in Eq. 6, 13 and 14.
 struct Readings {
   // Eq. 1-9: saliency
   double alpha = 2.0 / 3;  ///< Eq. 1: weight of the temporal feature

@@ -100,7 +100,7 @@ struct SaliencyFluid {
   ParticleNeighbours neighbours{};
   int n = 0;
   float finest_support = 0;  ///< h_*, m
-  float gravity = 0;         ///< m/s2
+  float gravity = 0;         ///< m/s2; without gravity, what stands for it (FluidState::gravity_of_rest)
   /// f_T gamma_t smoothed over frames, NaN if unknown; nullptr: use only this frame's.
   float* unrest = nullptr;
   SwirlSeen swirl{};  ///< added to `unrest`

@@ -175,7 +175,9 @@ double squeeze_speed(const Scene& scene, double finest_spacing_m) {
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters) {
   const double d = resolution.finest_spacing_m;
-  if (!(fall_speed > 0)) return static_cast<float>(4 * d / static_cast<double>(parameters.dt));
+  // What settling leaves is rounding, not a speed that the water has.
+  const bool still = scene.gravity_m_s2 <= 0 && fall_speed * parameters.frame_s() < 1e-3 * d;
+  if (still) return static_cast<float>(4 * d / static_cast<double>(parameters.dt));
   return static_cast<float>(3 * fall_speed + 3 * capillary_speed(scene.effects, d) + squeeze_speed(scene, d));
 }
 

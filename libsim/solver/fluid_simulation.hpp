@@ -41,7 +41,8 @@ SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, c
 /// obstacles that turn or swing. Water that strikes a wall shoots up at twice fall_speed (PeersDam: 8.7 m/s
 /// with a fall of 4.4); higher speeds are not physical. Squeeze: an obstacle of half width a and top speed u
 /// drives the water before it through a gap of at least one spacing d, at most at u a / d.
-/// Without gravity and speed, the limit is two supports of the finest particles per substep.
+/// Without gravity and with a speed below 0.001 d per frame, the limit is two supports of the finest
+/// particles per substep.
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters);
 /// Speed of the fastest of the start, the nozzles and the obstacles, m/s.

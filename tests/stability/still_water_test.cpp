@@ -177,4 +177,63 @@ TEST(StillWater, ADamKeepsItsEnergyUnderLevels) { dams_keep_their_energy(Backend
 TEST(StillWaterSlow, ADamKeepsItsEnergyUnderLevels) { dams_keep_their_energy(Backend::Cpu, all_depths); }
 TEST(StillWaterGpu, ADamKeepsItsEnergyUnderLevels) { dams_keep_their_energy(Backend::Cuda, all_depths); }
 
+/// Volume of the box that leaves out half a percent of the mass at either end of each axis, m3.
+double volume(const std::vector<ParticleState>& state) {
+  constexpr double left_out = 0.005;
+  double out = 1;
+  for (const auto axis : {&ParticleState::x_m, &ParticleState::y_m, &ParticleState::z_m}) {
+    std::vector<float> places;  // one for each m_*
+    for (const auto& p : state) places.insert(places.end(), std::size_t{1} << p.level, p.*axis);
+    std::sort(places.begin(), places.end());
+    const auto skipped = static_cast<std::size_t>(left_out * static_cast<double>(places.size()));
+    out *= static_cast<double>(places[places.size() - 1 - skipped] - places[skipped]);
+  }
+  return out;
+}
+
+/// A cube of 0.6 m without gravity in the middle of a tank of 1.2 m.
+sim::Scene weightless() {
+  auto out = fluid_test::tank({1.2, 1.2, 1.2}, {1.2, 1.2, 1.2});
+  out.gravity_m_s2 = 0;
+  out.viscosity_m2_s = 0.001;
+  out.fill_min_m = {0.3, 0.3, 0.3};
+  out.fill_max_m = {0.9, 0.9, 0.9};
+  out.view.eye_m = {0.6, 0.96, 2.52};
+  out.view.target_m = {0.6, 0.36, 0.6};
+  return out;
+}
+
+void weightless_water_keeps_its_volume(Backend backend, std::int64_t size, double seconds) {
+  const auto scene = weightless();
+  for (const auto method : {MethodKind::Ours, MethodKind::FovFluid, MethodKind::OursTsp, MethodKind::LoRes}) {
+    sim::SimulationOptions options;
+    options.method = method;
+    options.n_star = size;
+    options.backend = backend;
+    options.temporal.fixed_tau = -6;
+    const auto fluid = sim::make_simulation(scene, options);
+    const double before = volume(fluid->read_state());
+    const int frames = static_cast<int>(std::lround(seconds / scene.frame_dt_s));
+    for (int frame = 0; frame < frames; ++frame) {
+      fluid->look(sim::cases::look_at(scene, {0.6, 0.6, 0.6}));
+      fluid->step_frame();
+    }
+    const double share = volume(fluid->read_state()) / before;
+    const auto events = fluid->report().levels;
+    std::printf("%s without gravity, n_* = %d: %.3f of its volume after %.0f s, %llu splits, %llu merges\n",
+                sim::method_name(method).c_str(), static_cast<int>(size), share, seconds,
+                static_cast<unsigned long long>(events.splits),
+                static_cast<unsigned long long>(events.merges));
+    EXPECT_GE(events.merges, method == MethodKind::LoRes ? 0u : 100u);
+    EXPECT_LT(share, 1.15) << sim::method_name(method);
+  }
+}
+TEST(StillWater, KeepsItsVolumeWithoutGravity) { weightless_water_keeps_its_volume(Backend::Cpu, 512, 1); }
+TEST(StillWaterSlow, KeepsItsVolumeWithoutGravity) {
+  for (const std::int64_t size : {512, 2048}) weightless_water_keeps_its_volume(Backend::Cpu, size, 10);
+}
+TEST(StillWaterGpu, KeepsItsVolumeWithoutGravity) {
+  for (const std::int64_t size : {512, 2048}) weightless_water_keeps_its_volume(Backend::Cuda, size, 10);
+}
+
 }  // namespace

@@ -83,7 +83,7 @@ using ActivationColumns =
 void measure(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
   const float spacing = 0.5f * state.finest_support;
-  const float speed_floor = fmaxf(a.rules.speed_floor * sqrtf(state.parameters.gravity * spacing), 1e-6f);
+  const float speed_floor = fmaxf(a.rules.speed_floor * sqrtf(state.gravity_of_rest() * spacing), 1e-6f);
   measure_importance(a, p, p.saliency(), speed_floor);
 }
 
@@ -121,7 +121,9 @@ void run_activation(FluidState& state, ActivationColumns p) {
   const int n = p.size();
   a.grid.fit(state.domain, cell_spacings * 0.5f * state.finest_support);
   a.near.fit(state.domain, a.rules.near_spacings * 0.5f * state.finest_support);
-  state.all_active = a.beta >= 1 || n == 0;
+  // Weightless water parts as a whole after splits and merges.
+  const bool parts = state.parameters.weightless() && state.levels.changed;
+  state.all_active = a.beta >= 1 || n == 0 || parts;
   if (!a.columns_set || (state.all_active && !a.all_marked))
     for_each("activate all", n, ActivateAll{p.active(), p.rest()});
   a.columns_set = true;

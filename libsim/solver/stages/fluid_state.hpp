@@ -38,6 +38,8 @@ struct SolverParameters {
   CentralPull pull;           ///< in addition to gravity
   float dt = 1.0f / 180;      ///< substep, s
   int substeps = 3;           ///< per frame
+  /// No force holds the water together or down; cohesion does not count.
+  bool weightless() const { return gravity <= 0 && pull.strength <= 0; }
   double frame_s() const { return static_cast<double>(dt) * substeps; }
   int iterations = 4;  ///< constraint projections per substep
 #define SIM_MEMBER(Type, member, name, usual, ...) Type member = usual;
@@ -243,6 +245,13 @@ struct FluidState {
     const auto level = static_cast<std::size_t>(parameters.effects[coarsest_level]);
     if (level + 1 >= static_cast<std::size_t>(most_levels)) return std::numeric_limits<float>::max();
     return 0.5f * (supports.h[level] + supports.h[level + 1]);
+  }
+  /// Gravity for the measures of rest, which go by sqrt(g d_*), m/s2. In a scene without gravity a value that
+  /// makes this speed a hundredth of d_* per frame: otherwise the smallest motion counts as fast.
+  float gravity_of_rest() const {
+    if (parameters.gravity > 0) return parameters.gravity;
+    const auto frame = static_cast<float>(parameters.frame_s());
+    return 1e-4f * 0.5f * finest_support / (frame * frame);
   }
   /// True if position corrections by walls and obstacles are recorded.
   bool recording() const { return !impulse.paused() && (impulse.on() || obstacles.recorded()); }

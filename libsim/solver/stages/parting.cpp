@@ -73,8 +73,7 @@ using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Colum
                                   columns(Column::Predicted, Column::PredictedNext, Column::Position,
                                           Column::VelocityNext, Column::Lambda, Column::Density)>;
 
-/// Separates particles at the substep's beginning: there high density means overlap, whereas during the
-/// substep water is also compressed.
+/// Moves those near fresh particles.
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
@@ -85,19 +84,36 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
            ListBesideFresh<Selection>{select, p.ease(), levels.rules.ease[0], levels.beside.data(),
                                       levels.beside_count.data()});
   const Listed<Selection> few{select, levels.beside.data(), levels.beside_count.data()};
-  go_back(state, p);
-  p.zero<Column::Lambda>();
   for (int k = 0; k < levels.rules.partings; ++k) {
     constrain_density(state, p, few);
     displace(state, p, few);
   }
-  go_on(state, p);
 }
 
+/// Moves all particles until hardly any overlap is left. What those near fresh particles leave compresses the
+/// others, and the substep would turn it into speed. Gravity brings such water back; weightless water would
+/// fly apart.
+void part_all(FluidState& state, PartingColumns p) {
+  for (state.iteration = 0; state.iteration < state.levels.rules.weightless_partings; ++state.iteration) {
+    constrain_density(state, p);
+    displace(state, p);
+  }
+  state.iteration = 0;
+}
+
+/// Separates particles at the substep's beginning: there high density means overlap, whereas during the
+/// substep water is also compressed.
 void run_parting(FluidState& state, PartingColumns p) {
   // Fresh particles exist in the frame's first substep; most frames of water at rest have none.
   if (!state.levels.changed || state.substep > 0) return;
-  state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+  go_back(state, p);
+  p.zero<Column::Lambda>();
+  if (state.parameters.weightless()) {
+    part_all(state, p);
+  } else {
+    state.all_active ? launch(state, p, AllParticles{}) : launch(state, p, state.active());
+  }
+  go_on(state, p);
 }
 
 using EveryonesColumns = ColumnView<columns(Column::Predicted, Column::Neighbours, Column::Id),

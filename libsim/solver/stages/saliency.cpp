@@ -16,7 +16,6 @@ std::string reader(const Demand& demand, const char* of_levels) {
 
 /// Inputs of saliency; the caller sets the outputs.
 SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
-  const auto& k = state.parameters;
   return {.position = p.position(),
           .velocity = p.velocity(),
           .density = p.density(),
@@ -24,7 +23,7 @@ SaliencyFluid fluid_of(FluidState& state, SurroundingsView p) {
           .neighbours = state.particle_neighbours(),
           .n = p.size(),
           .finest_support = state.finest_support,
-          .gravity = k.gravity,
+          .gravity = state.gravity_of_rest(),
           .guards = state.guard()};
 }
 
