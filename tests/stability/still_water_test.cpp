@@ -196,8 +196,7 @@ sim::Scene weightless() {
   auto out = fluid_test::tank({1.2, 1.2, 1.2}, {1.2, 1.2, 1.2});
   out.gravity_m_s2 = 0;
   out.viscosity_m2_s = 0.001;
-  out.fill_min_m = {0.3, 0.3, 0.3};
-  out.fill_max_m = {0.9, 0.9, 0.9};
+  out.water = {{{0.3, 0.3, 0.3}, {0.9, 0.9, 0.9}}};
   out.view.eye_m = {0.6, 0.96, 2.52};
   out.view.target_m = {0.6, 0.36, 0.6};
   return out;

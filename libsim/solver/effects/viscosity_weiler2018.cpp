@@ -268,7 +268,7 @@ int steps_of(const FluidState& state) {
   const float width = at_most(size.x, size.z);
   const float d = state.lightest_support / 2;
   const float diffusion = k.dt * k.effects[EffectKind::Viscosity];
-  const float needed = 3.5f / (d * std::sqrt(1 / diffusion + 1 / (width * width)));
+  const float needed = 5 / (d * std::sqrt(1 / diffusion + 1 / (width * width)));
   return static_cast<int>(std::ceil(std::min(std::max(16.0f, needed), 200.0f)));
 }
 
