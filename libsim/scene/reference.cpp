@@ -133,7 +133,8 @@ constexpr const char* same_span = "how much more makes it full";
 
 /// In the order of EffectOption.
 constexpr std::array<const char*, option_count> option_meanings{
-    "steps of conjugate gradients, whole; 0: as many as converge, 16 to 200, more where nu dt / d^2 is large. "
+    "steps of conjugate gradients, whole; 0: as many as converge, 16 to 200, more where nu dt / d^2 is "
+    "large. "
     "Too few let thick fluid sink too fast and still keep the momentum",
     "1: walls and obstacles hold the fluid; 0: they let it slip; between: a share",
     coarsest_that_acts,

@@ -341,68 +341,6 @@ void solve_for(FluidState& state, ViscosityColumns p, Selection select) {
   if (to.sums) for_each("record bodies", rows.count, RecordGained{rows, to, k.dt});
 }
 
-/// Under pressure particles of one size form a lattice, which carries shear until it yields: a fluid so
-/// viscous that it damps its own jitter would stop on a slope. So each particle inside the fluid takes a
-/// random step, and the next projections correct the density. Velocities do not change, and so momentum is
-/// conserved.
-constexpr float loosening = 0.04f;  ///< maximum step along each axis, in spacings
-/// Maximum nu dt / d^2 with steps of this length. Thicker fluid flows less in a substep, by 1 / nu, and
-/// random steps loosen by their square; longer ones would swell it faster than it flows (docs/decisions.md).
-constexpr float loosened_in_full = 2;
-template <class Selection>
-struct Loosen {
-  Selection select;
-  Vec4* position;
-  const float* density;
-  const int* id;
-  float widest;  ///< largest support that takes part, m
-  float less;    ///< maximum step along each axis if it is the smaller one, as a share of h^2, 1/m
-
-  SIM_FN void operator()(int slot) const {
-    const int i = select(slot);
-    if constexpr (!Selection::everyone) {
-      if (i < 0) return;
-    }
-    if (density[i] < inside) return;
-    const Vec4 at = position[i];
-    if (at.w > widest) return;
-    const Vec3 step{along(i, 0, at.x), along(i, 1, at.y), along(i, 2, at.z)};
-    position[i] = with_w(xyz(at) + at_most(loosening / 2, less * at.w) * at.w * step, at.w);
-  }
-  /// Uniform in [-1, 1). The position replaces the time in the hash, so that a run resumed from a saved state
-  /// takes the same steps.
-  SIM_FN float along(int i, std::uint32_t axis, float place) const {
-    const auto moment = static_cast<std::uint32_t>(static_cast<std::int64_t>(place * fine));
-    return 2 * uniform_of(random_bits(static_cast<std::uint32_t>(id[i]), moment, axis)) - 1;
-  }
-  static constexpr float fine = 1048576;  ///< 1/m: closer positions count as one
-  /// As a share of rho_0. Particles of lower density are at the surface and keep their velocity.
-  static constexpr float inside = 0.95f;
-};
-
-using LoosenView =
-    ColumnView<columns(Column::Position, Column::Density, Column::Id), columns(Column::Position)>;
-
-template <class Selection>
-void loosen(FluidState& state, LoosenView p, Selection select) {
-  const auto& k = state.parameters;
-  const float diffusion = k.dt * k.effects[EffectKind::Viscosity];
-  for_each("loosen", p.size(),
-           Loosen<Selection>{.select = select,
-                             .position = p.position(),
-                             .density = p.density(),
-                             .id = p.id(),
-                             .widest = state.widest_support(EffectOption::ViscosityCoarsest),
-                             .less = loosening / 4 * std::sqrt(loosened_in_full / diffusion)});
-}
-
-/// Without gravity there is no pressure. Mixed sizes form no lattice.
-void run_loosen(FluidState& state, LoosenView p) {
-  const auto& k = state.parameters;
-  if (!state.one_level || (k.gravity <= 0 && k.pull.strength <= 0)) return;
-  state.all_active ? loosen(state, p, AllParticles{}) : loosen(state, p, state.active());
-}
-
 void run_viscosity(FluidState& state, ViscosityColumns p) {
   state.all_active ? solve_for(state, p, AllParticles{}) : solve_for(state, p, state.active());
 }
@@ -411,7 +349,7 @@ void run_viscosity(FluidState& state, ViscosityColumns p) {
 
 std::vector<Stage> viscosity_stages() {
   return {stage_of<run_viscosity>({.name = "viscosity", .phase = Phase::Substep}),
-          stage_of<run_loosen>({.name = "loosening of the lattice", .phase = Phase::SubstepEnd})};
+          loosening_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND

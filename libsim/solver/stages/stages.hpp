@@ -158,6 +158,8 @@ Stage xsph_stage();
 Stage xsph_of_levels_stage();
 /// Velocity x 0.9 per frame while the water settles.
 Stage settling_stage();
+/// Random steps of thick fluid; one of viscosity's stages.
+Stage loosening_stage();
 
 /// Removes particles that passed an outlet; last in a frame.
 Stage outflow_stage();
