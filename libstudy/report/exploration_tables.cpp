@@ -52,7 +52,7 @@ std::string people_tables(const Field& root) {
                  question["groups"].json().is_array() ? choices_of(question) : numbers_of(question)});
   }
   if (table.empty()) return "";
-  const Field first = parts.front();
+  const Field& first = parts.front();
   return table.html() + "<p class=\"note\">No single person is shown: groups of fewer than " +
          count(first["smallest_group"]) +
          " people are taken together with the next smallest; a number that fewer than " +

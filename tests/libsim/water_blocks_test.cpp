@@ -147,7 +147,7 @@ TEST(WaterBlocks, AllCountForKeysScalesAndTemperatures) {
 }
 
 /// Runs a scene on the CPU, and expects it to keep its mass inside the tank.
-std::vector<fluid_test::ParticleState> run(sim::Scene scene, MethodKind method, int frames) {
+std::vector<fluid_test::ParticleState> run(const sim::Scene& scene, MethodKind method, int frames) {
   sim::SimulationOptions options;
   options.method = method;
   options.n_star = 256;

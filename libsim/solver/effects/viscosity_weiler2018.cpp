@@ -348,8 +348,7 @@ void run_viscosity(FluidState& state, ViscosityColumns p) {
 }  // namespace
 
 std::vector<Stage> viscosity_stages() {
-  return {stage_of<run_viscosity>({.name = "viscosity", .phase = Phase::Substep}),
-          loosening_stage()};
+  return {stage_of<run_viscosity>({.name = "viscosity", .phase = Phase::Substep}), loosening_stage()};
 }
 
 }  // namespace sim::SIM_BACKEND

@@ -263,8 +263,8 @@ class Union {
     return out;
   }
 
-  /// Adds one source's copy of a protocol to the target. The protocol's row, and its rows of `ask` and `cell`,
-  /// are copied if the target has none yet; questions are copied if the target lacks their code.
+  /// Adds one source's copy of a protocol to the target. The protocol's row, and its rows of `ask` and
+  /// `cell`, are copied if the target has none yet; questions are copied if the target lacks their code.
   void add_protocol(std::size_t index, const std::string& sha256) {
     Connection& source = *content_.sources[index];
     RowNumbers& numbers = numbers_[index];

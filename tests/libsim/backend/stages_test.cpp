@@ -277,7 +277,8 @@ SIM_TEST(PartingDirection, IsAUnitVectorAndAntisymmetric) {
 SIM_TEST(Schedule, LeavesOutWhatNothingCallsFor) {
   Demand demand;
   demand.parameters.viscosity = 0;
-  EXPECT_NE(compile_schedule(demand).explanation.find("substep end  xsph"), std::string::npos) << "still water";
+  EXPECT_NE(compile_schedule(demand).explanation.find("substep end  xsph"), std::string::npos)
+      << "still water";
   demand.parameters.gravity = 0;
   EXPECT_NE(compile_schedule(demand).explanation.find("-  xsph"), std::string::npos) << "nothing rests";
   demand.parameters.gravity = 9.81f;
