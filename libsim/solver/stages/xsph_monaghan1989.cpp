@@ -133,10 +133,8 @@ using XsphColumns =
 template <bool OneLevel, class Filter, class Selection>
 void launch(FluidState& state, XsphColumns p, Filter filter, Selection select) {
   const auto& k = state.parameters;
-  // The jitter of coarse particles is as much larger as they are: twice at level 3.
-  const double share = (OneLevel ? 1 : 2) * static_cast<double>(k.still_speed);
-  const Calm still =
-      calm_below(share, static_cast<double>(k.gravity), static_cast<double>(state.finest_support) / 2);
+  const Calm still = calm_below(static_cast<double>(k.still_speed), static_cast<double>(k.gravity),
+                                static_cast<double>(state.finest_support) / 2);
   for_each_team("xsph", p.size(),
                 Xsph<OneLevel, Filter, Selection>{.select = select,
                                                   .position = p.position(),
