@@ -54,7 +54,7 @@ struct PreparedFluid {
   double frame_dt_s = 0;         ///< of the fluid
   sim::SolverSetting setting;    ///< in force at frame 0
 };
-/// What is drawn of a scene: with the effects that act in the method's water.
+/// What the renderer draws of a scene. Effects that cannot act in the method's water are left out.
 sim::Scene drawn(const PreparedFluid& prepared);
 /// Takes method, n_star, levels, alpha, iterations and tau from best.toml. Its other numbers apply as long as
 /// method, n_star, levels and preset are unchanged.

@@ -42,9 +42,9 @@ int substeps_of(const Scene& scene, std::int64_t n_star);
 /// water at rest; it goes to zero with h.
 double viscosity_of(const Scene& scene, std::int64_t n_star);
 
-/// Dimensionless numbers of a scene, from L = the shortest side of any block, v = time.v_ref_m_s, the
-/// viscosity of the water and of the effect, gravity and tension. 0 without motion or gravity; otherwise
-/// infinite if the divisor is absent.
+/// Dimensionless numbers of a scene. They use the shortest side of all blocks of water as the length L,
+/// time.v_ref_m_s as the speed v, the viscosities of the water and of the effect, gravity and tension. 0
+/// without motion or gravity; otherwise infinite if the divisor is absent.
 struct Scales {
   double length_m = 0, speed_m_s = 0;
   double viscosity_m2_s = 0;  ///< nu, of the water and of the effect

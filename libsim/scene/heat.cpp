@@ -46,7 +46,8 @@ TemperatureRange temperatures_of(const Scene& scene) {
 }
 
 double widest_difference_k(const Scene& scene) {
-  // Later boxes count: what is before one that holds all water has no effect.
+  // A later box replaces the temperature of an earlier one. Boxes before one that holds all water have no
+  // effect.
   const auto last = std::find_if(scene.warm.rbegin(), scene.warm.rend(),
                                  [&](const WarmBox& box) { return holds_all_water(box, scene); });
   const bool covered = last != scene.warm.rend();

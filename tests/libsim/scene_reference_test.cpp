@@ -159,7 +159,7 @@ std::string reading(const std::string& text, test::AskedKeys* asked = nullptr) {
     const auto root = base::parse_toml(text, "scene.toml");
     const auto collect = [&] {
       if (!asked) return;
-      // Ranges of places count from the origin.
+      // A tank whose origin is not 0 shifts the ranges of positions, so that they are not compared.
       const bool elsewhere = text.find("origin_m") != std::string::npos && text != whole_scene;
       for (auto [name, how] : root.asked()) {
         if (elsewhere && name != "tank.origin_m") how.range.reset();

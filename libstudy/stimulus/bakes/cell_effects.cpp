@@ -174,7 +174,7 @@ void check_levels(const Protocol& protocol, const sim::Scene& scene) {
   }
 }
 
-/// The scene with each level's effects, or with its own.
+/// One copy of the scene for each level of effects of the design; the scene itself if the design has none.
 std::vector<sim::Scene> scenes_of_levels(const Protocol& protocol, const sim::Scene& scene) {
   if (protocol.design.effects.empty()) return {scene};
   std::vector<sim::Scene> out;
