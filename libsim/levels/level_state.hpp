@@ -58,6 +58,10 @@ struct LevelRules {
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
   /// Number of position-only projections near particles that just split or merged.
   int partings = 3;
+  /// The same, with their neighbours, where gravity moves a particle by less than this share of the finest
+  /// support in a substep.
+  int wide_partings = 8;
+  float parts_widely = 1.0f / 1600;
   /// The same in weightless water, of all particles: nothing brings back water that was pushed away.
   int weightless_partings = 10;
 };

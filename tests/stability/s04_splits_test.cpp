@@ -136,15 +136,14 @@ constexpr double throttle = 0.05;               // largest share of the particle
 
 /// S4: one particle, about 1 % or all of a settled tank of level 3 split by `levels` levels.
 std::vector<Splits> splits_of(Backend backend, const sim::Readings& readings,
-                              const std::vector<double>& radii, const std::vector<int>& levels) {
+                              const std::vector<double>& radii, const std::vector<int>& levels,
+                              unsigned ways = 8) {
   const Settled fine(backend);
   auto options = options_for(backend, Settled::n_star, everywhere(3));
   options.readings = readings;
   std::vector<Splits> out;
   std::vector<std::vector<ParticleState>> starts;
-  for (const unsigned way : {0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u}) {
-    starts.push_back(coarse_start(backend, fine, way));
-  }
+  for (unsigned way = 0; way < ways; ++way) starts.push_back(coarse_start(backend, fine, way));
   for (const double radius : radii) {
     for (const int k : levels) {
       out.push_back({radius, k, {}});
@@ -164,9 +163,10 @@ std::vector<Splits> splits_of(Backend backend, const sim::Readings& readings,
 /// merges beside them push too; in the whole tank, overlaps that are not yet resolved still push.
 double most_kick(double radius) { return radius == one ? 0.8 : radius == few ? 1.3 : 2.2; }
 
-void splits_are_calm(Backend backend, const std::vector<double>& radii, const std::vector<int>& levels) {
+void splits_are_calm(Backend backend, const std::vector<double>& radii, const std::vector<int>& levels,
+                     unsigned ways = 8) {
   const auto tuned = sim::readings_of(sim::Preset::Tuned);
-  for (const Splits& splits : splits_of(backend, tuned, radii, levels)) {
+  for (const Splits& splits : splits_of(backend, tuned, radii, levels, ways)) {
     const double densest = splits.upper_quartile(&Unrest::densest);
     const double gain = splits.upper_quartile(&Unrest::gain);
     const double kick = splits.upper_quartile(&Unrest::kick);

@@ -26,17 +26,27 @@ struct Follow {
 };
 
 /// Lists the particles within the support of a particle that split or merged in this frame, including it:
-/// they have the smallest share of the constraint.
+/// they have the smallest share of the constraint. With `widely` also their neighbours.
 template <class Selection>
 struct ListBesideFresh {
   Selection select;
   const float* ease;
   float least;
+  bool widely;
+  Neighbours neighbours;
   int* slots;
   int* count;
-  SIM_FN void operator()(int slot) const {
+  template <class Team>
+  SIM_FN void operator()(int slot, Team team) const {
     const int i = select(slot);
-    if (i >= 0 && ease[i] <= least) slots[atomic_next(count)] = slot;
+    if (i < 0) return;
+    int beside = ease[i] <= least ? 1 : 0;
+    const int size = widely && !beside ? neighbours.size(slot) : 0;
+    const NeighbourRun run = neighbours.run(slot);
+    for (int k = team.rank(); k < size && !beside; k += Team::size)
+      if (ease[run[k]] <= least) beside = 1;
+    beside = -team.min(-beside);
+    if (team.rank() == 0 && beside) slots[atomic_next(count)] = slot;
   }
 };
 
@@ -73,18 +83,27 @@ using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Colum
                                   columns(Column::Predicted, Column::PredictedNext, Column::Position,
                                           Column::VelocityNext, Column::Lambda, Column::Density)>;
 
-/// Moves those near fresh particles.
+/// Moves those near fresh particles. Overlap that remains becomes speed in one substep, in proportion to d /
+/// dt. Where gravity moves a particle by a small share of its support in a substep, that speed is large
+/// beside the water's own: then more particles move, and farther.
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
+  const auto& k = state.parameters;
+  const bool widely = k.gravity * k.dt * k.dt < levels.rules.parts_widely * state.finest_support;
   levels.beside.resize(static_cast<std::size_t>(p.size()));
   levels.beside_count.resize(1);
   levels.beside_count.zero();
-  for_each("list beside fresh", p.size(),
-           ListBesideFresh<Selection>{select, p.ease(), levels.rules.ease[0], levels.beside.data(),
-                                      levels.beside_count.data()});
+  for_each_team("list beside fresh", p.size(),
+                ListBesideFresh<Selection>{.select = select,
+                                           .ease = p.ease(),
+                                           .least = levels.rules.ease[0],
+                                           .widely = widely,
+                                           .neighbours = state.neighbours.view(),
+                                           .slots = levels.beside.data(),
+                                           .count = levels.beside_count.data()});
   const Listed<Selection> few{select, levels.beside.data(), levels.beside_count.data()};
-  for (int k = 0; k < levels.rules.partings; ++k) {
+  for (int round = 0; round < (widely ? levels.rules.wide_partings : levels.rules.partings); ++round) {
     constrain_density(state, p, few);
     displace(state, p, few);
   }

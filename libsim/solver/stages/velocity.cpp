@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+
+#include "libsim/particles/calm.hpp"
 #include "libsim/solver/stages/stages.hpp"
 
 namespace sim::SIM_BACKEND {
@@ -5,6 +9,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but without the rounding of x if nothing pushes.
+/// The fourth component is the degree of rest, 0 to 1, for the pass of viscosity, which sets it to 0.
 struct Advance {
   Vec4* position;
   const Vec4* predicted;
@@ -12,12 +17,15 @@ struct Advance {
   Vec4* kick;  ///< velocity change, for the filter near fresh particles; nullptr without one
   Brake brake;
   float dt;
+  Calm still;         ///< criterion for water at rest
+  bool before_kicks;  ///< water also rests where it rested before this substep's kicks
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
     const Vec3 kept = brake.limited(after, predicted[i].w, i);
-    velocity[i] = with_w(kept, 0);
+    const float now = still(kept.x, kept.y, kept.z);
+    velocity[i] = with_w(kept, before_kicks ? at_least(now, still(v.x, v.y, v.z)) : now);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
     // No particle moves farther than the speed limit allows: a crowd in one place would otherwise hit others
     // at once.
@@ -30,7 +38,18 @@ using VelocityColumns =
     ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
+/// h / (g dt^2) from which substeps are short (docs/decisions.md, "Still water of one size").
+constexpr double short_from = 800;
+
 void run_velocity(FluidState& state, VelocityColumns p) {
+  const auto& k = state.parameters;
+  const double gravity = static_cast<double>(k.gravity);
+  const double dt = static_cast<double>(k.dt);
+  // The projections leave a jitter of a small share of d, which is a speed in proportion to d / dt. In short
+  // substeps a single one exceeds the speed of rest.
+  const double shorter =
+      gravity > 0 ? static_cast<double>(state.finest_support) / (gravity * dt * dt * short_from) : 0;
+  const double still_speed = static_cast<double>(k.still_speed) * std::pow(std::max(1.0, shorter), 0.25);
   // The old positions in PredictedNext are no longer needed.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
@@ -39,7 +58,9 @@ void run_velocity(FluidState& state, VelocityColumns p) {
                    .velocity = p.velocity(),
                    .kick = kick,
                    .brake = state.brake(p.id(), 1),
-                   .dt = state.parameters.dt});
+                   .dt = k.dt,
+                   .still = calm_below(still_speed, gravity, static_cast<double>(state.finest_support) / 2),
+                   .before_kicks = shorter > 1});
 }
 
 }  // namespace

@@ -47,12 +47,12 @@ template <bool OneLevel, class Filter, class Selection>
 struct Xsph {
   Selection select;
   const Vec4* position;
-  const Vec4* velocity;
+  const Vec4* velocity;  ///< the fourth component is the degree of rest: particles at rest take the mean
+                         ///< velocity of their neighbours
   const float* density;
   Neighbours neighbours;
   Vec4* next;
   float spread;  ///< 22 nu dt, m2
-  Calm still;    ///< water whose particles take the mean velocity of their neighbours
   Filter filter;
 
   /// The particle whose neighbours are summed.
@@ -60,7 +60,7 @@ struct Xsph {
     int i;
     Vec4 at, velocity;
     float density;
-    float still;  ///< 0 to 1
+    float still;  ///< degree of rest, 0 to 1
     PairKernel<OneLevel> pair;
     Vec4 kick{};     ///< with a filter
     float rest = 0;  ///< with a filter
@@ -87,7 +87,7 @@ struct Xsph {
       vz += share * (kick.z - me.kick.z);
     }
     const float viscous = at_most(thicker * spread * reciprocal(kernel.h2), most_share);
-    const float calmed = at_most(me.still, still(v.x, v.y, v.z));
+    const float calmed = at_most(me.still, v.w);
     const float flow = (viscous + calmed * (1 - viscous)) * weight;
     vx += flow * (v.x - me.velocity.x);
     vy += flow * (v.y - me.velocity.y);
@@ -99,12 +99,12 @@ struct Xsph {
     const int i = select(slot);
     if constexpr (!Selection::everyone) {
       if (i < 0) {
-        next[~i] = velocity[~i];
+        next[~i] = with_w(xyz(velocity[~i]), 0);
         return;
       }
     }
     const Vec4 own = velocity[i];
-    Self me{i, position[i], own, density[i], still(own.x, own.y, own.z), PairKernel<OneLevel>(position[i].w)};
+    Self me{i, position[i], own, density[i], own.w, PairKernel<OneLevel>(position[i].w)};
     if constexpr (Filter::filters) {
       me.kick = filter.kick[i];
       me.rest = filter.rest(own, i);
@@ -133,8 +133,6 @@ using XsphColumns =
 template <bool OneLevel, class Filter, class Selection>
 void launch(FluidState& state, XsphColumns p, Filter filter, Selection select) {
   const auto& k = state.parameters;
-  const Calm still = calm_below(static_cast<double>(k.still_speed), static_cast<double>(k.gravity),
-                                static_cast<double>(state.finest_support) / 2);
   for_each_team("xsph", p.size(),
                 Xsph<OneLevel, Filter, Selection>{.select = select,
                                                   .position = p.position(),
@@ -143,7 +141,6 @@ void launch(FluidState& state, XsphColumns p, Filter filter, Selection select) {
                                                   .neighbours = state.neighbours.view(),
                                                   .next = p.velocity_next(),
                                                   .spread = 22 * k.viscosity * k.dt,
-                                                  .still = still,
                                                   .filter = filter});
   p.swap<Column::Velocity, Column::VelocityNext>();
 }
