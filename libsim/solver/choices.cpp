@@ -223,6 +223,12 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.finest_level = levels.first;
   out.nozzles = !scene.nozzles.empty();
   out.outlets = !scene.outlets.empty();
+  const double coarsest_spacing_m =
+      std::cbrt(1 << levels.second) * resolution_of(scene, options.method, options.n_star).finest_spacing_m;
+  out.narrow_outlets = std::any_of(scene.outlets.begin(), scene.outlets.end(), [&](const Outlet& outlet) {
+    return std::min(outlet.max_m[0] - outlet.min_m[0], outlet.max_m[1] - outlet.min_m[1]) <
+           2 * 0.998 * coarsest_spacing_m;
+  });
   out.moving_obstacles = std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [](const Obstacle& o) {
     return o.motion == ObstacleMotion::Turns || o.motion == ObstacleMotion::Swings;
   });

@@ -40,8 +40,8 @@ std::vector<SharedLoop> shared_loops() { return {}; }
 std::vector<Stage> all_stages() {
   const std::vector<Stage> effects = effect_stages();
   std::vector<Stage> out{frame_neighbours_stage(), gaze_targets_stage(), saliency_stage(),
-                         saliency_parts_stage(), forced_targets_stage(), graded_targets_stage(),
-                         split_and_merge_stage(),
+                         saliency_parts_stage(), forced_targets_stage(), opening_targets_stage(),
+                         graded_targets_stage(), split_and_merge_stage(),
                          // After all stages that use the last substep's neighbours, which pouring
                          // invalidates.
                          nozzle_stage(), activation_stage(), obstacles_stage(), bodies_move_stage(),

@@ -41,6 +41,79 @@ Stage forced_targets_stage() {
 
 namespace {
 
+/// A part of an outlet's surroundings and the coarsest level that fits through it.
+struct NarrowOpening {
+  Vec3 low, high;
+  int fits;
+};
+
+/// Limits targets near narrow openings to levels that fit through them.
+struct FitOpenings {
+  const Vec4* position;
+  std::uint8_t* target;
+  NarrowOpening openings[Walls::most_openings];
+  int count;
+  SIM_FN void operator()(int i) const {
+    const Vec3 x = xyz(position[i]);
+    for (int k = 0; k < count; ++k) {
+      const NarrowOpening& o = openings[k];
+      const bool near = x.x >= o.low.x && x.y >= o.low.y && x.z >= o.low.z && x.x <= o.high.x &&
+                        x.y <= o.high.y && x.z <= o.high.z;
+      if (near && target[i] > o.fits) target[i] = static_cast<std::uint8_t>(o.fits);
+    }
+  }
+};
+
+/// Spacings of a particle that its way through an opening must be wide.
+constexpr float spacings_wide = 2;
+
+void run_opening_targets(FluidState& state,
+                         ColumnView<columns(Column::Position), columns(Column::Target)> p) {
+  if (!state.levels.turns.due) return;
+  FitOpenings fit{.position = p.position(), .target = p.target(), .openings = {}, .count = 0};
+  const int coarsest = state.levels.rules.coarsest;
+  const float reach = state.supports.h[coarsest];
+  for (int k = 0; k < state.walls.opening_count; ++k) {
+    const Opening& o = state.walls.openings[k];
+    // The extent across the wall is unbounded.
+    const Vec3 size = o.high - o.low;
+    const float narrow = at_most(at_most(size.x, size.y), size.z);
+    int fits = coarsest;
+    while (fits > 0 && narrow < spacings_wide * 0.499f * state.supports.h[fits]) --fits;
+    if (fits == coarsest) continue;
+    // Water that flows in from farther away has time to split on its way.
+    const float margin = narrow + reach;
+    Vec3 low = o.low - Vec3{margin, margin, margin};
+    Vec3 high = o.high + Vec3{margin, margin, margin};
+    const Plane& wall = state.walls.planes[o.plane];
+    const float wall_at = wall.offset;
+    if (wall.normal.x != 0)
+      low.x = wall.normal.x * wall_at - margin, high.x = wall.normal.x * wall_at + margin;
+    if (wall.normal.y != 0)
+      low.y = wall.normal.y * wall_at - margin, high.y = wall.normal.y * wall_at + margin;
+    if (wall.normal.z != 0)
+      low.z = wall.normal.z * wall_at - margin, high.z = wall.normal.z * wall_at + margin;
+    fit.openings[fit.count++] = {low, high, fits};
+  }
+  if (fit.count > 0) for_each("fit openings", p.size(), fit);
+}
+
+}  // namespace
+
+Stage opening_targets_stage() {
+  return stage_of<run_opening_targets>({.name = "opening targets",
+                                        .source = "particles of two spacings fit through an outlet",
+                                        .phase = Phase::FrameStart,
+                                        .called_for = [](const Demand& demand) -> std::string {
+                                          return demand.levels && demand.narrow_outlets && !demand.settling
+                                                     ? "an outlet is narrow for coarse particles"
+                                                     : "";
+                                        },
+                                        .part = Part::Levels});
+}
+
+namespace {
+
 /// Keeps the level of particles that are not far enough beyond the border to a coarser one.
 struct Hold {
   const std::uint8_t* level;

@@ -19,6 +19,7 @@ struct Demand {
   int finest_level = 0;           ///< of all water that may be present: effects of finer levels are idle
   bool nozzles = false;           ///< the scene has one
   bool outlets = false;           ///< the scene has one
+  bool narrow_outlets = false;    ///< of which one is narrower than two spacings of the coarsest particles
   bool moving_obstacles = false;  ///< the scene has one that moves along a given path
   bool free_obstacles = false;    ///< the scene has one that is moved by the water
   bool obstacles_meet = false;    ///< a free obstacle may meet another, or has friction
@@ -113,6 +114,8 @@ Stage gaze_targets_stage();
 Stage frame_neighbours_stage();
 /// Targets of tests (LevelState::forced).
 Stage forced_targets_stage();
+/// Limits targets near narrow outlets to levels that fit through them.
+Stage opening_targets_stage();
 /// Limits targets of neighbours to differ by at most one level.
 Stage graded_targets_stage();
 /// Algorithms 1 and 2; changes the number of particles and invalidates the neighbour list.

@@ -17,20 +17,27 @@ struct Advance {
   Vec4* kick;  ///< velocity change, for the filter near fresh particles; nullptr without one
   Brake brake;
   float dt;
-  Calm still;         ///< criterion for water at rest
-  bool before_kicks;  ///< water also rests where it rested before this substep's kicks
+  Calm still;            ///< criterion for the finest water at rest
+  float finest_support;  ///< m
+  bool before_kicks;     ///< water also rests where it rested before this substep's kicks
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
     const Vec3 after = v + (1 / dt) * (xyz(predicted[i]) - free);
     const Vec3 kept = brake.limited(after, predicted[i].w, i);
-    const float now = still(kept.x, kept.y, kept.z);
-    velocity[i] = with_w(kept, before_kicks ? at_least(now, still(v.x, v.y, v.z)) : now);
+    const float now = rest(kept, predicted[i].w);
+    velocity[i] = with_w(kept, before_kicks ? at_least(now, rest(v, predicted[i].w)) : now);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
     // No particle moves farther than the speed limit allows: a crowd in one place would otherwise hit others
     // at once.
     position[i] = length(after) > brake.most_speed ? with_w(fused(xyz(position[i]), dt, kept), predicted[i].w)
                                                    : predicted[i];
+  }
+  /// Degree of rest of a particle with support h: coarse particles rest below a larger speed, by the root of
+  /// their spacing.
+  SIM_FN float rest(Vec3 v, float h) const {
+    const Vec3 finer = sqrtf(finest_support / h) * v;
+    return still(finer.x, finer.y, finer.z);
   }
 };
 
@@ -60,7 +67,8 @@ void run_velocity(FluidState& state, VelocityColumns p) {
                    .brake = state.brake(p.id(), 1),
                    .dt = k.dt,
                    .still = calm_below(still_speed, gravity, static_cast<double>(state.finest_support) / 2),
-                   .before_kicks = shorter > 1});
+                   .finest_support = state.finest_support,
+                   .before_kicks = shorter > 1 || p.has(Column::Ease)});
 }
 
 }  // namespace
