@@ -77,9 +77,11 @@ struct SimulationOptions : SolverNumbers {
   std::filesystem::path resume_from;
   /// Folder that caches settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
-  bool wall_impulse = false;  ///< record Simulation::momentum(); costs extra passes
-  std::vector<Gauge> gauges;  ///< on the walls; if not empty, implies wall_impulse
-  bool time_parts = false;    ///< measure Simulation::part_times(); waits for the device between parts
+  bool wall_impulse = false;                   ///< record Simulation::momentum(); costs extra passes
+  std::vector<Gauge> gauges;                   ///< on the walls; if not empty, implies wall_impulse
+  std::vector<ObstacleGauge> obstacle_gauges;  ///< likewise
+  bool keeps_momentum() const { return wall_impulse || !gauges.empty() || !obstacle_gauges.empty(); }
+  bool time_parts = false;  ///< measure Simulation::part_times(); waits for the device between parts
   /// Called after each settling frame with (done, total).
   std::function<void(int, int)> settling;
 };

@@ -19,11 +19,8 @@ struct GaugeBox {
   Vec3 low, high;
   /// Share of a box about `at` that lies inside the gauge.
   SIM_FN float share(Vec3 at, Vec3 half) const {
-    return overlap(at.x, half.x, low.x, high.x) * overlap(at.y, half.y, low.y, high.y) *
-           overlap(at.z, half.z, low.z, high.z);
-  }
-  SIM_FN static float overlap(float at, float half, float low, float high) {
-    return fmaxf(fminf(at + half, high) - fmaxf(at - half, low), 0.0f) / (2 * half);
+    return share_within(at.x, half.x, low.x, high.x) * share_within(at.y, half.y, low.y, high.y) *
+           share_within(at.z, half.z, low.z, high.z);
   }
 };
 

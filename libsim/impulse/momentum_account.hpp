@@ -20,6 +20,14 @@ struct Gauge {
 /// Area of the part within the walls of a tank of this size; the tank is open at the top.
 double area_m2(const Gauge& gauge, const Vec3d& tank_size_m);
 
+/// A part of an obstacle's surface that measures what it gives: what lies in a box in the obstacle's own
+/// axes, by default all. A box that ends at the obstacle's end or beyond it has no end there.
+struct ObstacleGauge {
+  std::string name;
+  std::size_t obstacle = 0;  ///< in the scene's order
+  Vec3d min_m{-1e30, -1e30, -1e30}, max_m{1e30, 1e30, 1e30};
+};
+
 /// Momentum that a wall, or a part of it, gave the water in a frame, N s along the inward normal. Walls are
 /// frictionless. Mean pressure in Pa = sum() / (frame's time x area); the solver pushes in discrete steps, so
 /// average over 5 ms or more.
@@ -30,8 +38,8 @@ struct WallPush {
   double sum() const { return missing_density + coarse_pressure + clamp; }
 };
 
-/// Momentum that an obstacle gave the water in a frame: its push, N s, and its moment about the obstacle's
-/// centre, N m s. The water gave it the opposite.
+/// Momentum that an obstacle, or a part of its surface, gave the water in a frame: its push, N s, and its
+/// moment about the obstacle's centre, N m s. The water gave it the opposite.
 struct ObstaclePush {
   Vec3d push{}, moment{};
 };
@@ -41,6 +49,9 @@ struct MomentumAccount {
   std::array<WallPush, wall_count> walls;  ///< in the order of Wall
   std::vector<WallPush> gauges;            ///< in the order of SimulationOptions::gauges
   std::vector<ObstaclePush> obstacles;     ///< in the scene's order
+  /// In the order of SimulationOptions::obstacle_gauges. Gauges that cover an obstacle without overlap add up
+  /// to it: what belongs to no place, such as the drag of the effect viscosity, is spread by wetted area.
+  std::vector<ObstaclePush> obstacle_gauges;
   Vec3d before{}, after{};
   Vec3d forces{};     ///< gravity and the central force
   Vec3d flow{};       ///< poured minus taken by nozzles, minus what left through outlets

@@ -153,18 +153,73 @@ struct BodySum {
   MassWay push, moment;
 };
 
+/// A part of a body's surface that is measured: a box in the body's own axes, infinite beyond each end of the
+/// body that it reaches.
+struct BodyPatch {
+  int body;
+  Vec3 low, high;
+
+  /// Share inside of a square of this side about a place of the surface, in the body's own axes.
+  SIM_FN float share(Vec3 at, Vec3 normal, float side) const {
+    return along(at.x, normal.x, side, low.x, high.x) * along(at.y, normal.y, side, low.y, high.y) *
+           along(at.z, normal.z, side, low.z, high.z);
+  }
+
+ private:
+  /// The square has almost no extent along its normal.
+  SIM_FN static float along(float at, float normal, float side, float low, float high) {
+    const float flat = sqrtf(at_least(1 - normal * normal, 0.0f));
+    return share_within(at, 0.5f * side * at_least(flat, 1e-3f), low, high);
+  }
+};
+struct PatchSum {
+  BodySum given;
+  std::uint64_t wet;  ///< squares of the particles within their support, d_*^2 / CellWater::fixed_point
+};
+/// All patches of a scene; none in most.
+struct BodyPatches {
+  const BodyPatch* patches;
+  PatchSum* sums;
+  int count;
+  const MeshGrid* meshes;  ///< as in Solids
+
+  /// Calls hear(sum, share) for each patch that has a share of a square of this side beside `x`.
+  template <class Hear>
+  SIM_FN void at(const Body& its, int body, Vec3 x, float side, Hear hear) const {
+    const Vec3 p = its.to_body(x);
+    const MeshGrid* mesh = mesh_of(meshes, body);
+    const NearSurface near = mesh ? mesh->near(p) : its.near_here(p);
+    for (int k = 0; k < count; ++k) {
+      if (patches[k].body != body) continue;
+      const float share = patches[k].share(p - near.distance * near.normal, near.normal, side);
+      if (share > 0) hear(sums[k], share);
+    }
+  }
+};
+
 /// Records in kernels what bodies give the water.
 struct BodyListener {
   BodySum* sums;
   const Body* bodies;
   float finest_support;
   float times;  ///< as in WallRecord
+  BodyPatches patches;
 
-  /// Adds `push`, in m_* m, at a position.
-  SIM_FN void add(int body, Vec3 at, Vec3 push) const {
+  /// Adds `push`, in m_* m, that a particle gets at a position.
+  SIM_FN void add(int body, Vec4 particle, Vec3 at, Vec3 push) const {
     BodySum sum{};
     add_to(sum, body, at, push);
     add_at_once(body, sum);
+    if (patches.count > 0) add_to_patches(body, xyz(particle), 0.5f * particle.w, at, push);
+  }
+  /// The same for the patches alone; `side` is that of the particle's square.
+  SIM_FN void add_to_patches(int body, Vec3 beside, float side, Vec3 at, Vec3 push) const {
+    patches.at(bodies[body], body, beside, side, [&](PatchSum& patch, float share) {
+      BodySum sum{};
+      add_to(sum, body, at, share * push);
+      patch.given.push.add_at_once(sum.push);
+      patch.given.moment.add_at_once(sum.moment);
+    });
   }
   /// The same, added to a local sum.
   SIM_FN void add_to(BodySum& sum, int body, Vec3 at, Vec3 push) const {

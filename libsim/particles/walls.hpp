@@ -5,6 +5,11 @@
 
 namespace sim::SIM_BACKEND {
 
+/// Share of an interval about `at` that lies between low and high.
+SIM_FN float share_within(float at, float half, float low, float high) {
+  return fmaxf(fminf(at + half, high) - fmaxf(at - half, low), 0.0f) / (2 * half);
+}
+
 /// Half-space dot(normal, x) >= offset that holds the fluid.
 struct Plane {
   Vec3 normal;

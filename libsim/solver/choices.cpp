@@ -242,7 +242,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   const bool looks = !options.forced_targets && (out.levels || out.saliency_parts || out.activation);
   out.gaze_targets = looks && method.target == TargetSource::Gaze;
   out.saliency = looks && method.target == TargetSource::Saliency;
-  out.wall_impulse = options.wall_impulse || !options.gauges.empty();
+  out.wall_impulse = options.keeps_momentum();
   return out;
 }
 

@@ -62,8 +62,9 @@ class FluidSimulation final : public Simulation {
       state_.one_level = is_of_one_level();
     }
     if (options.resume_from.empty()) warm_up(state_, scene_);
-    if (options.wall_impulse || !options.gauges.empty())
+    if (options.keeps_momentum())
       state_.impulse.begin(options.gauges, scene.tank_size_m, state_.finest_support);
+    begin_patches(state_, options.obstacle_gauges);
   }
 
   bool look(const Looks& looks) override {
@@ -333,8 +334,7 @@ class FluidSimulation final : public Simulation {
                      {static_cast<float>(scene_.tank_size_m[0]), static_cast<float>(scene_.tank_size_m[1]),
                       static_cast<float>(scene_.tank_size_m[2])}};
     state_.walls = walls_of(scene_, false);
-    begin_obstacles(state_, scene_, levels_.second, time_s(),
-                    options_.wall_impulse || !options_.gauges.empty());
+    begin_obstacles(state_, scene_, levels_.second, time_s(), options_.keeps_momentum());
     begin_jets(state_, scene_, options_, resolution_, frame_);
     check_foam(state_, state_.parameters.effects, scene_, frame_dt());
     if (state_.parameters.effects[EffectKind::Foam] > 0) begin_foam(state_, scene_);

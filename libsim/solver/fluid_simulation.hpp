@@ -64,6 +64,8 @@ Walls walls_of(const Scene& scene, bool settling);
 /// base::Error if one is thinner than the spacing of particles of the coarsest level that the run may hold:
 /// water would pass through it.
 void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s, bool recorded);
+/// Begins to record the gauges, if there are any. base::Error if one lies on no part of an obstacle.
+void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges);
 /// Adds what the obstacles gave the water in the frame.
 void count_obstacles(const FluidState& state, MomentumAccount& account);
 /// The scene's obstacles at this time.

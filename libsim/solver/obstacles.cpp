@@ -98,6 +98,39 @@ void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, 
   o.sums.zero();
 }
 
+void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges) {
+  if (gauges.empty()) return;
+  constexpr float endless = 1e30f;
+  auto& o = state.obstacles;
+  std::vector<BodyPatch> patches;
+  for (const ObstacleGauge& gauge : gauges) {
+    const std::string who = "gauge " + gauge.name;
+    if (gauge.obstacle >= o.obstacles.size())
+      throw base::Error(who,
+                        "is on obstacle " + std::to_string(gauge.obstacle) + " of a scene with " +
+                            std::to_string(o.obstacles.size()),
+                        "count obstacles from 0, in the scene's order");
+    const Obstacle& obstacle = o.obstacles[gauge.obstacle];
+    const auto half = half_sides_m(obstacle);
+    float low[3], high[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double end = half[k] + obstacle.radius_m, edge = 1e-6 * end;
+      if (!(gauge.min_m[k] < gauge.max_m[k]) || gauge.min_m[k] > end || gauge.max_m[k] < -end)
+        throw base::Error(who, "holds no part of its obstacle",
+                          "give min_m < max_m about a part of the surface, in the obstacle's own axes");
+      low[k] = gauge.min_m[k] <= edge - end ? -endless : static_cast<float>(gauge.min_m[k]);
+      high[k] = gauge.max_m[k] >= end - edge ? endless : static_cast<float>(gauge.max_m[k]);
+    }
+    patches.push_back(
+        {static_cast<int>(gauge.obstacle), {low[0], low[1], low[2]}, {high[0], high[1], high[2]}});
+  }
+  for (int b = 0; b < o.count(); ++b)
+    patches.push_back({b, {-endless, -endless, -endless}, {endless, endless, endless}});
+  o.patches.from_host(patches);
+  o.patch_sums.resize(patches.size());
+  o.patch_sums.zero();
+}
+
 void count_obstacles(const FluidState& state, MomentumAccount& account) {
   if (!state.impulse.on() || !state.obstacles.recorded()) return;
   const double unit =
@@ -118,6 +151,23 @@ void count_obstacles(const FluidState& state, MomentumAccount& account) {
       account.unattributed[k] -= vector(sums[b].push)[k];
       account.effects[k] -= vector(by_effects.push)[k];
     }
+  }
+  if (state.obstacles.patches.size() == 0) return;
+  const std::vector<BodyPatch> patches = state.obstacles.patches.to_host();
+  const std::vector<PatchSum> given = state.obstacles.patch_sums.to_host();
+  for (std::size_t g = 0; g + count < patches.size(); ++g) {
+    const auto body = static_cast<std::size_t>(patches[g].body);
+    const PatchSum& whole = given[given.size() - count + body];
+    const double share =
+        whole.wet > 0 ? static_cast<double>(given[g].wet) / static_cast<double>(whole.wet) : 0;
+    const auto with_rest = [&](Vec3d part, const Vec3d& all, const Vec3d& placed) {
+      for (std::size_t k = 0; k < 3; ++k) part[k] += share * (all[k] - placed[k]);
+      return part;
+    };
+    const ObstaclePush& all = account.obstacles[body];
+    account.obstacle_gauges.push_back(
+        {with_rest(vector(given[g].given.push), all.push, vector(whole.given.push)),
+         with_rest(vector(given[g].given.moment), all.moment, vector(whole.given.moment))});
   }
 }
 

@@ -74,9 +74,9 @@ void add(std::ostream& text, const Scene& s) {
 std::string run_key(const Scene& scene, const SimulationOptions& o) {
   std::ostringstream text;
   text << std::hexfloat << method_name(o.method) << ' ' << o.n_star << ' ' << static_cast<int>(o.backend)
-       << ' ' << o.saliency_parts << o.forced_targets.has_value() << o.wall_impulse << !o.gauges.empty()
-       << o.temporal.always << stays_off(o.temporal) << ' ' << o.particle_capacity << ' ' << o.levels << ' '
-       << o.temporal.seed << in_words(o) << '\n';
+       << ' ' << o.saliency_parts << o.forced_targets.has_value() << o.wall_impulse
+       << (!o.gauges.empty() || !o.obstacle_gauges.empty()) << o.temporal.always << stays_off(o.temporal)
+       << ' ' << o.particle_capacity << ' ' << o.levels << ' ' << o.temporal.seed << in_words(o) << '\n';
   add(text, o.readings);
   add(text, scene);
   return base::sha256_hex(text.str());

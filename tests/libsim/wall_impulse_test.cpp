@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
+
 #include "stats/base/error.hpp"
-#include "tests/libsim/fluid_helpers.hpp"
+#include "tests/common/needs_effects.hpp"
+#include "tests/libsim/obstacle_scenes.hpp"
 
 namespace {
 
@@ -220,6 +224,140 @@ TEST(WallImpulse, AColumnPressesByItsDepth) {
 TEST(WallImpulseGpu, AColumnPressesByItsDepth) {
   column_presses_by_its_depth(Backend::Cuda, false, 0.08);
   column_presses_by_its_depth(Backend::Cuda, true, 0.1);
+}
+
+/// A pool 1 m deep with a box on its floor, 0.5 m wide and 0.75 m high.
+struct Pool {
+  static constexpr double inf = std::numeric_limits<double>::infinity();
+  sim::Scene scene = fluid_test::tank({1.25, 1.5, 1.25}, {1.25, 1, 1.25}, 60);
+  sim::SimulationOptions options;
+
+  explicit Pool(Backend backend) {
+    scene.v_ref_m_s = 3;
+    scene.obstacles = {obstacle_test::box({0.625, 0.375, 0.625}, {0.5, 0.75, 0.5})};
+    options.backend = backend;
+    options.n_star = 512;
+  }
+  /// Launches of a pass in the next frame.
+  static std::int64_t launches(sim::Simulation& fluid, const std::string& pass) {
+    fluid.profile_launches(true);
+    fluid.step_frame();
+    std::int64_t out = 0;
+    for (const auto& time : fluid.launch_times())
+      out += pass.empty() || time.label == pass ? time.launches : 0;
+    fluid.profile_launches(false);
+    return out;
+  }
+};
+
+void a_side_of_a_box_is_pressed_by_its_depth(Backend backend) {
+  Pool pool(backend);
+  // Six patches that cover the box: its side at +x and the rest of it, each in three bands of 0.25 m.
+  for (const double low : {-Pool::inf, -0.125, 0.125}) {
+    const double high = low < -1 ? -0.125 : low < 0 ? 0.125 : Pool::inf;
+    pool.options.obstacle_gauges.push_back({"side", 0, {0.2, low, -1}, {1, high, 1}});
+    pool.options.obstacle_gauges.push_back({"rest", 0, {-1, low, -1}, {0.2, high, 1}});
+  }
+  pool.options.obstacle_gauges.push_back({"all", 0});
+  const auto fluid = sim::make_simulation(pool.scene, pool.options);
+  for (int frame = 0; frame < 30; ++frame) fluid->step_frame();
+  constexpr int frames = 12;
+  double force[3]{};
+  for (int frame = 0; frame < frames; ++frame) {
+    fluid->step_frame();
+    const auto account = fluid->momentum();
+    ASSERT_EQ(account.obstacle_gauges.size(), 7u);
+    const auto& whole = account.obstacles.at(0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      double push = 0, turn = 0;
+      for (std::size_t g = 0; g < 6; ++g) {
+        push += account.obstacle_gauges[g].push[k];
+        turn += account.obstacle_gauges[g].moment[k];
+      }
+      EXPECT_NEAR(push, whole.push[k], 1e-4) << "N s; a side bears some 10 in a frame";
+      EXPECT_NEAR(turn, whole.moment[k], 1e-4);
+      EXPECT_NEAR(account.obstacle_gauges[6].push[k], whole.push[k], 1e-9);
+      EXPECT_NEAR(account.obstacle_gauges[6].moment[k], whole.moment[k], 1e-9);
+    }
+    for (std::size_t band = 0; band < 3; ++band)
+      force[band] += account.obstacle_gauges[2 * band].push[0] / (frames * pool.scene.frame_dt_s);
+  }
+  // The settled level is a little low (docs/results.md).
+  std::vector<double> heights;
+  for (const auto& p : fluid->read_state()) heights.push_back(static_cast<double>(p.y_m));
+  std::sort(heights.begin(), heights.end());
+  const double level = heights[heights.size() * 98 / 100] + fluid->spacing_m() / 2;
+  EXPECT_NEAR(level, 1, 0.05);
+  for (std::size_t band = 0; band < 3; ++band) {
+    const double foot = 0.25 * static_cast<double>(band);
+    const double share = force[band] / (1000 * gravity * (level - foot - 0.125) * 0.25 * 0.5);
+    std::printf("side of a box, from %.2f m: %.3f rho g h A, level %.3f m\n", foot, share, level);
+    // The highest band ends at an edge, where water presses less: 0.91 of it.
+    EXPECT_NEAR(share, 1, band < 2 ? 0.1 : 0.15) << foot;
+  }
+}
+TEST(ObstacleGauge, ASideOfABoxIsPressedByItsDepth) { a_side_of_a_box_is_pressed_by_its_depth(Backend::Cpu); }
+TEST(ObstacleGaugeGpu, ASideOfABoxIsPressedByItsDepth) {
+  a_side_of_a_box_is_pressed_by_its_depth(Backend::Cuda);
+}
+
+TEST(ObstacleGauge, AskingChangesNoBitAndNotAskingLaunchesNothing) {
+  Pool pool(Backend::Cpu);
+  pool.scene.settle_frames = 0;
+  pool.options.wall_impulse = true;
+  const auto without = sim::make_simulation(pool.scene, pool.options);
+  pool.options.obstacle_gauges = {{"all", 0}};
+  const auto with = sim::make_simulation(pool.scene, pool.options);
+  const std::string pass = "record obstacles' cells";
+  EXPECT_EQ(Pool::launches(*without, pass), 0);
+  const auto launched = Pool::launches(*with, pass);
+  EXPECT_EQ(launched, with->substeps().taken);
+  const auto others = Pool::launches(*without, "");
+  EXPECT_EQ(Pool::launches(*with, ""), others + 2 * with->substeps().taken) << "pressure and wetted area";
+  const auto a = without->read_state(), b = with->read_state();
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
+}
+
+TEST(ObstacleGauge, PartsOfMovingBodiesAddUpUnderEffects) {
+  NEEDS_EFFECTS;
+  Pool pool(Backend::Cpu);
+  pool.scene.settle_frames = 0;
+  pool.scene.effects = {{sim::EffectKind::Viscosity, 0.05}, {sim::EffectKind::Friction, 0.5}};
+  auto mesh =
+      obstacle_test::mesh({0.9, 0.6, 0.9}, mesh_test::box_text({-0.2, -0.25, -0.15}, {0.2, 0.25, 0.15}));
+  mesh.motion = sim::ObstacleMotion::Swings;
+  mesh.way_m = {0.1, 0, 0.05};
+  mesh.period_s = 1;
+  pool.scene.obstacles = {obstacle_test::free_one(obstacle_test::sphere({0.35, 0.9, 0.35}, 0.25), 500), mesh};
+  for (const std::size_t body : {0u, 1u}) {
+    pool.options.obstacle_gauges.push_back({"left", body, {-1, -1, -1}, {0.05, 1, 1}});
+    pool.options.obstacle_gauges.push_back({"right", body, {0.05, -1, -1}, {1, 1, 1}});
+  }
+  const auto fluid = sim::make_simulation(pool.scene, pool.options);
+  for (int frame = 0; frame < 10; ++frame) {
+    fluid->step_frame();
+    const auto account = fluid->momentum();
+    ASSERT_EQ(account.obstacle_gauges.size(), 4u);
+    for (const std::size_t body : {0u, 1u}) {
+      const auto &left = account.obstacle_gauges[2 * body], &right = account.obstacle_gauges[2 * body + 1];
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(left.push[k] + right.push[k], account.obstacles[body].push[k], 1e-3);
+        EXPECT_NEAR(left.moment[k] + right.moment[k], account.obstacles[body].moment[k], 1e-3);
+      }
+    }
+  }
+}
+
+TEST(ObstacleGauge, OnNoPartOfAnObstacleIsNamed) {
+  Pool pool(Backend::Cpu);
+  pool.scene.settle_frames = 0;
+  for (const sim::ObstacleGauge& bad :
+       {sim::ObstacleGauge{"of none", 1}, sim::ObstacleGauge{"thin", 0, {0.1, -1, -1}, {0.1, 1, 1}},
+        sim::ObstacleGauge{"beside it", 0, {0.3, -1, -1}, {1, 1, 1}}}) {
+    pool.options.obstacle_gauges = {bad};
+    EXPECT_THROW(sim::make_simulation(pool.scene, pool.options), base::Error) << bad.name;
+  }
 }
 
 TEST(WallImpulse, AGaugeWithoutAreaIsNamed) {

@@ -106,8 +106,9 @@ inline const std::vector<std::string>& quantities() {
   return all;
 }
 
-/// base::Error at file:line if the quantity is missing or unknown, a key is unknown or comes twice, a row's
-/// columns differ from the header's, or a cell is not a number.
+/// base::Error at file:line if the quantity is missing or unknown, a key is unknown or comes twice, a
+/// sensor's place is missing or no number, a row's columns differ from the header's, or a cell is not a
+/// number.
 inline TruthFile parse_truth(const std::filesystem::path& path, const std::string& bytes) {
   static const std::vector<std::string> known{"quantity",
                                               "source",
@@ -123,6 +124,9 @@ inline TruthFile parse_truth(const std::filesystem::path& path, const std::strin
                                               "plateau_from",
                                               "plateau_to",
                                               "scene",
+                                              "sensor_height_m",
+                                              "sensor_across_m",
+                                              "sensor_size_m",
                                               "x",
                                               "y",
                                               "length_m",
@@ -174,6 +178,9 @@ inline TruthFile parse_truth(const std::filesystem::path& path, const std::strin
              "docs/results.md lists the quantities");
   out.gate();
   out.text("source");
+  if (out.quantity == "wall_pressure") out.text("sensor_height_m");
+  for (const char* place : {"sensor_height_m", "sensor_across_m", "sensor_size_m"})
+    if (out.has(place)) out.number(place);
   return out;
 }
 

@@ -70,6 +70,12 @@ TEST(TruthFiles, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_THAT(error_of(with("1,0.5", "1,nan")), HasSubstr("f.csv:12: 'nan'"));
   EXPECT_THAT(error_of(with("1,0.5", "1")), HasSubstr("f.csv:12: 1 cells where the header has 2"));
   EXPECT_THAT(error_of(with("0,1\n1,0.5\n", "")), HasSubstr("f.csv:10: there are no rows"));
+  EXPECT_THAT(error_of(with("dam_front", "wall_pressure")),
+              HasSubstr("f.csv:1: the header lacks 'sensor_height_m'"));
+  for (const std::string key : {"sensor_height_m", "sensor_across_m", "sensor_size_m"})
+    EXPECT_THAT(error_of(with("# length_m: 0.5\n", "# length_m: 0.5\n# " + key + ": low\n")),
+                HasSubstr("f.csv:6: " + key + " is 'low', not a number above 0"));
+  EXPECT_THAT(error_of(with("gate_ours", "sensor_height")), HasSubstr("f.csv:7: 'sensor_height' is no key"));
 }
 
 TEST(TruthFiles, AnotherFolderIsRead) {

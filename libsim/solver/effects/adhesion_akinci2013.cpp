@@ -140,8 +140,8 @@ struct PullingBodies {
   SIM_FN Vec3 visit(int body, Vec4 at, Pulled change) const {
     if (to.sums) {
       const float way = solids.dt * mass_units_of(at.w, to.finest_support);
-      to.add(body, xyz(at), way * change.along);
-      to.add(body, solids.bodies[body].centre, way * change.across);
+      to.add(body, at, xyz(at), way * change.along);
+      to.add(body, at, solids.bodies[body].centre, way * change.across);
     }
     return change.along + change.across;
   }

@@ -52,7 +52,7 @@ SIM_FN Vec3 slowed_by(const BrakingBodies& bodies, Vec4 at, Vec3 v, float way) {
     const Vec3 before = v;
     v = slowed(v, body.velocity_at(xyz(at)), near.normal, at_most(steps, bodies.most_steps(b, d)));
     if (bodies.to.sums)
-      bodies.to.add(b, xyz(at),
+      bodies.to.add(b, at, xyz(at),
                     (bodies.solids.dt * mass_units_of(at.w, bodies.to.finest_support)) * (v - before));
   });
   return slowed_by(bodies.solids.walls, at, v, way);

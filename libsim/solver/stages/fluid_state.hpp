@@ -257,12 +257,12 @@ struct FluidState {
   bool recording() const { return !impulse.paused() && (impulse.on() || obstacles.recorded()); }
   BodyListener body_record(float times) {
     return {recording() && obstacles.recorded() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
-            finest_support, times};
+            finest_support, times, obstacles.listening_patches()};
   }
   /// For effects, whose pushes are summed apart from the constraint's; records nothing if those sums are off.
   BodyListener effects_listener() {
     return {obstacles.recorded() ? obstacles.sums.data() + obstacles.count() : nullptr,
-            obstacles.bodies.data(), finest_support, 1};
+            obstacles.bodies.data(), finest_support, 1, obstacles.listening_patches()};
   }
   /// For scenes with obstacles, while the coarse pressure's cells hold their sums.
   Waterline waterline() {

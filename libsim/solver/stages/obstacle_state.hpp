@@ -15,6 +15,9 @@ struct ObstacleState {
   /// Of this frame: pushes of the constraint, one per body, then pushes of effects. Empty unless the
   /// obstacles' pushes are recorded.
   Array<BodySum> sums;
+  /// The gauges on obstacles, then the whole of each body; empty without such gauges.
+  Array<BodyPatch> patches;
+  Array<PatchSum> patch_sums;  ///< of this frame
   /// Volume of each body below the water level, in volumes of m_*, as CellWater counts.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< one per body; empty if no obstacle is free
@@ -36,6 +39,10 @@ struct ObstacleState {
   int count() const { return static_cast<int>(bodies.size()); }
   void begin_frame() {
     if (recorded()) sums.zero();
+    if (patches.size() > 0) patch_sums.zero();
+  }
+  BodyPatches listening_patches() {
+    return {patches.data(), patch_sums.data(), static_cast<int>(patches.size()), meshes.data()};
   }
 };
 

@@ -19,7 +19,8 @@ struct RecordBoth {
     if (to.walls_recorded) RecordClamp{to.walls, particle}(wall, way);
   }
   SIM_FN void body(int which, Vec3 at, Vec3 way) const {
-    to.bodies.add(which, at, mass_units_of(particle.w, to.bodies.finest_support) * way);
+    to.bodies.add(which, with_w(at, particle.w), at,
+                  mass_units_of(particle.w, to.bodies.finest_support) * way);
   }
 };
 SIM_FN RecordClamp record_of(const WallRecord& to, Vec4 particle) { return {to, particle}; }
@@ -56,9 +57,31 @@ void held_back(FluidState& state, MovingView p, Boundary boundary, Recorder to) 
                                         .dt = state.parameters.dt,
                                         .wall_gap = state.parameters.wall_gap});
 }
+
+/// The squares of the particles beside each patch.
+struct Wetted {
+  const Vec4* position;
+  Solids solids;
+  BodyPatches patches;
+  float finest_support;
+  SIM_FN void operator()(int i) const {
+    const Vec4 at = position[i];
+    const float size = at.w / finest_support;
+    for (int b = 0; b < solids.count; ++b) {
+      if (solids.distance(b, xyz(at)) >= at.w) continue;
+      patches.at(solids.bodies[b], b, xyz(at), 0.5f * at.w, [&](PatchSum& patch, float share) {
+        atomic_add(&patch.wet, static_cast<std::uint64_t>(share * size * size * CellWater::fixed_point));
+      });
+    }
+  }
+};
+
 void record_held_back(FluidState& state, MovingView p) {
   state.obstacles.exists() ? held_back(state, p, state.solids(), records(state, 1))
                            : held_back(state, p, state.walls, state.impulse.record_to());
+  if (state.obstacles.patches.size() == 0) return;
+  for_each("record wetted patches", p.size(),
+           Wetted{p.position(), state.solids(), state.obstacles.listening_patches(), state.finest_support});
 }
 
 /// Factor on the density that walls miss; 1 in scenes without obstacles.
@@ -99,7 +122,7 @@ struct MissingInBodies {
       const Body::Near near = solids.near(b, xyz(at));
       if (near.distance >= at.w) continue;
       const Vec3 gradient = solids.missing_gradient(b, xyz(at), at.w);
-      to.add(b, xyz(at) - near.distance * near.normal, (lambda[i] / mass_unit) * gradient);
+      to.add(b, at, xyz(at) - near.distance * near.normal, (lambda[i] / mass_unit) * gradient);
     }
   }
 };
@@ -177,6 +200,64 @@ struct WallCells {
   static constexpr int patches = 4;
 };
 
+/// The pressure of the cells on the patches of bodies: rho_0 q A, on the faces between samples inside and
+/// outside a body. What push_balance.cpp gives the whole body differs a little (count_obstacles).
+struct BodyCells {
+  PressureFrame frame;
+  GridView grid;
+  Solids solids;
+  BodyListener to;
+  float unit_volume;
+  static constexpr int samples = 4;  ///< along a cell's edge
+
+  SIM_FN void operator()(int i) const {
+    const CellBlock& block = grid.block;
+    const int x = i % block.nx, y = i / block.nx % block.ny, z = i / (block.nx * block.ny);
+    const Vec3 e = frame.edge, centre = middle_of(frame, x, y, z);
+    if (solids.nearest_body(centre) > length(e)) return;
+    for (int k = 0; k < samples * samples * samples; ++k) {
+      const Vec3 at = centre + Vec3{e.x * offset(k % samples), e.y * offset(k / samples % samples),
+                                    e.z * offset(k / (samples * samples))};
+      int body;
+      if (solids.nearest_body(at, body) >= 0) continue;
+      for (int side = -1; side <= 1; side += 2) {
+        const auto way = static_cast<float>(side);
+        face(body, at, {way, 0, 0}, e.x, e.y * e.z);
+        face(body, at, {0, way, 0}, e.y, e.x * e.z);
+        face(body, at, {0, 0, way}, e.z, e.x * e.y);
+      }
+    }
+  }
+  SIM_FN void face(int body, Vec3 inside, Vec3 out, float edge, float cell_face) const {
+    const Vec3 beside = inside + (edge / samples) * out;
+    if (!solids.holds(beside)) return;
+    const Vec3 at = 0.5f * (inside + beside);
+    const float q = pressure(beside);
+    if (q <= 0) return;
+    const float area = cell_face / (samples * samples);
+    to.add_to_patches(body, at, sqrtf(area), at, (q * area / unit_volume) * out);
+  }
+  /// q between the cells' middles; solid cells have none.
+  SIM_FN float pressure(Vec3 place) const {
+    const Vec3 local = frame.in_cells(place) - Vec3{0.5f, 0.5f, 0.5f};
+    const Vec3 base{floorf(local.x), floorf(local.y), floorf(local.z)};
+    const Vec3 part = local - base;
+    float weights = 0, sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = static_cast<int>(base.x) + (corner & 1);
+      const int y = static_cast<int>(base.y) + (corner >> 1 & 1);
+      const int z = static_cast<int>(base.z) + (corner >> 2);
+      if (grid.kind_at(x, y, z) == CellKind::Solid) continue;
+      const float weight = (corner & 1 ? part.x : 1 - part.x) * (corner & 2 ? part.y : 1 - part.y) *
+                           (corner & 4 ? part.z : 1 - part.z);
+      weights += weight;
+      sum += weight * grid.q_at(x, y, z);
+    }
+    return weights > 0 ? sum / weights : 0;
+  }
+  SIM_FN static float offset(int k) { return (static_cast<float>(k) + 0.5f) / samples - 0.5f; }
+};
+
 template <class Boundary>
 void wall_cells(FluidState& state, Boundary boundary) {
   const GridView grid = state.coarse.multigrid.finest();
@@ -189,6 +270,14 @@ void wall_cells(FluidState& state, Boundary boundary) {
 }
 void record_wall_cells(FluidState& state, ColumnView<ColumnSet{}, ColumnSet{}>) {
   state.obstacles.exists() ? wall_cells(state, state.solids()) : wall_cells(state, state.walls);
+  if (state.obstacles.patches.size() == 0) return;
+  const GridView grid = state.coarse.multigrid.finest();
+  for_each("record obstacles' cells", grid.block.size(),
+           BodyCells{.frame = state.coarse.frame,
+                     .grid = grid,
+                     .solids = state.solids(),
+                     .to = state.body_record(1),
+                     .unit_volume = mass_of(state.finest_support, 1)});
 }
 
 template <class Boundary, class Recorder>
