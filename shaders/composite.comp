@@ -121,7 +121,7 @@ void main() {
   if (is_water) {
     const float distance_m = per_depth / nearness[at];
     const vec3 n = normalize(mat3(eye_to_world) * normals[at].xyz);
-    const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), vec3(tank.x - 1e-3, 1e4, tank.z - 1e-3));
+    const vec3 position = clamp(eye + distance_m * d, vec3(1e-3), min(tank_high(), vec3(1e4)) - vec3(1e-3));
     vec3 shaded = water(position, d, n, water_length(xy), footprint_per_m, distance_m);
 #ifdef FOAM
     shaded = mix(shaded, vec3(0.60, 0.80, 0.84), 0.8 * foam.y);

@@ -70,7 +70,7 @@ Crossing cross_tank(vec3 o, vec3 d) {
 
 const vec3 frame_colour = vec3(0.10, 0.11, 0.12);
 
-// How much of the pixel the frame covers where a ray pierces a face; the open top has a rim only.
+// How much of the pixel the frame covers where a ray pierces a face; the top has a rim only.
 float frame_cover(vec3 p, int axis, float width) { return line(edge_distance(p, axis), frame_m, width); }
 
 // From a point inside the tank.
@@ -90,8 +90,9 @@ vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
     return mix(below, frame_colour, frame_cover(p, 1, width));
   }
   const vec3 beyond = outdoors(p, d);
-  if (c.leave_axis == 1) return mix(beyond, frame_colour, frame_cover(p, 1, width));
-  const float mark = line(abs(fract(p.y + 0.5) - 0.5), 0.012, width) * 0.35;
+  const bool above = c.leave_axis == 1;
+  if (above && absorption.w == 0.0) return mix(beyond, frame_colour, frame_cover(p, 1, width));
+  const float mark = above ? 0.0 : line(abs(fract(p.y + 0.5) - 0.5), 0.012, width) * 0.35;
   const vec3 glass = mix(beyond * vec3(0.86, 0.93, 0.91) + vec3(0.012, 0.02, 0.02), vec3(0.9), mark);
   return mix(glass, frame_colour, frame_cover(p, c.leave_axis, width));
 }

@@ -7,7 +7,7 @@ uniform uint particle_count;
 struct Sphere {
   vec3 centre;  // eye space, z = positive depth
   float radius;
-  bool cut;   // reaches through a wall or the floor:
+  bool cut;   // reaches through a wall, the floor or a lid:
   vec3 wall;  // where on each axis, from the eye (far away: nowhere)
   vec3 inward;
   mat3 to_world;
@@ -20,7 +20,7 @@ Sphere sphere_of(vec4 particle) {
                      world_to_eye[2].xyz * particle.z + world_to_eye[3].xyz;
   precise float radius = particle.w * origin.w;
   const bvec3 low = lessThan(particle.xyz, vec3(radius));
-  const bvec3 high = greaterThan(particle.xyz, vec3(tank.x, 1e6, tank.z) - radius);
+  const bvec3 high = greaterThan(particle.xyz, tank_high() - radius);
   const vec3 wall = mix(mix(vec3(-1e6), tank.xyz, high), vec3(0), low);
   const bool cut = tank.w > 0.0 && any(greaterThanEqual(wall, vec3(0)));
   const vec3 inward = mix(vec3(1), vec3(-1), greaterThan(wall, vec3(0)));
@@ -32,7 +32,7 @@ Sphere sphere_of(vec4 particle) {
 bool beyond_walls(vec4 particle) {
   const vec3 at = particle.xyz;
   const float radius = particle.w * origin.w;
-  return tank.w > 0.0 && (any(lessThan(at, vec3(-radius))) || at.x > tank.x + radius || at.z > tank.z + radius);
+  return tank.w > 0.0 && (any(lessThan(at, vec3(-radius))) || any(greaterThan(at, tank_high() + radius)));
 }
 
 bool crosses_near(Sphere s) { return s.centre.z - s.radius < origin.z; }

@@ -7,9 +7,12 @@ layout(std140, binding = 0) uniform ViewBlock {
   vec4 origin;          // viewport's lower left corner; near plane; splatted radius / own radius
   vec4 narrow_range;    // sigma, delta, mu in particle radii; largest reach in px
   vec4 thickness_rule;  // units per m; m per unit, through water; pixels per grid cell; largest number of taps
-  vec4 absorption;      // per m
-  vec4 tank;            // size from (0, 0, 0), open above; 1: its walls and floor cut the spheres
+  vec4 absorption;      // per m; 1: the tank has a lid
+  vec4 tank;            // size from (0, 0, 0); 1: its walls cut the spheres
 };
+
+// The tank's high corner, far above without a lid.
+vec3 tank_high() { return vec3(tank.x, absorption.w > 0.0 ? tank.y : 1e6, tank.z); }
 
 vec2 slope_at(vec2 xy) { return xy * rays.xz + rays.yw; }
 
@@ -25,12 +28,12 @@ vec3 world_ray(vec2 slope, mat3 to_world) {
   return mix(ray, vec3(1e-9), lessThan(abs(ray), vec3(1e-9)));
 }
 
-// Eye depths between which the ray is inside the walls and above the floor.
+// Eye depths between which the ray is inside the walls, above the floor and below a lid.
 vec2 tank_range(vec2 slope) {
   const vec3 ray = world_ray(slope, mat3(eye_to_world));
   const vec3 eye = eye_to_world[3].xyz;
   const vec3 a = -eye / ray;
-  const vec3 b = (vec3(tank.x, 1e6, tank.z) - eye) / ray;
+  const vec3 b = (tank_high() - eye) / ray;
   const vec3 near = min(a, b), far = max(a, b);
   return vec2(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
 }

@@ -21,24 +21,25 @@ struct ListCorners {
   const int* rank;
   std::uint64_t* keys;
   int* order;
+  Vec3 up;
 
   SIM_FN void operator()(int i) const {
     if (!inside[i]) return;
     const int place = rank[i] - 1;
-    keys[place] = std::uint64_t{ordered(position[i].y)} << 32 | static_cast<std::uint32_t>(id[i]);
+    keys[place] = std::uint64_t{ordered(dot(up, xyz(position[i])))} << 32 | static_cast<std::uint32_t>(id[i]);
     order[place] = i;
   }
   /// Bits that are ordered like the numbers.
-  SIM_FN static std::uint32_t ordered(float y) {
+  SIM_FN static std::uint32_t ordered(float height) {
     std::uint32_t bits = 0;
-    memcpy(&bits, &y, sizeof bits);
+    memcpy(&bits, &height, sizeof bits);
     return bits >> 31 ? ~bits : bits | 1u << 31;
   }
 };
 
 }  // namespace
 
-int CornerColumns::find(Reads<Column::Position, Column::Id> particles, const Corners& corners) {
+int CornerColumns::find(Reads<Column::Position, Column::Id> particles, const Corners& corners, Vec3 up) {
   const int n = particles.size();
   if (n == 0) return 0;
   inside_.resize(static_cast<std::size_t>(n));
@@ -49,7 +50,7 @@ int CornerColumns::find(Reads<Column::Position, Column::Id> particles, const Cor
   order_.resize(static_cast<std::size_t>(found));
   for_each("list corners", n,
            ListCorners{particles.position(), particles.id(), inside_.data(), rank_.data(), keys_.data(),
-                       order_.data()});
+                       order_.data(), up});
   sorter_.sort(keys_, order_);
   return found;
 }

@@ -44,12 +44,14 @@ struct Corners {
   }
 };
 
-/// The source of a nozzle's water: the lowest particles in the four corner columns of the tank.
+/// The source of a nozzle's water: the particles in the four corner columns of the tank that lie lowest along
+/// gravity.
 class CornerColumns {
  public:
-  /// Orders the particles in the corners, lowest y first, ties by id: the result does not depend on the
-  /// particles' order in memory. Returns their number, which is read back from the device.
-  int find(Reads<Column::Position, Column::Id> particles, const Corners& corners);
+  /// Orders the particles in the corners by their height along `up`, lowest first, ties by id: the result
+  /// does not depend on the particles' order in memory. Returns their number, which is read back from the
+  /// device.
+  int find(Reads<Column::Position, Column::Id> particles, const Corners& corners, Vec3 up);
   /// Indices of the particles found by `find`.
   const int* lowest_first() const { return order_.data(); }
   std::size_t bytes() const;

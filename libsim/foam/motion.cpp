@@ -70,13 +70,13 @@ struct Move {
       // Exact for a drag proportional to the speed.
       const float kept = expf(-rules.air_drag * rules.dt);
       const float fall = rules.air_drag * rules.dt > 1e-4f ? (1 - kept) / rules.air_drag : rules.dt;
-      return kept * v - Vec3{0, rules.gravity * fall, 0};
+      return kept * v - fall * rules.gravity.lift();
     }
     const Vec3 carried = (1 / round.share) * round.momentum;
     if (share <= FoamKinds::bubble) return carried;
     // Buoyancy of 2 g, including the added mass, and the drag that gives this speed of rise.
     const float follows = 1 - expf(-2 * earth_gravity / rules.rise * rules.dt);
-    const Vec3 wish = carried + Vec3{0, rules.rise * rules.gravity / earth_gravity, 0};
+    const Vec3 wish = carried + (rules.rise * rules.gravity.strength / earth_gravity) * rules.gravity.up;
     return v + follows * (wish - v);
   }
 };

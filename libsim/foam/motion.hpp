@@ -17,8 +17,8 @@ struct Potential {
 
 /// The effect's parameters in the form that kernels use.
 struct FoamRules {
-  float dt = 0;          ///< of the frame, s
-  float gravity = 0;     ///< along -y, m/s2
+  float dt = 0;  ///< of the frame, s
+  Fall gravity{0};
   float rate = 0;        ///< volume of foam per second and volume of water at full potential, 1/s
   Potential approach{};  ///< tau_ta, 1/s: closing speed of water divided by its distance
   Potential crest{};     ///< tau_wc, 1/m: curvature of moving crests

@@ -44,9 +44,9 @@ struct Count {
   }
 };
 
-GaugeBox box_of(const Gauge& gauge, const Vec3d& tank_size_m) {
+GaugeBox box_of(const Gauge& gauge, const Vec3d& room_m) {
   const std::string who = "gauge " + gauge.name;
-  if (!(area_m2(gauge, tank_size_m) > 0)) {
+  if (!(area_m2(gauge, room_m) > 0)) {
     throw base::Error(who, "has no area on its wall", "give min_m < max_m along the wall, inside the tank");
   }
   constexpr double endless = 1e30;
@@ -56,7 +56,7 @@ GaugeBox box_of(const Gauge& gauge, const Vec3d& tank_size_m) {
   for (std::size_t k = 0; k < 3; ++k) {
     const bool across = normal[k] != 0;
     if (across || low[k] <= edge) low[k] = -endless;
-    if (across || (k != 1 && high[k] >= tank_size_m[k] - edge)) high[k] = endless;
+    if (across || high[k] >= room_m[k] - edge) high[k] = endless;
   }
   const auto vector = [](const Vec3d& v) {
     return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
@@ -66,12 +66,11 @@ GaugeBox box_of(const Gauge& gauge, const Vec3d& tank_size_m) {
 
 }  // namespace
 
-void ImpulseRecorder::begin(const std::vector<Gauge>& gauges, const Vec3d& tank_size_m,
-                            float finest_support) {
+void ImpulseRecorder::begin(const std::vector<Gauge>& gauges, const Vec3d& room_m, float finest_support) {
   on_ = true;
   finest_support_ = finest_support;
   std::vector<GaugeBox> boxes;
-  for (const Gauge& gauge : gauges) boxes.push_back(box_of(gauge, tank_size_m));
+  for (const Gauge& gauge : gauges) boxes.push_back(box_of(gauge, room_m));
   gauges_.from_host(boxes);
   walls_.resize(wall_count + boxes.size());
   walls_.zero();

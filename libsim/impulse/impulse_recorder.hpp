@@ -81,8 +81,8 @@ struct MomentumSums {
 
 class ImpulseRecorder {
  public:
-  /// Records all later frames.
-  void begin(const std::vector<Gauge>& gauges, const Vec3d& tank_size_m, float finest_support);
+  /// Records all later frames. room_m: Scene::room_m.
+  void begin(const std::vector<Gauge>& gauges, const Vec3d& room_m, float finest_support);
   bool on() const { return on_; }
   /// True if position changes by walls count as impulses now. False during position corrections that do not
   /// change velocity.

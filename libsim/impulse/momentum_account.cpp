@@ -4,14 +4,13 @@
 
 namespace sim {
 
-double area_m2(const Gauge& gauge, const Vec3d& tank_size_m) {
+double area_m2(const Gauge& gauge, const Vec3d& room_m) {
   const Vec3d normal = inward_normal(gauge.wall);
   double out = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     if (normal[k] != 0) continue;
     const double low = std::max(gauge.min_m[k], 0.0);
-    const double high = k == 1 ? gauge.max_m[k] : std::min(gauge.max_m[k], tank_size_m[k]);
-    out *= std::max(high - low, 0.0);
+    out *= std::max(std::min(gauge.max_m[k], room_m[k]) - low, 0.0);
   }
   return out;
 }

@@ -17,8 +17,8 @@ struct Gauge {
   Wall wall = Wall::Floor;
   Vec3d min_m{}, max_m{};
 };
-/// Area of the part within the walls of a tank of this size; the tank is open at the top.
-double area_m2(const Gauge& gauge, const Vec3d& tank_size_m);
+/// Area of the part within the walls of a tank of this inner size (Scene::room_m).
+double area_m2(const Gauge& gauge, const Vec3d& room_m);
 
 /// A part of an obstacle's surface that measures what it gives: what lies in a box in the obstacle's own
 /// axes, by default all. A box that ends at the obstacle's end or beyond it has no end there.

@@ -1,11 +1,31 @@
 #pragma once
-/// The criterion for water at rest.
+/// Gravity, and the criterion for water at rest.
 
 #include <cmath>
 
 #include "libsim/exec/vec.hpp"
 
 namespace sim::SIM_BACKEND {
+
+/// Acceleration of all water and free bodies.
+struct Fall {
+  float strength = 9.81f;  ///< m/s2; 0 without gravity
+  Vec3 up{0, 1, 0};        ///< unit vector against it, with +0 where it has no part; +y without gravity
+
+  Fall() = default;
+  /// Along -y.
+  Fall(float down) : strength(down) {}
+  Fall(float size, Vec3 against) : strength(size), up(against) {}
+  /// What holds water up: minus the acceleration, m/s2.
+  SIM_FN Vec3 lift() const { return strength * up; }
+  /// The axis nearest to `up`, with its sign.
+  Vec3 axis() const {
+    const Vec3 size{std::abs(up.x), std::abs(up.y), std::abs(up.z)};
+    if (size.y >= size.x && size.y >= size.z) return {0, std::copysign(1.0f, up.y), 0};
+    if (size.x >= size.z) return {std::copysign(1.0f, up.x), 0, 0};
+    return {0, 0, std::copysign(1.0f, up.z)};
+  }
+};
 
 /// Degree to which a particle is at rest, by its speed: 1 without motion, 0 from `speed` on.
 struct Calm {

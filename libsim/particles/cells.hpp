@@ -24,7 +24,8 @@ struct OpenFace {
   float low[2], high[2];
 };
 
-/// Cells of one grid, x fastest. Its sides and bottom are walls except for open faces; its top is air.
+/// Cells of one grid, x fastest. Its sides and bottom are walls except for open faces; its top is air or a
+/// lid.
 struct CellBlock {
   int nx = 0, ny = 0, nz = 0;
 

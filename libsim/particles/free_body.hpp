@@ -124,14 +124,15 @@ struct WallContact {
 /// previous substep.
 struct BodyDrive {
   Guards* guards;
-  float gravity, dt, most_speed;
+  Vec3 lift;  ///< Fall::lift()
+  float dt, most_speed;
   bool first;  ///< first substep of the frame
 
   SIM_FN void operator()(FreeBody& it) const {
     if (first) it.by_walls = {0, 0, 0};
     if (first) it.counted = it.counted_of_effects = {};
     it.momentum += dt * it.force;
-    it.momentum.y -= it.mass * gravity * dt;
+    it.momentum = it.momentum - dt * (it.mass * lift);
     it.spin += dt * it.torque;
     limit(it);
   }

@@ -37,11 +37,12 @@ struct NoRecord {
 struct Walls {
   static constexpr int most = 8;
   static constexpr int most_openings = 4;
-  Plane planes[most];
+  Plane planes[most];  ///< in the order of sim::Wall
   int count;
   Opening openings[most_openings];
   int opening_count;
 
+  bool have_lid() const { return count > 5; }
   SIM_FN float distance(int plane, Vec3 x) const {
     return dot(planes[plane].normal, x) - planes[plane].offset;
   }

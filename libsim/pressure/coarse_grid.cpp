@@ -4,7 +4,7 @@
 
 namespace sim::SIM_BACKEND {
 
-void CoarseGrid::fit(const Domain& domain, float edge) {
+void CoarseGrid::fit(const Domain& domain, float edge, bool lid) {
   const Vec3 size = domain.high - domain.low;
   const double wish = static_cast<double>(size.x) * static_cast<double>(size.y) *
                       static_cast<double>(size.z) / std::pow(static_cast<double>(edge), 3.0);
@@ -12,9 +12,10 @@ void CoarseGrid::fit(const Domain& domain, float edge) {
   const auto across = [&](float length) { return std::max(1, static_cast<int>(std::round(length / edge))); };
   const int nx = across(size.x);
   const int nz = across(size.z);
-  const int ny = std::max(1, static_cast<int>(std::ceil(size.y / edge)));  // open at the top
-  frame = {domain.low, {size.x / static_cast<float>(nx), edge, size.z / static_cast<float>(nz)}};
-  multigrid.fit({nx, ny, nz}, frame.conductance());
+  const int ny = lid ? across(size.y) : std::max(1, static_cast<int>(std::ceil(size.y / edge)));
+  const float edge_y = lid ? size.y / static_cast<float>(ny) : edge;
+  frame = {domain.low, {size.x / static_cast<float>(nx), edge_y, size.z / static_cast<float>(nz)}};
+  multigrid.fit({nx, ny, nz}, frame.conductance(), lid ? CellKind::Solid : CellKind::Air);
   sums.resize(static_cast<std::size_t>(multigrid.finest().block.size()));
 }
 

@@ -77,6 +77,7 @@ SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, con
   face(2, x, y, z - 1, {0, 0, 1}, across_z);
   face(3, x, y, z + 1, {0, 0, -1}, across_z);
   face(4, x, y - 1, z, {0, 1, 0}, frame.floor_area());
+  face(5, x, y + 1, z, {0, -1, 0}, frame.floor_area());
 }
 
 /// Evaluates a cell's sums.
@@ -102,13 +103,13 @@ struct CellWater {
   }
 };
 
-/// Height of the water beside a body within a cell: 0 dry, 1 below the surface.
+/// Height of the water beside a body within a cell, along Waterline::up: 0 dry, 1 below the surface.
 struct LevelBeside {
   float mean;  ///< over the sides that have a value
   float most;
 };
 
-/// Water level beside bodies, from the cells. Searches horizontally from a cell inside bodies to the water
+/// Water level beside bodies, from the cells. Searches across `up` from a cell inside bodies to the water
 /// outside, on four sides.
 struct Waterline {
   CellWater water;
@@ -116,22 +117,22 @@ struct Waterline {
   Solids solids;
   const CellSum* sums;
   const std::uint64_t* volume;  ///< of all particles, including resting ones
+  Vec3 up;                      ///< the axis nearest to the direction against gravity, with its sign
 
   SIM_FN LevelBeside beside(int x, int y, int z) const {
     const Vec3 at = middle_of(water.frame, x, y, z);
     int body;
     solids.nearest_body(at, body);
     const Vec3 from = at - solids.bodies[body].centre;
-    const float away = sqrtf(from.x * from.x + from.z * from.z);
-    const Vec3 out = away > 1e-6f ? Vec3{from.x / away, 0, from.z / away} : Vec3{1, 0, 0};
+    const Vec3 level = from - dot(up, from) * up;
+    const float away = length(level);
+    const Vec3 out = away > 1e-6f ? Vec3{level.x / away, level.y / away, level.z / away} : side();
+    const Vec3 across = cross(up, out);
     float sum = 0;
     float most = 0;
     int sides = 0;
     for (int side = 0; side < 4; ++side) {
-      const Vec3 way = side == 0   ? out
-                       : side == 1 ? -1.0f * out
-                       : side == 2 ? Vec3{out.z, 0, -out.x}
-                                   : Vec3{-out.z, 0, out.x};
+      const Vec3 way = (side % 2 ? -1.0f : 1.0f) * (side < 2 ? out : across);
       const Vec3 place = outside(at, way);
       if (solids.nearest_body(place) < 0) continue;
       const float height = height_at(place);
@@ -144,7 +145,7 @@ struct Waterline {
   /// The first position along `way` whose cell is usually free of bodies; if the gap is narrower, the last
   /// one before a wall.
   SIM_FN Vec3 outside(Vec3 from, Vec3 way) const {
-    const float clear = 0.75f * water.frame.edge.x;
+    const float clear = 0.75f * fabsf(dot(side(), water.frame.edge));
     Vec3 x = from;
     for (int step = 0; step < most_steps; ++step) {
       const float away = solids.nearest_body(x);
@@ -169,11 +170,19 @@ struct Waterline {
     const int y = static_cast<int>(floorf(cells.y));
     const int z = static_cast<int>(floorf(cells.z));
     if (!block.holds(x, y, z)) return 0;
-    if (block.holds(x, y + 1, z) && CellWater::is_water(sums[block.index(x, y + 1, z)])) return 1;
+    const int ax = x + static_cast<int>(up.x);
+    const int ay = y + static_cast<int>(up.y);
+    const int az = z + static_cast<int>(up.z);
+    if (block.holds(ax, ay, az) && CellWater::is_water(sums[block.index(ax, ay, az)])) return 1;
     return water.filled(volume[block.index(x, y, z)]);
   }
 
+  /// Edge of a cell along `up`, m.
+  SIM_FN float pitch() const { return fabsf(dot(up, water.frame.edge)); }
+
  private:
+  /// An axis across `up`.
+  SIM_FN Vec3 side() const { return {up.y, up.z, up.x}; }
   static constexpr int most_steps = 16;
 };
 
@@ -184,9 +193,9 @@ struct CoarseGrid {
   Array<PushBalance> balance;
   Multigrid multigrid;
 
-  /// Uses cells of `edge`, or wider if the domain would need more than `most_cells`; horizontal edges are
-  /// then adjusted so that a whole number of cells fits between the walls.
-  void fit(const Domain& domain, float edge);
+  /// Uses cells of `edge`, or wider if the domain would need more than `most_cells`; edges are then adjusted
+  /// so that a whole number of cells fits between the walls. Without a lid the top is open.
+  void fit(const Domain& domain, float edge, bool lid);
   /// Sets the walls' openings as open faces; call after fit. The walls must be those of the domain.
   void open(const Walls& walls);
   static constexpr double most_cells = 1 << 24;

@@ -197,8 +197,9 @@ struct SmallGrids {
 
 }  // namespace
 
-void Multigrid::fit(CellBlock finest, Vec3 conductance) {
+void Multigrid::fit(CellBlock finest, Vec3 conductance, CellKind top) {
   conductance_ = conductance;
+  top_ = top;
   if (!levels_.empty()) {
     const CellBlock now = levels_.front().block;
     if (finest.nx == now.nx && finest.ny == now.ny && finest.nz == now.nz) return;
@@ -230,7 +231,8 @@ GridView Multigrid::view(std::size_t level) {
           .source = at.source.data(),
           .diagonal = at.diagonal.data(),
           .open = open_.data(),
-          .open_count = static_cast<int>(open_.size())};
+          .open_count = static_cast<int>(open_.size()),
+          .top = top_};
 }
 
 void Multigrid::smooth(std::size_t level, int first_colour) {

@@ -1,6 +1,6 @@
 #pragma once
 /// Geometric multigrid for the low-frequency part of the pressure: -laplace q = C on the cells that contain
-/// fluid, q >= 0, q = 0 in the air and outside open faces, no flux through walls.
+/// fluid, q >= 0, q = 0 in the air and outside open faces, no flux through walls and a lid.
 
 #include <vector>
 
@@ -22,10 +22,11 @@ struct GridView {
   float* diagonal;  ///< of a fluid cell's equation: the sum of its conductances
   const OpenFace* open;
   int open_count;
+  CellKind top;  ///< what lies above the block: air, or a lid
 
   SIM_FN CellKind kind_at(int x, int y, int z) const {
     if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
-    return y >= block.ny ? CellKind::Air : CellKind::Solid;
+    return y >= block.ny ? top : CellKind::Solid;
   }
   /// Length of a cell's edge in finest cells; the last cell of a row may extend beyond the block.
   SIM_FN float extent(int cell, int finest_cells) const {
@@ -70,7 +71,7 @@ class Multigrid {
  public:
   /// Allocates a finest grid of this many cells and its coarser grids. Cheap if nothing changed. The
   /// conductance of a face is its area divided by the distance across it.
-  void fit(CellBlock finest, Vec3 conductance = {1, 1, 1});
+  void fit(CellBlock finest, Vec3 conductance = {1, 1, 1}, CellKind top = CellKind::Air);
   /// Opens these faces of the finest grid, and closes all others.
   void open(const std::vector<OpenFace>& faces) { open_.from_host(faces); }
   /// The finest grid. Write kind and source (C times the volume of each fluid cell, in the unit of
@@ -100,6 +101,7 @@ class Multigrid {
   Array<OpenFace> open_;
   Array<unsigned char> room_;
   Vec3 conductance_{1, 1, 1};
+  CellKind top_ = CellKind::Air;
 };
 
 }  // namespace sim::SIM_BACKEND

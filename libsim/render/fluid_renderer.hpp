@@ -48,8 +48,8 @@ struct RenderOptions {
   /// Splatted radius / particle radius. Touching spheres (1) show the next layer through the gaps between
   /// them.
   float radius_scale = 1.5F;
-  /// Walls and floor cut the spheres, so that no water appears outside the glass. Off: leaked particles are
-  /// drawn at their positions.
+  /// Walls, floor and lid cut the spheres, so that no water appears outside the glass. Off: leaked particles
+  /// are drawn at their positions.
   bool clip_to_tank = true;
   /// Standard deviation of one round of the depth filter in world space (Truong and Yuksel); n rounds smooth
   /// like one that is sqrt(n) times as wide.

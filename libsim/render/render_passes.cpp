@@ -93,6 +93,7 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
     : options(chosen),
       tank{static_cast<float>(scene.tank_size_m[0]), static_cast<float>(scene.tank_size_m[1]),
            static_cast<float>(scene.tank_size_m[2]), chosen.clip_to_tank ? 1.0F : 0.0F},
+      lid(scene.lid),
       timer(chosen.time_passes),
       foam(coefficients_of(scene.effects)[EffectKind::Foam] > 0),
       floor_light(lights_the_floor(scene) ? std::make_unique<FloorLight>(scene, chosen) : nullptr),
@@ -144,19 +145,19 @@ const ViewTargets& FluidRenderer::State::drawn(std::size_t view) const {
 
 void FluidRenderer::State::write_block(ViewTargets& t) const {
   const auto step = static_cast<float>(options.thickness_step);
-  const ViewBlock block{
-      t.view.view,
-      rigid_inverse(t.view.view),
-      pack(pixel_rays(t.view)),
-      {t.width, t.height, t.cells_x, t.cells_y},
-      {static_cast<float>(t.view.viewport.x), static_cast<float>(t.view.viewport.y),
-       static_cast<float>(t.view.near_m), options.radius_scale},
-      {options.filter_sigma_r, options.filter_delta_r, options.filter_mu_r,
-       static_cast<float>(options.filter_max_px)},
-      {1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, step,
-       static_cast<float>(options.filter_max_taps)},
-      {options.absorption_per_m[0], options.absorption_per_m[1], options.absorption_per_m[2], 0},
-      tank};
+  const ViewBlock block{t.view.view,
+                        rigid_inverse(t.view.view),
+                        pack(pixel_rays(t.view)),
+                        {t.width, t.height, t.cells_x, t.cells_y},
+                        {static_cast<float>(t.view.viewport.x), static_cast<float>(t.view.viewport.y),
+                         static_cast<float>(t.view.near_m), options.radius_scale},
+                        {options.filter_sigma_r, options.filter_delta_r, options.filter_mu_r,
+                         static_cast<float>(options.filter_max_px)},
+                        {1 / options.thickness_unit_m, options.thickness_unit_m / options.packing, step,
+                         static_cast<float>(options.filter_max_taps)},
+                        {options.absorption_per_m[0], options.absorption_per_m[1],
+                         options.absorption_per_m[2], lid ? 1.0F : 0.0F},
+                        tank};
   glNamedBufferSubData(t.block.name(), 0, sizeof block, &block);
 }
 

@@ -36,6 +36,7 @@ std::string obstacle_defines(const Scene& scene);
 struct FluidRenderer::State {
   RenderOptions options;
   std::array<float, 4> tank;
+  bool lid;
   PassTimer timer;
   bool foam;  // the scene lists foam: one more pass, and a composite that shows its result
   GlProgram clear_targets = compute_program("clear.comp");

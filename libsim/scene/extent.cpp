@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,42 @@
 #include "stats/base/error.hpp"
 
 namespace sim {
+
+Vec3d Scene::room_m() const {
+  return {tank_size_m[0], lid ? tank_size_m[1] : std::numeric_limits<double>::infinity(), tank_size_m[2]};
+}
+
+double beyond_lid_m(const Scene& scene, const Nozzle& nozzle, double frame_dt_s) {
+  const double rise = std::max(scene.gravity_m_s2.along[1], 0.0) * frame_dt_s / 2;
+  return nozzle.position_m[1] + (nozzle.speed_m_s + rise) * frame_dt_s - scene.room_m()[1];
+}
+
+std::array<double, 3> inward_normal(Wall wall) {
+  switch (wall) {
+    case Wall::LowX:
+      return {1, 0, 0};
+    case Wall::HighX:
+      return {-1, 0, 0};
+    case Wall::LowZ:
+      return {0, 0, 1};
+    case Wall::HighZ:
+      return {0, 0, -1};
+    case Wall::Lid:
+      return {0, -1, 0};
+    case Wall::Floor:
+      break;
+  }
+  return {0, 1, 0};
+}
+
+std::array<std::size_t, 2> axes_of(Wall wall) {
+  const auto normal = inward_normal(wall);
+  std::array<std::size_t, 2> out{};
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (normal[k] == 0) out[count++] = k;
+  return out;
+}
 
 namespace {
 
@@ -128,7 +165,8 @@ std::optional<Underside> closing(const Obstacle& o, const Scene& scene, double s
   return out;
 }
 
-double lowest_m(const Outlet& outlet) {
+double lowest_m(const Outlet& outlet, const Scene& scene) {
+  if (outlet.wall == Wall::Lid) return scene.tank_size_m[1];
   const auto axes = axes_of(outlet.wall);
   return axes[0] == 1 ? outlet.min_m[0] : axes[1] == 1 ? outlet.min_m[1] : 0;
 }
@@ -140,7 +178,7 @@ void check_way(const Scene& scene, std::size_t number, std::int64_t n_star) {
   auto underside = closing(o, scene, spacing);
   if (!underside) return;
   for (const Outlet& outlet : scene.outlets)
-    if (lowest_m(outlet) < underside->highest_m()) return;
+    if (lowest_m(outlet, scene) < underside->highest_m()) return;
   const double area = scene.tank_size_m[0] * scene.tank_size_m[2];
   double water = 0;
   for (const Vec3d& at : fill_positions(scene, MethodKind::HiRes, n_star))

@@ -97,7 +97,7 @@ int substeps_of(const Scene& scene, std::int64_t n_star) {
 double viscosity_of(const Scene& scene, std::int64_t n_star) {
   if (scene.viscosity_m2_s >= 0) return scene.viscosity_m2_s;
   const double support = 4 * resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m;
-  return 0.05 * support * std::sqrt(scene.gravity_m_s2 * support);
+  return 0.05 * support * std::sqrt(scene.gravity_m_s2.size() * support);
 }
 
 Scales scales_of(const Scene& scene, std::int64_t n_star) {
@@ -110,7 +110,7 @@ Scales scales_of(const Scene& scene, std::int64_t n_star) {
   const auto tension = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Cohesion]);
   const auto over = [](double what, double by) { return what == 0 ? 0 : what / by; };
   const double inertia = rest_density_kg_m3 * out.speed_m_s * out.speed_m_s;
-  const double weight = rest_density_kg_m3 * scene.gravity_m_s2 * out.length_m;
+  const double weight = rest_density_kg_m3 * scene.gravity_m_s2.size() * out.length_m;
   out.viscosity_m2_s = viscosity_of(scene, n_star) +
                        static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
   out.reynolds = over(out.speed_m_s * out.length_m, out.viscosity_m2_s);

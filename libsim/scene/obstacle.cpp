@@ -36,19 +36,20 @@ Vector turned(const Quaternion& q, const Vector& v) {
 }
 Quaternion back(const Quaternion& q) { return {-q[0], -q[1], -q[2], q[3]}; }
 
-bool in_tank(const Mesh& mesh, const Pose& pose, const Vector& tank_size_m) {
+bool in_room(const Mesh& mesh, const Pose& pose, const Vector& room_m) {
   return std::all_of(mesh.places_m().begin(), mesh.places_m().end(), [&](const Vector& own) {
     const Vector at = in_world(pose, own);
-    const bool low = at[0] < -1e-9 || at[1] < -1e-9 || at[2] < -1e-9;
-    return !low && at[0] <= tank_size_m[0] + 1e-9 && at[2] <= tank_size_m[2] + 1e-9;  // open at the top
+    for (std::size_t a = 0; a < 3; ++a)
+      if (at[a] < -1e-9 || at[a] > room_m[a] + 1e-9) return false;
+    return true;
   });
 }
-bool in_tank(const Obstacle& o, const Pose& pose, const Vector& tank_size_m) {
-  if (o.mesh) return in_tank(*o.mesh, pose, tank_size_m);
+bool in_room(const Obstacle& o, const Pose& pose, const Vector& room_m) {
+  if (o.mesh) return in_room(*o.mesh, pose, room_m);
   const Vector far = reach_m(o, pose);
   for (std::size_t a = 0; a < 3; ++a) {
     if (pose.centre_m[a] - far[a] < -1e-9) return false;
-    if (a != 1 && pose.centre_m[a] + far[a] > tank_size_m[a] + 1e-9) return false;  // open at the top
+    if (pose.centre_m[a] + far[a] > room_m[a] + 1e-9) return false;
   }
   return true;
 }
@@ -85,7 +86,7 @@ void read_motion(const base::TomlTable& table, const Vector& origin_m, Obstacle&
   }
 }
 
-Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, const Vector& origin_m,
+Obstacle read_obstacle(const base::TomlTable& table, const Vector& room_m, const Vector& origin_m,
                        const std::optional<std::filesystem::path>& beside) {
   Obstacle out;
   const base::Range size{thinnest_m, farthest_m};
@@ -112,16 +113,17 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& tank_size_m, 
   }
   read_motion(table, origin_m, out);
   out.friction = table.number_or("friction", 0, {0, most_friction});
-  if (!in_tank(out, out.start, tank_size_m))
+  if (!in_room(out, out.start, room_m))
     table.fail("centre_m", "puts a part of the obstacle outside the tank",
-               "keep all of it within tank.size_m from tank.origin_m; it may extend beyond the top only");
+               "keep all of it within tank.size_m from tank.origin_m; it may extend beyond the top of a tank "
+               "without a lid");
   constexpr int looks = 256;
   const double whole = out.motion == ObstacleMotion::Swings
                            ? out.period_s
                            : 2 * std::numbers::pi / std::max(std::abs(out.rate_rad_s), 1e-9);
   const bool goes_a_way = out.motion == ObstacleMotion::Turns || out.motion == ObstacleMotion::Swings;
   for (int k = 0; k < looks && goes_a_way; ++k) {
-    if (!in_tank(out, pose_at(out, whole * k / looks), tank_size_m))
+    if (!in_room(out, pose_at(out, whole * k / looks), room_m))
       table.fail("motion", "moves a part of the obstacle out of the tank",
                  "move it less far, or put it farther from the walls");
   }
@@ -270,14 +272,14 @@ double top_speed(const Obstacle& o) {
   return std::abs(o.rate_rad_s) * (from_axis + beyond);
 }
 
-std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector& tank_size_m,
+std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector& room_m,
                                      const Vector& origin_m, double most_speed_m_s,
                                      const std::optional<std::filesystem::path>& beside) {
   std::vector<Obstacle> out;
   for (const auto& table : scene.tables("obstacle")) {
     if (out.size() == most_obstacles)
       table.fail("", "is one obstacle too many", "use at most " + std::to_string(most_obstacles));
-    out.push_back(read_obstacle(table, tank_size_m, origin_m, beside));
+    out.push_back(read_obstacle(table, room_m, origin_m, beside));
     if (out.back().motion == ObstacleMotion::Free && scene.has("central_force"))
       table.fail("motion", "is free in a scene with a central force, which would not pull it",
                  "leave central_force out, or keep the obstacle fixed");

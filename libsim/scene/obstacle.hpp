@@ -99,12 +99,12 @@ double thickness_m(const Obstacle& obstacle);
 /// Speed that no point of it ever exceeds, m/s; 0 (unknown) for a free one.
 double top_speed(const Obstacle& obstacle);
 
-/// Reads the tables [[obstacle]] of a scene file of format 2. origin_m (Scene::origin_m) is subtracted from
-/// positions. Mesh files are relative to the folder `beside`. base::Error at file:line:column for what the
-/// format forbids, for example an obstacle or its path outside the tank, more than most_obstacles, a speed
-/// above most_speed_m_s, or a free obstacle that overlaps another one. Errors in a mesh file name that file
-/// and its line.
-std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
+/// Reads the tables [[obstacle]] of a scene file of format 2. room_m: Scene::room_m(). origin_m
+/// (Scene::origin_m) is subtracted from positions. Mesh files are relative to the folder `beside`.
+/// base::Error at file:line:column for what the format forbids, for example an obstacle or its path outside
+/// the tank, more than most_obstacles, a speed above most_speed_m_s, or a free obstacle that overlaps another
+/// one. Errors in a mesh file name that file and its line.
+std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const std::array<double, 3>& room_m,
                                      const std::array<double, 3>& origin_m, double most_speed_m_s,
                                      const std::optional<std::filesystem::path>& beside = {});
 

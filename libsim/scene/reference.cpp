@@ -52,7 +52,7 @@ const std::vector<base::TableReference>& scene_tables() {
   static const std::vector<base::TableReference> tables = [] {
     std::vector<base::TableReference> out{
         {"", "The file itself", "Stands before the first table."},
-        {"tank", "[tank]", "Glass walls and a floor, free slip, open at the top."},
+        {"tank", "[tank]", "Glass walls and a floor, free slip. Open at the top, or closed by a lid."},
         {"water", "[water]",
          R"(One block of water by `min_m` and `max_m`, or several by `[[water.block]]`. The volume of all and
 n_* make the spacing d of the finest particles: d^3 = volume / (8 n_*). Water inside obstacles is left
@@ -73,10 +73,13 @@ effects.)"},
          "`view.target_m`."},
         {"visible", "[[visible]]", "A box that must stay in the participant's picture."},
         {"nozzle", "[[nozzle]]",
-         "Pours straight down in pulses, the first at frame 0. The mouth lies within the tank and at least "
-         "half a\ndiameter away from walls and obstacles."},
+         R"(Pours along -y in pulses, the first at frame 0. The mouth lies within the tank and at least half a
+diameter away from walls and obstacles, and speed_m_s / frames_per_s below a lid. It pours as much water as it
+takes from the columns of [recirculation](#recirculation), so that a closed tank gets no fuller.)"},
         {"recirculation", "[recirculation]",
-         "Where nozzles take their water: the lowest in four upright columns in the tank's corners."},
+         "Where nozzles take their water: what lies lowest along gravity in four columns along y in the "
+         "tank's "
+         "corners."},
         {"outlet", "[[outlet]]",
          R"(A rectangle in a wall, at most 4. Water that passes it leaves at the end of that frame. It is
 closed while the water settles.)"},
@@ -148,7 +151,7 @@ constexpr std::array<const char*, option_count> option_meanings{
     "lighter by this share per kelvin; 0: nothing rises. Times the widest difference of temperatures at most "
     "0.5",
     "of all water that nothing else is said of",
-    "of the walls and the floor; 0: they insulate",
+    "of walls, floor and lid; 0: they insulate",
     coarsest_that_acts,
     "trapped air: speed at which water of neighbouring cells meets over its distance, at which the potential "
     "begins",
@@ -197,10 +200,13 @@ std::vector<KeyReference> all_keys() {
   std::vector<KeyReference> out{
       {"", "format", "whole number", "1, 2", "", "2 has obstacles and effects"},
       {"", "name", "text", "", "", "1 to 64 characters"},
-      {"", "gravity_m_s2", "number", "[0, 1000]", "", "along -y"},
+      {"", "gravity_m_s2", "number or list of numbers", "[0, 1000] or [-1000, 1000], its length at most 1000",
+       "",
+       "a number: along -y; a list: along x, y, z. Without `tank.lid` the second entry is negative, or all "
+       "are 0"},
       {"", "checkpoints", "list of numbers", "[0, 1000000]", "",
        "frames from which `vip-bench table1` starts its comparisons"},
-      {"", "tank", "table", "", "", "walls and floor"},
+      {"", "tank", "table", "", "", "walls, floor and lid"},
       {"", "water", "table", "", "", "at the start"},
       {"", "time", "table", "", "", "frames and substeps"},
       {"", "view", "table", "", "", "the participant's camera"},
@@ -216,7 +222,9 @@ std::vector<KeyReference> all_keys() {
       {"", "effect", "tables", "", "none", "what the scene has beside the method; format 2"},
 
       {"tank", "size_m", "list of numbers", "[0.01, 10000]", "",
-       "inner size along x, y, z; y is the drawn height of the walls"},
+       "inner size along x, y, z; without a lid y is the drawn height of the walls"},
+      {"tank", "lid", "true or false", "", "false",
+       "a wall at the top too; water, obstacles and nozzles lie below it"},
       {"tank", "origin_m", "list of numbers", "[-1000000, 1000000]", "[0, 0, 0]",
        "the tank's low corner in the file's world, x, y, z"},
 
@@ -272,8 +280,8 @@ std::vector<KeyReference> all_keys() {
       {"recirculation", "corner_m", "number", "[0.01, 10000]", "",
        "edge of the columns; at most half of the tank's width"},
 
-      {"outlet", "wall", "text", R"("x_low", "x_high", "z_low", "z_high", "y_low")", "",
-       "the wall, or the floor (y_low)"},
+      {"outlet", "wall", "text", R"("x_low", "x_high", "z_low", "z_high", "y_low", "y_high")", "",
+       "the wall, the floor (y_low) or the lid (y_high)"},
       {"outlet", "min_m", "list of numbers", "within the wall", "",
        "low corner along the wall's two axes, such as y and z of x_low"},
       {"outlet", "max_m", "list of numbers", "within the wall", "",
@@ -300,7 +308,8 @@ std::vector<KeyReference> all_keys() {
        "a 48th of the longest side, or a quarter of the shortest",
        "mesh: of the grid that holds its distances"},
       {"obstacle", "centre_m", "list of numbers", anywhere, "",
-       "centre of mass at the start, x, y, z; the obstacle lies within the tank or stands out at the top"},
+       "centre of mass at the start, x, y, z; the obstacle lies within the tank or stands out at an "
+       "open top"},
       {"obstacle", "rotation_deg", "number", "[-360, 360]", "not turned", "at the start, right-handed"},
       {"obstacle", "rotation_axis", "list of numbers", "[-1000, 1000]", where_needed,
        "needed by rotation_deg, refused without: a direction of any length"},

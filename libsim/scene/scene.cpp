@@ -19,11 +19,24 @@ constexpr int newest_format = 2;
 // A double resolves 1e-10 m at this distance.
 constexpr double farthest_origin_m = 1e6;
 constexpr double hottest_k = 1e4;
+constexpr double strongest_m_s2 = 1000;  ///< gravity
 constexpr double most_settle_frames = 10'000;
 
 Vec3d vector(const base::TomlTable& table, const char* key, base::Range range) {
   const auto v = table.numbers(key, 3, range);
   return {v[0], v[1], v[2]};
+}
+
+/// A number along -y, or a vector.
+Gravity read_gravity(const base::TomlTable& root) {
+  constexpr const char* key = "gravity_m_s2";
+  if (!root.is_list(key)) return {root.number(key, {0, strongest_m_s2})};
+  const Vec3d v = vector(root, key, {-strongest_m_s2, strongest_m_s2});
+  const Gravity out{v[0], v[1], v[2]};
+  if (out.size() > strongest_m_s2)
+    root.fail(key, "= " + base::shortest(out.size()) + " m/s2 in all is out of range",
+              "use a vector of at most " + base::shortest(strongest_m_s2) + " m/s2");
+  return out;
 }
 
 /// Converts a position in the file's world to one relative to the tank's low corner.
@@ -61,26 +74,27 @@ Camera overview_of(const Camera& view) {
 
 /// In the order of Wall.
 const std::vector<std::string>& wall_names() {
-  static const std::vector<std::string> names{"x_low", "x_high", "z_low", "z_high", "y_low"};
+  static const std::vector<std::string> names{"x_low", "x_high", "z_low", "z_high", "y_low", "y_high"};
   return names;
 }
 
-Outlet read_outlet(const base::TomlTable& table, const std::array<double, 3>& tank_size_m,
-                   const std::array<double, 3>& origin_m) {
+Outlet read_outlet(const base::TomlTable& table, const Scene& scene) {
   Outlet out;
   const auto& names = wall_names();
   const auto name = std::find(names.begin(), names.end(), table.choice("wall", names));
   out.wall = static_cast<Wall>(name - names.begin());
+  if (out.wall == Wall::Lid && !scene.lid)
+    table.fail("wall", "is the open top of the tank", "write lid = true in [tank], or name another wall");
   auto min = table.numbers("min_m", 2);
   auto max = table.numbers("max_m", 2);
   const auto axes = axes_of(out.wall);
   for (std::size_t a = 0; a < 2; ++a) {
-    min[a] -= origin_m[axes[a]];
-    max[a] -= origin_m[axes[a]];
+    min[a] -= scene.origin_m[axes[a]];
+    max[a] -= scene.origin_m[axes[a]];
     if (min[a] < -1e-9) table.fail("min_m", "reaches beyond the wall", "keep the outlet within the tank");
     if (!(max[a] - min[a] >= 1e-3))
       table.fail("max_m", "leaves the outlet no area", "make each entry at least 1 mm larger than in min_m");
-    if (max[a] > tank_size_m[axes[a]] + 1e-9)
+    if (max[a] > scene.tank_size_m[axes[a]] + 1e-9)
       table.fail("max_m", "reaches beyond the wall", "keep the outlet within the tank");
     out.min_m[a] = min[a];
     out.max_m[a] = max[a];
@@ -88,14 +102,12 @@ Outlet read_outlet(const base::TomlTable& table, const std::array<double, 3>& ta
   return out;
 }
 
-/// origin_m: Scene::origin_m, subtracted from the rectangles.
-std::vector<Outlet> read_outlets(const base::TomlTable& scene, const std::array<double, 3>& tank_size_m,
-                                 const std::array<double, 3>& origin_m) {
+std::vector<Outlet> read_outlets(const base::TomlTable& root, const Scene& scene) {
   std::vector<Outlet> out;
-  for (const auto& table : scene.tables("outlet")) {
+  for (const auto& table : root.tables("outlet")) {
     if (out.size() == most_outlets)
       table.fail("", "is one outlet too many", "use at most " + std::to_string(most_outlets));
-    out.push_back(read_outlet(table, tank_size_m, origin_m));
+    out.push_back(read_outlet(table, scene));
   }
   return out;
 }
@@ -116,13 +128,13 @@ int settle_frames(const base::TomlTable& table, double frame_dt_s) {
 }
 
 WaterBlock read_block(const base::TomlTable& table, const Scene& scene) {
+  const Vec3d room = scene.room_m();
   WaterBlock out{place(table, "min_m", scene.origin_m), place(table, "max_m", scene.origin_m)};
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(out.max_m[k] - out.min_m[k] >= 1e-3)) {
       table.fail("max_m", "leaves no room for water", "make each entry at least 1 mm larger than in min_m");
     }
-    const bool above = k == 1;  // the tank is open at the top
-    if (out.min_m[k] < -1e-9 || (!above && out.max_m[k] > scene.tank_size_m[k] + 1e-9)) {
+    if (out.min_m[k] < -1e-9 || out.max_m[k] > room[k] + 1e-9) {
       table.fail("max_m", "reaches outside the tank", "keep the block within tank.size_m from tank.origin_m");
     }
   }
@@ -191,6 +203,9 @@ void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene
   }
   if (nozzle.position_m[1] <= 0 || nozzle.position_m[1] > scene.tank_size_m[1])
     table.fail("position_m", "lies below the floor or above the tank", "choose a height within tank.size_m");
+  if (const double beyond = beyond_lid_m(scene, nozzle, scene.frame_dt_s); beyond > 0)
+    table.fail("position_m", nozzle_at_lid,
+               "lower it by " + base::shortest(std::ceil(1e4 * beyond) / 1e4) + " m");
 }
 
 /// Only with the effect heat: without it no particle has a temperature.
@@ -274,29 +289,11 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
 
 }  // namespace
 
-std::array<double, 3> inward_normal(Wall wall) {
-  switch (wall) {
-    case Wall::LowX:
-      return {1, 0, 0};
-    case Wall::HighX:
-      return {-1, 0, 0};
-    case Wall::LowZ:
-      return {0, 0, 1};
-    case Wall::HighZ:
-      return {0, 0, -1};
-    case Wall::Floor:
-      break;
-  }
-  return {0, 1, 0};
-}
-
-std::array<std::size_t, 2> axes_of(Wall wall) {
-  const auto normal = inward_normal(wall);
-  std::array<std::size_t, 2> out{};
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (normal[k] == 0) out[count++] = k;
-  return out;
+Vec3d Gravity::up() const {
+  const double all = size();
+  if (!(all > 0)) return {0, 1, 0};
+  // Not -a / all: a component of 0 stays +0.
+  return {0 - along[0] / all, 0 - along[1] / all, 0 - along[2] / all};
 }
 
 Scene parse_scene(std::string_view text, const std::string& name,
@@ -316,11 +313,16 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
   scene.name = root.string("name");
   if (scene.name.empty() || scene.name.size() > 64)
     root.fail("name", "is empty or too long", "use 1 to 64 characters");
-  scene.gravity_m_s2 = root.number("gravity_m_s2", {0, 1000});
+  scene.gravity_m_s2 = read_gravity(root);
   for (const double frame : root.numbers("checkpoints", 0, {0, 1e6}))
     scene.checkpoints.push_back(static_cast<int>(frame));
   const auto tank = root.table("tank");
   scene.tank_size_m = vector(tank, "size_m", {1e-2, farthest_m});
+  scene.lid = tank.boolean_or("lid", false);
+  if (!scene.lid && scene.gravity_m_s2.size() > 0 && scene.gravity_m_s2.along[1] >= 0)
+    root.fail("gravity_m_s2",
+              "does not point down, and the tank is open at the top: the water would leave it",
+              "write lid = true in [tank], or make the second entry negative");
   if (tank.has("origin_m"))
     scene.origin_m = vector(tank, "origin_m", {-farthest_origin_m, farthest_origin_m});
   scene.central_force = read_central_force(root, scene.origin_m);
@@ -340,10 +342,10 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
   scene.effects = read_effects(effects);
   scene.picture_effects = read_picture_effects(effects);
   read_warm(root, scene);
-  scene.obstacles = read_obstacles(root, scene.tank_size_m, scene.origin_m, scene.v_ref_m_s, beside);
+  scene.obstacles = read_obstacles(root, scene.room_m(), scene.origin_m, scene.v_ref_m_s, beside);
   read_nozzles(root, scene);
   check_expansion(root, scene);
-  scene.outlets = read_outlets(root, scene.tank_size_m, scene.origin_m);
+  scene.outlets = read_outlets(root, scene);
   scene.view = camera(root.table("view"), scene.origin_m);
   scene.overview =
       root.has("overview") ? camera(root.table("overview"), scene.origin_m) : overview_of(scene.view);

@@ -1,8 +1,9 @@
 #pragma once
-/// The contents of a scene file: tank, water, time step, views, gaze. SI units; y points up; gravity acts
-/// along -y. docs/scenes.md lists every key of the file.
+/// The contents of a scene file: tank, water, time step, views, gaze. SI units; y points up in pictures.
+/// docs/scenes.md lists every key of the file.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -20,6 +21,18 @@
 namespace sim {
 
 using Vec3d = std::array<double, 3>;
+
+/// The acceleration that acts on all water and free bodies, m/s2.
+struct Gravity {
+  Vec3d along{0, -9.81, 0};
+  Gravity() = default;
+  /// A number: along -y.
+  Gravity(double down) : along{0, -down, 0} {}
+  Gravity(double x, double y, double z) : along{x, y, z} {}
+  double size() const { return std::hypot(along[0], along[1], along[2]); }
+  /// The unit vector against it; +y without gravity.
+  Vec3d up() const;
+};
 
 /// A pinhole camera. Right-handed, looking from eye to target with +y up.
 struct Camera {
@@ -42,11 +55,11 @@ struct VisibleBox {
   Vec3d min_m{}, max_m{};
 };
 
-// The walls of a tank, which is open at the top, and holes in them.
+// The walls of a tank, and holes in them.
 
-/// In order of inward normals: +x, -x, +z, -z, +y.
-enum class Wall { LowX, HighX, LowZ, HighZ, Floor };
-inline constexpr std::size_t wall_count = 5;
+/// In order of inward normals: +x, -x, +z, -z, +y, -y. A tank without a lid is open at the top.
+enum class Wall { LowX, HighX, LowZ, HighZ, Floor, Lid };
+inline constexpr std::size_t wall_count = 6;
 
 std::array<double, 3> inward_normal(Wall wall);
 /// The two axes along which a wall extends, ascending: 0 = x, 1 = y, 2 = z.
@@ -73,11 +86,12 @@ struct Scene {
   /// and returns, are relative to that corner, so that floats are equally precise for a distant tank; world
   /// position = origin_m + position.
   Vec3d origin_m{};
-  /// Inner size of the tank; glass walls and floor, open at the top (y is only the drawn height of the
-  /// walls).
+  /// Inner size of the tank; glass walls and floor. Without a lid it is open at the top, and y is only the
+  /// drawn height of the walls.
   Vec3d tank_size_m{};
+  bool lid = false;
   std::vector<WaterBlock> water{WaterBlock{}};  ///< 1 to most_water_blocks that do not overlap
-  double gravity_m_s2 = 9.81;
+  Gravity gravity_m_s2;
   std::optional<CentralForce> central_force;   ///< in addition to gravity
   std::vector<Effect> effects;                 ///< each kind once; includes dropped effects (coefficient 0)
   std::vector<PictureEffect> picture_effects;  ///< each kind once; the solver ignores them
@@ -106,7 +120,14 @@ struct Scene {
   Camera view;         ///< the participant's
   Camera overview;     ///< for figures
   std::string sha256;  ///< of the file's text, or of scene_text() if it names mesh files
+
+  /// The tank's inner size; y is infinite without a lid.
+  Vec3d room_m() const;
 };
+
+/// How far the layers that a nozzle pours in a frame would begin beyond the lid, m; 0 or less: they do not.
+double beyond_lid_m(const Scene& scene, const Nozzle& nozzle, double frame_dt_s);
+inline constexpr const char* nozzle_at_lid = "lets the water of a frame begin above the tank's lid";
 
 /// Formats 1 and 2, which has [[effect]] and [[obstacle]]. Errors are base::Error at file:line:column:
 /// unknown key, wrong type, out of range, water, nozzle or outlet outside the tank, effects that are

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "libsim/scene/fill.hpp"
+#include "libsim/scene/vector.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/text.hpp"
@@ -22,12 +23,13 @@ double frame_dt_of(const Scene& scene, const SimulationOptions& options) {
 
 namespace {
 
+Vec3 vector_of(const Vec3d& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
 CentralPull pull_of(const CentralForce& force) {
-  const auto vector = [](const std::array<double, 3>& v) {
-    return Vec3{static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-  };
-  return {static_cast<float>(force.omega_per_s * force.omega_per_s), vector(force.centre_m),
-          vector(force.axis)};
+  return {static_cast<float>(force.omega_per_s * force.omega_per_s), vector_of(force.centre_m),
+          vector_of(force.axis)};
 }
 
 /// Largest distance of nozzles and particles from the axis of the central force, m; 0 without one.
@@ -50,9 +52,14 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
 /// (docs/results.md). 0 without the effect or gravity.
 double least_shear(const Scene& scene) {
   const auto nu = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
+  const Vec3d up = scene.gravity_m_s2.up();
   double height = 0;
-  for (const WaterBlock& block : scene.water) height = std::max(height, block.max_m[1] - block.min_m[1]);
-  return nu > 0 ? 0.1 * scene.gravity_m_s2 * height / 2 / nu : 0;
+  for (const WaterBlock& block : scene.water) {
+    double own = 0;
+    for (std::size_t k = 0; k < 3; ++k) own += std::abs(up[k]) * (block.max_m[k] - block.min_m[k]);
+    height = std::max(height, own);
+  }
+  return nu > 0 ? 0.1 * scene.gravity_m_s2.size() * height / 2 / nu : 0;
 }
 
 }  // namespace
@@ -117,7 +124,7 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
   out.effects = coefficients_of(scene.effects);
   out.iterations = options.iterations > 0 ? options.iterations : scene.solver_iterations;
   out.dt = static_cast<float>(frame_dt / out.substeps);
-  out.gravity = static_cast<float>(scene.gravity_m_s2);
+  out.gravity = {static_cast<float>(scene.gravity_m_s2.size()), vector_of(scene.gravity_m_s2.up())};
   if (scene.central_force) out.pull = pull_of(*scene.central_force);
   out.viscosity = static_cast<float>(viscosity_of(scene, options.n_star));
   if (options.viscosity_m2_s >= 0) out.viscosity = static_cast<float>(options.viscosity_m2_s);
@@ -141,19 +148,29 @@ double start_speed(const Scene& scene, const std::vector<ParticleState>& start) 
 }
 
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
+  const Vec3d up = scene.gravity_m_s2.up();
+  // Of the tank's corner into which water falls.
+  double lowest = 0;
+  for (std::size_t k = 0; k < 3; ++k) lowest += std::min(up[k] * scene.tank_size_m[k], 0.0);
   double height = 0;
-  for (const WaterBlock& block : scene.water) height = std::max(height, block.max_m[1]);
-  for (const Obstacle& o : scene.obstacles) {
-    if (o.motion == ObstacleMotion::Free) height = std::max(height, o.start.centre_m[1]);
+  const auto look = [&](const Vec3d& at) {
+    const double own = sim::dot(up, at) - lowest;
+    if (std::isfinite(own)) height = std::max(height, own);
+  };
+  for (const WaterBlock& block : scene.water) {
+    Vec3d top = block.min_m;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (up[k] > 0) top[k] = block.max_m[k];
+    look(top);
   }
-  for (const Nozzle& nozzle : scene.nozzles) height = std::max(height, nozzle.position_m[1]);
-  for (const ParticleState& p : start) {
-    const auto y = static_cast<double>(p.y_m);
-    if (std::isfinite(y)) height = std::max(height, y);
-  }
+  for (const Obstacle& o : scene.obstacles)
+    if (o.motion == ObstacleMotion::Free) look(o.start.centre_m);
+  for (const Nozzle& nozzle : scene.nozzles) look(nozzle.position_m);
+  for (const ParticleState& p : start)
+    look({static_cast<double>(p.x_m), static_cast<double>(p.y_m), static_cast<double>(p.z_m)});
   const double speed = start_speed(scene, start);
   const double swing = scene.central_force ? scene.central_force->omega_per_s * reach_of(scene, start) : 0;
-  return std::sqrt(speed * speed + 2 * scene.gravity_m_s2 * height + swing * swing);
+  return std::sqrt(speed * speed + 2 * scene.gravity_m_s2.size() * height + swing * swing);
 }
 
 namespace {
@@ -176,7 +193,7 @@ float most_speed(double fall_speed, const Scene& scene, const Resolution& resolu
                  const SolverParameters& parameters) {
   const double d = resolution.finest_spacing_m;
   // What settling leaves is rounding, not a speed that the water has.
-  const bool still = scene.gravity_m_s2 <= 0 && fall_speed * parameters.frame_s() < 1e-3 * d;
+  const bool still = scene.gravity_m_s2.size() <= 0 && fall_speed * parameters.frame_s() < 1e-3 * d;
   if (still) return static_cast<float>(4 * d / static_cast<double>(parameters.dt));
   return static_cast<float>(3 * fall_speed + 3 * capillary_speed(scene.effects, d) + squeeze_speed(scene, d));
 }
@@ -195,7 +212,7 @@ double share_for_thin_obstacles(const Scene& scene, double finest_spacing_m) {
 
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start) {
   const double omega = scene.central_force ? scene.central_force->omega_per_s : 0;
-  return scene.gravity_m_s2 + omega * omega * reach_of(scene, start);
+  return scene.gravity_m_s2.size() + omega * omega * reach_of(scene, start);
 }
 
 SubstepRule substep_rule(const Scene& scene, const SimulationOptions& options, const Resolution& resolution,
@@ -293,8 +310,13 @@ Walls walls_of(const Scene& scene, bool settling) {
   Vec3d low{0, 0, 0};
   Vec3d high = scene.tank_size_m;
   if (settling && scene.gate) {  // check_extent has refused several blocks
-    low = scene.water.front().min_m;
-    high = scene.water.front().max_m;
+    const Fall fall(0, vector_of(scene.gravity_m_s2.up()));
+    const std::array<float, 3> axis{fall.axis().x, fall.axis().y, fall.axis().z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      // The side against gravity stays open.
+      if (!(axis[k] < 0)) low[k] = scene.water.front().min_m[k];
+      if (!(axis[k] > 0)) high[k] = scene.water.front().max_m[k];
+    }
   }
   const auto f = [](double value) { return static_cast<float>(value); };
   // In the order of Wall.
@@ -304,6 +326,7 @@ Walls walls_of(const Scene& scene, bool settling) {
   out.planes[out.count++] = {{0, 0, 1}, f(low[2])};
   out.planes[out.count++] = {{0, 0, -1}, f(-high[2])};
   out.planes[out.count++] = {{0, 1, 0}, f(low[1])};
+  if (scene.lid) out.planes[out.count++] = {{0, -1, 0}, f(-high[1])};
   if (settling) return out;
   for (const Outlet& outlet : scene.outlets) out.openings[out.opening_count++] = opening_of(outlet);
   return out;

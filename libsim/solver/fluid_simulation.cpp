@@ -62,8 +62,7 @@ class FluidSimulation final : public Simulation {
       state_.one_level = is_of_one_level();
     }
     if (options.resume_from.empty()) warm_up(state_, scene_);
-    if (options.keeps_momentum())
-      state_.impulse.begin(options.gauges, scene.tank_size_m, state_.finest_support);
+    if (options.keeps_momentum()) state_.impulse.begin(options.gauges, scene.room_m(), state_.finest_support);
     begin_patches(state_, options.obstacle_gauges);
   }
 

@@ -28,8 +28,9 @@ std::string effects_in_words(const std::vector<Effect>& listed, const Scene& sce
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
 /// sqrt(v0^2 + 2 g H + (Omega R)^2), m/s: upper bound on the speed of water that starts at v0 and falls to
-/// the floor and to the axis of the central force without being pushed. v0 is the largest speed of the start
-/// and the nozzles, H their largest height, R their largest distance from the axis.
+/// the tank's lowest corner along gravity and to the axis of the central force without being pushed. v0 is
+/// the largest speed of the start and the nozzles, H their largest height, R their largest distance from the
+/// axis.
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// g + Omega^2 R, m/s2: the largest acceleration of the start by these forces.
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start);
@@ -56,8 +57,8 @@ void check_levels(int levels);
 int capacity_for(std::size_t start, const SimulationOptions& options, bool splits);
 /// base::Error for an unknown level.
 TargetSphere sphere_of(const TargetRegion& region);
-/// The tank's floor and sides with their outlets. While the water settles, outlets are shut, and if there is
-/// a gate the walls enclose the water block. Open at the top.
+/// The tank's floor, sides and lid with their outlets. While the water settles, outlets are shut, and if
+/// there is a gate the walls enclose the water block, except on the side against gravity.
 Walls walls_of(const Scene& scene, bool settling);
 
 /// Places the scene's obstacles, at rest, at this time; `recorded`: record what they give the water.

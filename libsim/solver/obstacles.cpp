@@ -44,7 +44,7 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
   const auto moment = [&](std::size_t k) { return static_cast<float>(mass * moments[k]); };
   out.inertia = {moment(0), moment(1), moment(2)};
   // It starts at rest, with its weight supported.
-  out.force = {0, out.mass * state.parameters.gravity, 0};
+  out.force = out.mass * state.parameters.gravity.lift();
   out.force_left = -1.0f * out.force;
   return out;
 }

@@ -158,6 +158,10 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
   jets.finest_spacing_m = resolution.finest_spacing_m;
   jets.frame_dt_s = frame_dt_of(scene, options);
   jets.nozzles = scene.nozzles;
+  for (const Nozzle& nozzle : scene.nozzles)
+    if (const double beyond = beyond_lid_m(scene, nozzle, jets.frame_dt_s); beyond > 0)
+      throw base::Error("scene " + scene.name + ", nozzle.position_m", nozzle_at_lid,
+                        "take shorter frames, or lower the nozzle by " + base::shortest(beyond) + " m");
   for (Nozzle& nozzle : jets.nozzles) {
     // A scene counts its own frames: a pulse lasts equally long in a run with another frame time.
     const auto in_the_run = [&](int frames) {

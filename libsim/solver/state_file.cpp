@@ -39,10 +39,12 @@ void add(std::ostream& text, const Readings& r) {
 
 /// A scene without a file has no hash: so everything that shapes a run is included here too.
 void add(std::ostream& text, const Scene& s) {
-  text << s.sha256 << ' ' << s.gravity_m_s2 << ' ' << s.frame_dt_s << ' ' << s.v_ref_m_s << ' '
+  text << s.sha256 << ' ' << s.gravity_m_s2.size() << ' ' << s.frame_dt_s << ' ' << s.v_ref_m_s << ' '
        << s.solver_iterations << ' ' << s.min_substeps << ' ' << s.courant << ' ' << s.viscosity_m2_s;
   const auto add_place = [&](const Vec3d& v) { text << ' ' << v[0] << ' ' << v[1] << ' ' << v[2]; };
   add_place(s.tank_size_m);
+  if (s.gravity_m_s2.up() != Gravity().up()) add_place(s.gravity_m_s2.along);
+  if (s.lid) text << " lid";
   for (const WaterBlock& block : s.water) {
     add_place(block.min_m);
     add_place(block.max_m);

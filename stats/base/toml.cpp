@@ -184,6 +184,11 @@ bool TomlTable::is_text(std::string_view key) const {
   return node && node->is_string();
 }
 
+bool TomlTable::is_list(std::string_view key) const {
+  const toml::node* node = state_->find(key);
+  return node && node->is_array();
+}
+
 double TomlTable::number(std::string_view key, Range range) const {
   state_->note(key, "number", range);
   return state_->in_range(state_->need(key), key, range);

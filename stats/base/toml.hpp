@@ -43,6 +43,8 @@ class TomlTable {
   bool has(std::string_view key) const;
   /// True if the key is present and holds text: for keys that take a word or a number.
   bool is_text(std::string_view key) const;
+  /// True if the key is present and holds a list: for keys that take a number or a vector.
+  bool is_list(std::string_view key) const;
 
   /// The value of a key. An error if it is absent, of another type, not finite or out of range.
   double number(std::string_view key, Range range = any) const;

@@ -288,7 +288,8 @@ TEST(Effects, ExplainStatesTheLimitsOfThickFluid) {
   EXPECT_THAT(says(), Not(HasSubstr(words)));
   scene.effects = {{EffectKind::Viscosity, 0.5}};
   std::ostringstream shear;  // 0.1 g h / nu at half the height below the surface
-  shear << 0.1 * scene.gravity_m_s2 * (scene.water.front().max_m[1] - scene.water.front().min_m[1]) / 2 / 0.5;
+  shear << 0.1 * scene.gravity_m_s2.size() * (scene.water.front().max_m[1] - scene.water.front().min_m[1]) /
+               2 / 0.5;
   EXPECT_THAT(says(), HasSubstr(words + shear.str() + " /s by more than a quarter"));
   scene.gravity_m_s2 = 0;
   EXPECT_THAT(says(), Not(HasSubstr(words)));

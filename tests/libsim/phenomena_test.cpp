@@ -50,7 +50,7 @@ class Run {
       height = std::max(height, nozzle.position_m[1]);
       speed = std::max(speed, nozzle.speed_m_s);
     }
-    return std::sqrt(speed * speed + 2 * scene_.gravity_m_s2 * height);
+    return std::sqrt(speed * speed + 2 * scene_.gravity_m_s2.size() * height);
   }
 
   sim::Scene scene_;

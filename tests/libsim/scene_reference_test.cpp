@@ -30,6 +30,7 @@ checkpoints = [1]
 [tank]
 size_m = [8.0, 4.0, 4.0]
 origin_m = [0.0, 0.0, 0.0]
+lid = true
 [water]
 min_m = [0.0, 0.0, 0.0]
 max_m = [8.0, 0.5, 4.0]
@@ -115,9 +116,10 @@ strength = 1.0
 )";
 
 const std::string mesh_in_the_text =
-    std::regex_replace(
-        std::regex_replace(frame_of_a_scene, std::regex(R"(\[water\]\n.*\n.*\n)"), "[water]\n"),
-        std::regex("settle_frames = 0"), "settle_s = 0.5") +
+    std::regex_replace(std::regex_replace(std::regex_replace(frame_of_a_scene, std::regex("m_s2 = 9.81"),
+                                                             "m_s2 = [9, 9, 9]"),
+                                          std::regex(R"(\[water\]\n.*\n.*\n)"), "[water]\n"),
+                       std::regex("settle_frames = 0"), "settle_s = 0.5") +
     R"([[water.block]]
 min_m = [0.0, 0.0, 0.0]
 max_m = [8.0, 0.5, 4.0]

@@ -116,7 +116,7 @@ Books books_of(sim::Simulation& fluid, const Column& column, int frames) {
     out.forces += account.forces[1];
     out.walls += walls[1];
     for (std::size_t k = 0; k < out.pressure_pa.size(); ++k) {
-      const double area = sim::area_m2(column.options.gauges[k], column.scene.tank_size_m);
+      const double area = sim::area_m2(column.options.gauges[k], column.scene.room_m());
       out.pressure_pa[k] += account.gauges[k].sum() / (area * frames * column.scene.frame_dt_s);
     }
   }
@@ -364,9 +364,9 @@ TEST(WallImpulse, AGaugeWithoutAreaIsNamed) {
   Column column(Backend::Cpu);
   column.scene.settle_frames = 0;
   const Gauge good{"p1", Wall::HighX, {0, 0.1, 0.2}, {0, 0.4, 0.6}};
-  EXPECT_NEAR(sim::area_m2(good, column.scene.tank_size_m), 0.12, 1e-12);
-  EXPECT_NEAR(sim::area_m2({"all", Wall::Floor, {-9, 0, -9}, {9, 0, 9}}, column.scene.tank_size_m),
-              64 * d * d, 1e-12);
+  EXPECT_NEAR(sim::area_m2(good, column.scene.room_m()), 0.12, 1e-12);
+  EXPECT_NEAR(sim::area_m2({"all", Wall::Floor, {-9, 0, -9}, {9, 0, 9}}, column.scene.room_m()), 64 * d * d,
+              1e-12);
   for (const Gauge& bad : {Gauge{"thin", Wall::HighX, {0, 0.1, 0.2}, {0, 0.1, 0.6}},
                            Gauge{"outside", Wall::Floor, {9, 0, 0}, {10, 0, 1}}}) {
     column.options.gauges = {bad};

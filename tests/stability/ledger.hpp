@@ -31,7 +31,7 @@ class Ledger {
     energy_ = energy_of(fluid.read_state());
     for (const auto& nozzle : scene.nozzles) {
       const double u = nozzle.speed_m_s;
-      poured_energy_ = std::max(poured_energy_, u * u / 2 + scene.gravity_m_s2 * nozzle.position_m[1]);
+      poured_energy_ = std::max(poured_energy_, u * u / 2 + scene.gravity_m_s2.size() * nozzle.position_m[1]);
     }
   }
 
@@ -75,7 +75,7 @@ class Ledger {
     for (const auto& p : state) {
       const double v = std::hypot(static_cast<double>(p.vx_m_s), static_cast<double>(p.vy_m_s),
                                   static_cast<double>(p.vz_m_s));
-      sum += (1 << p.level) * (v * v / 2 + scene_.gravity_m_s2 * static_cast<double>(p.y_m));
+      sum += (1 << p.level) * (v * v / 2 + scene_.gravity_m_s2.size() * static_cast<double>(p.y_m));
     }
     return sum;
   }
@@ -97,7 +97,7 @@ class Ledger {
       mass += m;
       moving += m * std::hypot(v[0], v[1], v[2]);
     }
-    const double weight = mass * scene_.gravity_m_s2 * scene_.frame_dt_s;
+    const double weight = mass * scene_.gravity_m_s2.size() * scene_.frame_dt_s;
     const Vec3d walls = account.walls_sum();
     // The account's own sums must match the particles': rounding is 2^-24 m/s a particle.
     EXPECT_LT(size_of({now[0] - account.after[0], now[1] - account.after[1], now[2] - account.after[2]}),

@@ -76,7 +76,7 @@ Collapse collapse(const Run& run, const std::filesystem::path& path, std::int64_
   options.n_star = n_star;
   const auto fluid = sim::make_simulation(scene, options);
   const Vec3d base = scene.water.front().max_m;
-  const double unit = std::sqrt(base[0] / scene.gravity_m_s2),
+  const double unit = std::sqrt(base[0] / scene.gravity_m_s2.size()),
                d = sim::resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m;
   Collapse out;
   const auto look = [&] {

@@ -96,7 +96,7 @@ void column_rests(Run run, const TruthFile& file, int layers, const State& rest,
     const auto account = fluid->momentum();
     for (std::size_t g = 0; g < pressure.size(); ++g)
       pressure[g] += account.gauges[g].sum() /
-                     (frames * scene.frame_dt_s * sim::area_m2(options.gauges[g], scene.tank_size_m));
+                     (frames * scene.frame_dt_s * sim::area_m2(options.gauges[g], scene.room_m()));
   }
   const double lost = 1 - centre / (height / 2);
   double worst = 0;

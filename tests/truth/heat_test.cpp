@@ -193,7 +193,7 @@ void warm_water_rises(const Pool& pool) {
     const auto report = fluid->report();
     solved = static_cast<double>(report.temporal.active) / static_cast<double>(report.particles);
     frame_s = scene.frame_dt_s;
-    gravity = scene.gravity_m_s2;
+    gravity = scene.gravity_m_s2.size();
     return speed() - before;
   };
   const double speed = (rise(warmth) - rise(-warmth)) / 2;

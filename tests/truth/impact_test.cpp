@@ -67,7 +67,7 @@ void dam_strikes(Run run, const std::filesystem::path& path, const std::vector<T
   options.backend = run.backend;
   options.method = run.method;
   options.n_star = n_star;
-  const double height = scene.water.front().max_m[1], unit = std::sqrt(height / scene.gravity_m_s2);
+  const double height = scene.water.front().max_m[1], unit = std::sqrt(height / scene.gravity_m_s2.size());
   const double d = sim::resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m;
   double until = 0;
   for (const auto& file : files) {
@@ -83,7 +83,7 @@ void dam_strikes(Run run, const std::filesystem::path& path, const std::vector<T
     for (std::size_t k = 0; k < files.size(); ++k) {
       const double area = sim::area_m2(options.gauges[k], scene.tank_size_m);
       pressure[k].push_back(fluid->momentum().gauges[k].sum() /
-                            (scene.frame_dt_s * area * 1000 * scene.gravity_m_s2 * height));
+                            (scene.frame_dt_s * area * 1000 * scene.gravity_m_s2.size() * height));
     }
   }
   std::printf("%s, n_* %lld: %lld particles of %lld\n", path.filename().c_str(),

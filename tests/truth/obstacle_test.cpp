@@ -42,7 +42,7 @@ Vec3d force_on(const Sunk& sunk) {
     if (sunk.beta < 1) continue;
     EXPECT_NEAR(account.unattributed[1], 0, 0.01) << "what the obstacle gave is counted, N s";
   }
-  const double lift = 1000 * scene.gravity_m_s2 * sim::volume_m3(sphere);
+  const double lift = 1000 * scene.gravity_m_s2.size() * sim::volume_m3(sphere);
   for (double& part : sum) part /= frames * scene.frame_dt_s * lift;
   EXPECT_EQ(fluid->report().guards.not_finite, 0u);
   for (const auto& p : fluid->read_state())
@@ -116,7 +116,7 @@ void holds_the_water(MethodKind method, std::int64_t n_star, Backend backend = B
     });
   }
   // Theory: rho g H^2 / 2 per metre.
-  const double given = 0.5 * 1000 * scene.gravity_m_s2 * (frames - settled) * scene.frame_dt_s;
+  const double given = 0.5 * 1000 * scene.gravity_m_s2.size() * (frames - settled) * scene.frame_dt_s;
   EXPECT_NEAR(thrust / given, 1, 0.15);
   EXPECT_NEAR(lift / given, 0, 0.15) << "its face is upright";
   EXPECT_LE(std::sqrt(squares / (frames - settled)), 0.07) << "m/s";

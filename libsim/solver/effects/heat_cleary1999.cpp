@@ -84,9 +84,9 @@ struct TakeWarmth {
   SIM_FN void operator()(float sum) const { mean->warmth = mean->mass > 0 ? sum / mean->mass : 0; }
 };
 
-/// Boussinesq: dv / dt = g beta (theta - mean theta) upwards, with beta the expansion per kelvin and the mean
-/// by mass over the water that takes part. So uniform warmth changes nothing, and the lifts of that water sum
-/// to zero. It acts on the particles on which gravity acts.
+/// Boussinesq: dv / dt = g beta (theta - mean theta) against gravity, with beta the expansion per kelvin and
+/// the mean by mass over the water that takes part. So uniform warmth changes nothing, and the lifts of that
+/// water sum to zero. It acts on the particles on which gravity acts.
 template <class Selection>
 struct Rise {
   Selection select;
@@ -94,14 +94,18 @@ struct Rise {
   const std::uint8_t* level;
   const MeanWarmth* mean;
   Vec4* velocity;
-  float lift;    ///< g beta dt
+  Vec3 lift;     ///< g beta dt, against gravity
   int coarsest;  ///< coarsest level that takes part
 
   SIM_FN void operator()(int i) const {
     if (level[i] > coarsest) return;
-    float dv = lift * (temperature[i] - mean->warmth);
-    if constexpr (!Selection::everyone) dv *= select.falls(i);
-    velocity[i].y += dv;
+    float warmer = temperature[i] - mean->warmth;
+    if constexpr (!Selection::everyone) warmer *= select.falls(i);
+    Vec4& v = velocity[i];
+    v.y += warmer * lift.y;
+    if (lift.x == 0 && lift.z == 0) return;  // adding 0 would change the sign of -0
+    v.x += warmer * lift.x;
+    v.z += warmer * lift.z;
   }
 };
 
@@ -112,13 +116,14 @@ template <class Selection>
 void launch(FluidState& state, RiseView p, Selection select, int coarsest) {
   const auto& k = state.parameters;
   for_each("buoyancy", p.size(),
-           Rise<Selection>{.select = select,
-                           .temperature = p.temperature(),
-                           .level = p.level(),
-                           .mean = state.buoyancy.mean.data(),
-                           .velocity = p.velocity(),
-                           .lift = k.gravity * k.dt * k.effects[EffectOption::HeatExpansion],
-                           .coarsest = coarsest});
+           Rise<Selection>{
+               .select = select,
+               .temperature = p.temperature(),
+               .level = p.level(),
+               .mean = state.buoyancy.mean.data(),
+               .velocity = p.velocity(),
+               .lift = k.gravity.strength * k.dt * k.effects[EffectOption::HeatExpansion] * k.gravity.up,
+               .coarsest = coarsest});
 }
 
 void take_mean(Buoyancy& buoyancy, RiseView p, int capacity, int coarsest) {

@@ -111,7 +111,7 @@ struct ClassifyRound {
     const Vec3 at = middle_of(frame, x, y, z);
     grid.kind[i] = waterline.solids.walls.holds(at) ? CellKind::Air : CellKind::Solid;
     if (grid.kind[i] == CellKind::Solid || sum.volume > 0) return;
-    if (waterline.solids.nearest_body(at) > 0.5f * frame.edge.y) return;
+    if (waterline.solids.nearest_body(at) > 0.5f * waterline.pitch()) return;
     const LevelBeside level = waterline.beside(x, y, z);
     if (level.mean > 0.5f) grid.kind[i] = CellKind::Fluid;
     // A wall between water and dry space blocks the water: air cells in it would draw the water in.
@@ -162,7 +162,7 @@ void launch(FluidState& state, CoarsePressureView p, Selection select) {
   // While the water settles at one level, the shares are not written.
   const float* ease = state.one_level ? nullptr : p.ease();
   constrain_density(state, p);
-  coarse.fit(state.domain, cell_edge(state));
+  coarse.fit(state.domain, cell_edge(state), state.walls.have_lid());
   coarse.open(state.walls);
   const GridView grid = coarse.multigrid.finest();
   coarse.sums.zero();

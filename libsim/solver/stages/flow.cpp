@@ -15,14 +15,16 @@ using NozzleColumns = ColumnView<columns(Column::Position, Column::Velocity, Col
                                  columns(Column::Target), columns(Column::Temperature)>;
 
 /// Places the particles of the layers that are due within the frame. A layer that passes the mouth `lead`
-/// seconds after the frame's start begins the frame u lead - g lead^2 / 2 above it at the speed u - g lead.
+/// seconds after the frame's start begins the frame where it falls freely through the mouth at the speed u:
+/// u lead - g lead^2 / 2 above it, at the speed u - g lead, if gravity points down.
 struct Pour {
   const int* which;  ///< the particles; null: all from index `first`
   int first;
   Vec4* position;
   Vec4* velocity;
   Vec3 mouth;
-  float radius, speed, gravity;
+  float radius, speed;
+  Vec3 lift;  ///< Fall::lift()
   int sites;
   double first_lead, interval;  // s
   double first_turn;            // full turns
@@ -41,10 +43,11 @@ struct Pour {
     const float angle = 2 * pi * static_cast<float>(turns - floor(turns));
     const float r = radius * sqrtf((static_cast<float>(site) + 0.5f) / static_cast<float>(sites));
     const auto lead = static_cast<float>(first_lead + layer * interval);
-    const float above = lead * (speed - 0.5f * gravity * lead);
+    const float above = lead * (speed - 0.5f * lift.y * lead);
+    const Vec3 aside{0.5f * lift.x * lead * lead, 0, 0.5f * lift.z * lead * lead};
     const int i = which ? which[k] : first + k;
-    position[i] = with_w(mouth + Vec3{r * cosf(angle), above, r * sinf(angle)}, position[i].w);
-    velocity[i] = {0, gravity * lead - speed, 0, 0};
+    position[i] = with_w(mouth + Vec3{r * cosf(angle), above, r * sinf(angle)} - aside, position[i].w);
+    velocity[i] = with_w(lead * lift - Vec3{0, speed, 0}, 0);
     if (heat) warm(i);
   }
   /// If a particle taken from the corners is reused, its heat has not been booked yet.
@@ -72,7 +75,7 @@ void pour(FluidState& state, NozzleColumns p, const Nozzle& nozzle, const Layers
                 .mouth = {f(nozzle.position_m[0]), f(nozzle.position_m[1]), f(nozzle.position_m[2])},
                 .radius = f(nozzle.diameter_m / 2),
                 .speed = f(nozzle.speed_m_s),
-                .gravity = state.parameters.gravity,
+                .lift = state.parameters.gravity.lift(),
                 .sites = sites,
                 .first_lead = due.first_time_s,
                 .interval = due.interval_s,
@@ -129,7 +132,7 @@ void pour_due_layers(FluidState& state, NozzleColumns p, const Nozzle& nozzle, P
   if (jets.by_target) jets.level = median_target(state, p, nozzle);
   const LayersDue due = layers_due(nozzle, spacing(), before, jets.frame, frame_dt);
   const JetLayer layer = jet_layer(nozzle, spacing());
-  const int found = jets.columns.find(p, jets.corners);
+  const int found = jets.columns.find(p, jets.corners, state.parameters.gravity.up);
   int layers = 0;
   if (state.one_level) {
     layers = std::min(due.count, found / layer.sites);

@@ -15,6 +15,7 @@
 #include "libsim/levels/level_state.hpp"
 #include "libsim/methods/solver_numbers.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
+#include "libsim/particles/calm.hpp"
 #include "libsim/particles/kernels.hpp"
 #include "libsim/particles/walls.hpp"
 #include "libsim/pressure/coarse_grid.hpp"
@@ -34,12 +35,12 @@ struct CentralPull {
 /// Solver numbers. The defaults were measured, see docs/decisions.md.
 struct SolverParameters {
   float rest_density = 1000;  ///< rho_0, kg/m3
-  float gravity = 9.81f;      ///< along -y, m/s2
-  CentralPull pull;           ///< in addition to gravity
-  float dt = 1.0f / 180;      ///< substep, s
-  int substeps = 3;           ///< per frame
+  Fall gravity;
+  CentralPull pull;       ///< in addition to gravity
+  float dt = 1.0f / 180;  ///< substep, s
+  int substeps = 3;       ///< per frame
   /// No force holds the water together or down; cohesion does not count.
-  bool weightless() const { return gravity <= 0 && pull.strength <= 0; }
+  bool weightless() const { return gravity.strength <= 0 && pull.strength <= 0; }
   double frame_s() const { return static_cast<double>(dt) * substeps; }
   int iterations = 4;  ///< constraint projections per substep
 #define SIM_MEMBER(Type, member, name, usual, ...) Type member = usual;
@@ -249,7 +250,7 @@ struct FluidState {
   /// Gravity for the measures of rest, which go by sqrt(g d_*), m/s2. In a scene without gravity a value that
   /// makes this speed a hundredth of d_* per frame: otherwise the smallest motion counts as fast.
   float gravity_of_rest() const {
-    if (parameters.gravity > 0) return parameters.gravity;
+    if (parameters.gravity.strength > 0) return parameters.gravity.strength;
     const auto frame = static_cast<float>(parameters.frame_s());
     return 1e-4f * 0.5f * finest_support / (frame * frame);
   }
@@ -270,7 +271,8 @@ struct FluidState {
             coarse.multigrid.finest().block,
             solids(),
             coarse.sums.data(),
-            coarse.volume.data()};
+            coarse.volume.data(),
+            parameters.gravity.axis()};
   }
   Guards* guard() { return guards.data(); }
   /// For a pass in the first (0) or second (1) half of the present substep.

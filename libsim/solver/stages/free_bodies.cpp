@@ -117,7 +117,7 @@ std::string if_alone(const Demand& demand) { return demand.obstacles_meet ? "" :
 BodyDrive body_drive(FluidState& state) {
   const auto& k = state.parameters;
   return {.guards = state.guard(),
-          .gravity = k.gravity,
+          .lift = k.gravity.lift(),
           .dt = k.dt,
           .most_speed = k.most_speed,
           .first = state.substep == 0};

@@ -67,7 +67,7 @@ void loosen(FluidState& state, LoosenView p, Selection select) {
 /// Without gravity there is no pressure. Mixed sizes form no lattice.
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
-  if (!state.one_level || (k.gravity <= 0 && k.pull.strength <= 0)) return;
+  if (!state.one_level || k.weightless()) return;
   state.all_active ? loosen(state, p, AllParticles{}) : loosen(state, p, state.active());
 }
 

@@ -90,7 +90,7 @@ template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
   const auto& k = state.parameters;
-  const bool widely = k.gravity * k.dt * k.dt < levels.rules.parts_widely * state.finest_support;
+  const bool widely = k.gravity.strength * k.dt * k.dt < levels.rules.parts_widely * state.finest_support;
   levels.beside.resize(static_cast<std::size_t>(p.size()));
   levels.beside_count.resize(1);
   levels.beside_count.zero();

@@ -4,14 +4,14 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-struct Gravity {
-  float gravity;
+struct Weight {
+  Vec3 lift;  ///< Fall::lift()
   /// Changes v over a time dt.
-  SIM_FN void act(Vec3, Vec3& v, float dt) const { v.y -= gravity * dt; }
+  SIM_FN void act(Vec3, Vec3& v, float dt) const { v = v - dt * lift; }
 };
 
-struct GravityAndPull {
-  Gravity down;
+struct WeightAndPull {
+  Weight down;
   CentralPull pull;
   SIM_FN void act(Vec3 x, Vec3& v, float dt) const {
     down.act(x, v, dt);
@@ -119,8 +119,8 @@ void with_drive(FluidState& state, DriveColumns p, Forces forces, Then then) {
 template <class Then>
 void with_forces(FluidState& state, DriveColumns p, Then then) {
   const auto& k = state.parameters;
-  const Gravity down{k.gravity};
-  k.pull.strength > 0 ? with_drive(state, p, GravityAndPull{down, k.pull}, then)
+  const Weight down{k.gravity.lift()};
+  k.pull.strength > 0 ? with_drive(state, p, WeightAndPull{down, k.pull}, then)
                       : with_drive(state, p, down, then);
 }
 

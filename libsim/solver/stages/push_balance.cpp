@@ -97,9 +97,9 @@ struct SumBodies {
     const float share = e.x * e.y * e.z / (unit_volume * samples * samples * samples);
     Given given{};
     for (int k = team.rank(); k < samples * samples * samples; k += Team::size) {
-      const float up = offset(k / samples % samples);
-      const Vec3 at =
-          centre + Vec3{e.x * offset(k % samples), e.y * up, e.z * offset(k / (samples * samples))};
+      const Vec3 from{offset(k % samples), offset(k / samples % samples), offset(k / (samples * samples))};
+      const Vec3 at = centre + Vec3{e.x * from.x, e.y * from.y, e.z * from.z};
+      const float up = dot(waterline.up, from);
       int body;
       if (solids.nearest_body(at, body) >= 0) continue;
       // A sample is a layer of its own height, which the water level may cut.

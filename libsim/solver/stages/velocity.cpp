@@ -50,7 +50,7 @@ constexpr double short_from = 800;
 
 void run_velocity(FluidState& state, VelocityColumns p) {
   const auto& k = state.parameters;
-  const double gravity = static_cast<double>(k.gravity);
+  const double gravity = static_cast<double>(k.gravity.strength);
   const double dt = static_cast<double>(k.dt);
   // The projections leave a jitter of a small share of d, which is a speed in proportion to d / dt. In short
   // substeps a single one exceeds the speed of rest.

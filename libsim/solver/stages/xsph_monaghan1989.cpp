@@ -162,7 +162,7 @@ using LevelsView = ColumnView<columns(Column::Position, Column::Velocity, Column
 void run_levels(FluidState& state, LevelsView p) {
   const auto& rules = state.levels.rules;
   const Calm calm =
-      calm_below(state.saliency.readings.calm_speed, static_cast<double>(state.parameters.gravity),
+      calm_below(state.saliency.readings.calm_speed, static_cast<double>(state.parameters.gravity.strength),
                  static_cast<double>(state.finest_support) / 2);
   launch<false>(state, p,
                 RestingWater{.kick = p.predicted_next(),
@@ -183,7 +183,9 @@ Stage xsph_stage() {
                                const SolverParameters& k = demand.parameters;
                                if (demand.levels) return "";
                                if (k.viscosity > 0) return "viscosity > 0";
-                               return k.still_speed > 0 && k.gravity > 0 ? "gravity: water can be still" : "";
+                               return k.still_speed > 0 && k.gravity.strength > 0
+                                          ? "gravity: water can be still"
+                                          : "";
                              },
                              .changes = Change::Viscosity});
 }

@@ -51,7 +51,7 @@ class BodiesApart {
                             .friction = friction_.data(),
                             .by_others = by_others_.data(),
                             .walls = walls,
-                            .drive = {guards_.data(), gravity, dt, 1e3f, true},
+                            .drive = {guards_.data(), {0, gravity, 0}, dt, 1e3f, true},
                             .spacing = 0.05f,
                             .count = static_cast<int>(bodies.size()),
                             .feelers = Feelers::most_of_shapes,

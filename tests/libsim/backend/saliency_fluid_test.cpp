@@ -94,7 +94,7 @@ Seen prepare(const State& state, const Looking& from) {
     return Vec3d{from.scale * x[0], from.scale * x[1], from.scale * x[2]};
   };
   Seen out{fluid_of(position, velocity, walls, position[0].w), {}, {}};
-  out.fluid.state.parameters.gravity *= f;
+  out.fluid.state.parameters.gravity.strength *= f;
   const View view = view_of(scaled(from.eye), scaled(from.target), 480, 360);
   out.picture = splat(position, view, 1.5f);
   const Vec3d direction{from.target[0] - from.eye[0], from.target[1] - from.eye[1],

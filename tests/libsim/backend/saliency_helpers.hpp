@@ -155,7 +155,7 @@ struct Fluid {
             state.particle_neighbours(),
             p.size(),
             state.finest_support,
-            state.parameters.gravity,
+            state.parameters.gravity.strength,
             nullptr,
             {},
             s.data(),

@@ -150,6 +150,32 @@ TEST_F(ClipGl, ParticlesBeyondTheWallsAreCountedAndShownOnDemand) {
   EXPECT_GT(open, 2 * clipped);
 }
 
+TEST_F(ClipGl, ALidCutsLikeAWall) {
+  sim::Scene scene = room();
+  scene.tank_size_m[1] = 2.3;  // through the spheres of the uppermost layer
+  const auto view = overview(120, 90);
+  sim::ParticleBuffer buffer;
+  auto particles = water();
+  particles.push_back({4, 3, 4, 0.2F});
+  buffer.upload(particles);
+  const sim::Offscreen target(120, 90);
+  const auto highest = [&](bool lid) {
+    scene.lid = lid;
+    sim::FluidRenderer renderer(scene, {});
+    renderer.draw(buffer, {&view, 1}, target.framebuffer());
+    EXPECT_EQ(renderer.counts().beyond_walls, lid ? 1u : 0u);
+    const auto g = renderer.read_gbuffer();
+    double out = 0;
+    for (int pixel = 0; pixel < 120 * 90; ++pixel) {
+      const double depth = g.depth[static_cast<std::size_t>(pixel)];
+      if (std::isfinite(depth)) out = std::max(out, point(view, pixel % 120, pixel / 120, depth)[1]);
+    }
+    return out;
+  };
+  EXPECT_GT(highest(false), 3);
+  EXPECT_NEAR(highest(true), 2.3, 1e-3);
+}
+
 TEST_F(ClipGl, EverySplitCutsAlike) {
   const auto view = overview(160, 120);
   sim::RenderOptions options;
