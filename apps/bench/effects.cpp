@@ -162,10 +162,7 @@ void add_effects_command(CLI::App& app) {
   auto* command = app.add_subcommand("effects", "What each of a scene's effects adds to a frame");
   command->footer(effects_columns_help);
   command->add_option("scene", options->scene, "Scene file that lists effects")->capture_default_str();
-  command
-      ->add_option("--n-star", options->n_star,
-                   "Number of particles if all were at the coarsest level; k = 1,024")
-      ->capture_default_str();
+  add_n_star(*command, options->n_star);
   add_method(*command, options->method);
   add_backend(*command, options->backend);
   command->add_option("--tau", options->tau, "Tolerance of Ours-TSp: live or fixed:X in frames/s")

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -10,12 +9,13 @@
 #include "apps/bench/commands.hpp"
 #include "apps/bench/table_options.hpp"
 #include "apps/common/options.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libsim/measure/cell_scores.hpp"
 #include "libsim/measure/table1.hpp"
-#include "libsim/render/gl_context.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/progress.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -28,10 +28,8 @@ struct Table1Words : measure::Table1Options {
 
 int checkpoints_of(const std::string& word) {
   if (word == "all") return 0;
-  int count = 0;
-  const char* end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data(), end, count);
-  if (error != std::errc() || rest != end || count < 1)
+  const int count = base::parse_number<int>(word).value_or(0);
+  if (count < 1)
     throw base::Error("--checkpoints " + word, "is not a number of checkpoints", "use all, 1, 2, ...");
   return count;
 }

@@ -10,15 +10,16 @@
 #include "apps/bench/commands.hpp"
 #include "apps/bench/table_options.hpp"
 #include "apps/common/options.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libsim/measure/cells.hpp"
+#include "libsim/measure/onlooker.hpp"
 #include "libsim/render/fluid_picture.hpp"
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/picture_size.hpp"
 #include "stats/base/progress.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/timing.hpp"
@@ -30,8 +31,7 @@ namespace apps {
 
 namespace {
 
-constexpr int width_px = 1280;
-constexpr int height_px = 720;
+constexpr base::PictureSize picture_size{1280, 720};
 
 struct Table2Options : measure::TableOptions {
   int frames = 300;
@@ -62,40 +62,21 @@ Moments moments_of(const std::vector<double>& values) {
   return out;
 }
 
-/// A fluid and its viewer, whose gaze follows the scene's keys.
-class Stage {
- public:
-  Stage(const sim::Scene& scene, const sim::SimulationOptions& choice)
-      : scene_(scene), fluid_(sim::make_simulation(scene, choice)), picture_(scene) {}
-
-  sim::Simulation& fluid() { return *fluid_; }
-  void look(int frame) {
-    picture_.look(*fluid_, view_, sim::gaze_at(scene_.view, sim::gaze_point(scene_, frame)));
-  }
-  void draw() { picture_.draw(*fluid_, view_, target_.framebuffer()); }
-
- private:
-  const sim::Scene& scene_;
-  std::unique_ptr<sim::Simulation> fluid_;
-  sim::FluidPicture picture_;
-  sim::Offscreen target_{width_px, height_px};
-  sim::View view_ = sim::make_view(scene_.view, width_px, height_px);
-};
-
 /// Measures wall times. Within a step, only the method itself waits for the device.
 CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& choice,
                     const Table2Options& options) {
-  Stage stage(scene.scene, choice);
-  sim::Simulation& fluid = stage.fluid();
+  const auto made = sim::make_simulation(scene.scene, choice);
+  sim::Simulation& fluid = *made;
+  measure::Onlooker eye(scene.scene, picture_size);
   CellRun run;
   for (int frame = 1; frame <= options.frames; ++frame) {
     const double start = base::milliseconds_now();
-    stage.look(frame);
+    eye.look(fluid, sim::gaze_point(scene.scene, frame));
     const double looked = base::milliseconds_now();
     fluid.step_frame();
     fluid.synchronize();
     const double stepped = base::milliseconds_now();
-    stage.draw();
+    eye.draw(fluid);
     glFinish();
     const double drawn = base::milliseconds_now();
     run.followed_ms.push_back(drawn - looked);
@@ -119,13 +100,14 @@ CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& c
 void time_parts(const sim::CellScene& scene, sim::SimulationOptions choice, const Table2Options& options,
                 CellRun& run) {
   choice.time_parts = true;
-  Stage stage(scene.scene, choice);
-  sim::Simulation& fluid = stage.fluid();
+  const auto made = sim::make_simulation(scene.scene, choice);
+  sim::Simulation& fluid = *made;
+  measure::Onlooker eye(scene.scene, picture_size);
   for (int frame = 1; frame <= options.frames; ++frame) {
-    stage.look(frame);
+    eye.look(fluid, sim::gaze_point(scene.scene, frame));
     fluid.step_frame();
     // Otherwise GL's pending drawing would count as saliency of the next frame.
-    if (fluid.follows_picture()) stage.draw();
+    if (fluid.follows_picture()) eye.draw(fluid);
     glFinish();
     fluid.frame_time(run.followed_ms[static_cast<std::size_t>(frame - 1)]);
     if (frame <= options.warm_up) continue;

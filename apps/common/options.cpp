@@ -1,6 +1,5 @@
 #include "apps/common/options.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -16,29 +15,27 @@ namespace apps {
 namespace {
 
 template <class Number>
-bool reads_whole(std::string_view text, Number& value) {
+std::optional<Number> signed_number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return problem == std::errc() && end == text.data() + text.size();
+  return base::parse_number<Number>(text);
 }
 
 /// Rewrites the digits without leading zeros, "10" for "010".
 template <class Whole>
 std::string check_whole(std::string& text) {
-  Whole value{};
-  if (!reads_whole(text, value)) {
+  const auto value = signed_number<Whole>(text);
+  if (!value) {
     return "\"" + base::shortened(text) + "\" is not a whole number from " +
            std::to_string(std::numeric_limits<Whole>::min()) + " to " +
            std::to_string(std::numeric_limits<Whole>::max());
   }
-  text = std::to_string(value);
+  text = std::to_string(*value);
   return "";
 }
 
 std::string check_finite(std::string& text) {
-  double value = 0;
-  const bool finite = reads_whole(text, value) && std::isfinite(value);
-  return finite ? "" : "\"" + base::shortened(text) + "\" is not a finite number";
+  const auto value = signed_number<double>(text);
+  return value && std::isfinite(*value) ? "" : "\"" + base::shortened(text) + "\" is not a finite number";
 }
 
 }  // namespace

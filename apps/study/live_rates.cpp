@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "apps/study/session_player.hpp"
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libsim/solver/settled_state.hpp"
 #include "libstudy/check/kept_times.hpp"
 #include "libstudy/check/measuring.hpp"

@@ -7,9 +7,9 @@
 
 #include "apps/view/options.hpp"
 #include "apps/view/overlay.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libsim/render/fluid_picture.hpp"
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "stats/base/error.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "apps/view/options.hpp"
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "libstudy/headset/headset_recorder.hpp"
 #include "libstudy/stimulus/fluid_stimulus.hpp"

@@ -1,6 +1,5 @@
 #include "libsim/measure/cell_scores.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -54,9 +53,9 @@ std::string exact(double value) {
 
 template <class Number>
 bool reads(const std::string& text, Number& value) {
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && rest == end;
+  const auto number = base::parse_number<Number>(text);
+  if (number) value = *number;
+  return number.has_value();
 }
 
 bool reads_row(const std::vector<std::string>& cells, CellKey& key, CellValues& values) {

@@ -1,6 +1,5 @@
 #include "libsim/measure/cells.hpp"
 
-#include <charconv>
 #include <cmath>
 
 #include "libsim/ptpe/tolerance_switch.hpp"
@@ -12,22 +11,16 @@ namespace measure {
 
 namespace {
 
-bool read_number(const std::string& text, double& value) {
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && rest == end && std::isfinite(value);
-}
-
 /// The tau that the paper's Table 2 gives for this scene, n_* and method.
 double paper_tau(const std::string& scene, const std::string& n_star, sim::MethodKind method) {
   const auto path = base::resource("data/paper/table2_performance.csv");
   const auto lines = base::split(base::read_file(path, 1 << 16), '\n');
   for (const auto& line : lines) {
     const auto cell = base::split(line);
-    double tau = 0;
     if (cell.size() < 8 || cell[0] != scene || cell[1] + "k" != n_star || cell[2] != sim::method_name(method))
       continue;
-    if (read_number(cell[7], tau)) return tau;
+    const auto tau = base::parse_number<double>(cell[7]);
+    if (tau && std::isfinite(*tau)) return *tau;
   }
   throw base::Error(
       "--tau table2",

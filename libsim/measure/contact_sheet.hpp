@@ -5,7 +5,7 @@
 #include <future>
 #include <vector>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 
 namespace measure {
 

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <optional>
 
+#include "libsim/gl/gl_context.hpp"
 #include "libsim/measure/checkpoint.hpp"
 #include "libsim/measure/onlooker.hpp"
 #include "libsim/measure/timed_run.hpp"
 #include "libsim/methods/method.hpp"
-#include "libsim/render/gl_context.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "stats/base/error.hpp"
@@ -119,7 +119,7 @@ void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool
   sim::Simulation& fluid = *running.fluid;
   const double dt_s = runs.choice.frame_dt_s > 0 ? runs.choice.frame_dt_s : scene.frame_dt_s;
   const sim::Vec3d at = sim::gaze_point(scene, sim::scene_frame(scene, fluid.frame() + 1, dt_s));
-  running.eye->look(fluid, runs.choice.method, at);
+  running.eye->look(fluid, at);
   const double begin = base::milliseconds_now();
   fluid.step_frame();
   fluid.synchronize();

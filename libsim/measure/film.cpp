@@ -29,7 +29,7 @@ class Reel {
   }
 
   void step(const sim::Vec3d& gaze_m) {
-    eye_.step(*fluid_, method_, gaze_m, true);
+    eye_.step(*fluid_, gaze_m, true);
     if (const auto& met = fluid_->account().guards) guards = sim::sum(guards, *met);
     std::swap(before_, now_);
     now_ = eye_.picture();

@@ -16,8 +16,8 @@ Growth growth_of(const std::vector<GrowthRow>& rows) {
   }
   const auto fit = stats::fit_linear({log_particles}, log_ms);
   if (!fit) {
-    throw base::Error("exponent of growth", fit.reason(),
-                      "give --n-star two sizes or more that differ, such as 4k,8k,16k");
+    throw base::Error("--n-star", "no exponent of growth follows from these sizes: " + fit.reason(),
+                      "give two or more different sizes, such as 4k,8k,16k");
   }
   Growth out{.exponent = fit->coefficients[1], .factor = std::exp(fit->coefficients[0])};
   if (!fit->standard_errors.empty()) out.standard_error = fit->standard_errors[1];

@@ -2,9 +2,69 @@
 
 #include <fmt/format.h>
 
-#include "stats/base/json.hpp"
+#include <algorithm>
+#include <array>
 
 namespace measure {
+
+namespace {
+
+constexpr double vec4 = 16, number = 4, byte = 1;  // float and int alike
+constexpr double entry = number;                   // of a neighbour list
+
+/// Compared with the functors in libsim; < is read, > is written.
+constexpr std::array table{
+    // < predicted, count of its list, entries; > lambda, density. The positions of neighbours are in the same
+    // column.
+    PassBytes{"density", vec4 + number + 2 * number, entry, true},
+    // < predicted, lambda, count, entries; > the next positions. Momentum would also read those.
+    PassBytes{"displacement", vec4 + number + number + vec4, entry, true},
+    // < predicted; > count, entries.
+    PassBytes{"list neighbours", vec4 + number, entry, true},
+    // < position, velocity, density, count, entries; > the next velocity. Levels also read kicks and ease.
+    PassBytes{"xsph", 2 * vec4 + number + number + vec4, entry, true},
+    // < age, count, entries; > ease. Positions are read only near fresh particles.
+    PassBytes{"ease", byte + number + number, entry, true},
+    // < position, velocity; > position, velocity, predicted.
+    PassBytes{"predict", 5 * vec4, 0, false},
+    // < position, predicted, velocity; > position, velocity. Levels also write kicks.
+    PassBytes{"velocity", 5 * vec4, 0, false},
+    // < predicted, density.
+    PassBytes{"gather cells", vec4 + number, 0, false},
+    // < predicted; > the next positions.
+    PassBytes{"shift", 2 * vec4, 0, true},
+    // < predicted; > cell, arrival.
+    PassBytes{"count cells", vec4 + 2 * number, 0, false},
+    // < cell, arrival; > particle at that place.
+    PassBytes{"place by cell", 3 * number, 0, false},
+    // < particle at that place, cell, id; > order.
+    PassBytes{"order within cells", 4 * number, 0, false},
+    // < order; < and > position, predicted, velocity, id, level. Levels have more columns.
+    PassBytes{"reorder", number + 2 * (3 * vec4 + number + byte), 0, false},
+};
+
+}  // namespace
+
+std::span<const PassBytes> pass_bytes() { return table; }
+
+std::optional<double> least_bytes(const std::string& label, const PassWater& water) {
+  const auto pass =
+      std::find_if(table.begin(), table.end(), [&](const auto& row) { return label == row.label; });
+  if (pass == table.end()) return {};
+  const double particles = water.particles * (pass->solved_only ? water.solved_share : 1);
+  if (pass->a_neighbour > 0 && !(water.listed > 0)) return {};
+  return particles * (pass->a_particle + pass->a_neighbour * water.listed);
+}
+
+std::optional<PassFloor> floor_of(const std::string& label, double launches_a_frame, double ms_a_frame,
+                                  const PassWater& water, double gb_s) {
+  const auto bytes = least_bytes(label, water);
+  if (!bytes || !(*bytes > 0) || !(launches_a_frame > 0)) return {};
+  PassFloor out{.bytes_a_frame = *bytes * launches_a_frame};
+  out.ms_a_frame = out.bytes_a_frame / (gb_s * 1e6);
+  out.times = ms_a_frame / out.ms_a_frame;
+  return out;
+}
 
 void LaunchSums::add(const std::vector<sim::LaunchTime>& stretch) {
   for (const auto& pass : stretch) {

@@ -12,18 +12,11 @@ Onlooker::Onlooker(const sim::Scene& scene, const base::PictureSize& size)
       target_(size.width, size.height),
       picture_(scene) {}
 
-void Onlooker::look(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m) {
-  const sim::TargetSource source = sim::traits_of(method).target;
-  const sim::Gaze gaze = sim::gaze_at(camera_, gaze_m);
-  if (source == sim::TargetSource::Saliency) picture_.look(fluid, view_, gaze);
-  if (source == sim::TargetSource::Gaze) fluid.look({{{gaze, view_, nullptr}}});
-}
-
-void Onlooker::step(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m, bool wanted) {
-  look(fluid, method, gaze_m);
+void Onlooker::step(sim::Simulation& fluid, const sim::Vec3d& gaze_m, bool wanted) {
+  look(fluid, gaze_m);
   const double start = base::milliseconds_now();
   fluid.step_frame();
-  if (wanted || sim::traits_of(method).target == sim::TargetSource::Saliency) draw(fluid);
+  if (wanted || fluid.follows_picture()) draw(fluid);
   fluid.synchronize();
   fluid.frame_time(base::milliseconds_now() - start);
 }

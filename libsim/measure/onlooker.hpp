@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "libsim/gl/offscreen.hpp"
+#include "libsim/gl/png.hpp"
 #include "libsim/measure/render_timer.hpp"
 #include "libsim/render/fluid_picture.hpp"
-#include "libsim/render/offscreen.hpp"
-#include "libsim/render/png.hpp"
 
 namespace measure {
 
@@ -20,11 +20,12 @@ class Onlooker {
   const sim::Camera& camera() const { return camera_; }
   /// Call it before another run; see FluidPicture::begin.
   void begin(const sim::GBuffer* seen) { picture_.begin(seen); }
-  /// Passes the gaze to a method that uses it and, if the method uses pictures, the last picture.
-  void look(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m);
-  /// Calls look() if the method uses it, advances by a frame, and draws if asked to or if the method uses
-  /// pictures.
-  void step(sim::Simulation& fluid, sim::MethodKind method, const sim::Vec3d& gaze_m, bool draw);
+  /// Passes the gaze and the last picture to a method that uses them.
+  void look(sim::Simulation& fluid, const sim::Vec3d& gaze_m) {
+    picture_.look(fluid, view_, sim::gaze_at(camera_, gaze_m));
+  }
+  /// Calls look(), advances by a frame, and draws if asked to or if the method uses pictures.
+  void step(sim::Simulation& fluid, const sim::Vec3d& gaze_m, bool wanted);
   void draw(sim::Simulation& fluid) { picture_.draw(fluid, view_, target_.framebuffer()); }
 
   // Data of the last picture drawn.

@@ -1,7 +1,6 @@
 #include "libsim/measure/peers.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <type_traits>
@@ -48,15 +47,11 @@ class Cells {
   template <class Number>
   Number number(std::size_t column, const char* name, bool zero_too) const {
     const std::string& text = cells_[column];
-    Number value{};
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    const bool good = error == std::errc() && rest == end && std::isfinite(static_cast<double>(value)) &&
-                      (value > 0 || (zero_too && value == 0));
-    if (!good)
+    const auto value = base::parse_number<Number>(text);
+    if (!value || !std::isfinite(static_cast<double>(*value)) || *value < 0 || (*value == 0 && !zero_too))
       fail(std::string(name) + " \"" + base::shortened(text) + "\" is no " +
            (std::is_integral_v<Number> ? "whole " : "") + "number " + (zero_too ? "from 0 on" : "above 0"));
-    return value;
+    return *value;
   }
   [[noreturn]] void fail(const std::string& problem) const {
     throw base::Error(place_, problem, std::string("write a row of ") + head);

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "libsim/gl/offscreen.hpp"
 #include "libsim/render/fluid_picture.hpp"
-#include "libsim/render/offscreen.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/json.hpp"
 #include "stats/base/timing.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "libsim/gl/gl_context.hpp"
 #include "libsim/render/fluid_renderer.hpp"
-#include "libsim/render/gl_context.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libsim/simulation.hpp"
 #include "stats/base/json.hpp"

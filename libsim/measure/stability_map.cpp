@@ -8,6 +8,41 @@
 
 namespace measure {
 
+Limit<double> largest_factor(const Trial<double>& trial, double most, double resolution) {
+  Limit<double> out{.reach = Reach::AllPass, .passed = most, .failed = trial(most), .runs = 1};
+  if (out.failed.empty()) return out;
+  out.reach = Reach::Found;
+  out.passed = 1;
+  // The tolerance keeps rounding from adding a bisection if the resolution divides the range exactly.
+  for (double fails = most; fails / out.passed > resolution * (1 + 1e-9);) {
+    const double middle = std::sqrt(fails * out.passed);
+    ++out.runs;
+    if (const std::string what = trial(middle); what.empty()) {
+      out.passed = middle;
+    } else {
+      fails = middle;
+      out.failed = what;
+    }
+  }
+  return out;
+}
+
+Limit<int> fewest(const Trial<int>& trial, int usual) {
+  Limit<int> out{.passed = usual, .failed = {}};
+  for (int fails = 0; out.passed - fails > 1;) {
+    const int middle = (fails + out.passed) / 2;
+    ++out.runs;
+    if (const std::string what = trial(middle); what.empty()) {
+      out.passed = middle;
+    } else {
+      fails = middle;
+      out.failed = what;
+    }
+  }
+  if (out.passed == 1) out.reach = Reach::AllPass;
+  return out;
+}
+
 namespace {
 
 const char* reach_name(Reach reach) {
@@ -168,15 +203,10 @@ std::string panel(const StabilityMap& map, Knob knob, double left) {
     out += svg::text({x + cell_px / 2, top_px - 8}, map.methods[m], "text-anchor=\"middle\"");
     for (std::size_t c = 0; c < map.cases.size(); ++c) {
       const Point at{x, top_px + row_px * static_cast<double>(c)};
-      const auto cell = std::find_if(map.cells.begin(), map.cells.end(), [&](const MapCell& one) {
-        return one.case_id == map.cases[c] && one.method == map.methods[m] && one.knob == knob;
-      });
-      if (cell == map.cells.end()) {
-        out += box(at, cell_px, absent, "-");
-      } else {
-        const bool broken = cell->reach == Reach::UsualFails;
-        out += box(at, cell_px, broken ? fails : shade_of(margin_of(*cell)), value_of(*cell));
-      }
+      const MapCell* cell = find(map, map.cases[c], map.methods[m], knob);
+      const bool broken = cell && cell->reach == Reach::UsualFails;
+      const Shade& shade = !cell ? absent : broken ? fails : shade_of(margin_of(*cell));
+      out += box(at, cell_px, shade, cell ? value_of(*cell) : "-");
     }
   }
   return out;

@@ -138,7 +138,7 @@ class Stills {
     const auto hires = start(checkpoint, Method::HiRes, sim::Preset::Tuned, checkpoint.state, 0);
     eye_.begin(&checkpoint.seen);
     for (int frame = 1; frame <= options_.frames_after; ++frame)
-      eye_.step(*hires, Method::HiRes, gazes_[0], frame == options_.frames_after);
+      eye_.step(*hires, gazes_[0], frame == options_.frames_after);
     done_();
     Reference out{eye_.picture(), eye_.fluid_mask(), {}, {}};
     const sim::GBuffer seen = eye_.gbuffer();
@@ -175,7 +175,7 @@ class Stills {
       if (repeat == 1) note_start(*fluid, method, preset);
       eye_.begin(&checkpoint.seen);
       for (int frame = 1; frame <= options_.frames_after; ++frame)
-        eye_.step(*fluid, method, gaze_m, frame == options_.frames_after);
+        eye_.step(*fluid, gaze_m, frame == options_.frames_after);
       out.push_back(take_shot(*fluid, reference, repeat == 1 && !options_.pictures.empty()));
       guards_ = sim::sum(guards_, fluid->report().guards);
       done_();

@@ -21,13 +21,12 @@ enum class Life {
   Scratch  ///< within a substep
 };
 
-/// Rule for a column's values when a split or a merge makes particles. The last four
-/// need no other code: such columns start at 0 unless a pass writes them, and splits, merges and nozzles
-/// apply their rule.
+/// Rule for a column's values when a split or a merge makes particles. The last four need no other code:
+/// splits, merges and nozzles apply them, and their columns start at 0 unless a pass writes them.
 enum class Descent {
   None,      ///< no values: the column is scratch
   Own,       ///< set by the passes that split, merge and pour
-  Copy,      ///< children copy the parent's; a merged particle keeps that of the remaining one
+  Copy,      ///< children copy the parent's; a merged particle keeps its own
   MassMean,  ///< children copy the parent's; a merged particle gets the mean by mass: m times it is conserved
   Sum,       ///< children share the parent's by mass; a merged particle gets the sum: it is conserved
   Max,       ///< children copy the parent's; a merged particle gets the larger
@@ -52,13 +51,13 @@ enum class Descent {
 //   Saliency        s in [0, 1], ViP-Fluid 3.2.3
 //   Unrest          f_T gamma_t of ViP-Fluid Eq. 6, smoothed over frames
 //   SaliencyParts   f_a, f_m, f_T and F, from which s follows
-//   Waiting         consecutive frames in which it was ready to merge
+//   Waiting         consecutive frames in which the particle was ready to merge
 //   Normal          of the surface, inwards, dimensionless; scratch of the effects (libsim/scene/effects.hpp)
 //   Ease            share of its constraint that a particle near a fresh one enforces, (0, 1]
-//   Age             frames since it was made by a split or a merge, at most 255
+//   Age             frames since a split or a merge made the particle, at most 255
 //   Active          1 = solved in this frame, 2 = solved but not in means (activation/activation.hpp),
 //                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
-//   Rest            how long it was not solved, and flags (activation/activation.hpp)
+//   Rest            how long the particle was not solved, and flags (activation/activation.hpp)
 //   StartCell       cell of the velocity grid in which the particle started the frame
 //   Temperature     kelvin above the reference of the effect heat
 //   TemperatureNext output of conduction, then swapped with Temperature
@@ -145,8 +144,7 @@ constexpr bool may_descend(Life life, Descent rule) {
 SIM_COLUMNS(SIM_CHECK, SIM_NOTHING)
 #undef SIM_CHECK
 
-/// The number of columns of a type that last as long as their particle, and how many of them have such a
-/// rule.
+/// The number of Kept columns of a type, and the number of its columns whose rule is by_rule().
 template <class T>
 constexpr int kept_count() {
   int sum = 0;
@@ -164,7 +162,7 @@ constexpr int ruled_count() {
   return sum;
 }
 
-/// The columns with such a rule; they start at 0 and are written before any pass reads them.
+/// All columns whose rule is by_rule(). They start at 0, so that passes may read them before any writes them.
 constexpr ColumnSet ruled_columns() {
   ColumnSet out;
 #define SIM_ADD(Name, member, Type, life, rule) \
@@ -175,14 +173,14 @@ constexpr ColumnSet ruled_columns() {
   return out;
 }
 
-/// The allocated columns of one type.
+/// The allocated columns of one type whose rule is by_rule(), and what splits and merges make of them.
 template <class T>
 struct RuledColumns {
   T* values[ruled_count<T>()];
   Descent rule[ruled_count<T>()];
   int count;
 
-  /// For particle i, a copy of its parent, one of `children` of equal mass.
+  /// Particle i, a copy of its parent, becomes one of `children` of equal mass.
   SIM_FN void split(int i, int children) const {
     for (int k = 0; k < count; ++k) {
       if (rule[k] == Descent::Reset) values[k][i] = 0;
@@ -197,8 +195,8 @@ struct RuledColumns {
       v[kept] = met(rule[k], v[kept], v[left], 1);
     }
   }
-  /// j has the mass of `kept` and `left` together. One half of j merges with `kept`, the other with `left`;
-  /// the results are in `kept` and in j.
+  /// Merges one half of particle j with `kept`, the other half with `left`; the results are in `kept` and in
+  /// j. Particle j has the mass of `kept` and `left` together.
   SIM_FN void share(int j, int kept, int left) const {
     for (int k = 0; k < count; ++k) {
       T* v = values[k];
@@ -207,13 +205,13 @@ struct RuledColumns {
       v[j] = met(rule[k], v[left], whole, 0.5f);
     }
   }
-  /// For a new particle without a parent.
+  /// Sets the values of a new particle without a parent.
   SIM_FN void make(int i) const {
     for (int k = 0; k < count; ++k) values[k][i] = 0;
   }
 
  private:
-  /// Merges a with an equal mass taken from a particle with value b; `share`: mass taken over its mass.
+  /// Value of a particle of value a that takes up an equal mass, the part `share` of a particle of value b.
   SIM_FN static T met(Descent rule, T a, T b, float share) {
     if (rule == Descent::Reset) return 0;
     if (rule == Descent::Max) return a > b ? a : b;
@@ -222,7 +220,7 @@ struct RuledColumns {
   }
 };
 
-/// All allocated columns with such rules.
+/// All allocated columns whose rule is by_rule().
 struct Descents {
   RuledColumns<float> floats;
   RuledColumns<std::uint8_t> bytes;

@@ -1,35 +1,31 @@
 #include "libsim/ptpe/tolerance_switch.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace sim {
 
 std::optional<double> parse_tau(std::string_view text) {
   if (text == "live") return std::nullopt;
   constexpr std::string_view fixed = "fixed:";
-  double value = 0;
   if (text.starts_with(fixed)) {
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data() + fixed.size(), end, value);
-    if (error == std::errc() && rest == end && std::isfinite(value)) return value;
+    const auto value = base::parse_number<double>(text.substr(fixed.size()));
+    if (value && std::isfinite(*value)) return value;
   }
   throw base::Error("tau \"" + std::string(text) + "\"", "is neither live nor fixed:X",
                     "write for example fixed:-6, in frames/s");
 }
 
 FrameRate parse_frame_rate(std::string_view text) {
-  FrameRate rate;
-  const char* end = text.data() + text.size();
-  const auto [comma, error] = std::from_chars(text.data(), end, rate.mean);
-  if (error == std::errc() && comma != end && *comma == ',') {
-    const auto [rest, second] = std::from_chars(comma + 1, end, rate.sd);
-    const bool finite = std::isfinite(rate.mean) && std::isfinite(rate.sd);
-    if (second == std::errc() && rest == end && finite && rate.mean > 0 && rate.sd >= 0) return rate;
+  if (const auto comma = text.find(','); comma != std::string_view::npos) {
+    const auto mean = base::parse_number<double>(text.substr(0, comma));
+    const auto sd = base::parse_number<double>(text.substr(comma + 1));
+    if (mean && sd && std::isfinite(*mean) && std::isfinite(*sd) && *mean > 0 && *sd >= 0)
+      return {*mean, *sd};
   }
   throw base::Error("frame rate \"" + std::string(text) + "\"", "is not a mean and a standard deviation",
                     "write for example 16.9,3.2, in frames/s");

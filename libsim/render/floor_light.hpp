@@ -5,19 +5,19 @@
 #include <array>
 #include <cstdint>
 
+#include "libsim/gl/gl_buffer.hpp"
+#include "libsim/gl/gl_program.hpp"
 #include "libsim/render/fluid_renderer.hpp"
-#include "libsim/render/gl_buffer.hpp"
-#include "libsim/render/gl_program.hpp"
 #include "libsim/render/pass_timer.hpp"
 
 namespace sim {
 
-/// Inputs of the passes.
+/// Inputs of FloorLight's passes.
 struct FloorWater {
   unsigned particles = 0;  ///< GL buffer of RenderParticle
   std::int64_t count = 0;
   unsigned obstacles = 0;       ///< GL buffer of obstacle poses (shaders/obstacles.glsl); 0: none
-  unsigned obstacle_grids = 0;  ///< of meshes (shaders/obstacle_meshes.glsl); 0: none
+  unsigned obstacle_grids = 0;  ///< GL buffer of meshes (shaders/obstacle_meshes.glsl); 0: none
   int obstacle_count = 0;
 };
 
@@ -51,11 +51,12 @@ class FloorLight {
 
   Block block_;
   GlProgram splat_, splat_images_, smooth_first_, smooth_second_, shadows_, caustics_, join_;
-  GlBuffer maps_;                                           // the Block
-  GlBuffer top_, thickness_, image_top_, image_thickness_;  // surface map: splats, those of mirror images,
-  GlBuffer surface_a_, surface_b_;                          // smoothed
-  GlBuffer shadow_, caustic_;                               // floor maps of the listed effects
-  unsigned sunlight_ = 0;                                   // texture, both together
+  GlBuffer maps_;                         // the Block
+  GlBuffer top_, thickness_;              // surface of the particles
+  GlBuffer image_top_, image_thickness_;  // surface of their mirror images beyond the walls
+  GlBuffer surface_a_, surface_b_;        // both surfaces as one, smoothed along x; along x and z
+  GlBuffer shadow_, caustic_;             // floor maps of the effects that the scene lists
+  unsigned sunlight_ = 0;                 // texture of both floor maps
 };
 
 }  // namespace sim

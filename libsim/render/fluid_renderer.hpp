@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "libsim/gl/gl_buffer.hpp"
 #include "libsim/particles/particle_state.hpp"
-#include "libsim/render/gl_buffer.hpp"
 #include "libsim/scene/scene.hpp"
 #include "libsim/view/camera.hpp"
 #include "libsim/view/gbuffer.hpp"
@@ -78,7 +78,7 @@ struct RenderOptions {
   /// Footprints up to this many px per side are splatted by one invocation; 0: 16 on a GPU, 64 on software
   /// GL.
   int thread_px = 0;
-  /// Larger ones up to this by a team of 8 x 4; beyond it they are split among many work groups.
+  /// Larger ones up to this many px are splatted by a team of 8 x 4, still larger ones by many work groups.
   int group_px = 128;
   /// Cells of the floor light maps along the longer side, with picture effects; 64 to 2048.
   int floor_cells = 512;
@@ -126,10 +126,10 @@ struct PassTime {
 /// The renderer's passes in order, and why each optional pass runs. Needs no context.
 std::string passes_in_words(const Scene& scene);
 
-/// Needs a current OpenGL 4.5 context at every call and when it is destroyed. Leaves the GL state of a new
-/// context except for the viewport. The same particles, views and options give the same picture, bit for bit,
-/// on one driver, whatever the drawing order on the device; at equal depths the particle with the lower index
-/// is in front.
+/// Draws water. Needs a current OpenGL 4.5 context at every call and when destroyed. Leaves the GL state of a
+/// new context except for the viewport. The same particles, views and options give the same picture, bit for
+/// bit, on one driver, whatever the drawing order on the device; at equal depths the particle with the lower
+/// index is in front.
 class FluidRenderer {
  public:
   /// The scene gives the tank, the obstacles and the effects. Errors (base::Error): an option out of range, a
@@ -166,9 +166,9 @@ class FluidRenderer {
   /// The light on the floor of the last draw, over all its views; waits for the device. base::Error if the
   /// scene lists no picture effect, or nothing was drawn.
   FloorMap read_floor() const;
-  /// Waits for the device.
+  /// Counts of the last draw; waits for the device.
   RenderCounts counts() const;
-  /// In order of the passes; empty unless time_passes. Waits for the device.
+  /// Times of the last draw's passes, in their order; empty unless time_passes. Waits for the device.
   std::vector<PassTime> times() const;
 
  private:

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 
 namespace sim {
 

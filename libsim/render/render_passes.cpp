@@ -6,7 +6,7 @@
 #include <iterator>
 #include <memory>
 
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libsim/scene/mesh.hpp"
 #include "stats/base/error.hpp"
 

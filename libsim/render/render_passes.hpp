@@ -8,9 +8,9 @@
 #include <initializer_list>
 #include <span>
 
+#include "libsim/gl/gl_program.hpp"
 #include "libsim/render/floor_light.hpp"
 #include "libsim/render/fluid_renderer.hpp"
-#include "libsim/render/gl_program.hpp"
 #include "libsim/render/pass_timer.hpp"
 #include "libsim/render/view_targets.hpp"
 
@@ -24,7 +24,7 @@ GlProgram compute_program(const char* file, const char* defines = "");
 /// Binds the buffers to shader storage 0, 1, ...; 0 binds none.
 void bind_storage(std::initializer_list<unsigned> buffers);
 
-/// One invocation per pixel, in groups of 16 x 8, or per particle, in groups of 64.
+/// Starts one invocation per pixel, in groups of 16 x 8, or per particle, in groups of 64.
 void dispatch_pixels(int width, int height);
 void dispatch_particles(std::int64_t count);
 

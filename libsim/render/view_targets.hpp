@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "libsim/gl/gl_buffer.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libsim/render/fluid_renderer.hpp"
-#include "libsim/render/gl_buffer.hpp"
-#include "libsim/render/offscreen.hpp"
 #include "libsim/view/camera.hpp"
 
 namespace sim {

@@ -59,7 +59,7 @@ class Mesh {
   const DistanceGrid& grid() const;
   /// Surface points for contacts with walls: the farthest ones in some 70 directions.
   std::vector<std::array<double, 3>> contacts_m() const;
-  /// Twice the depth of its deepest node, m.
+  /// Twice the depth of the deepest node of grid(), m.
   double thickness_m() const;
   /// SHA-256 of all inputs.
   const std::string& sha256() const { return sha256_; }

@@ -1,7 +1,6 @@
 #include "libsim/scene/obj_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -32,10 +31,9 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 template <class Number>
-bool reads(std::string_view word, Number& out) {
+std::optional<Number> read_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), out);
-  return problem == std::errc() && end == word.data() + word.size();
+  return base::parse_number<Number>(word);
 }
 
 class Reader {
@@ -63,9 +61,11 @@ class Reader {
     Vector at{};
     if (words.size() < 4) fail_(line_, "has a vertex with fewer than three coordinates", "write v x y z");
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!reads(words[k + 1], at[k]))
+      const auto number = read_number<double>(words[k + 1]);
+      if (!number)
         fail_(line_, "has '" + base::shortened(words[k + 1], 40) + "' where a number is expected",
               "write v x y z");
+      at[k] = *number;
       if (!(std::abs(at[k]) <= farthest))
         fail_(line_, "has a vertex that is not within 1e6 of the origin", "move the mesh, or scale it");
     }
@@ -80,11 +80,11 @@ class Reader {
   int corner(std::string_view word) {
     const std::string_view number = word.substr(0, word.find('/'));
     const auto count = static_cast<std::int64_t>(mesh_.places.size());
-    std::int64_t index = 0;
-    if (!reads(number, index))
+    const auto read = read_number<std::int64_t>(number);
+    if (!read)
       fail_(line_, "has '" + base::shortened(word, 40) + "' where the number of a vertex is expected",
             "write f a b c");
-    const std::int64_t from_first = index < 0 ? count + index : index - 1;
+    const std::int64_t index = *read, from_first = index < 0 ? count + index : index - 1;
     if (index == 0 || from_first < 0 || from_first >= count)
       fail_(line_, "names vertex " + std::to_string(index) + " of " + std::to_string(count),
             "vertices count from 1, and each must come before the faces that use it");

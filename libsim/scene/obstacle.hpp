@@ -82,21 +82,21 @@ std::array<double, 3> in_world(const Pose& pose, const std::array<double, 3>& ow
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// True if the point is inside. Cheaper than the distance.
 bool holds(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
-/// Half sides of the box that the shape extends by radius_m, along its own axes: for a box half its sides,
-/// for a capsule half its axis. A mesh lies in that box.
+/// Half sides of the shape's inner box, along its own axes: the shape is every point within radius_m of that
+/// box. A capsule's inner box is its axis, a sphere's its centre. A mesh merely lies in its inner box.
 std::array<double, 3> half_sides_m(const Obstacle& obstacle);
 /// Extent of the shape from its centre along each axis of the world; of a mesh, of the box that holds it.
 std::array<double, 3> reach_m(const Obstacle& obstacle, const Pose& pose);
 double volume_m3(const Obstacle& obstacle);
-/// Moments of inertia about its own axes divided by its mass, for uniform density, m2.
+/// Moments of inertia about the obstacle's own axes divided by its mass, for uniform density, m2.
 std::array<double, 3> inertia_m2(const Obstacle& obstacle);
 bool any_free(const std::vector<Obstacle>& obstacles);
 /// True if a free obstacle may meet another, or has friction.
 bool any_meet(const std::vector<Obstacle>& obstacles);
 bool any_mesh(const std::vector<Obstacle>& obstacles);
-/// The shortest path through the middle, m; for a mesh twice the depth of its deepest point.
+/// Thickness, m: a box's shortest side, the diameter of a sphere or capsule, twice a mesh's greatest depth.
 double thickness_m(const Obstacle& obstacle);
-/// Speed that no point of it ever exceeds, m/s; 0 (unknown) for a free one.
+/// Speed that no point of the obstacle ever exceeds, m/s; 0 (unknown) for a free obstacle.
 double top_speed(const Obstacle& obstacle);
 
 /// Reads the tables [[obstacle]] of a scene file of format 2. room_m: Scene::room_m(). origin_m

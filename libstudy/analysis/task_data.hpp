@@ -50,8 +50,8 @@ struct AnsweredTrial {
 /// The first answer of a session whose clock contradicts the order in which its database was written.
 struct DoubtfulTime {
   std::string participant, station;
-  std::string told_utc;        ///< time by the clock
-  std::string not_before_utc;  ///< earliest possible time by the order of the rows
+  std::string told_utc;        ///< time of the answer by the station's clock
+  std::string not_before_utc;  ///< as in TaskSession
   bool impossible = false;  ///< the time is before ViP-Lab existed, so this clock was wrong, not the earlier
                             ///< one
 };

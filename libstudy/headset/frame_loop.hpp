@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/display/cut_cause.hpp"
 #include "libstudy/headset/headset_session.hpp"
 #include "libstudy/headset/picture_turns.hpp"

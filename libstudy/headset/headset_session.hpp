@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/headset/rate_meter.hpp"
 #include "libstudy/headset/views.hpp"
 #include "stats/base/picture_size.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 /// The middle of a headset's left eye's view as one picture, for onlookers.
 
-#include "libsim/render/gl_program.hpp"
+#include "libsim/gl/gl_program.hpp"
 #include "libstudy/headset/frame_loop.hpp"
 
 namespace study {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libsim/render/gl_program.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_program.hpp"
+#include "libsim/gl/offscreen.hpp"
 
 namespace study {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libstudy/headset/openxr.hpp"
 #include "libstudy/headset/system.hpp"
 #include "libstudy/headset/views.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libstudy/headset/loader.hpp"
 
 namespace study {

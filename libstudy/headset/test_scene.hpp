@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "libsim/render/gl_program.hpp"
+#include "libsim/gl/gl_program.hpp"
 #include "libstudy/headset/views.hpp"
 
 namespace study {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -20,11 +20,10 @@ namespace {
 
 double parse_number(std::string_view specification, std::size_t at, std::string_view text,
                     const std::string& mend) {
-  double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+  const auto value = base::parse_number<double>(text);
+  if (!value || !std::isfinite(*value))
     fail_observer(specification, at, "'" + std::string(text) + "' is not a number", mend);
-  return value;
+  return *value;
 }
 
 }  // namespace

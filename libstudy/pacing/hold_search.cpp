@@ -303,7 +303,7 @@ void for_each_pair(const HoldTarget& target, const std::function<void(double, do
   }
 }
 
-/// Largest E (f - c)^2 over all pairs: an upper bound on the variance for every c.
+/// Largest mean of (rate - c)^2 over all pairs: an upper bound on the variance for every c.
 double largest_square(const HoldTarget& target, double c) {
   double largest = 0;
   for_each_pair(target, [&](double fast, double slow, double weight) {
@@ -322,7 +322,7 @@ SdBounds sd_bounds(const HoldTarget& target) {
   });
   if (!std::isfinite(least)) return bounds;
   bounds.low = least;
-  // Convex in c: a maximum of parabolas.
+  // largest_square() is convex in c, as a maximum of parabolas: this narrows in on its minimum.
   double left = target.refresh_hz / target.longest, right = target.refresh_hz / target.shortest;
   for (int i = 0; i < 100 && right - left > 1e-9 * right; ++i) {
     const double a = left + (right - left) / 3, b = right - (right - left) / 3;

@@ -100,7 +100,8 @@ bool measure(TimingVerdict& trial, const PlayedTrial& played) {
 
 TimingVerdict blank_verdict(const FpsSetting& nominal, const PlayedTrial& played, TimingGrade grade) {
   if (played.frames.empty())
-    throw base::Error("trial " + setting_name(nominal), "has no frames to judge", "play it first");
+    throw base::Error("trial " + setting_name(nominal), "no frame was shown, so there is no timing to judge",
+                      "show the trial again");
   TimingVerdict trial;
   trial.grade = grade;
   trial.nominal = nominal;

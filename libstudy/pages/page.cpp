@@ -1,9 +1,10 @@
 #include "libstudy/pages/page.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
+
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -170,12 +171,9 @@ void PageState::leave_out(std::int64_t from_ns, std::int64_t to_ns) {
 }
 
 std::optional<int> PageState::number(std::size_t question) const {
-  const std::string& typed = items_[question].typed;
-  int value = 0;
-  const auto [end, error] = std::from_chars(typed.data(), typed.data() + typed.size(), value);
-  if (error != std::errc() || end != typed.data() + typed.size()) return {};
-  if (value < questions_[question].scale_min || value > questions_[question].scale_max) return {};
-  return value;
+  const auto value = base::parse_number<int>(items_[question].typed);
+  const Question& asked = questions_[question];
+  return value && *value >= asked.scale_min && *value <= asked.scale_max ? value : std::nullopt;
 }
 
 bool PageState::answered(std::size_t question) const {

@@ -73,8 +73,8 @@ class PageState {
   bool can_confirm(std::int64_t now_ns) const;
   bool confirmed() const { return confirmed_ns_.has_value(); }
 
-  /// Call once confirmed. Response times run from the page's appearance to the last change of each answer, or
-  /// to the confirmation if it was left empty; the same holds for their input.
+  /// The answers; call once confirmed. Response times run from the page's appearance to the last change of
+  /// each answer, or to the confirmation if it was left empty; the same holds for their input.
   std::vector<TimedAnswer> answers() const;
 
  private:

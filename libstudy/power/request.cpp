@@ -1,7 +1,6 @@
 #include "libstudy/power/request.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "libstudy/analysis/claims.hpp"
@@ -25,11 +24,9 @@ constexpr std::size_t most_result_bytes = std::size_t{1} << 28;
 }
 
 int whole(const std::string& text, std::string_view part) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-  if (error != std::errc() || end != part.data() + part.size())
-    fail_participants(text, "\"" + std::string(part) + "\" is not a whole number");
-  return value;
+  const auto value = base::parse_number<int>(part);
+  if (!value) fail_participants(text, "\"" + std::string(part) + "\" is not a whole number");
+  return *value;
 }
 
 bool has_question(const Protocol& protocol, const std::string& id) {

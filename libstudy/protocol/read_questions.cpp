@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <tuple>
 
 #include "libstudy/protocol/readers.hpp"
@@ -9,22 +8,13 @@ namespace study {
 
 namespace {
 
-/// A key as a whole number; none if it is not one.
-std::optional<int> score_of(const std::string& key) {
-  int score = 0;
-  const char* end = key.data() + key.size();
-  const auto [read_to, error] = std::from_chars(key.data(), end, score);
-  if (error != std::errc() || read_to != end) return {};
-  return score;
-}
-
 /// {1 = "poor", 7 = "good"}: words by score.
 std::vector<std::pair<int, std::string>> read_anchors(const base::TomlTable& question, int least, int most) {
   std::vector<std::pair<int, std::string>> out;
   if (!question.has("anchors")) return out;
   const auto table = question.table("anchors");
   for (const auto& key : table.keys()) {
-    const auto score = score_of(key);
+    const auto score = base::parse_number<int>(key);
     if (!score || *score < least || *score > most) {
       table.fail(key, "is not a score of the scale",
                  "use whole numbers from " + std::to_string(least) + " to " + std::to_string(most));

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <numbers>
 
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
+#include "libsim/gl/png.hpp"
 #include "libsim/methods/preset.hpp"
 #include "libsim/render/fluid_picture.hpp"
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
-#include "libsim/render/png.hpp"
 #include "libsim/render/temperature_scale.hpp"
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/settled_state.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/observer/picture_measure.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/display/stimulus.hpp"
 
 namespace study {

@@ -4,8 +4,8 @@
 ///
 /// One JSON object per line: a table row after a commit (journal_rows.hpp). Of several lines of a row, the
 /// last one is valid. It holds answers and all that decides which answers count (plans, exclusions, endings,
-/// notes, permissions, the log), but no frames and gaze, which are too many. Personal answers are only in the
-/// personal file.
+/// notes, permissions, the log), but no frames, slots and gaze, which are too many. Personal answers are only
+/// in the personal file.
 ///
 /// Order for each commit: append the rows and {"ready": n}, flushed to disk if the batch has answers; commit;
 /// append {"kept": n}. So every acknowledged row is in both files. A last batch that is ready but not kept

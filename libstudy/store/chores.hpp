@@ -1,7 +1,7 @@
 #pragma once
-/// Work in other files that a withdrawal or a merge requires. It is committed in the table `chore` with the
-/// change, done afterwards, and then deleted. Work that a kill or a full disk left over is done when the
-/// database is next opened for writing.
+/// Work in other files that a withdrawal, a refusal of gaze or a merge requires. It is committed in the table
+/// `chore` with the change, done afterwards, and then deleted. Work that a kill or a full disk left over is
+/// done when the database is next opened for writing.
 
 #include <filesystem>
 #include <map>
@@ -19,7 +19,7 @@ struct CleanUp {
   std::vector<std::string> left;
 };
 
-/// base::Error with the number of lines in `left` unless it is empty. Show the lines before.
+/// base::Error with the number of lines in `left`, if there are any. Show the lines before.
 void check_nothing_left(const std::filesystem::path& database, const std::vector<std::string>& left);
 
 /// Adds rows to `chore` within the caller's transaction.
@@ -28,7 +28,7 @@ class ChorePlan {
   explicit ChorePlan(sqlite::Connection& database);
   /// Deletes a person from the files beside the database, where `participant` is the code.
   void forget(const std::string& person, const std::string& participant);
-  /// Changes codes in those files, all at once.
+  /// Changes codes in the files beside the database, all at once.
   struct Rename {
     std::string before, now;
   };

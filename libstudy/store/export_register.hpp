@@ -34,10 +34,10 @@ std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 ///   ... rename ...
 ///   record.is_in_place();
 ///
-/// It is entered in two registers: in the database, where a withdrawal looks, and in that of this
-/// installation (own_exports.hpp), without which nothing is deleted. Each step writes the database briefly
-/// and upgrades an older schema. base::Error if the database cannot be written, because the export could then
-/// not be found again. If the second register cannot be written, the export is made all the same.
+/// The export is entered in two registers: the database's, where a withdrawal looks, and this installation's
+/// (own_exports.hpp), without which nothing is deleted. Each step writes the database briefly and upgrades an
+/// older schema. base::Error if the database cannot be written, because the export could then not be found
+/// again. If the second register cannot be written, the export is made all the same.
 class RegisteredExport {
  public:
   /// draft: path that is written first; empty: a generated name, see draft().
@@ -71,8 +71,7 @@ class RegisteredExport {
 class RegisteredFiles {
  public:
   explicit RegisteredFiles(const StudyFile& study);
-  /// Makes a missing folder for such files, 0700, and its parents. A withdrawal that empties such a folder
-  /// removes it.
+  /// Makes a missing folder for write(), 0700, and its parents. A withdrawal that empties it removes it.
   void make_folder(const std::filesystem::path& folder) const;
   /// Puts a file in place, mode 0600 whatever the umask, replacing an earlier one.
   void write(const std::string& kind, const std::filesystem::path& path, const std::string& bytes) const;
@@ -86,7 +85,7 @@ class RegisteredFiles {
 bool holds_withdrawn(sqlite::Connection& database);
 
 /// Deletes every registered export that holds somebody who withdrew, with drafts that a kill left beside it,
-/// and then the empty folders made for such files. Each deletion is on disk before its row is deleted.
+/// and then the empty folders made for exports. Each deletion is on disk before its row is deleted.
 ///
 /// Deletes only exports in the register of this installation with unchanged content and with somebody who
 /// withdrew. Lists in done.left: exports on another computer, not registered by this installation, changed,

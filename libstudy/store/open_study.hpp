@@ -22,8 +22,8 @@ struct OpenedStudy {
 /// StudyFile::incomplete it is opened nevertheless, and `lacking` says what is missing.
 ///
 /// A reader sees the state that the next opening for writing would produce, in a temporary copy if the file
-/// differs: it has a commit that a kill interrupted, but no people with a tombstone in the journal or in an
-/// unfinished withdrawal, and no gaze that was refused there. This holds for an incomplete study as well.
+/// differs. That state has a commit that a kill interrupted, but no people with a tombstone in the journal or
+/// in an unfinished withdrawal, and no gaze that is refused. The same holds for an incomplete study.
 OpenedStudy open_study(const StudyFile& study);
 
 /// OpenedStudy::lacking of a study; does not fail for an incomplete one.

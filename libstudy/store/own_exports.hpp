@@ -50,8 +50,8 @@ void has_deleted_own_export(const OwnExport& made);
 /// before, may still list it.
 bool was_deleted_here(const std::filesystem::path& path, const std::string& sha256);
 
-/// The list of a folder's files, "<SHA-256> <name>" a line as sha256sum -c reads it, under a line with its
-/// id. It is stored in the folder itself as marker_of(kind) and lists all other files.
+/// The list of a folder's files, "<SHA-256> <name>" a line as sha256sum -c reads it, below a line with
+/// the export's id. It is stored in the folder itself as marker_of(kind) and lists all other files.
 std::string list_of_files(const std::filesystem::path& folder, const std::string& kind,
                           const std::string& id);
 /// Path of the list of hashes in an exported folder of this kind; empty if this kind is a single file.

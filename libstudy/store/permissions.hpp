@@ -14,7 +14,7 @@
 
 namespace study {
 
-/// Kind of the log's events about a change.
+/// Kind of the log's events about a changed permission.
 inline constexpr const char* permission_event = "permission changed";
 
 /// Permissions of a session. True: allowed; false: refused, or asked and not answered yet; none: not asked.
@@ -60,7 +60,7 @@ void record_permission(sqlite::Connection& database, std::int64_t session, const
 
 /// Numbers of people in a public export and left out.
 struct SharingCount {
-  std::int64_t allowed = 0, not_asked = 0;     ///< in it
+  std::int64_t allowed = 0, not_asked = 0;     ///< in the export
   std::int64_t refused = 0, not_answered = 0;  ///< left out, with all their sessions
 };
 SharingCount count_sharing(sqlite::Connection& database);

@@ -19,7 +19,7 @@ namespace study {
 std::set<std::string> delete_refused_gaze(sqlite::Connection& database);
 
 /// The same for a union of databases. Also deletes gaze recorded before a refusal that was later withdrawn,
-/// because it may come from a copy that has neither change.
+/// because that gaze may come from a copy that has neither change.
 void drop_unallowed_gaze(sqlite::Connection& database);
 
 /// SQL condition on rows of gaze, head or gaze_validation: gaze is allowed now in their session. Exports

@@ -18,7 +18,7 @@ std::string head_for(sqlite::Connection& database);
 struct Comparison {
   std::string news;            ///< rows of the database that are missing or different in the journal
   std::int64_t lost = 0;       ///< kept rows that the database lacks
-  std::int64_t answers = 0;    ///< responses among them
+  std::int64_t answers = 0;    ///< answers among the lost rows
   std::int64_t different = 0;  ///< answers that differ between database and journal
 };
 /// Compares a database with the kept rows of its journal.
@@ -39,7 +39,8 @@ struct Settled {
   std::int64_t last_number = 0;        ///< largest number of a batch in use
   std::set<std::string> gaze_deleted;  ///< persons whose gaze was deleted because they refuse it
 };
-/// Reconciles both. base::Error: the journal holds more than the database, or cannot be written.
+/// Reconciles database and journal. base::Error: the journal holds more than the database, or cannot be
+/// written.
 Settled settle(sqlite::Connection& database, JournalFile& file);
 
 /// Calls settle() before anything else is written, for callers without an open journal. Returns lines that

@@ -40,7 +40,7 @@ struct SceneFraming {
   std::vector<int> cells;                  ///< of the protocol's design
   std::vector<int>
       copied;            ///< of these, the cells whose pictures come from a bake; the others are drawn live
-  std::string renderer;  ///< that draws or drew them; empty: not known
+  std::string renderer;  ///< that draws or drew the pictures; empty: not known
 };
 
 /// Facts of a session that are written before its first unit.
@@ -62,7 +62,7 @@ struct SessionPlan {
   Plan plan;
 };
 
-/// Facts of a run that are written: one command for one or more participants.
+/// A run, one command for one or more participants, as it is stored.
 struct RunPlan {
   Protocol protocol;
   std::string options;  ///< text from which the program restores the run's options
@@ -136,9 +136,8 @@ struct KeptAnswer {
 class Store {
  public:
   /// Open::Create or Open::Write. max_pages > 0 limits the file's size to that many pages. A file made here
-  /// is removed again if nothing is stored in it. First does the chores that a withdrawal or a merge left
-  /// (chores.hpp) and the requested withdrawals (withdraw.hpp). waiting: for locks of other programs; five
-  /// seconds without it.
+  /// is removed again if nothing is stored in it. First does the chores left over (chores.hpp) and the
+  /// requested withdrawals (withdraw.hpp). waiting: for locks of other programs; five seconds without it.
   Store(const std::filesystem::path& path, sqlite::Open how, std::int64_t max_pages = 0,
         const sqlite::Waiting& waiting = {});
   ~Store();
@@ -159,8 +158,8 @@ class Store {
   /// another only in case, or if the protocol's name and version are stored with another text.
   std::int64_t add_run(const RunPlan& run);
 
-  /// For a resumed session: stores how the display frames its scenes now, if that changed. Later
-  /// presentations refer to it.
+  /// Stores how the display of a resumed session frames its scenes, if that changed. Later presentations
+  /// refer to the new framing.
   void add_framing(std::int64_t session, const std::vector<SceneFraming>& framing);
   /// Stores the facts of a session's headset unless equal facts are stored already.
   void add_headset(std::int64_t session, const HeadsetFacts& headset);
@@ -177,7 +176,7 @@ class Store {
   /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
   /// refused, not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
-  /// Station numbers of those sessions, each once; an entry of none: sessions without a number.
+  /// Station numbers of the sessions that taken_slots() counts, each once; none: sessions without a number.
   std::vector<std::optional<StationNumber>> station_numbers(const std::string& protocol_sha256);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. gaze_source: the gaze that
@@ -188,7 +187,8 @@ class Store {
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
-  /// Participants who asked at a session's end to delete all their data: do it once this Store is closed.
+  /// Participants who asked at a session's end to delete all their data: withdraw() them once this Store is
+  /// closed.
   std::vector<std::string> requested_withdrawals();
   /// True if this session has any presentation, or any answer.
   bool has_shown(std::int64_t session);
@@ -196,7 +196,7 @@ class Store {
   /// True if the participant currently allows recording gaze in this session.
   bool allows_gaze(std::int64_t session);
   /// Commits samples of a presentation, appended to its former ones. base::Error, with nothing stored, unless
-  /// the participant allows it.
+  /// the participant allows recording gaze.
   void add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
                 std::span<const GazeSample> samples);
   /// Commits slots of a presentation, appended to its former ones. base::Error, with nothing stored, for a
@@ -244,8 +244,8 @@ class Store {
   /// A copy of a database that another program has locked. Its changes go only into the journal; the next
   /// opening of the database takes them over.
   explicit Store(Store& locked);
-  /// Makes a change that cannot be repeated: an answer or a note. If the file is locked, makes it in such a
-  /// copy and then throws LockedOut.
+  /// Makes a change that cannot be repeated: an answer or a note. If the file is locked, makes it in
+  /// copy_ and then throws LockedOut.
   void make(const std::function<void(Store&)>& change);
   void write_answers(std::int64_t session, const OpenUnit& unit, int attempt,
                      std::span<const KeptAnswer> answers, bool last, std::int64_t clock_ns,

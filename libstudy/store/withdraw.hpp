@@ -29,7 +29,7 @@ struct Withdrawal {
 /// opened.
 inline constexpr const char* withdrawal_request = "withdrawal wished";
 
-/// Participants with such an event. base::Error as read_tasks().
+/// Participants with an event withdrawal_request. base::Error as read_tasks().
 std::vector<std::string> requested_withdrawals(const StudyFile& study);
 std::vector<std::string> requested_withdrawals(sqlite::Connection& database);
 

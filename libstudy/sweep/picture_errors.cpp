@@ -5,7 +5,7 @@
 #include <exception>
 #include <limits>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/timing.hpp"
 #include "stats/image/flicker.hpp"

@@ -1,9 +1,12 @@
 #pragma once
 /// Untrusted text: UTF-8 checks and display in messages.
 
+#include <charconv>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace base {
@@ -26,6 +29,16 @@ std::string joined(const std::vector<std::string>& words);
 /// The parts of a line between separators, such as the cells of CSV without quotes. An empty last part is
 /// left out.
 std::vector<std::string> split(const std::string& line, char separator = ',');
+
+/// The number that all of `text` is; none if it is no number, or beyond the type's range.
+template <class Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end) return {};
+  return value;
+}
 
 /// The shortest text that reads back to the same double: "0.1", "1e-05".
 std::string shortest(double value);

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "stats/base/error.hpp"
-#include "stats/base/file.hpp"
 #include "stats/base/nearest.hpp"
 #include "stats/base/text.hpp"
 #include "stats/base/toml_parser.hpp"
@@ -341,10 +340,6 @@ TomlTable parse_toml(std::string_view text, const std::string& name) {
   state->table = state->root.get();
   state->file = name;
   return TomlTable(state);
-}
-
-TomlTable read_toml(const std::filesystem::path& path) {
-  return parse_toml(read_file(path, most_toml_bytes), path.string());
 }
 
 std::string toml_quoted(std::string_view text) {

@@ -94,8 +94,6 @@ class TomlTable {
 
 /// Parses text; messages use `name` as the file name.
 TomlTable parse_toml(std::string_view text, const std::string& name);
-/// Reads a file of at most most_toml_bytes (toml_text.hpp).
-TomlTable read_toml(const std::filesystem::path& path);
 
 /// A TOML basic string, quoted and escaped.
 std::string toml_quoted(std::string_view text);

@@ -1,21 +1,33 @@
 #pragma once
-/// Points on two logarithmic axes with a straight line through them, as SVG.
+/// Logarithmic axes, and points on two of them with a straight line through them, as SVG.
 
 #include <string>
 #include <vector>
 
 namespace figures {
 
+/// A logarithmic axis of a diagram.
+struct LogScale {
+  double low = 1, high = 10;  ///< 0 < low < high
+  /// Relative position of a value: 0 at low, 1 at high.
+  double share(double value) const;
+};
+
+/// 1, 2 and 5 times each power of ten, from the last one not above `least` to the first one not below `most`,
+/// at least two. Over more than three decades only the powers. 0 < least <= most.
+std::vector<double> log_ticks(double least, double most);
+std::string tick_label(double tick);
+
 struct LogChart {
   struct Point {
     double x = 0, y = 0;  ///< above 0
-    double high = 0;  ///< upper end of a stroke from y; y or less: none
+    double high = 0;      ///< upper end of a stroke from y; y or less: none
   };
   std::string title, x_title, y_title;
-  std::string note;           ///< beside the line
+  std::string note;                ///< beside the line
   std::vector<Point> points = {};  ///< at least one
-  double slope = 0;           ///< of the line: y = factor x^slope
-  double factor = 0;          ///< above 0
+  double slope = 0;                ///< of the line: y = factor x^slope
+  double factor = 0;               ///< above 0
 };
 std::string to_svg(const LogChart& chart);
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "stats/gsl_errors.hpp"
-#include "stats/quantiles.hpp"
 
 namespace stats {
 
@@ -249,13 +248,6 @@ ExponentialFit unscaled(const Scaled& data, const Candidate& best) {
 
 double ExponentialFit::value(double x) const { return a * std::exp(b * x); }
 
-std::optional<double> ExponentialFit::value_se(double x) const {
-  if (!covariance) return std::nullopt;
-  const double da = std::exp(b * x), db = a * x * da;
-  const double variance = da * da * covariance->aa + 2 * da * db * covariance->ab + db * db * covariance->bb;
-  return std::sqrt(std::max(variance, 0.0));
-}
-
 Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<const double> y,
                                        std::span<const double> weights) {
   auto cleaned = clean(x, y, weights);
@@ -276,11 +268,6 @@ Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<cons
     return Refusal{"a, b or the sum of squares is beyond double precision"};
   }
   return fit;
-}
-
-std::array<double, 2> wald_interval(double estimate, double se, int df, double level) {
-  const double half = student_quantile(0.5 + level / 2, df) * se;
-  return {estimate - half, estimate + half};
 }
 
 }  // namespace stats

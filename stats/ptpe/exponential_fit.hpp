@@ -25,8 +25,6 @@ struct ExponentialFit {
 
   int df() const { return n - 2; }
   double value(double x) const;
-  /// Standard error of value(x) by the delta method; empty without a covariance.
-  std::optional<double> value_se(double x) const;
 };
 
 /// Global minimum over a and b with the trust-region solver of GSL (gsl_multifit_nlinear,
@@ -47,8 +45,5 @@ struct ExponentialProfile {
 /// From the same pairs as the fit. Refused as fit_exponential; also with two pairs or zero residuals.
 Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::span<const double> y,
                                                std::span<const double> weights = {}, double level = 0.95);
-
-/// estimate -+ t(1 - (1-level)/2, df) se, df >= 1.
-std::array<double, 2> wald_interval(double estimate, double se, int df, double level = 0.95);
 
 }  // namespace stats

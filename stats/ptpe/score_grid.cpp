@@ -75,23 +75,6 @@ void add_line(Contour& contour, const std::vector<Node>& nodes) {
 
 }  // namespace
 
-std::vector<ContourPoint> edge_crossings(const ScoreGrid& grid, double level) {
-  std::vector<ContourPoint> points;
-  const auto add = [&](const Node& p, const Node& q) {
-    if (const auto point = crossing(p, q, level)) points.push_back(*point);
-  };
-  for (std::size_t row = 0; row < grid.mu.size(); ++row) {
-    for (std::size_t column = 0; column < grid.delta.size(); ++column) {
-      if (row + 1 < grid.mu.size()) add(grid.at(row, column), grid.at(row + 1, column));
-      if (column + 1 < grid.delta.size()) add(grid.at(row, column), grid.at(row, column + 1));
-    }
-  }
-  std::sort(points.begin(), points.end(), [](const ContourPoint& p, const ContourPoint& q) {
-    return p.delta != q.delta ? p.delta < q.delta : p.mu < q.mu;
-  });
-  return points;
-}
-
 Contour column_crossings(const ScoreGrid& grid, double level, std::span<const double> line_deltas) {
   Contour contour;
   contour.level = level;

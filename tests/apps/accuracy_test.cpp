@@ -10,7 +10,7 @@
 #include "libstudy/sweep/run/run_cell.hpp"
 #include "libstudy/sweep/run/work_precision.hpp"
 #include "stats/base/error.hpp"
-#include "stats/figures/log_axis.hpp"
+#include "stats/figures/log_chart.hpp"
 #include "tests/apps/small_sweep.hpp"
 #include "tests/apps/table_test_support.hpp"
 

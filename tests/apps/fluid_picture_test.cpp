@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 
 namespace {
 

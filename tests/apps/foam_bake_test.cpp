@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/stimulus/bakes/write_bake.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 #include "stats/base/json.hpp"
 #include "tests/apps/study_test_support.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/pages/gui/pad.hpp"
 #include "libstudy/pages/headset/answer_ways.hpp"
 #include "libstudy/pages/headset/dwell.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/common/protocols.hpp"

@@ -1,4 +1,4 @@
-#include "libsim/measure/limit_search.hpp"
+#include "libsim/measure/stability_map.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,8 +7,8 @@
 
 #include <cstdlib>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/pages/gui/gui.hpp"
 #include "libstudy/pages/page_characters.hpp"
 #include "stats/base/error.hpp"

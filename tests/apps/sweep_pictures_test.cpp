@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 #include "libstudy/sweep/run/accuracy_page.hpp"
 #include "libstudy/sweep/run/budget.hpp"
 #include "stats/base/error.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/table_test_support.hpp"
 

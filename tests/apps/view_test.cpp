@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "libsim/gl/png.hpp"
 #include "libsim/ptpe/ptpe_file.hpp"
-#include "libsim/render/png.hpp"
 #include "libsim/scene/effects.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "tests/common/temporary_folder.hpp"
 #include "tests/headset/openxr.hpp"
 

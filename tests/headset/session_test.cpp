@@ -4,7 +4,7 @@
 #include <thread>
 #include <utility>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 #include "tests/headset/client.hpp"
 
 namespace simulated {

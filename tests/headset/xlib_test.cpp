@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <regex>
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 #include "stats/base/file.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/headset/client.hpp"

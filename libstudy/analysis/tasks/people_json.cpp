@@ -1,10 +1,10 @@
 #include "libstudy/analysis/tasks/people_json.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
+#include "stats/base/text.hpp"
 #include "stats/inference/describe.hpp"
 
 namespace study {
@@ -43,11 +43,8 @@ std::string score_of(const Question& question, const std::string& answer) {
 void add_numbers(Json& json, const Question& question, std::vector<std::string> answers) {
   for (std::string& answer : answers) answer = score_of(question, answer);
   std::vector<double> values;
-  for (const std::string& answer : answers) {
-    int value = 0;
-    const auto [end, problem] = std::from_chars(answer.data(), answer.data() + answer.size(), value);
-    if (problem == std::errc() && end == answer.data() + answer.size()) values.push_back(value);
-  }
+  for (const std::string& answer : answers)
+    if (const auto value = base::parse_number<int>(answer)) values.push_back(*value);
   if (static_cast<int>(values.size()) < fewest_numbers) {
     json["refused"] = "fewer than " + std::to_string(fewest_numbers) +
                       " answers: their summary would nearly give the answers themselves";

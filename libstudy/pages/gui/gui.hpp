@@ -35,7 +35,7 @@ class Gui {
     /// Called before each picture: tells ImGui's IO the size, the pointer and what was typed.
     std::function<void()> look;
     std::function<unsigned()> framebuffer;  ///< called for each picture
-    /// Answers come only through the page, so it shows its own keys, arrows and stop button.
+    /// Answers come only through the page, so the page shows its own keys, arrows and stop button.
     bool by_hand = false;
   };
 

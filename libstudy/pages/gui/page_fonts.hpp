@@ -31,8 +31,9 @@ struct FontFile {
 /// no other font has one.
 std::vector<FontFile> find_fonts(const PageCharacters& needed);
 
-/// The usual characters (Latin, Greek, Cyrillic, punctuation, arrows) and those of `needed`, `size` px high
-/// from the highest ascent to the lowest descent. The caller builds the atlas.
+/// Adds fonts to an atlas, which the caller builds: the usual characters (Latin, Greek, Cyrillic,
+/// punctuation, arrows, signs) and those of `needed`, `size` px high from the highest ascent to the lowest
+/// descent.
 class PageType {
  public:
   explicit PageType(const PageCharacters& needed);

@@ -56,7 +56,7 @@ class PageSurface {
 
   /// Why the picture could not be seen at some time since the last call; none: it was seen.
   virtual std::optional<CutCause> take_unseen() = 0;
-  /// True if it cannot be seen now.
+  /// True if the picture cannot be seen now.
   virtual bool unseen() const { return false; }
   /// The session is over (true) or another one begins (false). Once over, closing the surface is no error.
   virtual void set_over(bool /*over*/) {}

@@ -74,7 +74,7 @@ class PageView {
   const DeskWords& words_;
   PageText text_;
   const char* layer_;
-  bool begun_ = false;  ///< it was drawn before
+  bool begun_ = false;  ///< the page was drawn before
   float pinned_until_ =
       -1;             ///< lower edge of the words pinned above a table, px; rows ignore clicks above it
   float column_ = 0;  ///< width of the text, px

@@ -17,7 +17,7 @@
 
 namespace study {
 
-/// One instance per session. All calls on the surface's thread. `clock` is the session's; surface and clock
+/// The screens of one session. All calls on the surface's thread. `clock` is the session's; surface and clock
 /// must outlive this.
 class Pages {
  public:
@@ -65,7 +65,7 @@ class Pages {
   bool in_page_ = false;  ///< a page is shown, which handles requests to stop
   bool stop_requested_ = false;
   bool over_ = false;  ///< see set_over()
-  bool away_ = false;  ///< the last request was a cut because the surface was unseen; it may still be
+  bool away_ = false;  ///< the last request was a cut because the surface was unseen, as it may still be
 };
 
 /// A person who answers on pages.

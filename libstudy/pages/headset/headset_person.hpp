@@ -14,7 +14,7 @@
 
 namespace study {
 
-/// Each part keeps the pages alive.
+/// The parts; each keeps the pages alive.
 struct HeadsetPerson {
   std::unique_ptr<Participant> participant;
   std::function<Request(const std::function<Request()>& others)> request;  ///< see SessionHooks::request

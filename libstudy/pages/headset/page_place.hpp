@@ -10,7 +10,7 @@ namespace study {
 
 /// Size of the picture, px.
 inline constexpr int page_width_px = 1280, page_height_px = 1120;
-/// Distance from the eye when it appears, m, and its visual width then, degrees.
+/// Distance of a page from the eye when the page appears, m, and its visual width then, degrees.
 inline constexpr double page_distance_m = 1.5, page_width_deg = 38;
 /// Least visual height of the letter x of body text anywhere on the page, degrees.
 inline constexpr double least_x_height_deg = 0.5;
@@ -25,7 +25,7 @@ HeadsetPage place_page(const HeadsetPose& head);
 bool is_left_behind(const HeadsetPage& page, const HeadsetPose& head);
 
 /// Point where a ray along direction_of() meets the page's front, px from the picture's upper left corner.
-/// Empty if it does not.
+/// None if the ray misses the page.
 std::optional<std::pair<float, float>> meet_page(const HeadsetPage& page, const HeadsetPose& ray);
 
 }  // namespace study

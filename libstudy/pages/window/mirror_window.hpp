@@ -6,18 +6,18 @@
 #include <mutex>
 #include <thread>
 
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/window/glfw_window.hpp"
 
 namespace study {
 
-/// It is on another monitor than the participant's. The participant's thread only makes a small copy of each
-/// finished picture. The mirror's own thread, whose context shares the copies, shows the last one, about ten
-/// per second, without waiting for the screen. Input to the window is ignored.
+/// The mirror is on another monitor than the participant's window. The participant's thread only makes a
+/// small copy of each finished picture. The mirror's own thread, whose context shares the copies, shows the
+/// last one, about ten per second, without waiting for the screen. Input to the window is ignored.
 class MirrorWindow {
  public:
   /// Call on the thread and with the current context of the participant's window, which must outlive it.
-  /// logged: the title says so. base::Error if that window fills the only monitor.
+  /// logged: the title ends in "(logged)". base::Error if that window fills the only monitor.
   MirrorWindow(const GlfwWindow& participant, bool logged);
   ~MirrorWindow();
   MirrorWindow(const MirrorWindow&) = delete;

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libstudy/pages/gui/page_surface.hpp"
 #include "libstudy/session/session.hpp"
 #include "stats/base/error.hpp"

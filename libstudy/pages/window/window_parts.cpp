@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libstudy/base/clock.hpp"
 #include "libstudy/console/preflight.hpp"
 #include "libstudy/console/refresh.hpp"

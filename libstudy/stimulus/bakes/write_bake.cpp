@@ -4,7 +4,7 @@
 #include <chrono>
 #include <optional>
 
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/setting/finite_water.hpp"
 #include "stats/base/progress.hpp"

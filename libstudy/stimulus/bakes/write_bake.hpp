@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "libsim/bake/bake_file.hpp"
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 #include "libstudy/stimulus/bakes/bake_order.hpp"
 
 namespace study {

@@ -1,6 +1,6 @@
 #pragma once
-/// Parts of export_bids(): tables and sidecars in a draft, the times of a session, questions as columns, and
-/// the pages of questionnaires.
+/// Parts of export_bids(): tables and sidecars in a draft, the times of a session, its headset, head poses
+/// and gaze, questions as columns, and the pages of questionnaires.
 
 #include <cstdint>
 #include <map>
@@ -38,9 +38,9 @@ class Writer {
   explicit Writer(const ExportDraft& draft) : draft_(draft) {}
 
   void table(const std::string& name, const Table& rows);
-  /// Without a header line.
+  /// A table without its header line.
   void bare_table(const std::string& name, const Table& rows);
-  /// Without a header line, compressed by gzip: the same table gives the same bytes.
+  /// A table without its header line, compressed by gzip: the same table gives the same bytes.
   void compressed_table(const std::string& name, const Table& rows);
   void text(const std::string& name, const std::string& text);
   void json(const std::string& name, const Json& json) { text(name, json.dump(2) + "\n"); }
@@ -57,7 +57,7 @@ class SessionTime {
  public:
   /// Onset of the session's next presentation. Arguments are on the clock of its process; no end: it was cut.
   std::int64_t onset_of(std::int64_t start_ns, std::optional<std::int64_t> end_ns);
-  /// End of that presentation.
+  /// End of the presentation that onset_of() was given last.
   std::int64_t end_ns() const { return end_ns_; }
 
  private:
@@ -76,8 +76,8 @@ Json headset_of(sqlite::Connection& database, std::int64_t session);
 /// Writes head poses as a motion recording ("motion/..._tracksys-headset_motion.tsv").
 void write_motion(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
-/// Writes gaze: samples of an eye tracker as an eye recording ("recording-eye1_physio.tsv.gz"), of the mouse,
-/// which is no eye tracker, as behaviour ("acq-mouse_beh.tsv").
+/// Writes gaze: samples of an eye tracker as an eye recording ("recording-eye1_physio.tsv.gz"), those of a
+/// mouse as behaviour ("acq-mouse_beh.tsv").
 void write_gaze(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
 /// A question as a column.
@@ -86,7 +86,7 @@ struct Item {
   std::string code, wording, anchors;
 };
 
-/// Describes the column, including the words at its scores.
+/// Describes a question's column, including the words at its scores.
 Json question_column(const Item& item);
 /// Questions with scores asked in trials or on pages of a block; `of`: SQL condition on unit u.
 std::vector<Item> items(sqlite::Connection& database, std::int64_t session, const std::string& of);

@@ -1,6 +1,6 @@
 #pragma once
 /// Copies beside a database: "<database>.v<version>-<UTC time>.bak" from an upgrade, "<database>.rescued-<UTC
-/// time>.db" from a session whose file was removed or replaced.
+/// time>.db", or at least its log ".wal", from a session whose file was removed or replaced.
 
 #include <filesystem>
 #include <string>

@@ -23,12 +23,12 @@ SchemaSteps read_schema_steps();
 /// its log and journal, so that a file left by a kill, a full disk or a power cut is read correctly.
 ///
 /// Open::Create makes a missing or empty file into a database; Open::Write upgrades an older one, each step
-/// in one transaction, after a copy "<path>.v<version>-<UTC time>.bak"; both are 0600 then, and watched
-/// (Connection::watch). A writer must hold a WriterLock. Open::Read returns an upgraded temporary copy of an
-/// older database, and a temporary copy if nothing can be written beside the file. base::Error, with the file
-/// and its neighbours unchanged: not a database of this program, foreign tables or views (schema.hpp), a log
-/// of another database beside it (foreign_log.hpp), newer than `steps`, or damaged beyond SQLite's recovery
-/// (integrity check). An existing log stays unchanged: for good with Open::Read, else until
+/// in one transaction, after a copy "<path>.v<version>-<UTC time>.bak"; either makes the file 0600 and
+/// watches it (Connection::watch). A writer must hold a WriterLock. Open::Read returns an upgraded temporary
+/// copy of an older database, and a temporary copy if nothing can be written beside the file. base::Error,
+/// with the file and its neighbours unchanged: not a database of this program, foreign tables or views
+/// (schema.hpp), a log of another database beside it (foreign_log.hpp), newer than `steps`, or damaged beyond
+/// SQLite's recovery (integrity check). An existing log stays unchanged: for good with Open::Read, else until
 /// Connection::keep_log(false), after the comparison with the journal of answers. max_pages > 0 limits the
 /// file to that many pages of 4 KiB; waiting: Connection::wait_with.
 std::unique_ptr<sqlite::Connection> open_database(const std::filesystem::path& path, sqlite::Open how,

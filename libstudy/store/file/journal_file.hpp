@@ -32,10 +32,10 @@ struct JournalContent {
 
 /// "<database>.answers.jsonl", beside the real file if `database` is a link.
 std::filesystem::path journal_beside(const std::filesystem::path& database);
-/// A missing file gives empty content. base::Error: a link, not a file, unreadable.
+/// Reads a journal; a missing file gives empty content. base::Error: a link, not a file, unreadable.
 JournalContent read_journal(const std::filesystem::path& path);
 
-/// Largest number of an event; 0: none.
+/// Largest number of an event among the rows; 0: none.
 std::int64_t last_event(const JournalRows& rows);
 
 /// Journal lines that are not rows.

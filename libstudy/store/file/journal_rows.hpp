@@ -21,14 +21,15 @@ struct Table {
   const char* joins = "";        ///< ... and the joins to their tables
 };
 
-/// All journalled tables, parents first: all but frames, gaze, exports and chores. Only withdrawals delete
-/// rows of these tables.
+/// All journalled tables, parents first: all but frames, slots, gaze, exports and chores. Only withdrawals
+/// delete rows of these tables.
 std::span<const Table> tables();
-/// Null if the table is not journalled.
+/// The table of this name; null if it is not journalled.
 const Table* find_table(const std::string& name);
 
 /// A row in the journal: a JSON object on one line, {"table": name, column: value, ..., "of": {participant,
-/// session, unit, block, question}}. Equal rows make equal lines.
+/// session, trial, unit, block, question}}; "of" has what the table's `context` selects. Equal rows make
+/// equal lines.
 struct Row {
   const Table* table = nullptr;
   std::string key;  ///< of this row, unique in its table
@@ -43,13 +44,13 @@ void each_row(sqlite::Connection& database, const Table& table, std::span<const 
 /// The same for the rows of a protocol in question, ask or cell.
 void each_row_of_protocol(sqlite::Connection& database, const Table& table, std::int64_t protocol_id,
                           const std::function<void(Row)>& take);
-/// The row in the database now; none if it is missing.
+/// The row as the database has it now; none if it is missing.
 std::optional<Row> stands_as(sqlite::Connection& database, const Row& row);
 
 /// Maximum nesting of JSON in a line; a deeper line is not a journal line.
 inline constexpr int most_levels = 8;
 
-/// None if the line is not a row of a journalled table.
+/// Parses a line; none if it is not a row of a journalled table.
 std::optional<Row> read_row(const std::string& line);
 /// The value of a column as text; empty for NULL and for a missing column.
 std::string column(const Row& row, const std::string& name);

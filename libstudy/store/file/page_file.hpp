@@ -33,7 +33,7 @@ class File {
   File& operator=(const File&) = delete;
 
   std::size_t size() const { return size_; }
-  /// Shorter at the end of the file. A sector that the disk cannot read gives zeros.
+  /// Reads `count` bytes, fewer at the end of the file. A sector that the disk cannot read gives zeros.
   std::string read(std::size_t at, std::size_t count) const;
 
  private:
@@ -49,7 +49,7 @@ class Log {
  public:
   explicit Log(const std::filesystem::path& path);
 
-  /// 0 if there is no log.
+  /// Size of a page; 0 if there is no log.
   std::size_t page_bytes() const { return page_bytes_; }
   std::size_t page_count() const { return page_count_; }
   bool holds(std::size_t page) const { return places_.contains(page); }

@@ -66,7 +66,7 @@ class Connection {
   /// The first 100 bytes of the file, or fewer if it is shorter. As the first call, it neither uses nor
   /// changes the file's log or journal.
   std::string header();
-  /// True if SQLite can read it in place; false if it would have to write beside the file and may not.
+  /// True if SQLite can read the file in place; false if it would have to write beside it and may not.
   bool can_read();
   /// If `keep`, the log stays unchanged beside the file: none of its pages is copied into the file. Default:
   /// false.

@@ -48,7 +48,7 @@ std::vector<SessionCopy> choose_sessions(Content& content);
 std::map<std::string, std::string> name_people(const Content& content);
 
 /// Reasons why the stations did not share the assignment: two sources used one station number or none, or
-/// different numbers of stations. One sentence each, without a full stop.
+/// were told different numbers of stations. One sentence each, without a full stop.
 std::vector<std::string> station_troubles(const Content& content);
 
 /// Writes the union into an empty database of the newest schema.

@@ -18,7 +18,7 @@ struct FrameCosts {
   bool operator==(const FrameCosts&) const = default;
 };
 
-/// JSON on one line.
+/// Frame costs as JSON on one line.
 std::string format_frame_costs(const std::vector<FrameCosts>& costs);
 /// base::Error naming `place` for anything that format_frame_costs() does not write.
 std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::string& place);

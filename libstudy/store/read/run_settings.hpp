@@ -10,11 +10,12 @@
 
 namespace study {
 
-/// SQL expression for their SHA-256, separated by spaces, in a statement with `session`; NULL: none.
+/// SQL for the SHA-256 of a session's settings, separated by spaces, in a statement with `session`; NULL:
+/// none.
 inline constexpr const char* setting_sha256_sql =
     "(SELECT group_concat(json_extract(e.value, '$.sha256'), ' ') FROM run r, json_each(iif(json_valid("
     "r.options), r.options, '{}'), '$.settings') e WHERE r.run_id = session.run_id)";
-/// Meaning of that column in every export.
+/// Meaning of the column setting_sha256 in every export.
 inline constexpr const char* setting_sha256_meaning =
     "SHA-256 of each setting file (--setting) that live cells ran at, separated by spaces; the export holds "
     "each as setting_<first 12 digits>.toml; empty: the solver's usual settings";

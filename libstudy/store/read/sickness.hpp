@@ -49,7 +49,7 @@ struct SicknessSession {
   const SsqPage* ssq_after() const;
 };
 
-/// Every session with an answer to either, by protocol, participant and visit. base::Error for an answer
+/// Every session with an answer to SSQ or FMS, by protocol, participant and visit. base::Error for an answer
 /// outside its scale.
 std::vector<SicknessSession> read_sickness(sqlite::Connection& database);
 /// base::Error as read_tasks().

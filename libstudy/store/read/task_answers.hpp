@@ -88,8 +88,8 @@ struct TaskSession {
   std::string stimulus;                 ///< description of the stimuli from the session's plan
   std::vector<RunSetting> settings;     ///< solver settings of its live fluid
   std::vector<FrameCosts> frame_costs;  ///< latest measurement of its station; empty: not measured
-  /// Latest time among the rows written before the first answer: by row order the answer was not earlier,
-  /// whatever the clock said then. Empty: not known.
+  /// Latest time stored in the database before the session began: its first answer came later, whatever its
+  /// station's clock said. Empty: not known.
   std::string not_before_utc = {};
 };
 

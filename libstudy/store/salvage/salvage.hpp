@@ -20,7 +20,7 @@ struct Salvage {
   std::int64_t frames = 0;             ///< all from the database: the journal has none
   std::int64_t frames_lost = 0;        ///< of presentations that were played to the end
   std::int64_t unreadable = 0;         ///< lines of the journal
-  /// Answers that differ between the two; the new database has the database's version.
+  /// Answers that differ between database and journal; the new database has the database's version.
   std::vector<std::string> different;
   /// Number of answers, by participant, that are known to have been given but were not found.
   std::map<std::string, std::int64_t> answers_lost;

@@ -6,14 +6,14 @@
 #include <numbers>
 #include <optional>
 
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/png.hpp"
 #include "libsim/measure/checkpoint.hpp"
 #include "libsim/measure/masks.hpp"
 #include "libsim/measure/onlooker.hpp"
 #include "libsim/measure/render_timer.hpp"
 #include "libsim/measure/timed_run.hpp"
 #include "libsim/methods/preset.hpp"
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/png.hpp"
 #include "libsim/scene/fill.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "libsim/scene/scene.hpp"

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "stats/figures/log_axis.hpp"
+#include "stats/figures/log_chart.hpp"
 
 namespace study {
 

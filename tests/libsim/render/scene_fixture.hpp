@@ -11,9 +11,9 @@
 #include <optional>
 #include <vector>
 
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "libsim/render/fluid_renderer.hpp"
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
 
 namespace render_test {
 

@@ -140,9 +140,6 @@ void expect_pipeline(const json& item) {
     const std::string key = "level" + std::to_string(level);
     const std::string where = std::string(item.at("id")) + ' ' + key;
     const auto& at = expect.at(key);
-    const auto edges = stats::edge_crossings(grid, level);
-    expect_points(edges, at.at("edge_crossings_delta_mu"), rtol, where + " edges");
-    expect_fit(stats::fit_contour(edges), at.at("edge_fit"), rtol, where + " edge fit");
     const auto columns = stats::column_crossings(grid, level, stats::contour_lines(grid));
     expect_points(columns.points, at.at("delta_columns_0_20_step1"), rtol, where + " columns");
     expect_fit(stats::estimate_contour(grid, level), at.at("column_fit"), rtol, where + " column fit");
@@ -155,7 +152,6 @@ void expect_contour(const json& item) {
   const double level = item.at("input").at("level"), rtol = item.at("rtol");
   const auto& expect = item.at("expect");
   const std::vector<double> lines{0, 2.5, 5, 7.5, 10, 12.5, 15, 17.5, 20};
-  expect_points(stats::edge_crossings(grid, level), expect.at("edge_crossings_delta_mu"), rtol, id);
   const auto columns = stats::column_crossings(grid, level, lines);
   expect_points(columns.points, expect.at("columns"), rtol, id);
   if (expect.at("status") == "undefined") {

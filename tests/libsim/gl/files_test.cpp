@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "libsim/gl/png.hpp"
 #include "libsim/view/gbuffer.hpp"
-#include "libsim/render/png.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "tests/common/temporary_folder.hpp"

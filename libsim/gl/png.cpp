@@ -1,4 +1,4 @@
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 
 #include <png.h>
 

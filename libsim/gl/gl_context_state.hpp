@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "libsim/render/gl_context.hpp"
+#include "libsim/gl/gl_context.hpp"
 
 namespace sim {
 

@@ -13,7 +13,7 @@ struct ShaderFile {
   std::string file;  ///< relative to shaders/
 };
 
-/// A linked program; movable, not copyable. Needs a current context.
+/// A linked shader program; movable, not copyable. Needs a current context.
 class GlProgram {
  public:
   GlProgram() = default;
@@ -26,7 +26,7 @@ class GlProgram {
 
   void use() const;
   unsigned name() const { return name_; }
-  /// Location; -1 if the program does not use it. The driver is queried once per name.
+  /// Location of a uniform; -1 if the program does not use it. The driver is queried once per name.
   int uniform(const char* name) const;
 
  private:

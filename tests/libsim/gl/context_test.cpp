@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
-#include "libsim/render/gl_context.hpp"
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/gl_context.hpp"
+#include "libsim/gl/offscreen.hpp"
 #include "stats/base/error.hpp"
 
 namespace {

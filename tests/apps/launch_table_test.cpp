@@ -1,5 +1,3 @@
-#include "libsim/measure/pass_bytes.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "libsim/render/gl_context_state.hpp"
+#include "libsim/gl/gl_context_state.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim {

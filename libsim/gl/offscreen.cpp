@@ -1,4 +1,4 @@
-#include "libsim/render/offscreen.hpp"
+#include "libsim/gl/offscreen.hpp"
 
 #include <epoxy/gl.h>
 

@@ -1,4 +1,4 @@
-#include "libsim/render/gl_buffer.hpp"
+#include "libsim/gl/gl_buffer.hpp"
 
 #include <epoxy/gl.h>
 

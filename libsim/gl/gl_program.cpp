@@ -1,4 +1,4 @@
-#include "libsim/render/gl_program.hpp"
+#include "libsim/gl/gl_program.hpp"
 
 #include <epoxy/gl.h>
 

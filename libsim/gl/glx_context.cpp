@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "libsim/render/gl_context_state.hpp"
+#include "libsim/gl/gl_context_state.hpp"
 #include "stats/base/error.hpp"
 
 namespace sim {

@@ -1,7 +1,7 @@
 #pragma once
 /// A framebuffer object for drawing without a window, and reading pictures from any framebuffer.
 
-#include "libsim/render/png.hpp"
+#include "libsim/gl/png.hpp"
 
 namespace sim {
 
