@@ -4,6 +4,7 @@
 
 #include "libsim/foam/foam_pool.hpp"
 #include "libsim/neighbors/grid.hpp"
+#include "libsim/particles/calm.hpp"
 #include "libsim/particles/particles.hpp"
 #include "libsim/particles/solids.hpp"
 

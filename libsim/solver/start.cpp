@@ -5,6 +5,7 @@
 #include "libsim/scene/fill.hpp"
 #include "libsim/solver/fluid_simulation.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace sim::SIM_BACKEND {
 
