@@ -14,9 +14,10 @@ struct Sunk {
   bool mixed = false;   ///< level 0 on one side, 3 on the other
   double beta = 1;
   Backend backend = Backend::Cpu;
+  int rest_frames = 60;  ///< before the force is measured
 };
 
-/// Mean force of the water on the sphere over the second of two seconds, over rho g V.
+/// Mean force of the water on the sphere over a second, over rho g V.
 Vec3d force_on(const Sunk& sunk) {
   auto scene = fluid_test::tank({1, 1.5, 1}, {1, 1, 1}, 60);
   scene.v_ref_m_s = 3;
@@ -34,9 +35,9 @@ Vec3d force_on(const Sunk& sunk) {
   const auto fluid = sim::make_simulation(scene, options);
   Vec3d sum{};
   constexpr int frames = 60;
-  for (int frame = 0; frame < 2 * frames; ++frame) {
+  for (int frame = 0; frame < sunk.rest_frames + frames; ++frame) {
     fluid->step_frame();
-    if (frame < frames) continue;
+    if (frame < sunk.rest_frames) continue;
     const auto account = fluid->momentum();
     for (std::size_t k = 0; k < 3; ++k) sum[k] -= account.obstacles.at(0).push[k];
     if (sunk.beta < 1) continue;
@@ -50,7 +51,9 @@ Vec3d force_on(const Sunk& sunk) {
   return sum;
 }
 
-void feels_its_displaced_water(const Sunk& sunk) {
+/// Water that is calmed comes to rest later: in the second second it still gives 1.06.
+void feels_its_displaced_water(Sunk sunk) {
+  sunk.rest_frames = 180;
   const Vec3d force = force_on(sunk);
   // With temporal acceleration particles push more: 1.01, 1.04 and 1.06 at level 3 with beta 1, 0.8 and 0.67.
   EXPECT_NEAR(force[1], 1, sunk.beta < 1 ? 0.08 : 0.05);
