@@ -9,6 +9,7 @@ skip() { echo "package: not tried: $*"; exit 77; }
 [ "$(id -u)" -eq 0 ] || skip "only root makes a root folder for another system"
 command -v debootstrap >/dev/null || skip "debootstrap is missing (apt-get install debootstrap)"
 command -v dpkg-shlibdeps >/dev/null || skip "dpkg-shlibdeps is missing (apt-get install dpkg-dev)"
+command -v file >/dev/null || skip "file is missing (apt-get install file)"
 grep -q '^VIP_NATIVE:BOOL=OFF' "$build/CMakeCache.txt" || skip "$build is for this processor alone (VIP_NATIVE)"
 
 # Mounts of its own, which end with it.

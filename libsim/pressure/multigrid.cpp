@@ -133,11 +133,11 @@ struct SmallGrids {
     template <class Threads>
     SIM_FN void smooth(Threads threads, int level, int first_colour) const {
       const GridView at = view(level);
-      const FluidCells cells = fluid(level);
+      const FluidCells wet = fluid(level);
       for (int half = 0; half < 2; ++half) {
         const int colour = half == 0 ? first_colour : 1 - first_colour;
         const Smooth pass{at, colour, at.scale == 1};
-        threads.each(cells.count[colour], OfColour<Smooth>{cells, colour, pass});
+        threads.each(wet.count[colour], OfColour<Smooth>{wet, colour, pass});
       }
     }
     template <class Threads>
@@ -145,18 +145,18 @@ struct SmallGrids {
       for (int level = from; level < to; ++level) {
         smooth(threads, level, 0);
         const GridView fine = view(level);
-        const FluidCells cells = fluid(level + 1);
+        const FluidCells wet = fluid(level + 1);
         const Restrict pass{fine, view(level + 1), fine.scale == 1};
-        threads.each(cells.size(), OfBoth<Restrict>{cells, pass});
+        threads.each(wet.size(), OfBoth<Restrict>{wet, pass});
       }
     }
     template <class Threads>
     SIM_FN void ascend(Threads threads, int from, int to) const {
       for (int level = from - 1; level >= to; --level) {
         const GridView fine = view(level);
-        const FluidCells cells = fluid(level);
+        const FluidCells wet = fluid(level);
         const Prolong pass{fine, view(level + 1), fine.scale == 1};
-        threads.each(cells.size(), OfBoth<Prolong>{cells, pass});
+        threads.each(wet.size(), OfBoth<Prolong>{wet, pass});
         smooth(threads, level, 1);
       }
     }
