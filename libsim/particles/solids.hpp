@@ -166,7 +166,8 @@ struct BodyPatch {
   }
 
  private:
-  /// The square has almost no extent along its normal.
+  /// Share of the square's projection on one axis that lies between low and high. `normal`: the part of the
+  /// square's normal along that axis; at 1 the square is seen from its edge, as a line of 1e-3 sides.
   SIM_FN static float along(float at, float normal, float side, float low, float high) {
     const float flat = sqrtf(at_least(1 - normal * normal, 0.0f));
     return share_within(at, 0.5f * side * at_least(flat, 1e-3f), low, high);

@@ -67,7 +67,7 @@ and h = 2 d, the support of the finest particles. More follow the fastest partic
 effects.)"},
         {"view", "[view]",
          "The participant's camera, upright. The [gaze](#gaze) is where this person looks."},
-        {"overview", "[overview]", "The camera of figures. The table may be left out."},
+        {"overview", "[overview]", "A second camera, for figures. A scene needs none."},
         {"gaze", "[[gaze]]",
          "From its frame on the gaze stays on a point, to which it jumps within 2 frames. Without any it\nis "
          "`view.target_m`."},

@@ -61,11 +61,13 @@ TargetSphere sphere_of(const TargetRegion& region);
 /// there is a gate the walls enclose the water block, except on the side against gravity.
 Walls walls_of(const Scene& scene, bool settling);
 
-/// Places the scene's obstacles, at rest, at this time; `recorded`: record what they give the water.
+/// Puts the scene's obstacles where they are at this time, without motion. `recorded`: their pushes on the
+/// water are recorded.
 /// base::Error if one is thinner than the spacing of particles of the coarsest level that the run may hold:
 /// water would pass through it.
 void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s, bool recorded);
-/// Begins to record the gauges, if there are any. base::Error if one lies on no part of an obstacle.
+/// From now on records the push of each gauge's part of an obstacle on the water. base::Error if a gauge
+/// covers no part of its obstacle's surface.
 void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges);
 /// Adds what the obstacles gave the water in the frame.
 void count_obstacles(const FluidState& state, MomentumAccount& account);

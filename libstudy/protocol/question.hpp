@@ -41,9 +41,9 @@ struct Question {
   bool operator==(const Question&) const = default;
 };
 
-/// Properties of a kind of answer. Code that depends on a kind asks these: what it reads from a protocol,
-/// which keys it takes, how it is stored and analysed. Only drawing a question differs by kind, in an
-/// exhaustive switch (libstudy/pages/gui).
+/// Properties of a kind of answer. Code that reads, stores, exports or analyses answers looks them up here
+/// and never names a kind. Only the code that draws a question does: libstudy/pages/gui has a switch over all
+/// kinds.
 struct AnswerKindTraits {
   AnswerKind kind{};
   const char* word = "";     ///< in protocols, databases and exports

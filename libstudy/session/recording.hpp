@@ -63,7 +63,8 @@ bool sees_eyes(const Running& run, double within_s, const Check& check);
 void record_headset(const Running& run);
 
 /// Logs the headset's events since the last call. If there were any, stores the headset's current facts.
-/// Returns the events, separated by ", "; empty without events or without a headset.
+/// Stores the headset's new events and returns their names, separated by ", ". The text is empty if nothing
+/// happened or there is no headset.
 std::string log_news(const Running& run);
 
 }  // namespace study

@@ -176,7 +176,8 @@ class Store {
   /// Slots of the sessions under this protocol that count for the balance: all but those that were withdrawn,
   /// refused, not eligible or dropped out, and test data beside real ones.
   std::vector<int> taken_slots(const std::string& protocol_sha256);
-  /// Station numbers of the sessions that taken_slots() counts, each once; none: sessions without a number.
+  /// Returns each station number of the sessions that taken_slots() counts, once. An empty entry means that
+  /// some of these sessions have no station number.
   std::vector<std::optional<StationNumber>> station_numbers(const std::string& protocol_sha256);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. gaze_source: the gaze that
@@ -187,8 +188,8 @@ class Store {
   /// Commits frames of a running presentation. Times are stored relative to start_ns and to the planned
   /// onset.
   void add_frames(std::int64_t presentation, std::int64_t start_ns, std::span<const FrameRecord> frames);
-  /// Participants who asked at a session's end to delete all their data: withdraw() them once this Store is
-  /// closed.
+  /// Returns the participants who asked at the end of a session that all their data be deleted. Close this
+  /// Store, then call withdraw() for each of them.
   std::vector<std::string> requested_withdrawals();
   /// True if this session has any presentation, or any answer.
   bool has_shown(std::int64_t session);

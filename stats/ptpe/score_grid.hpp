@@ -48,9 +48,9 @@ struct Contour {
   int on_node = 0;     ///< lines that meet the level at a setting without crossing it
 };
 
-/// Crossings along the given lines; lines outside the grid's columns are skipped. Crossings are strict: one
-/// score above, one below the level. A score equal to the level (to 1e-12) is not a crossing; its line is
-/// counted in on_node.
+/// Finds where the scores cross the level along the given lines. It skips lines outside the grid's columns. A
+/// crossing lies between two neighbouring scores, one above and one below the level. A score equal to the
+/// level (to 1e-12) is not a crossing; its line is counted in on_node.
 Contour column_crossings(const ScoreGrid& grid, double level, std::span<const double> line_deltas);
 /// Nominal lines at every whole frame/s from the first column to the last, and at the last.
 std::vector<double> contour_lines(const ScoreGrid& grid);

@@ -180,7 +180,7 @@ TEST_F(Salvaging, AJournalTornAnywhereGivesWhatWasKeptBefore) {
   fs::remove(path);
   const std::size_t last = journal.rfind("\"table\":\"response\"");
   std::size_t most = 0;
-  // In steps of 151 bytes, then of 3 in the last line, then at each byte of its end.
+  // Cuts the journal at every 151st byte, near its end at every third, and at each of its last 20 bytes.
   const auto step = [&](std::size_t left) { return left < 20 ? 1 : left < 170 ? 3 : 151; };
   for (std::size_t end = last; end <= journal.size(); end += step(journal.size() - end)) {
     SCOPED_TRACE(end);

@@ -86,13 +86,14 @@ void run_opening_targets(FluidState& state,
     Vec3 low = o.low - Vec3{margin, margin, margin};
     Vec3 high = o.high + Vec3{margin, margin, margin};
     const Plane& wall = state.walls.planes[o.plane];
-    const float wall_at = wall.offset;
-    if (wall.normal.x != 0)
-      low.x = wall.normal.x * wall_at - margin, high.x = wall.normal.x * wall_at + margin;
-    if (wall.normal.y != 0)
-      low.y = wall.normal.y * wall_at - margin, high.y = wall.normal.y * wall_at + margin;
-    if (wall.normal.z != 0)
-      low.z = wall.normal.z * wall_at - margin, high.z = wall.normal.z * wall_at + margin;
+    const auto beside_wall = [&](float normal, float& from, float& to) {
+      if (normal == 0) return;
+      from = normal * wall.offset - margin;
+      to = normal * wall.offset + margin;
+    };
+    beside_wall(wall.normal.x, low.x, high.x);
+    beside_wall(wall.normal.y, low.y, high.y);
+    beside_wall(wall.normal.z, low.z, high.z);
     fit.openings[fit.count++] = {low, high, fits};
   }
   if (fit.count > 0) for_each("fit openings", p.size(), fit);

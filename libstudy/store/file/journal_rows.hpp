@@ -24,7 +24,7 @@ struct Table {
 /// All journalled tables, parents first: all but frames, slots, gaze, exports and chores. Only withdrawals
 /// delete rows of these tables.
 std::span<const Table> tables();
-/// The table of this name; null if it is not journalled.
+/// Returns the journalled table with this name, or null if the journal leaves the table out.
 const Table* find_table(const std::string& name);
 
 /// A row in the journal: a JSON object on one line, {"table": name, column: value, ..., "of": {participant,
