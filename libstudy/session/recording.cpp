@@ -27,8 +27,7 @@ class Listening {
 }  // namespace
 
 Recording::Recording(const Running& run)
-    : run_(run),
-      gaze_(run.parts.gaze && allowed(run) ? run.parts.gaze : nullptr),
+    : gaze_(run.parts.gaze && allowed(run) ? run.parts.gaze : nullptr),
       slots_(run.parts.slots),
       seen_ns_(run.now_ns()) {
   if (gaze_) gaze_->start();

@@ -47,7 +47,6 @@ class Recording {
  private:
   void watch(const std::vector<GazeSample>& samples);
 
-  const Running& run_;
   GazeSource* gaze_;
   SlotSource* slots_;
   std::int64_t seen_ns_;  ///< time of the last valid sample
