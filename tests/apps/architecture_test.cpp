@@ -126,6 +126,7 @@ const Rooms rooms{
     {"stats/base", 0},
     {"stats/figures", 0},
     {"stats/image", 0},
+    {"stats/adaptive", 1},
     {"stats/ordinal", 1},
     {"stats/inference", 2},
     {"stats/preference", 3},

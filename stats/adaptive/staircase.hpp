@@ -1,0 +1,53 @@
+#pragma once
+/// Staircases: each stimulus follows from the one before and from the response to it.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace stats {
+
+/// A track over a line of stimulus values. A "positive" response (detected, correct) moves the track down,
+/// the other one up.
+struct StaircaseRules {
+  double start = 0;
+  double lowest = 0, highest = 0;  ///< the track stays within these values
+  /// Transformed up-down rule (Levitt 1971): this many positive responses in a row move the track one step
+  /// down, this many negative ones in a row one step up. 2 and 1 lead to the stimulus with 70.7 % positive
+  /// responses, 3 and 1 to 79.4 %, 1 and 1 to 50 %.
+  int down_after = 1, up_after = 1;
+  /// Size of a step, by the number of reversals so far; the last holds from there on. Not empty, above 0.
+  std::vector<double> steps{1};
+  /// Size of an upward step relative to a downward one. Under down_after = up_after = 1 the weighted rule
+  /// (Kaernbach 1991) leads to the stimulus with the share up/(1 + up) of positive responses: 3 to 75 %.
+  double up_ratio = 1;
+  /// True: the steps multiply the stimulus by 10^(step / 20), so steps are in decibels.
+  bool decibels = false;
+  /// Until the first reversal every response moves the track, as in a 1-up 1-down rule.
+  bool fast_start = false;
+
+  int trials = 0;     ///< the track ends after so many responses; 0: no such bound
+  int reversals = 0;  ///< and not before this many reversals
+};
+
+/// The share of positive responses to which the rules lead for a smooth psychometric function.
+/// Levitt: p^down_after = 1/2 for up_after = 1; Kaernbach: up_ratio / (1 + up_ratio). None for other
+/// combinations.
+std::optional<double> target_share(const StaircaseRules& rules);
+
+/// State of a track, rebuilt from its responses.
+struct StaircaseTrack {
+  std::vector<double> stimuli;  ///< of each response, and the next one unless the track has ended
+  std::vector<int> reversals;   ///< indices of responses at which the direction turned
+  bool ended = false;
+};
+
+/// Replays the rules on responses (true: positive). A pure function, so a resumed session continues with the
+/// same stimuli. std::invalid_argument for rules that are out of range.
+StaircaseTrack replay_staircase(const StaircaseRules& rules, std::span<const bool> positive);
+
+/// Mean of the stimuli at the reversals but the first `skip`, an even number of them (Levitt 1971); none if
+/// fewer than two remain. Under `decibels` the geometric mean.
+std::optional<double> reversal_mean(const StaircaseRules& rules, const StaircaseTrack& track, int skip);
+
+}  // namespace stats
