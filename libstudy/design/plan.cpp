@@ -75,8 +75,8 @@ int rows_of(const Design& design) {
   if (design.order != TrialOrder::Latin && design.order != TrialOrder::Williams) return 1;
   int rows = 1;
   for (const auto& group : cell_groups(design)) {
-    const auto cells = static_cast<int>(group.size());
-    const int trials = design.pairs ? cells * (cells - 1) / 2 : cells;
+    const auto pairs = static_cast<int>(pairs_of_group(design, group).size());
+    const int trials = design.repetitions * (design.pairs ? pairs : static_cast<int>(group.size()));
     rows = std::lcm(rows, design.order == TrialOrder::Latin ? trials : williams_rows(trials));
   }
   return rows;
@@ -138,18 +138,11 @@ constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
 constexpr std::uint64_t counters_per_group = 1ull << 20;
-
-/// True if both cells share a level of one of the never_adjacent factors.
-bool share_level(const Design& design, const Cell& a, const Cell& b) {
-  return std::any_of(
-      design.never_adjacent.begin(), design.never_adjacent.end(), [&](const std::string& factor) {
-        if (factor == "method") return a.stimulus.method == b.stimulus.method;
-        if (factor == "effects") return a.stimulus.effects == b.stimulus.effects;
-        return factor == "mean_fps" ? a.setting.mean == b.setting.mean : a.setting.sd == b.setting.sd;
-      });
-}
+constexpr std::uint64_t counters_per_repetition = 1ull << 24;  // of the schedules of a block
 
 class Planner {
+  using Pairs = std::vector<std::pair<int, int>>;
+
  public:
   Planner(const Protocol& protocol, const std::string& participant, std::uint64_t seed, int slot)
       : protocol_(protocol),
@@ -194,8 +187,9 @@ class Planner {
     plan_.trials.push_back(trial);
   }
 
-  std::uint64_t schedule_seed(const PlannedTrial& trial) const {
-    const auto cells = static_cast<std::uint64_t>(trial.first) * 4096 +
+  std::uint64_t schedule_seed(const PlannedTrial& trial, int repetition) const {
+    const auto cells = static_cast<std::uint64_t>(repetition) * counters_per_repetition +
+                       static_cast<std::uint64_t>(trial.first) * 4096 +
                        static_cast<std::uint64_t>(trial.second.value_or(0)) * 2;
     return counter_random(
         key_, first_schedule_counter + static_cast<std::uint64_t>(trial.block) * counters_per_block + cells);
@@ -218,17 +212,22 @@ class Planner {
     PlannedTrial trial;
     trial.block = index;
     trial.group = g;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      trial.first = cells[i];
-      if (!design_.pairs) out.push_back(trial);
-      for (std::size_t j = i + 1; design_.pairs && j < cells.size(); ++j) {
-        trial.first = cells[i];
-        trial.second = cells[j];
-        if (mirrored(g, static_cast<int>(out.size()))) std::swap(trial.first, *trial.second);
+    for (int repetition = 0; repetition < design_.repetitions; ++repetition) {
+      const auto add = [&] {
+        trial.schedule_seed = schedule_seed(trial, repetition);
         out.push_back(trial);
+      };
+      for (const auto& [first, second] : design_.pairs ? pairs_of_group(design_, cells) : Pairs()) {
+        trial.first = first;
+        trial.second = second;
+        if (mirrored(g, static_cast<int>(out.size()))) std::swap(trial.first, *trial.second);
+        add();
+      }
+      for (std::size_t i = 0; !design_.pairs && i < cells.size(); ++i) {
+        trial.first = cells[i];
+        add();
       }
     }
-    for (auto& one : out) one.schedule_seed = schedule_seed(one);
     return out;
   }
 

@@ -26,7 +26,10 @@ void check_methods(const base::TomlTable& design) {
   }
 }
 
-/// True for a positive whole number, optionally with the suffix k.
+}  // namespace
+
+bool is_method(const std::string& word) { return among(method_names(), word); }
+
 bool is_particle_count(const std::string& word) {
   long long value = 0;
   const char* end = word.data() + word.size();
@@ -34,6 +37,8 @@ bool is_particle_count(const std::string& word) {
   return error == std::errc() && value > 0 &&
          (rest == end || (rest + 1 == end && (*rest == 'k' || *rest == 'K')));
 }
+
+namespace {
 
 void check_particle_counts(const base::TomlTable& design) {
   const auto sizes = design.strings("n_star");

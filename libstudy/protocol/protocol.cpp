@@ -108,7 +108,8 @@ PacingRules read_pacing(const base::TomlTable& table, const Design& design) {
   read_order(table, rules);
   std::vector<FpsSetting> settings;
   for (const Cell& cell : design.cells) {
-    if (design.timing != TimingSource::Native) settings.push_back(cell.setting);
+    const bool by_rules = !cell.profile || cell.profile->kind == ProfileKind::Moments;
+    if (design.timing != TimingSource::Native && by_rules) settings.push_back(cell.setting);
   }
   check_cuts(table, rules, settings);
   return rules;
@@ -138,11 +139,22 @@ HeadsetRules read_headset(const base::TomlTable& table) {
   return rules;
 }
 
-void check_format(const base::TomlTable& root) {
-  if (root.integer("format") != Protocol::format_version) {
-    root.fail("format",
-              "is not the format this program reads (" + std::to_string(Protocol::format_version) + ")",
+int read_format(const base::TomlTable& root) {
+  const std::int64_t format = root.integer("format");
+  if (format != 2 && format != Protocol::newest_format) {
+    root.fail("format", "is neither of the formats that this program reads (2 and 3)",
               "use the program that the protocol was written for");
+  }
+  return static_cast<int>(format);
+}
+
+/// Real time is needed where the content may leave the time of the display.
+void check_content(const base::TomlTable& table, const ContentRules& content, const Design& design) {
+  for (const Cell& cell : design.cells) {
+    if (content.real_time || !cell.profile) continue;
+    if (cell.profile->latency_ms > 0 || cell.profile->animation_error_ms > 0)
+      table.fail("mode", "= \"per_frame\" has no time that could lag: " + profile_text(*cell.profile),
+                 "write mode = \"real_time\", or remove latency_ms and animation_error_ms");
   }
 }
 
@@ -173,8 +185,8 @@ std::string id_of(const base::TomlTable& table, std::string_view key) {
 }
 
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
-  check_format(root);
   Protocol protocol;
+  protocol.format = read_format(root);
   protocol.name = text_of(root, "name");
   protocol.version = text_of(root, "version");
   protocol.language = text_of(root, "language");
@@ -185,10 +197,12 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   protocol.needs_gaze = root.boolean_or("needs_gaze", false);
   protocol.true_angle = root.choice_or("camera_angle", "scene", {"scene", "true"}) == "true";
   const auto design = root.table("design");
-  if (use == ProtocolUse::New) check_design_names(design);
-  protocol.design = read_design(design);
+  if (protocol.format == 2 && use == ProtocolUse::New) check_design_names(design);
+  protocol.design = protocol.format == 2 ? read_design(design) : read_factor_design(root, design);
   protocol.pacing = read_pacing(root.table("pacing"), protocol.design);
-  protocol.content = read_content(root.table("content"));
+  const auto content = root.table("content");
+  protocol.content = read_content(content);
+  check_content(content, protocol.content, protocol.design);
   if (root.has("timing")) protocol.timing = read_timing(root.table("timing"));
   if (root.has("headset")) protocol.headset = read_headset(root.table("headset"));
   protocol.blocks = read_blocks(root, protocol.design, protocol.language, use);

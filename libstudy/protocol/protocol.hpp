@@ -101,8 +101,9 @@ struct Block {
 };
 
 struct Protocol {
-  static constexpr int format_version = 2;
+  static constexpr int newest_format = 3;
 
+  int format = 2;  ///< 2, or 3: factors, timing profiles
   std::string name;
   std::string version;
   std::string language;

@@ -11,8 +11,6 @@ namespace study {
 
 namespace {
 
-constexpr std::size_t most_cells = 1000;
-
 template <class Value>
 void check_distinct(const base::TomlTable& table, std::string_view key, std::vector<Value> values) {
   if (values.empty()) table.fail(key, "is empty", "name at least one value");

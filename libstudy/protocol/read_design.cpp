@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -84,15 +85,10 @@ std::vector<EffectSet> read_tables(const base::TomlTable& design, const std::vec
   return out;
 }
 
-/// Levels of the factor effects; empty if the design does not vary them.
-std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
-  if (!design.has("effects")) {
-    if (design.has("effect_set"))
-      design.fail("effect_set", "has no effect without the key effects",
-                  "write effects = [...] with its name");
-    return {};
-  }
-  const auto levels = read_levels(design);
+}  // namespace
+
+std::vector<EffectSet> effect_sets_of(const base::TomlTable& design, const std::vector<std::string>& levels,
+                                      const std::function<void(std::size_t)>& no_table) {
   const auto tables = read_tables(design, levels);
   std::vector<EffectSet> out;
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -105,14 +101,28 @@ std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
     } else if (levels[i] == scene_effects_level) {
       out.push_back({levels[i], "those of the scene's file"});
     } else {
-      design.fail_at("effects", i, "= " + base::toml_quoted(levels[i]) + " has no table",
-                     "add [[design.effect_set]] with this name, or use none or scene");
+      no_table(i);
     }
   }
   return out;
 }
 
-constexpr int most_trials = 1000;         // of one participant
+namespace {
+
+/// Levels of the factor effects; empty if the design does not vary them.
+std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
+  if (!design.has("effects")) {
+    if (design.has("effect_set"))
+      design.fail("effect_set", "has no effect without the key effects",
+                  "write effects = [...] with its name");
+    return {};
+  }
+  const auto levels = read_levels(design);
+  return effect_sets_of(design, levels, [&](std::size_t i) {
+    design.fail_at("effects", i, "= " + base::toml_quoted(levels[i]) + " has no table", effect_set_mend);
+  });
+}
+
 constexpr double most_sequences = 50000;  // of groups; the assignment lists them all
 constexpr double most_places = 1e7;
 
@@ -139,6 +149,7 @@ std::size_t distinct_levels(const Design& design, Level level) {
 
 /// Number of sequences of groups with different scenes, before selecting those that spread n_* evenly.
 double sequences_at_most(const Design& design) {
+  if (!design.factors.empty()) return static_cast<double>(cell_groups(design).size());
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
   const auto sizes = distinct_levels(design, [](const StimulusSpec& what) { return what.n_star; });
   double out = 1;
@@ -162,7 +173,7 @@ void check_groups(const base::TomlTable& table, const Design& design) {
   }
 }
 
-void check_trials(const base::TomlTable& table, const Design& design) {
+void check_trial_count(const base::TomlTable& table, const Design& design) {
   const auto cells = static_cast<int>(cell_groups(design).front().size());
   if (design.pairs && cells < 2)
     table.fail("pairs", "need two cells of one scene and n_*",
@@ -187,7 +198,9 @@ void check_places(const base::TomlTable& table, const Design& design) {
 }
 
 /// The level of a factor as text.
-std::string level_of(const Cell& cell, const std::string& factor) {
+std::string level_of(const Design& design, const Cell& cell, const std::string& factor) {
+  for (std::size_t i = 0; i < design.factors.size(); ++i)
+    if (design.factors[i].name == factor) return level_name(design, cell, i);
   if (factor == "method") return cell.stimulus.method;
   if (factor == "effects") return cell.stimulus.effects;
   return shown(factor == "mean_fps" ? cell.setting.mean : cell.setting.sd);
@@ -199,7 +212,7 @@ void check_never_adjacent(const base::TomlTable& table, const Design& design) {
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {
     std::map<std::string, std::size_t> count;
     for (const int cell : group)
-      ++count[level_of(design.cells[static_cast<std::size_t>(cell)], design.never_adjacent[i])];
+      ++count[level_of(design, design.cells[static_cast<std::size_t>(cell)], design.never_adjacent[i])];
     for (const auto& [level, times] : count) {
       if (times > (group.size() + 1) / 2) {
         table.fail_at("never_adjacent", i,
@@ -223,7 +236,9 @@ void read_never_adjacent(const base::TomlTable& table, Design& design) {
     table.fail("order", "= \"constrained\" is not supported for pairs",
                "use shuffle, latin or williams, or remove pairs");
   }
-  static const std::vector<std::string> factors{"method", "effects", "mean_fps", "sd_fps"};
+  std::vector<std::string> factors{"method", "effects", "mean_fps", "sd_fps"};
+  if (!design.factors.empty()) factors.clear();
+  for (const DesignFactor& factor : design.factors) factors.push_back(factor.name);
   design.never_adjacent = distinct_words(table, "never_adjacent");
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {
     const std::string& factor = design.never_adjacent[i];
@@ -231,7 +246,7 @@ void read_never_adjacent(const base::TomlTable& table, Design& design) {
       table.fail_at("never_adjacent", i, "= " + base::toml_quoted(factor) + " is no factor",
                     base::use_one_of(factor, factors));
     }
-    if (factor == "effects" && design.effects.empty()) {
+    if (factor == "effects" && design.effects.empty() && design.factors.empty()) {
       table.fail_at("never_adjacent", i, "= \"effects\" is no factor of this design",
                     "write effects = [...], or remove it here");
     }
@@ -245,21 +260,79 @@ std::string treatment_name(const StimulusSpec& what) {
   return what.effects.empty() ? what.method : what.method + ", " + what.effects;
 }
 
+const std::string& level_name(const Design& design, const Cell& cell, std::size_t factor) {
+  return design.factors[factor].levels[static_cast<std::size_t>(cell.levels[factor])];
+}
+
+std::string cell_name(const Design& design, const Cell& cell) {
+  if (design.factors.empty()) return treatment_name(cell.stimulus);
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < design.factors.size(); ++i)
+    words.push_back(design.factors[i].name + " " + level_name(design, cell, i));
+  return base::joined(words);
+}
+
+bool share_level(const Design& design, const Cell& a, const Cell& b) {
+  return std::any_of(
+      design.never_adjacent.begin(), design.never_adjacent.end(),
+      [&](const std::string& factor) { return level_of(design, a, factor) == level_of(design, b, factor); });
+}
+
+namespace {
+
+bool same_group(const Design& design, const Cell& a, const Cell& b) {
+  if (design.factors.empty())
+    return a.stimulus.scene == b.stimulus.scene && a.stimulus.n_star == b.stimulus.n_star;
+  for (std::size_t i = 0; i < design.factors.size(); ++i)
+    if (design.factors[i].between && a.levels[i] != b.levels[i]) return false;
+  return true;
+}
+
+/// True if the cell has the standard's level of every within-subject factor.
+bool is_standard(const Design& design, const Cell& cell) {
+  for (std::size_t i = 0; i < design.factors.size(); ++i)
+    if (!design.factors[i].between && cell.levels[i] != (*design.standard)[i]) return false;
+  return true;
+}
+
+}  // namespace
+
 std::vector<std::vector<int>> cell_groups(const Design& design) {
   std::vector<std::vector<int>> out;
-  const StimulusSpec* last = nullptr;
   for (std::size_t i = 0; i < design.cells.size(); ++i) {
-    const StimulusSpec& what = design.cells[i].stimulus;
-    if (!last || what.scene != last->scene || what.n_star != last->n_star) out.emplace_back();
+    if (i == 0 || !same_group(design, design.cells[i - 1], design.cells[i])) out.emplace_back();
     out.back().push_back(static_cast<int>(i));
-    last = &what;
   }
   return out;
 }
 
+std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std::vector<int>& group) {
+  std::vector<std::pair<int, int>> out;
+  if (design.standard) {
+    const auto standard = std::find_if(group.begin(), group.end(), [&](int i) {
+      return is_standard(design, design.cells[static_cast<std::size_t>(i)]);
+    });
+    for (const int cell : group)
+      if (standard != group.end() && cell != *standard) out.emplace_back(cell, *standard);
+    return out;
+  }
+  for (std::size_t i = 0; i < group.size(); ++i)
+    for (std::size_t j = i + 1; j < group.size(); ++j) out.emplace_back(group[i], group[j]);
+  return out;
+}
+
 int trials_of_group(const Design& design) {
-  const auto k = static_cast<int>(cell_groups(design).front().size());
-  return design.pairs ? k * (k - 1) / 2 : k;
+  const auto group = cell_groups(design).front();
+  const auto pairs = static_cast<int>(pairs_of_group(design, group).size());
+  return design.repetitions * (design.pairs ? pairs : static_cast<int>(group.size()));
+}
+
+void read_assignment(const base::TomlTable& table, Design& design) {
+  design.order = read_trial_order(table);
+  check_places(table, design);
+  read_never_adjacent(table, design);
+  if (table.choice_or("assignment", "balanced", {"balanced", "paper_random"}) == "paper_random")
+    design.assignment = Assignment::PaperRandom;
 }
 
 Design read_design(const base::TomlTable& table) {
@@ -276,12 +349,8 @@ Design read_design(const base::TomlTable& table) {
   design.pairs = table.boolean_or("pairs", false);
   design.groups = static_cast<int>(table.integer_or("groups", 1, {1, 100}));
   check_groups(table, design);
-  check_trials(table, design);
-  design.order = read_trial_order(table);
-  check_places(table, design);
-  read_never_adjacent(table, design);
-  if (table.choice_or("assignment", "balanced", {"balanced", "paper_random"}) == "paper_random")
-    design.assignment = Assignment::PaperRandom;
+  check_trial_count(table, design);
+  read_assignment(table, design);
   return design;
 }
 

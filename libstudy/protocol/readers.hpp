@@ -1,6 +1,7 @@
 #pragma once
 /// Readers of the parts of a protocol file. Errors as parse_protocol().
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,26 @@ std::string shown(double value);
 /// Reads all fields but `text`. Does not finish `root`, so that its asked keys can still be listed.
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
+/// Reads [design] of formats 1 and 2.
 Design read_design(const base::TomlTable& table);
+/// Reads [stimulus], [[factor]], [[combination]] and [design] of format 3; `table` is [design].
+Design read_factor_design(const base::TomlTable& root, const base::TomlTable& table);
+/// Reads order, never_adjacent and assignment; the cells are known.
+void read_assignment(const base::TomlTable& design, Design& out);
+/// The effects of each level, from [[design.effect_set]]. `no_table` is called with the index of a level that
+/// has no table and needs one; it must throw.
+std::vector<EffectSet> effect_sets_of(const base::TomlTable& design, const std::vector<std::string>& levels,
+                                      const std::function<void(std::size_t)>& no_table);
+inline constexpr const char* effect_set_mend =
+    "add [[design.effect_set]] with this name, or use none or scene";
+/// Reads a timing profile.
+TimingProfile read_profile(const base::TomlTable& table);
+/// True if `word` is in method_names().
+bool is_method(const std::string& word);
+/// True for a positive whole number, optionally with the suffix k.
+bool is_particle_count(const std::string& word);
+inline constexpr int most_trials = 1000;  ///< of one participant
+inline constexpr std::size_t most_cells = 1000;
 /// Every combination of the factors, ordered by scene, n_*, method, effects and moments.
 std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
                              const std::vector<EffectSet>& effects);

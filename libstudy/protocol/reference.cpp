@@ -13,10 +13,39 @@ using base::where_needed;
 const std::vector<base::TableReference>& protocol_tables() {
   static const std::vector<base::TableReference> tables{
       {"", "The file itself", "Stands before the first table."},
+      {"stimulus", "[stimulus]",
+       R"(Format 3: what each stimulus shows unless a level of a factor sets it. Each key must be set here or by
+the levels of one factor, except effects.)"},
+      {"stimulus.timing", "timing",
+       R"(How long each frame stays on. `profile` selects the keys:
+
+| profile | the frames | its keys |
+|---|---|---|
+| moments | a mean and a standard deviation, timed by [pacing] | mean_fps, sd_fps |
+| hitches | a steady rate; in each period one frame stays on longer | base_fps, hitch_ms, period_s, jitter |
+| floor | one frame in 20 lasts 1/low_fps, the others share the rest of the time evenly ("5 % low") | mean_fps, low_fps |
+| trace | recorded frame times in their order, repeated or cut to duration_s | frame_ms, smoothed |
+
+A display with a fixed refresh moves each frame to the nearest of its periods; `vip-study check` says what
+remains. latency_ms and animation_error_ms go with each profile and need `content.mode = "real_time"`.)"},
+      {"factor", "[[factor]]",
+       R"(Format 3: an experimental factor. Without `combination` all levels of all factors are crossed, which makes
+the cells.)"},
+      {"factor.level", "[[factor.level]]",
+       R"(A level: its name, and what it shows. It sets keys as [stimulus] has them: scene, method, n_star, effects,
+timing. All levels of a factor set the same keys, and no other factor sets them.)"},
+      {"combination", "[[combination]]",
+       R"(Format 3: one cell each, instead of all combinations. Every level occurs at least once.)"},
       {"design", "[design]",
-       R"(What is shown. Every scene, n_*, method and level of effects, and under `settings`
+       R"(What is shown, and in which order. Format 3 has the keys duration_s, repetitions, pairs, standard,
+order, never_adjacent, assignment, overlay and effect_set; its cells are the combinations of the levels. A
+participant meets all cells with one level of each between-subject factor. Those levels are dealt by quota.
+
+Format 2 has fixed factors. Every scene, n_*, method and level of effects, and under `settings`
 every pair of moments with sd_fps below mean_fps, make one cell. Cells of one scene and n_* are a group; a
 participant meets `groups` of them, one after another.)"},
+      {"design.standard", "standard",
+       "The standard of two-interval trials, as in `standard = {hitch = \"none\"}`."},
       {"design.moments", "[[design.moments]]",
        R"(The frame rate of one cell each, for `timing = "table2"`; without effect under native and equal.)"},
       {"design.effect_set", "[[design.effect_set]]",
@@ -99,7 +128,7 @@ std::string kind_meanings() {
 
 const std::vector<KeyReference>& protocol_reference() {
   static const std::vector<KeyReference> keys{
-      {"", "format", "whole number", "", "", "2"},
+      {"", "format", "whole number", "", "", "2, or 3: factors and timing profiles of your own"},
       {"", "name", "text", "", "", "of the study; stored with the data"},
       {"", "version", "text", "", "", "of the study, such as \"1.0\"; another text needs another version"},
       {"", "language", "text", "", "",
@@ -127,6 +156,52 @@ const std::vector<KeyReference>& protocol_reference() {
       {"", "headset", "table", "", "all its defaults", "how a headset shows it; nothing to a desktop"},
       {"", "block", "tables", "", "", "the session, 200 blocks at most"},
 
+      {"", "stimulus", "table", "", where_needed, "format 3: what each stimulus shows"},
+      {"", "factor", "tables", "", where_needed, "format 3: needed, 1 to 10 factors"},
+      {"", "combination", "tables", "", "all combinations", "format 3: the cells"},
+
+      {"stimulus", "scene", "text", "", where_needed, "scene file"},
+      {"stimulus", "method", "text", "", where_needed, base::joined(method_names())},
+      {"stimulus", "n_star", "text", "", where_needed,
+       "number of particles if all were at the coarsest level; \"32k\" = 32,768"},
+      {"stimulus", "effects", "text", "", "those of the scene",
+       "none: no effects. scene: those of the scene's file. Another name has a table [[design.effect_set]]"},
+      {"stimulus", "timing", "table", "", where_needed, "how long each frame stays on"},
+
+      {"stimulus.timing", "profile", "text", "\"moments\", \"hitches\", \"floor\", \"trace\"", "",
+       "as above"},
+      {"stimulus.timing", "mean_fps", "number", "[0.1, 1000]", where_needed, "frames over time, frames/s"},
+      {"stimulus.timing", "sd_fps", "number", "[0, 1000]", "0", "below mean_fps, frames/s"},
+      {"stimulus.timing", "base_fps", "number", "[0.1, 1000]", where_needed,
+       "frame rate between hitches, frames/s"},
+      {"stimulus.timing", "hitch_ms", "number", "[1, 10000]", where_needed,
+       "time for which the long frame stays on; at least 1000 / base_fps, ms"},
+      {"stimulus.timing", "period_s", "number", "[0.01, 3600]", where_needed,
+       "one hitch in each period, in its middle, s"},
+      {"stimulus.timing", "jitter", "number", "[0, 1]", "0",
+       "the hitch comes at a random time in this middle part of its period"},
+      {"stimulus.timing", "low_fps", "number", "[0.1, 1000]", where_needed,
+       "rate of the slowest 5 % of the frames; at most mean_fps, frames/s"},
+      {"stimulus.timing", "frame_ms", "list of numbers", "[0.1, 10000]", where_needed,
+       "2 to 100,000 frame times, ms"},
+      {"stimulus.timing", "smoothed", "true or false", "", "false",
+       "true: as many frames in the same time, all equally long"},
+      {"stimulus.timing", "latency_ms", "number", "[0, 10000]", "0",
+       "the content lags behind by this constant, ms"},
+      {"stimulus.timing", "animation_error_ms", "number", "[0, 1000]", "0",
+       "the step of the content differs from the step of the display by this much, alternately more and "
+       "less, "
+       "ms"},
+
+      {"factor", "name", "text", "", "", "an id: a letter, then letters, digits and '_', 64 at most"},
+      {"factor", "vary", "text", "\"within\", \"between\"", "",
+       "within: each participant sees all levels. between: one level, dealt by quota"},
+      {"factor", "level", "tables", "", "", "2 to 100 levels"},
+
+      {"factor.level", "name", "text", "", "", "an id"},
+
+      {"combination", "FACTOR", "text", "", "", "a level of each factor, as in `hitch = \"h50\"`"},
+
       {"design", "timing", "text", "\"settings\", \"native\", \"equal\", \"table2\"", "",
        "settings: all of mean_fps and sd_fps (pilot). native: as fast as each method runs. equal: one "
        "mean_fps and sd_fps for all. table2: each cell's own of `moments`"},
@@ -150,6 +225,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "needed under table2, one for each cell whatever its effects"},
       {"design", "pairs", "true or false", "", "false",
        "each trial shows two cells of a group: all unordered pairs"},
+      {"design", "standard", "table", "", "all pairs",
+       "format 3, with pairs: each trial shows this cell and another one, in an order dealt evenly"},
+      {"design", "repetitions", "whole number", "[1, 200]", "1",
+       "format 3: trials of each cell, or pair, in a session"},
       {"design", "groups", "whole number", "[1, 100]", "1",
        "that a participant meets: different scenes, n_* spread as evenly as can be"},
       {"design", "order", "text", "\"shuffle\", \"latin\", \"williams\", \"constrained\"", "",
@@ -157,11 +236,15 @@ const std::vector<KeyReference>& protocol_reference() {
        "each place. williams: and directly after each other one. constrained: shuffled until "
        "`never_adjacent` holds; not for pairs"},
       {"design", "never_adjacent", "list of texts", "", where_needed,
-       "needed under constrained: method, effects, mean_fps, sd_fps; neighbours share none of them"},
+       "needed under constrained: method, effects, mean_fps, sd_fps, in format 3 names of factors; "
+       "neighbours "
+       "share none of them"},
       {"design", "assignment", "text", "\"balanced\", \"paper_random\"", "\"balanced\"",
        "balanced: sequences of groups, rows and the order within pairs are dealt by quota over all in the "
        "database who took part and did not drop out; another database has a quota of its own. paper_random: "
        "drawn for each participant"},
+
+      {"design.standard", "FACTOR", "text", "", "", "a level of each within-subject factor"},
 
       {"design.moments", "scene", "text", "", "", "as in design.scene"},
       {"design.moments", "method", "text", "", "", "as in design.method"},
@@ -306,7 +389,7 @@ const std::vector<KeyReference>& protocol_reference() {
 }
 
 std::string protocol_reference_page() {
-  return "# Protocol files, format " + std::to_string(Protocol::format_version) +
+  return "# Protocol files, formats 2 and " + std::to_string(Protocol::newest_format) +
          R"(
 
 Written by `vip-study reference`; `vip-study check FILE` checks a file and prints what it describes. Files are

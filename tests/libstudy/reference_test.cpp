@@ -31,11 +31,15 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
   return out;
 }
 
-/// Replaces scores in `anchors` and keys of an effect by the placeholders of the reference.
+/// Replaces scores in `anchors`, keys of an effect and names of factors by the placeholders of the reference.
+/// A level's keys are listed once, under stimulus.
 std::string without_scores(const std::string& name) {
   const std::string effect =
       std::regex_replace(name, std::regex(R"((effect_set\.effect)\.(?!kind$)\w+$)"), "$1.KEY");
-  return std::regex_replace(effect, std::regex(R"(anchors\.[0-9]+$)"), "anchors.SCORE");
+  const std::string score = std::regex_replace(effect, std::regex(R"(anchors\.[0-9]+$)"), "anchors.SCORE");
+  const std::string level =
+      std::regex_replace(score, std::regex(R"(^factor\.level\.(?!name$))"), "stimulus.");
+  return std::regex_replace(level, std::regex(R"(^(combination|design\.standard)\.\w+$)"), "$1.FACTOR");
 }
 
 /// All keys that are asked for when all protocols of the source tree are read.
