@@ -201,6 +201,8 @@ const char* timing_name(const study::Design& design) {
       return "equal";
     case TimingSource::Table2:
       return "table2";
+    case TimingSource::Profiles:
+      return "profiles";
     default:
       return "settings";
   }

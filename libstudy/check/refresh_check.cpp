@@ -7,21 +7,13 @@
 
 namespace study {
 
-namespace {
-
-bool same(const FpsSetting& a, const FpsSetting& b) {
-  return a.mean == b.mean && a.sd == b.sd && a.duration_s == b.duration_s;
-}
-
-}  // namespace
-
 std::vector<CheckedSetting> checked_settings(const Protocol& protocol) {
   std::vector<CheckedSetting> out;
   if (protocol.design.timing == TimingSource::Native) return out;
   for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
     const FpsSetting& setting = protocol.design.cells[i].setting;
-    const auto known = std::find_if(
-        out.begin(), out.end(), [&](const CheckedSetting& other) { return same(other.setting, setting); });
+    const auto known = std::find_if(out.begin(), out.end(),
+                                    [&](const CheckedSetting& other) { return other.setting == setting; });
     if (known == out.end())
       out.push_back({setting, {static_cast<int>(i)}});
     else
@@ -33,7 +25,7 @@ std::vector<CheckedSetting> checked_settings(const Protocol& protocol) {
 std::vector<std::int64_t> intervals_on(const RefreshCheck& check, const std::vector<CheckedSetting>& settings,
                                        const FpsSetting& setting) {
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    if (!same(settings[i].setting, setting) || check.verdicts[i].holds.empty()) continue;
+    if (settings[i].setting != setting || check.verdicts[i].holds.empty()) continue;
     return schedule_of_holds(check.verdicts[i].holds, check.refresh_hz).intervals_ns;
   }
   return {};

@@ -169,7 +169,8 @@ std::string describe_balance(const Protocol& protocol, const PlannedBalance& bal
   else if (balance.sequences == 1)
     out += "all meet the same cells";
   else
-    out += fmt::format("each of {} sequences of scene and n_* is met by {} of them", balance.sequences,
+    out += fmt::format("each of {} {} is met by {} of them", balance.sequences,
+                       design.factors.empty() ? "sequences of scene and n_*" : "between-subject groups",
                        balance.least == balance.most ? fmt::format("{}", balance.least)
                                                      : fmt::format("{} to {}", balance.least, balance.most));
   if (design.pairs && design.assignment == Assignment::Balanced)

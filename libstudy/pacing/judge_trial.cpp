@@ -73,6 +73,9 @@ void describe_intervals(TimingVerdict& trial, const std::vector<double>& interva
   trial.shortest_ms = 1000 * sorted.front();
   trial.longest_ms = 1000 * sorted.back();
   trial.p95_ms = 1000 * stats::sorted_quantile(sorted, 0.95);
+  trial.p99_ms = 1000 * stats::sorted_quantile(sorted, 0.99);
+  const double hitch_s = hitch_factor * stats::sorted_quantile(sorted, 0.5);
+  trial.hitches = std::count_if(sorted.begin(), sorted.end(), [&](double dt) { return dt > hitch_s; });
   std::vector<double> rates;
   for (const double dt : intervals_s) rates.push_back(1 / dt);
   trial.lag1 = lag1(rates);

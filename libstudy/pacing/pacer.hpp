@@ -24,7 +24,14 @@ struct ContentRules {
   double content_step_s = 1.0 / 60;
   std::int64_t start_frame = 0;
   AtEnd at_end = AtEnd::Loop;
+  double latency_s = 0;  ///< real_time: the content lags behind its frame by this
+  /// real_time: the content's step between two frames differs from the frame's interval by this, alternately
+  /// more and less, s. Content never runs backwards, so a larger error than an interval is cut to it.
+  double animation_error_s = 0;
 };
+
+/// The rules for one setting: with the latency and the animation error of its profile.
+ContentRules content_of(ContentRules rules, const FpsSetting& setting);
 
 /// One shown frame. Times are nanoseconds on the session's clock; -1 = not known.
 struct FrameRecord {
@@ -88,13 +95,20 @@ ShowingBounds showing_bounds(const TimingTolerance& tolerance, double duration_s
 
 enum class Verdict { Pass, Degraded, Fail };
 
+/// An interval longer than this many median intervals counts as a hitch.
+inline constexpr double hitch_factor = 1.5;
+
 /// Nominal and realised timing of a trial, with the grade of the evidence.
 struct TimingVerdict {
   Verdict verdict = Verdict::Fail;
   TimingGrade grade = TimingGrade::CpuSubmit;
   FpsSetting nominal;
   stats::FpsMoments realised;
-  double longest_ms = 0, shortest_ms = 0, p95_ms = 0;
+  double longest_ms = 0, shortest_ms = 0, p95_ms = 0, p99_ms = 0;
+  std::int64_t hitches = 0;  ///< intervals longer than hitch_factor times the median interval
+  /// Mean absolute difference between the content's step and the interval of a frame, ms; none if the content
+  /// follows frames instead of time.
+  std::optional<double> animation_error_ms;
   double lag1 = 0;  ///< autocorrelation of 1/dt at lag 1; 0 when delta is 0
   std::int64_t late = 0;
   double worst_late_ms = 0;

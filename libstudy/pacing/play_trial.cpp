@@ -37,10 +37,15 @@ class ContentCourse {
   std::int64_t step() const { return step_; }
 
  private:
-  std::int64_t step_at(std::int64_t index, std::int64_t onset_ns) const {
+  std::int64_t step_at(std::int64_t index, std::int64_t onset_ns) {
     // A tolerance of a millionth of a step absorbs rounding if an onset falls on a step's edge.
-    const double elapsed = 1e-9 * static_cast<double>(onset_ns) / rules_.content_step_s;
-    const std::int64_t gone = rules_.real_time ? static_cast<std::int64_t>(elapsed + 1e-6) : index;
+    // The error moves every second frame by its whole size: steps are alternately longer and shorter.
+    const double moved_s = (index % 2 == 1 ? rules_.animation_error_s : 0) - rules_.latency_s;
+    const double elapsed =
+        std::max(0.0, 1e-9 * static_cast<double>(onset_ns) + moved_s) / rules_.content_step_s;
+    const std::int64_t gone =
+        rules_.real_time ? std::max(gone_, static_cast<std::int64_t>(elapsed + 1e-6)) : index;
+    gone_ = gone;
     if (length_ == 0) return rules_.start_frame + gone;
     const std::int64_t span = length_ - rules_.start_frame;
     return rules_.start_frame + (rules_.at_end == AtEnd::Loop ? gone % span : std::min(gone, span - 1));
@@ -55,6 +60,7 @@ class ContentCourse {
   Stimulus& stimulus_;
   std::int64_t length_ = 0;
   std::int64_t step_ = 0;
+  std::int64_t gone_ = 0;  ///< content steps since the first frame, without rewinds
 };
 
 /// Prepares and renders frame `index` of a trial.
@@ -78,6 +84,13 @@ void check_intervals(const std::vector<std::int64_t>& intervals_ns) {
 }
 
 }  // namespace
+
+ContentRules content_of(ContentRules rules, const FpsSetting& setting) {
+  if (!setting.profile) return rules;
+  rules.latency_s = 1e-3 * setting.profile->latency_ms;
+  rules.animation_error_s = 1e-3 * setting.profile->animation_error_ms;
+  return rules;
+}
 
 PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
                        Stimulus& stimulus, Display& display, Clock& clock, const ShowingBounds& bounds,

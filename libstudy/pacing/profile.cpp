@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <stdexcept>
 
 #include "libstudy/base/random.hpp"
 #include "stats/base/error.hpp"
@@ -16,28 +16,22 @@ namespace study {
 namespace {
 
 constexpr std::array profile_words{"moments", "hitches", "floor", "trace"};
-constexpr double exact_share = 0.01;         // largest change of an interval, as a share of itself
-constexpr double approximate_share = 0.005;  // largest change of the mean
-constexpr double low_share = 0.05;           // of frames in a "5 % low"
+constexpr double low_share = 0.05;  // of frames in a "5 % low"
 
-/// Intervals in seconds before a display rounds them; `reason` says why there are none.
-struct Wanted {
-  std::vector<double> intervals_s;
-  std::string reason;
-};
+[[noreturn]] void refuse(const std::string& problem) {
+  throw base::Error("timing", problem, "change the numbers of this timing, or the length of the stimulus");
+}
 
-Wanted hitches(const TimingProfile& profile, double duration_s, std::uint64_t seed) {
+std::vector<double> hitches(const TimingProfile& profile, double duration_s, std::uint64_t seed) {
   const double base_s = 1 / profile.mean_fps, hitch_s = 1e-3 * profile.hitch_ms;
   if (hitch_s < base_s)
-    return {{},
-            fmt::format("a hitch of {:g} ms is shorter than a frame at {:g} frames/s", profile.hitch_ms,
-                        profile.mean_fps)};
+    refuse(fmt::format("a hitch of {:g} ms is shorter than a frame at {:g} frames/s", profile.hitch_ms,
+                       profile.mean_fps));
   if (hitch_s + base_s > profile.period_s)
-    return {{},
-            fmt::format("a hitch of {:g} ms and a frame do not fit into {:g} s", profile.hitch_ms,
-                        profile.period_s)};
+    refuse(fmt::format("a hitch of {:g} ms and a frame do not fit into a period of {:g} s", profile.hitch_ms,
+                       profile.period_s));
   RandomStream random(seed);
-  Wanted out;
+  std::vector<double> out;
   double time_s = 0;
   int period = 0;
   const auto next_hitch = [&] {
@@ -47,8 +41,8 @@ Wanted hitches(const TimingProfile& profile, double duration_s, std::uint64_t se
   while (time_s < duration_s - base_s / 2) {
     // A hitch begins with the frame that is on at its time, if the stimulus lasts long enough for it.
     const bool now = hitch_at_s < time_s + base_s && time_s + hitch_s < duration_s + base_s / 2;
-    out.intervals_s.push_back(now ? hitch_s : base_s);
-    time_s += out.intervals_s.back();
+    out.push_back(now ? hitch_s : base_s);
+    time_s += out.back();
     if (now) {
       ++period;
       hitch_at_s = next_hitch();
@@ -57,110 +51,32 @@ Wanted hitches(const TimingProfile& profile, double duration_s, std::uint64_t se
   return out;
 }
 
-Wanted floor_of(const TimingProfile& profile, double duration_s, std::uint64_t seed) {
-  const auto count = static_cast<std::size_t>(frame_count({profile.mean_fps, 0, duration_s}));
+std::vector<double> with_floor(const TimingProfile& profile, double duration_s, std::uint64_t seed) {
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(profile.mean_fps * duration_s)));
   const auto low = static_cast<std::size_t>(std::ceil(low_share * static_cast<double>(count)));
-  const double left_s =
-      static_cast<double>(count) / profile.mean_fps - static_cast<double>(low) / profile.low_fps;
-  const double rest_s = count > low ? left_s / static_cast<double>(count - low) : 0;
-  if (rest_s <= 0 || profile.low_fps > profile.mean_fps)
-    return {{},
-            fmt::format("a mean of {:g} frames/s cannot have a 5 % low of {:g} frames/s", profile.mean_fps,
-                        profile.low_fps)};
-  Wanted out;
-  out.intervals_s.assign(count, rest_s);
-  std::fill_n(out.intervals_s.begin(), low, 1 / profile.low_fps);
+  const double low_s = static_cast<double>(low) / profile.low_fps;
+  const double left_s = static_cast<double>(count) / profile.mean_fps - low_s;
+  if (profile.low_fps > profile.mean_fps || count <= low || left_s <= 0)
+    refuse(fmt::format("a mean of {:g} frames/s cannot have a 5 % low of {:g} frames/s", profile.mean_fps,
+                       profile.low_fps));
+  std::vector<double> out(count, left_s / static_cast<double>(count - low));
+  std::fill_n(out.begin(), low, 1 / profile.low_fps);
   RandomStream random(seed);
-  shuffle(out.intervals_s, random);
+  shuffle(out, random);
   return out;
 }
 
-Wanted trace_of(const TimingProfile& profile, double duration_s) {
-  Wanted out;
+std::vector<double> of_trace(const TimingProfile& profile, double duration_s) {
+  std::vector<double> out;
   double time_s = 0;
   for (std::size_t i = 0; time_s < duration_s && !profile.frame_ms.empty(); ++i) {
     const double next_s = 1e-3 * profile.frame_ms[i % profile.frame_ms.size()];
-    if (!out.intervals_s.empty() && time_s + next_s / 2 > duration_s) break;
-    out.intervals_s.push_back(next_s);
+    if (!out.empty() && time_s + next_s / 2 > duration_s) break;
+    out.push_back(next_s);
     time_s += next_s;
   }
-  if (out.intervals_s.empty()) return {{}, "the trace holds no frame"};
-  if (profile.smoothed)
-    std::ranges::fill(out.intervals_s, time_s / static_cast<double>(out.intervals_s.size()));
-  return out;
-}
-
-/// Deadlines at the nearest whole tick, at least one tick apart.
-std::vector<std::int64_t> ticks_of(const std::vector<double>& intervals_s, double tick_s) {
-  std::vector<std::int64_t> out;
-  double time_s = 0;
-  std::int64_t last = 0;
-  for (const double interval : intervals_s) {
-    time_s += interval;
-    const std::int64_t tick = std::max<std::int64_t>(last + 1, std::llround(time_s / tick_s));
-    out.push_back(tick - last);
-    last = tick;
-  }
-  return out;
-}
-
-void measure_profile(CompiledProfile& out) {
-  std::vector<double> seconds;
-  for (const std::int64_t ns : out.intervals_ns) seconds.push_back(1e-9 * static_cast<double>(ns));
-  out.moments = stats::fps_moments(seconds);
-}
-
-CompiledProfile compile_moments(const TimingProfile& profile, double duration_s, const PacingRules& rules,
-                                double refresh_hz, std::uint64_t seed) {
-  const FpsSetting setting{profile.mean_fps, profile.sd_fps, duration_s};
-  CompiledProfile out;
-  if (refresh_hz > 0) {
-    const RefreshVerdict verdict = quantise(setting, rules, refresh_hz, seed);
-    out.feasibility = verdict.feasibility;
-    out.reason = verdict.reason;
-    if (verdict.feasibility != Feasibility::Unreachable)
-      out.intervals_ns = schedule_of_holds(verdict.holds, refresh_hz).intervals_ns;
-  } else {
-    try {
-      out.intervals_ns = compile_schedule(setting, for_display(rules, 0), seed).intervals_ns;
-      out.feasibility = Feasibility::Exact;
-    } catch (const base::Error& error) {
-      const std::string message = error.what();
-      out.reason = message.substr(0, message.find('\n'));
-    }
-  }
-  measure_profile(out);
-  return out;
-}
-
-/// Rounds to a display's periods and says what that changes.
-CompiledProfile round_to_display(const std::vector<double>& intervals_s, double refresh_hz) {
-  CompiledProfile out;
-  const double tick_s = refresh_hz > 0 ? 1 / refresh_hz : 1e-9;
-  const auto ticks = ticks_of(intervals_s, tick_s);
-  double worst = 0, wanted_s = 0;
-  std::int64_t all = 0, last_ns = 0;
-  for (std::size_t i = 0; i < ticks.size(); ++i) {
-    all += ticks[i];
-    wanted_s += intervals_s[i];
-    worst = std::max(worst, std::abs(static_cast<double>(ticks[i]) * tick_s / intervals_s[i] - 1));
-    const std::int64_t end_ns = std::llround(1e9 * static_cast<double>(all) * tick_s);
-    out.intervals_ns.push_back(end_ns - last_ns);
-    last_ns = end_ns;
-  }
-  measure_profile(out);
-  const double mean_error = std::abs(static_cast<double>(all) * tick_s / wanted_s - 1);
-  out.feasibility = worst <= exact_share              ? Feasibility::Exact
-                    : mean_error <= approximate_share ? Feasibility::Approximate
-                                                      : Feasibility::Unreachable;
-  if (out.feasibility == Feasibility::Approximate)
-    out.reason =
-        fmt::format("frames move by up to {:.0f} % to fit periods of {:.4g} ms", 100 * worst, 1e3 * tick_s);
-  if (out.feasibility == Feasibility::Unreachable) {
-    out.reason = fmt::format("with periods of {:.4g} ms the mean is {:.4g} instead of {:.4g} frames/s",
-                             1e3 * tick_s, out.moments.mean, static_cast<double>(ticks.size()) / wanted_s);
-    out.intervals_ns.clear();
-  }
+  if (out.empty()) refuse("the trace holds no frame");
+  if (profile.smoothed) std::ranges::fill(out, time_s / static_cast<double>(out.size()));
   return out;
 }
 
@@ -199,19 +115,18 @@ std::string profile_text(const TimingProfile& profile) {
   return out;
 }
 
-CompiledProfile compile_profile(const TimingProfile& profile, double duration_s, const PacingRules& rules,
-                                double refresh_hz, std::uint64_t seed) {
-  if (profile.kind == ProfileKind::Moments)
-    return compile_moments(profile, duration_s, rules, refresh_hz, seed);
-  const Wanted wanted = profile.kind == ProfileKind::Hitches ? hitches(profile, duration_s, seed)
-                        : profile.kind == ProfileKind::Floor ? floor_of(profile, duration_s, seed)
-                                                             : trace_of(profile, duration_s);
-  if (wanted.intervals_s.empty()) {
-    CompiledProfile out;
-    out.reason = wanted.reason;
-    return out;
+std::vector<double> pattern_intervals(const TimingProfile& profile, double duration_s, std::uint64_t seed) {
+  switch (profile.kind) {
+    case ProfileKind::Hitches:
+      return hitches(profile, duration_s, seed);
+    case ProfileKind::Floor:
+      return with_floor(profile, duration_s, seed);
+    case ProfileKind::Trace:
+      return of_trace(profile, duration_s);
+    case ProfileKind::Moments:
+      break;
   }
-  return round_to_display(wanted.intervals_s, refresh_hz);
+  throw std::invalid_argument("a mean and a standard deviation are no pattern");
 }
 
 }  // namespace study

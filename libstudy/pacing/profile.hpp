@@ -5,9 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "libstudy/pacing/schedule.hpp"
-#include "stats/fps_window.hpp"
-
 namespace study {
 
 /// In protocols: profile_word(), e.g. "hitches".
@@ -43,20 +40,8 @@ const char* profile_word(ProfileKind kind);
 /// equal words; a trace is named by its number of frames and the first digits of a hash.
 std::string profile_text(const TimingProfile& profile);
 
-/// A profile as a display shows it.
-struct CompiledProfile {
-  Feasibility feasibility = Feasibility::Unreachable;
-  std::vector<std::int64_t> intervals_ns;  ///< empty when unreachable
-  stats::FpsMoments moments;               ///< of these intervals
-  std::string reason;                      ///< why it is not exact
-};
-
-/// The intervals of one showing. refresh_hz = 0: the display has no fixed refresh and shows any interval.
-/// With a fixed refresh each deadline moves to the nearest period, at least one period after the last one.
-/// Exact: no interval moved by more than 1 % of itself. Approximate: the mean moved by at most 0.5 %. Equal
-/// seeds give equal intervals. Moments: compile_schedule() and quantise() with these rules; the other kinds
-/// use no rules. An impossible profile is unreachable with its reason, such as a floor above the mean.
-CompiledProfile compile_profile(const TimingProfile& profile, double duration_s, const PacingRules& rules,
-                                double refresh_hz, std::uint64_t seed);
+/// The times for which frames stay on, seconds, before a display rounds them. Not for Moments. Equal seeds
+/// give equal intervals. base::Error if the numbers contradict each other, such as a floor above the mean.
+std::vector<double> pattern_intervals(const TimingProfile& profile, double duration_s, std::uint64_t seed);
 
 }  // namespace study

@@ -18,7 +18,8 @@ constexpr double sd_absolute = 0.25;  // frames/s
 constexpr double approximate_mean = 0.005;
 constexpr double arithmetic_mean_met = 1e-4;
 constexpr double harmonic_mean_met = 1e-9;
-constexpr double whole = 1e-6;  // periods; tolerance for rounding in refresh * frames / mean
+constexpr double exact_interval = 0.01;  // largest move of a pattern's interval, as a share of itself
+constexpr double whole = 1e-6;           // periods; tolerance for rounding in refresh * frames / mean
 
 HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, double refresh_hz) {
   HoldTarget target;
@@ -136,6 +137,44 @@ void fill(RefreshVerdict& verdict, const HoldList& list, const PacingRules& rule
     verdict.holds.push_back(static_cast<int>(std::lround(refresh_hz / rate)));
 }
 
+/// Moves each deadline of a pattern to the nearest period.
+RefreshVerdict quantise_pattern(const FpsSetting& setting, double refresh_hz, std::uint64_t seed) {
+  RefreshVerdict out;
+  const auto wanted_s = pattern_intervals(*setting.profile, setting.duration_s, seed);
+  double time_s = 0, worst = 0, distance = 0;
+  std::int64_t last = 0;
+  std::vector<double> shown_s;
+  for (const double interval : wanted_s) {
+    time_s += interval;
+    const std::int64_t period = std::max<std::int64_t>(last + 1, std::llround(time_s * refresh_hz));
+    out.holds.push_back(static_cast<int>(period - last));
+    last = period;
+    shown_s.push_back(out.holds.back() / refresh_hz);
+    worst = std::max(worst, std::abs(shown_s.back() / interval - 1));
+    distance += (1 / shown_s.back() - 1 / interval) * (1 / shown_s.back() - 1 / interval);
+  }
+  const stats::FpsMoments moments = stats::fps_moments(shown_s);
+  out.frames = static_cast<std::int64_t>(shown_s.size());
+  out.mean = moments.mean;
+  out.sd = moments.sd;
+  out.distance = std::sqrt(distance / static_cast<double>(shown_s.size()));
+  out.longest_hold = *std::max_element(out.holds.begin(), out.holds.end());
+  const double wanted_mean = static_cast<double>(shown_s.size()) / time_s;
+  const double period_ms = 1e3 / refresh_hz;
+  if (worst <= exact_interval) {
+    out.feasibility = Feasibility::Exact;
+  } else if (std::abs(out.mean / wanted_mean - 1) <= approximate_mean) {
+    out.feasibility = Feasibility::Approximate;
+    out.reason =
+        fmt::format("frames change by up to {:.0f} % to fit periods of {:.4g} ms", 100 * worst, period_ms);
+  } else {
+    out.reason = fmt::format("periods of {:.4g} ms give a mean of {:.4g} instead of {:.4g} frames/s",
+                             period_ms, out.mean, wanted_mean);
+    out.holds.clear();
+  }
+  return out;
+}
+
 }  // namespace
 
 RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& requested_rules, double refresh_hz,
@@ -143,6 +182,7 @@ RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& requested_
   if (!(refresh_hz > 0 && std::isfinite(refresh_hz)))
     throw base::Error(fmt::format("refresh {:g} Hz", refresh_hz), "is not a refresh rate",
                       "give the display's refresh in hertz");
+  if (has_pattern(setting)) return quantise_pattern(setting, refresh_hz, seed);
   const auto rules = for_display(requested_rules, refresh_hz);
   RefreshVerdict verdict;
   verdict.frames = frame_count(setting);

@@ -101,7 +101,27 @@ PacingRules for_display(PacingRules rules, double refresh_hz) {
   return rules;
 }
 
+bool FpsSetting::operator==(const FpsSetting& other) const {
+  const bool profiles = profile && other.profile ? *profile == *other.profile : profile == other.profile;
+  return mean == other.mean && sd == other.sd && duration_s == other.duration_s && profiles;
+}
+
+FpsSetting setting_of(const TimingProfile& profile, double duration_s) {
+  FpsSetting out{profile.mean_fps, profile.sd_fps, duration_s,
+                 std::make_shared<const TimingProfile>(profile)};
+  if (!has_pattern(out)) return out;
+  const stats::FpsMoments moments = stats::fps_moments(pattern_intervals(profile, duration_s, 0));
+  out.mean = moments.mean;
+  out.sd = moments.sd > 1e-9 ? moments.sd : 0;  // rounding of equal intervals
+  return out;
+}
+
+bool has_pattern(const FpsSetting& setting) {
+  return setting.profile && setting.profile->kind != ProfileKind::Moments;
+}
+
 std::string setting_name(const FpsSetting& setting) {
+  if (setting.profile) return profile_text(*setting.profile);
   return fmt::format("({:g}, {:g})", setting.mean, setting.sd);
 }
 
@@ -111,6 +131,11 @@ std::int64_t frame_count(const FpsSetting& setting) {
 
 Schedule compile_schedule(const FpsSetting& setting, const PacingRules& rules, std::uint64_t seed) {
   Schedule schedule;
+  if (has_pattern(setting)) {
+    schedule.intervals_s = pattern_intervals(*setting.profile, setting.duration_s, seed);
+    schedule.intervals_ns = rounded_deadlines(schedule.intervals_s);
+    return schedule;
+  }
   for (const double rate : ordered(exact_rates(setting, rules), rules, seed))
     schedule.intervals_s.push_back(1 / rate);
   schedule.intervals_ns = whole_nanoseconds(schedule.intervals_s, setting, rules.mean);

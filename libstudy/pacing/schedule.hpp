@@ -2,10 +2,12 @@
 /// FPS schedules with exact moments, and their feasibility on a display with a fixed refresh.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "libstudy/pacing/profile.hpp"
 #include "stats/fps_window.hpp"
 
 namespace study {
@@ -30,14 +32,24 @@ struct PacingRules {
 /// bound without a fixed refresh.
 PacingRules for_display(PacingRules rules, double refresh_hz);
 
-/// One cell of the design: mean and standard deviation of the frame rate, frames/s, and the trial's length.
+/// Timing of one cell of the design.
 struct FpsSetting {
-  double mean = 0;
-  double sd = 0;
+  double mean = 0;  ///< frames/s
+  double sd = 0;    ///< standard deviation of the frame rate, frames/s
   double duration_s = 10;
+  /// Format 3. If it is not of kind Moments, `mean` and `sd` are those of its intervals before a display
+  /// rounds them.
+  std::shared_ptr<const TimingProfile> profile = {};
+
+  bool operator==(const FpsSetting& other) const;
 };
 
-/// The setting as messages and tables name it, e.g. "(50, 20)".
+/// The setting of a profile. base::Error if its numbers contradict each other, such as a floor above the
+/// mean.
+FpsSetting setting_of(const TimingProfile& profile, double duration_s);
+/// True if the intervals come from a pattern instead of a mean and a standard deviation.
+bool has_pattern(const FpsSetting& setting);
+/// The setting as messages and tables name it, e.g. "(50, 20)", or profile_text().
 std::string setting_name(const FpsSetting& setting);
 /// N = round(mean * duration), at least 1.
 std::int64_t frame_count(const FpsSetting& setting);
@@ -50,7 +62,7 @@ struct Schedule {
 
 /// N = round(mean * duration) stratified quantiles of a truncated normal in FPS whose parameters are solved
 /// so that the list has the requested moments exactly, ordered by `seed`. base::Error naming the setting when
-/// there is no solution.
+/// there is no solution. With a pattern: its intervals, without any rule.
 Schedule compile_schedule(const FpsSetting& setting, const PacingRules& rules, std::uint64_t seed);
 
 enum class Feasibility { Exact, Approximate, Unreachable };
@@ -75,6 +87,8 @@ struct RefreshVerdict {
 /// Of the lists that meet the moments, the one nearest to the unquantised rates is searched
 /// (hold_search.hpp). With the arithmetic mean, sums of R / k seldom hit a number exactly: there mu counts as
 /// met within 0.01 %. refresh_hz > 0. Applies rules.fps_max_is_refresh.
+/// With a pattern, each deadline moves to the nearest period, at least one after the last, without any rule.
+/// exact: no interval moved by more than 1 % of itself. approximate: the mean moved by at most 0.5 %.
 RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& rules, double refresh_hz,
                         std::uint64_t seed);
 

@@ -62,10 +62,8 @@ struct DesignFactor {
 /// One combination of the factors.
 struct Cell {
   StimulusSpec stimulus;
-  /// Moments 0 under TimingSource::Native; under Profiles those of the profile before a display rounds it.
-  FpsSetting setting;
+  FpsSetting setting;            ///< moments 0 under TimingSource::Native
   std::vector<int> levels = {};  ///< by factor: index into DesignFactor::levels; empty in formats 1 and 2
-  std::optional<TimingProfile> profile = {};  ///< under TimingSource::Profiles
 };
 
 enum class TrialOrder {

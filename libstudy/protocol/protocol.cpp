@@ -108,8 +108,7 @@ PacingRules read_pacing(const base::TomlTable& table, const Design& design) {
   read_order(table, rules);
   std::vector<FpsSetting> settings;
   for (const Cell& cell : design.cells) {
-    const bool by_rules = !cell.profile || cell.profile->kind == ProfileKind::Moments;
-    if (design.timing != TimingSource::Native && by_rules) settings.push_back(cell.setting);
+    if (design.timing != TimingSource::Native && !has_pattern(cell.setting)) settings.push_back(cell.setting);
   }
   check_cuts(table, rules, settings);
   return rules;
@@ -151,9 +150,10 @@ int read_format(const base::TomlTable& root) {
 /// Real time is needed where the content may leave the time of the display.
 void check_content(const base::TomlTable& table, const ContentRules& content, const Design& design) {
   for (const Cell& cell : design.cells) {
-    if (content.real_time || !cell.profile) continue;
-    if (cell.profile->latency_ms > 0 || cell.profile->animation_error_ms > 0)
-      table.fail("mode", "= \"per_frame\" has no time that could lag: " + profile_text(*cell.profile),
+    const auto& profile = cell.setting.profile;
+    if (content.real_time || !profile) continue;
+    if (profile->latency_ms > 0 || profile->animation_error_ms > 0)
+      table.fail("mode", "= \"per_frame\" has no time that could lag: " + profile_text(*profile),
                  "write mode = \"real_time\", or remove latency_ms and animation_error_ms");
   }
 }
@@ -242,7 +242,11 @@ void override_trial_seconds(Protocol& protocol, double seconds) {
     throw base::Error("--trial-seconds", shown(seconds) + " s is out of range",
                       "use " + shown(duration_range.min) + " to " + shown(duration_range.max) + " s");
   }
-  for (auto& cell : protocol.design.cells) cell.setting.duration_s = seconds;
+  for (auto& cell : protocol.design.cells) {
+    FpsSetting& setting = cell.setting;
+    setting.duration_s = seconds;
+    if (setting.profile) setting = setting_of(*setting.profile, seconds);
+  }
   protocol.trial_seconds = seconds;
   protocol.test_data = true;
   protocol.sha256 =

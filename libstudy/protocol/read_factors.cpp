@@ -192,15 +192,13 @@ Cell cell_of(const base::TomlTable& root, const StimulusKeys& keys, double durat
   Cell cell;
   cell.stimulus = {needed(keys.scene, "scene"), needed(keys.method, "method"), needed(keys.n_star, "n_star"),
                    keys.effects.value_or("")};
-  cell.profile = needed(keys.timing, "timing");
-  const CompiledProfile compiled = compile_profile(*cell.profile, duration_s, {}, 0, 0);
-  cell.setting = {cell.profile->mean_fps, cell.profile->sd_fps, duration_s};
-  if (cell.profile->kind == ProfileKind::Moments) return cell;  // judged by the rules of [pacing]
-  if (compiled.feasibility == Feasibility::Unreachable)
-    root.fail("factor", "makes a timing that cannot be shown: " + compiled.reason,
+  try {
+    cell.setting = setting_of(needed(keys.timing, "timing"), duration_s);
+  } catch (const base::Error& error) {
+    const std::string words = error.what();
+    root.fail("factor", "makes a " + words.substr(0, words.find('\n')),
               "change the numbers of this timing, or duration_s");
-  cell.setting.mean = compiled.moments.mean;
-  cell.setting.sd = compiled.moments.sd;
+  }
   return cell;
 }
 

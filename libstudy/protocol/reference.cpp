@@ -29,13 +29,13 @@ the levels of one factor, except effects.)"},
 A display with a fixed refresh moves each frame to the nearest of its periods; `vip-study check` says what
 remains. latency_ms and animation_error_ms go with each profile and need `content.mode = "real_time"`.)"},
       {"factor", "[[factor]]",
-       R"(Format 3: an experimental factor. Without `combination` all levels of all factors are crossed, which makes
-the cells.)"},
+       "Format 3: an experimental factor. Without `combination` all levels are crossed, which makes the "
+       "cells."},
       {"factor.level", "[[factor.level]]",
        R"(A level: its name, and what it shows. It sets keys as [stimulus] has them: scene, method, n_star, effects,
 timing. All levels of a factor set the same keys, and no other factor sets them.)"},
       {"combination", "[[combination]]",
-       R"(Format 3: one cell each, instead of all combinations. Every level occurs at least once.)"},
+       "Format 3: one cell each, instead of all combinations. Every level occurs at least once."},
       {"design", "[design]",
        R"(What is shown, and in which order. Format 3 has the keys duration_s, repetitions, pairs, standard,
 order, never_adjacent, assignment, overlay and effect_set; its cells are the combinations of the levels. A
@@ -147,8 +147,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "without tracked gaze some hypotheses are labelled not testable"},
       {"", "camera_angle", "text", "\"scene\", \"true\"", "\"scene\"",
        "scene: the camera keeps the scene's angle. true: it has the angle that the picture fills of the "
-       "eye's "
-       "view, refused where that cuts what must stay visible"},
+       "eye's view, refused where that cuts what must stay visible"},
       {"", "design", "table", "", "", "what is shown"},
       {"", "pacing", "table", "", "", "how frames are timed"},
       {"", "content", "table", "", "", "how the process elapses"},
@@ -307,8 +306,7 @@ const std::vector<KeyReference>& protocol_reference() {
        "that head_locked makes people sick; needed for it"},
       {"headset", "hold_margin_deg", "number", "[0, 30]", "0",
        "held images reach this far beyond the eyes' view on each side, at as many pixels: a turning head "
-       "sees no "
-       "edge"},
+       "sees no edge"},
       {"headset", "world_scale", "number", "[0.01, 100]", "1", "metres of the room for a metre of the scene"},
       {"headset", "refresh_hz", "number", "[10, 1000]", "as it is",
        "requested from the headset, Hz; no session begins at another rate"},
@@ -316,8 +314,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"block", "kind", "text",
        "\"instructions\", \"screening\", \"consent\", \"demographics\", \"practice\", \"stimulus\", "
        "\"question\", \"rest\", \"break\", \"black\", \"repeat\", \"catch\", \"ssq\", \"gaze_validation\", "
-       "\"fms\", "
-       "\"debrief\"",
+       "\"fms\", \"debrief\"",
        "", "as above"},
       {"block", "id", "text", "", "", "unique: a letter, then letters, digits and '_', 64 at most"},
       {"block", "title", "text", "", "\"\"", "heading of the page; not for black and gaze_validation"},

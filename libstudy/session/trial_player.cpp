@@ -26,6 +26,34 @@ double play_speed(const PlayedTrial& played, TimingGrade grade) {
   return shown_ns > 0 ? simulated_s / (1e-9 * static_cast<double>(shown_ns)) : 0;
 }
 
+/// The setting that a showing is judged by. A pattern is judged by the moments of the intervals planned for
+/// this display.
+FpsSetting shown_setting(FpsSetting setting, FpsMean mean, const std::vector<std::int64_t>& intervals_ns) {
+  if (!has_pattern(setting)) return setting;
+  std::vector<double> seconds;
+  for (const std::int64_t ns : intervals_ns) seconds.push_back(1e-9 * static_cast<double>(ns));
+  const stats::FpsMoments moments = stats::fps_moments(seconds);
+  setting.mean = moments.mean_of(mean);
+  setting.sd = moments.sd;
+  return setting;
+}
+
+/// Mean absolute difference between the step of the simulated time and the step of the display; rewinds do
+/// not count. 0 for fewer than two frames.
+double animation_error_ms(const PlayedTrial& played, TimingGrade grade) {
+  double sum_s = 0;
+  int count = 0;
+  for (std::size_t i = 1; i < played.frames.size(); ++i) {
+    const FrameRecord &a = played.frames[i - 1], &b = played.frames[i];
+    const double simulated_s = b.facts.simulation_time_s - a.facts.simulation_time_s;
+    if (simulated_s < 0) continue;
+    sum_s += std::abs(simulated_s -
+                      1e-9 * static_cast<double>(placed_ns(b.times, grade) - placed_ns(a.times, grade)));
+    ++count;
+  }
+  return count > 0 ? 1e3 * sum_s / count : 0;
+}
+
 std::vector<Question> questions_of(const Protocol& protocol, const std::vector<std::string>& ids) {
   const auto all = all_questions(protocol);
   std::vector<Question> out;
@@ -177,11 +205,13 @@ void TrialPlayer::show(Showing& showing, int interval) {
   showing.next_interval = interval + 1;
 }
 
-TimingVerdict TrialPlayer::judge(const Cell& cell, const PlayedTrial& played) const {
+TimingVerdict TrialPlayer::judge(const Cell& cell, const std::vector<std::int64_t>& intervals,
+                                 const PlayedTrial& played) const {
   const TimingGrade grade = run_.parts.display.grade();
   if (run_.protocol.design.timing == TimingSource::Native) return describe_trial(played, grade);
   const PacingRules rules = for_display(run_.protocol.pacing, run_.parts.display.refresh_hz());
-  return judge_trial(cell.setting, rules, played, run_.protocol.timing, grade);
+  return judge_trial(shown_setting(cell.setting, rules.mean, intervals), rules, played, run_.protocol.timing,
+                     grade);
 }
 
 TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start_ns, const Cell& cell,
@@ -201,12 +231,13 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
   try {
     const double duration_s = cell.setting.duration_s;
     const ShowingBounds bounds = showing_bounds(run_.protocol.timing, duration_s);
-    const ContentRules& content = run_.protocol.content;
+    const ContentRules content = content_of(run_.protocol.content, cell.setting);
     const PlayedTrial played =
         intervals.empty()
             ? play_native(duration_s, content, stimulus, parts.display, parts.clock, bounds.overrun_ns, each)
             : play_trial(intervals, content, stimulus, parts.display, parts.clock, bounds, each);
-    const TimingVerdict verdict = judge(cell, played);
+    TimingVerdict verdict = judge(cell, intervals, played);
+    if (content.real_time) verdict.animation_error_ms = animation_error_ms(played, verdict.grade);
     const Recorded last = recording.take();
     recording.require_gaze();
     parts.store.end_presentation(presentation, start_ns, played.end_ns, journal.finish(last), verdict);

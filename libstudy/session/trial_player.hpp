@@ -41,7 +41,8 @@ class TrialPlayer {
   TimingVerdict present(std::int64_t presentation, std::int64_t start_ns, const Cell& cell,
                         const std::vector<std::int64_t>& intervals, Stimulus& stimulus,
                         ShownStimulus& shown) const;
-  TimingVerdict judge(const Cell& cell, const PlayedTrial& played) const;
+  TimingVerdict judge(const Cell& cell, const std::vector<std::int64_t>& intervals,
+                      const PlayedTrial& played) const;
   std::optional<Ending> ask(Showing& showing, std::size_t step);
 
   const Running& run_;

@@ -37,7 +37,8 @@ struct Store::Statements {
         end(database,
             "UPDATE presentation SET state = 'played', end_ns = ?, verdict = ?, grade = ?, reason = ?, "
             "frames = ?, mean_fps = ?, mean_arithmetic_fps = ?, sd_fps = ?, p95_ms = ?, longest_ms = ?, "
-            "shortest_ms = ?, lag1 = ?, late_frames = ?, worst_late_ms = ? WHERE presentation_id = ?"),
+            "shortest_ms = ?, lag1 = ?, late_frames = ?, worst_late_ms = ?, "
+            "p99_ms = ?, hitches = ?, animation_error_ms = ? WHERE presentation_id = ?"),
         // Inserts no answer if the question is personal, the unit is done or of another session, or the
         // question was answered since the trial was last set aside.
         response(database,
@@ -188,7 +189,8 @@ void Store::end_presentation(std::int64_t presentation, std::int64_t start_ns, s
   end.bind_all(end_ns, judged, grade_name(verdict.grade), reason,
                static_cast<std::int64_t>(verdict.realised.frames), verdict.realised.mean,
                verdict.realised.mean_arithmetic, verdict.realised.sd, verdict.p95_ms, verdict.longest_ms,
-               verdict.shortest_ms, verdict.lag1, verdict.late, verdict.worst_late_ms, presentation)
+               verdict.shortest_ms, verdict.lag1, verdict.late, verdict.worst_late_ms, verdict.p99_ms,
+               verdict.hitches, verdict.animation_error_ms, presentation)
       .run();
   commit(transaction);
 }

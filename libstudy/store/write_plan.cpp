@@ -122,8 +122,18 @@ void add_asks(sqlite::Connection& database, std::int64_t protocol_id, const Prot
   }
 }
 
+/// One line "factor = level" for each factor of format 3.
+std::string levels_text(const Design& design, const Cell& cell) {
+  std::string out;
+  for (std::size_t i = 0; i < design.factors.size(); ++i)
+    out += (i > 0 ? "\n" : "") + design.factors[i].name + " = " + level_name(design, cell, i);
+  return out;
+}
+
 void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Protocol& protocol) {
-  Statement insert(database, "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?,nullif(?,''),nullif(?,''))");
+  Statement insert(
+      database,
+      "INSERT INTO cell VALUES (?,?,?,?,?,?,?,?,nullif(?,''),nullif(?,''),nullif(?,''),nullif(?,''))");
   int index = 0;
   for (const Cell& cell : protocol.design.cells) {
     std::string set;
@@ -131,7 +141,9 @@ void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Pro
       if (one.name == cell.stimulus.effects) set = one.words;
     insert
         .bind_all(protocol_id, index++, cell.stimulus.scene, cell.stimulus.method, cell.stimulus.n_star,
-                  cell.setting.mean, cell.setting.sd, cell.setting.duration_s, cell.stimulus.effects, set)
+                  cell.setting.mean, cell.setting.sd, cell.setting.duration_s, cell.stimulus.effects, set,
+                  levels_text(protocol.design, cell),
+                  cell.setting.profile ? profile_text(*cell.setting.profile) : "")
         .run();
   }
 }

@@ -358,14 +358,6 @@ TEST(Database, ARefusalOfEarlierSchemasIsToldFromRulingOut) {
       << "views still read it";
 }
 
-TEST(Database, EveryKindOfAnswerMayBeStored) {
-  const auto database = make_temporary_database("made", read_schema_steps());
-  const std::string table =
-      database->text("SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = 'question'");
-  for (const AnswerKindTraits& traits : answer_kinds())
-    EXPECT_THAT(table, HasSubstr("'" + std::string(traits.word) + "'")) << "the CHECK of kind lacks it";
-}
-
 TEST(Database, EveryReleasedSchemaIsStillOpened) {
   const test::TemporaryFolder folder;
   for (std::size_t schema = 1; schema < read_schema_steps().size(); ++schema)

@@ -27,7 +27,7 @@ CREATE TABLE "question" (
   code TEXT NOT NULL, -- id in the protocol file
   wording TEXT NOT NULL, -- exact wording
   language TEXT NOT NULL, -- language of the wording
-  kind TEXT NOT NULL CHECK (kind IN ('scale', 'choice', 'number', 'text')), -- scale, choice, number or text
+  kind TEXT NOT NULL, -- kind of answer, as in the protocol file, such as scale
   scale_min INTEGER NOT NULL, -- lowest score; of no meaning for text
   scale_max INTEGER NOT NULL CHECK (scale_max >= scale_min), -- highest score
   anchors TEXT NOT NULL, -- one line "score = words" for each labelled score
@@ -219,7 +219,7 @@ CREATE TABLE "presentation" (
   late_frames INTEGER, -- frames beyond the protocol's bound
   worst_late_ms REAL, -- largest lateness, ms
   framing_id INTEGER REFERENCES framing, -- how the display framed what was shown; empty: nothing was drawn, or an earlier version, which did not write it
-  gaze_source TEXT CHECK (gaze_source IN ('tracked', 'head', 'mouse', 'fixed', 'fixation', 'none')), -- what the fluid followed, as in session: head instead of tracked where recording gaze was not allowed; empty: an earlier version, which did not write it
+  gaze_source TEXT CHECK (gaze_source IN ('tracked', 'head', 'mouse', 'fixed', 'fixation', 'none')), p99_ms REAL /* 99th percentile of the intervals, ms; empty: an earlier version, which did not write it */, hitches INTEGER /* intervals longer than 1.5 times the median interval; empty: likewise */, animation_error_ms REAL /* mean absolute difference between the step of the simulated time and the interval of a frame, ms; empty: content followed frames instead of time, or an earlier version */, -- what the fluid followed, as in session: head instead of tracked where recording gaze was not allowed; empty: an earlier version, which did not write it
   UNIQUE (trial_id, attempt, interval)
 ) STRICT;
 
@@ -341,7 +341,7 @@ CREATE TABLE "cell" (
   sd_fps REAL NOT NULL CHECK (sd_fps >= 0), -- wished standard deviation of the frame rate, frames/s
   duration_s REAL NOT NULL CHECK (duration_s > 0), -- wished length, s
   effects TEXT, -- level of the factor effects: none, scene or a name in the protocol; empty: the design does not vary them, and the scene has its own
-  effect_set TEXT, -- what that level holds, as the protocol says it, SI units; empty: likewise
+  effect_set TEXT, levels TEXT /* levels of the protocol's own factors, as "factor = level", one on a line; empty: a protocol of format 2 */, timing TEXT /* timing profile in words; mean_fps and sd_fps are those of its intervals; empty: mean_fps and sd_fps alone */, -- what that level holds, as the protocol says it, SI units; empty: likewise
   CHECK ((effects IS NULL) = (effect_set IS NULL)),
   PRIMARY KEY (protocol_id, cell)
 ) STRICT, WITHOUT ROWID;

@@ -1,0 +1,146 @@
+/// Timing profiles: hitches, a 5 % low, recorded frame times, latency and animation error.
+
+#include "libstudy/pacing/profile.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "libstudy/display/null.hpp"
+#include "libstudy/pacing/pacer.hpp"
+#include "stats/base/error.hpp"
+#include "stats/quantiles.hpp"
+
+using namespace study;
+using testing::HasSubstr;
+
+namespace {
+
+const TimingProfile hitching{
+    .kind = ProfileKind::Hitches, .mean_fps = 60, .hitch_ms = 100, .period_s = 2, .jitter = 0.5};
+const TimingProfile low{.kind = ProfileKind::Floor, .mean_fps = 50, .low_fps = 25};
+const TimingProfile trace{.kind = ProfileKind::Trace, .frame_ms = {10, 20, 30}};
+
+/// Times at which intervals longer than this begin, s.
+std::vector<double> onsets_of_long(const std::vector<double>& intervals_s, double longer_than_s) {
+  std::vector<double> out;
+  double time_s = 0;
+  for (const double interval : intervals_s) {
+    if (interval > longer_than_s) out.push_back(time_s);
+    time_s += interval;
+  }
+  return out;
+}
+
+/// Content steps of the frames of a showing at constant intervals.
+std::vector<std::int64_t> steps_shown(const TimingProfile& profile, double content_step_s) {
+  const ContentRules content =
+      content_of({.real_time = true, .content_step_s = content_step_s}, setting_of(profile, 1));
+  VirtualClock clock;
+  NullDisplay display;
+  NullStimulus stimulus(content_step_s);
+  const std::vector<std::int64_t> intervals(10, 20'000'000);
+  std::vector<std::int64_t> out;
+  for (const FrameRecord& frame : play_trial(intervals, content, stimulus, display, clock, {}, {}).frames)
+    out.push_back(frame.content_step);
+  return out;
+}
+
+}  // namespace
+
+TEST(Profile, OneHitchInTheMiddlePartOfEachPeriod) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto at = onsets_of_long(pattern_intervals(hitching, 10, seed), 0.05);
+    ASSERT_EQ(at.size(), 5u);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      EXPECT_GE(at[i], 2 * static_cast<double>(i) + 0.5 - 1.0 / 60);
+      EXPECT_LE(at[i], 2 * static_cast<double>(i) + 1.5);
+    }
+  }
+  EXPECT_NE(pattern_intervals(hitching, 10, 1), pattern_intervals(hitching, 10, 2));
+  EXPECT_EQ(pattern_intervals(hitching, 10, 1), pattern_intervals(hitching, 10, 1));
+}
+
+TEST(Profile, TheSlowestTwentiethIsTheFloor) {
+  const auto intervals = pattern_intervals(low, 10, 3);
+  const double sum_s = std::accumulate(intervals.begin(), intervals.end(), 0.0);
+  EXPECT_NEAR(static_cast<double>(intervals.size()) / sum_s, 50, 1e-9);
+  EXPECT_EQ(std::count(intervals.begin(), intervals.end(), 1.0 / 25), 25);
+  EXPECT_EQ(*std::max_element(intervals.begin(), intervals.end()), 1.0 / 25);
+}
+
+TEST(Profile, ATraceRepeatsAndItsTwinIsEven) {
+  EXPECT_THAT(pattern_intervals(trace, 0.1, 0), testing::ElementsAre(0.01, 0.02, 0.03, 0.01, 0.02));
+  TimingProfile twin = trace;
+  twin.smoothed = true;
+  for (const double interval : pattern_intervals(twin, 0.1, 0)) EXPECT_NEAR(interval, 0.018, 1e-12);
+  EXPECT_EQ(setting_of(twin, 0.1).sd, 0);
+  EXPECT_NEAR(setting_of(twin, 0.1).mean, setting_of(trace, 0.1).mean, 1e-12);
+}
+
+TEST(Profile, ADisplayRoundsToItsPeriods) {
+  const RefreshVerdict exact = quantise(setting_of(hitching, 4), {}, 60, 0);
+  EXPECT_EQ(exact.feasibility, Feasibility::Exact);
+  EXPECT_EQ(std::count(exact.holds.begin(), exact.holds.end(), 6), 2);
+  const RefreshVerdict near = quantise(setting_of(hitching, 4), {}, 90, 0);
+  EXPECT_EQ(near.feasibility, Feasibility::Approximate) << near.reason;
+  EXPECT_THAT(near.reason, HasSubstr("to fit periods of 11.11 ms"));
+  TimingProfile fast = hitching;
+  fast.mean_fps = 120;
+  const RefreshVerdict never = quantise(setting_of(fast, 4), {}, 60, 0);
+  EXPECT_EQ(never.feasibility, Feasibility::Unreachable);
+  EXPECT_TRUE(never.holds.empty());
+  EXPECT_THAT(never.reason, HasSubstr("give a mean of"));
+}
+
+TEST(Profile, LatencyDelaysTheContentAndNothingElse) {
+  TimingProfile late{.mean_fps = 50, .latency_ms = 60};
+  EXPECT_THAT(steps_shown(late, 0.02), testing::ElementsAre(0, 0, 0, 0, 1, 2, 3, 4, 5, 6));
+  late.latency_ms = 0;
+  EXPECT_THAT(steps_shown(late, 0.02), testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
+}
+
+TEST(Profile, AnimationErrorAlternatesAndNeverRunsBackwards) {
+  TimingProfile uneven{.mean_fps = 50, .animation_error_ms = 10};
+  EXPECT_THAT(steps_shown(uneven, 0.01), testing::ElementsAre(0, 3, 4, 7, 8, 11, 12, 15, 16, 19));
+  uneven.animation_error_ms = 30;  // longer than a frame
+  const auto steps = steps_shown(uneven, 0.01);
+  EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
+}
+
+TEST(Profile, RefusesNumbersThatContradictEachOther) {
+  const auto error_of = [](TimingProfile profile, auto change) {
+    change(profile);
+    try {
+      setting_of(profile, 4);
+    } catch (const base::Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(error_of(hitching, [](auto& p) { p.hitch_ms = 10; }), HasSubstr("shorter than a frame"));
+  EXPECT_THAT(error_of(hitching, [](auto& p) { p.hitch_ms = 1990; }), HasSubstr("do not fit into a period"));
+  EXPECT_THAT(error_of(low, [](auto& p) { p.low_fps = 60; }), HasSubstr("cannot have a 5 % low of 60"));
+  EXPECT_THAT(error_of(low, [](auto& p) { p.low_fps = 2; }), HasSubstr("cannot have a 5 % low of 2"));
+  EXPECT_THAT(error_of(trace, [](auto& p) { p.frame_ms.clear(); }), HasSubstr("holds no frame"));
+}
+
+TEST(Profile, TheVerdictCountsHitches) {
+  const auto intervals = pattern_intervals(hitching, 10, 0);
+  PlayedTrial played;
+  std::int64_t now_ns = 0;
+  for (const double interval : intervals) {
+    FrameRecord frame;
+    frame.scheduled_ns = frame.times.submitted_ns = now_ns;
+    frame.times.gpu_done_ns = now_ns;
+    played.frames.push_back(frame);
+    now_ns += std::llround(1e9 * interval);
+  }
+  played.end_ns = now_ns;
+  const TimingVerdict verdict = judge_trial(setting_of(hitching, 10), {}, played, {}, TimingGrade::CpuSubmit);
+  EXPECT_EQ(verdict.hitches, 5);
+  EXPECT_NEAR(verdict.longest_ms, 100, 1e-6);
+  EXPECT_NEAR(verdict.p95_ms, 1000.0 / 60, 1e-3);
+}
