@@ -26,7 +26,8 @@
 
 namespace sim {
 
-/// Targets for tests that replace the method's own: one level inside a sphere, another outside.
+/// Target levels for tests, which replace the target levels of the method: one level inside a sphere, another
+/// outside.
 struct TargetRegion {
   Vec3d centre_m{};
   double radius_m = 0;
@@ -34,14 +35,17 @@ struct TargetRegion {
   int outside = 0;
 };
 
-/// Where temporal acceleration gets tau from (ViP-Fluid, Algorithm 3); for methods that have it.
+/// Options of temporal acceleration (ViP-Fluid, Algorithm 3), such as the source of tau. Methods without
+/// temporal acceleration ignore them, unless `always` is set.
 struct TemporalOptions {
-  /// frames/s. If neither this nor fixed_rate is set, tau is measured from Simulation::frame_time.
+  /// A constant tau, frames/s. If neither fixed_tau nor fixed_rate is set, tau follows from the times passed
+  /// to Simulation::frame_time.
   std::optional<double> fixed_tau;
-  std::optional<FrameRate> fixed_rate;  ///< mu and delta from which tau follows
+  std::optional<FrameRate> fixed_rate;  ///< constant mean mu and standard deviation delta of the frame rate,
+                                        ///< from which tau follows
   stats::PtpeModel model;               ///< gives tau and beta, Eq. 11
   std::uint32_t seed = 1;               ///< for the random choice of active particles
-  bool always = false;  ///< also for methods without temporal acceleration, in tests and comparisons
+  bool always = false;  ///< accelerate methods without temporal acceleration too, for tests and comparisons
 };
 
 /// True if every particle is solved in every frame, whatever the frame times.
@@ -57,29 +61,29 @@ struct SimulationOptions : SolverNumbers {
   /// Store the parts of saliency for read_saliency; methods without saliency have none to store.
   bool saliency_parts = false;
   std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
-  std::int64_t particle_capacity = 0;          ///< for methods that split and merge; 0 = 8 n_*
+  std::int64_t particle_capacity = 0;  ///< if particles split and merge: their maximum number; 0 = 8 n_*
   /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 nothing splits or merges,
   /// except coarser particles of `start`, and saliency is measured only for outputs.
   int levels = most_levels;
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
-  /// method; ids are unique, and below the capacity (8 n_*) where particles split and merge.
+  /// method; if particles split and merge, ids are unique and below the capacity (particle_capacity).
   std::optional<std::vector<ParticleState>> start;
-  /// Frames before the start: nozzles continue from this frame. >= 0.
+  /// Number of frames that the run had before `start`; nozzles continue from this frame. >= 0.
   int start_frame = 0;
   /// For starts in the middle of a run: maximum number of density projections that move the particles of
-  /// `start` until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %. Velocities stay. The
-  /// velocity grid of temporal acceleration is then built from the start as well. 0 = use the start
-  /// unchanged.
+  /// `start` until the mass-weighted mean of max(rho / rho_0 - 1, 0) is below 0.2 %. Velocities do not
+  /// change. The velocity grid of temporal acceleration is then built from the start as well. 0 = use the
+  /// start unchanged.
   int start_projections = 0;
   /// Resume from a file that Simulation::save_state wrote in a run with the same scene and options. The run
-  /// then continues bit for bit as the saved one. Excludes `start`; start_frame comes from the file.
+  /// then continues bit for bit like the saved run. Excludes `start`; start_frame comes from the file.
   std::filesystem::path resume_from;
   /// Folder that caches settled states between runs (default_cache_folder()); empty = settle every time.
   std::filesystem::path cache;
   bool wall_impulse = false;                   ///< record Simulation::momentum(); costs extra passes
-  std::vector<Gauge> gauges;                   ///< on the walls; if not empty, implies wall_impulse
-  std::vector<ObstacleGauge> obstacle_gauges;  ///< likewise
+  std::vector<Gauge> gauges;                   ///< gauges on the walls; if not empty, implies wall_impulse
+  std::vector<ObstacleGauge> obstacle_gauges;  ///< gauges on obstacles; if not empty, implies wall_impulse
   bool keeps_momentum() const { return wall_impulse || !gauges.empty() || !obstacle_gauges.empty(); }
   bool time_parts = false;  ///< measure Simulation::part_times(); waits for the device between parts
   /// Called after each settling frame with (done, total).
@@ -92,7 +96,7 @@ struct GuardCounts {
   std::uint64_t speed_limited = 0;       ///< particle-substeps whose speed was limited
   std::uint64_t coincident_pairs = 0;    ///< neighbour pairs at zero distance
   std::uint64_t not_finite = 0;          ///< particles quarantined: NaN, infinite or far outside the tank
-  std::uint64_t neighbours_dropped = 0;  ///< neighbours for which a list had no room
+  std::uint64_t neighbours_dropped = 0;  ///< neighbours that were left out because a neighbour list was full
   std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back by a wall or an obstacle
   std::uint64_t nozzle_waited = 0;  ///< layers not poured because the corner columns held too few particles
   std::uint64_t saliency_not_finite = 0;  ///< particle-turns whose saliency was NaN or infinite; s is then 0
@@ -109,7 +113,7 @@ struct LevelEvents {
   std::uint64_t split_deferred = 0;  ///< particle-turns in which the throttle delayed a split
   std::uint64_t split_at_wall = 0;   ///< particle-turns in which the children did not fit between the walls
   std::uint64_t split_no_room = 0;   ///< particle-turns in which a split exceeded the capacity
-  std::uint64_t merge_overlap = 0;   ///< particle-turns in which any merge would overlap a larger particle
+  std::uint64_t merge_overlap = 0;   ///< particle-turns in which every merge would overlap a larger particle
   std::uint64_t merge_step = 0;      ///< particle-turns in which a finer neighbour prevented a merge
   double energy_lost_j = 0;          ///< kinetic energy lost in merges
 };
@@ -117,7 +121,7 @@ struct LevelEvents {
 /// Inputs and results of temporal acceleration in one frame.
 struct TemporalReport {
   std::optional<double> tau;      ///< frames/s, Eq. 11; none = no frame time known yet
-  std::optional<FrameRate> rate;  ///< mu and delta behind tau; none = tau was given, or no frame time yet
+  std::optional<FrameRate> rate;  ///< mu and delta of tau; none = tau was given, or no frame time yet
   double beta = 1;                ///< lowest probability that a particle is solved
   std::int64_t active = 0;        ///< number of solved particles
 };
@@ -161,9 +165,10 @@ struct RelaxedStart {
 };
 
 /// Heat divided by the water's specific heat, in m_* K above the reference temperature, if the scene lists
-/// heat. held + taken + drained - poured - from_walls is constant.
+/// the effect heat. poured: by nozzles; taken: for nozzles; drained: through outlets. held + taken + drained
+/// - poured - from_walls is constant.
 struct HeatReport {
-  double held = 0;                                            ///< in the water
+  double held = 0;                                            ///< heat of the water now
   double poured = 0, taken = 0, drained = 0, from_walls = 0;  ///< since the simulation was made
 };
 
@@ -172,7 +177,7 @@ struct HeatReport {
 struct FoamReport {
   std::uint64_t emitted = 0;                       ///< requested by the water's motion
   std::uint64_t dissolved = 0;                     ///< reached the end of their lifetime on the water
-  std::uint64_t dropped = 0;                       ///< found no room in the pool
+  std::uint64_t dropped = 0;                       ///< could not be stored because the pool was full
   std::uint64_t left = 0;                          ///< left through an outlet, or became non-finite
   std::uint64_t spray = 0, foam = 0, bubbles = 0;  ///< present now: in the air, on the surface, under water
 };
@@ -189,15 +194,17 @@ struct FrameReport {
   double jump_share = 0;          ///< share of pairs within h whose levels differ by more than one
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   double density_max = 0;         ///< max of rho / rho_0
-  double neighbours_mean = 0;     ///< excluding self, within h
+  double neighbours_mean = 0;     ///< mean number of neighbours within h, without the particle itself
   double listed_mean = 0;         ///< mean length of the neighbour lists, which reach beyond h
   double speed_max_m_s = 0;
   std::int64_t poured = 0;        ///< mass poured by nozzles since the simulation was made, in m_*
   std::int64_t particles_in = 0;  ///< particles made by nozzles
-  /// Particles taken by nozzles or released through outlets. A nozzle of one level takes as many as it makes.
+  /// Particles taken by nozzles or released through outlets. If all particles have one level, nozzles take as
+  /// many particles as they make.
   std::int64_t particles_out = 0;
   std::int64_t drained = 0;  ///< mass that left through outlets, in m_*
-  /// Mass taken for nozzles and not yet poured, in m_*; mass_units + reservoir + drained is constant.
+  /// Mass that was taken for nozzles and is not yet poured, in m_*; mass_units + reservoir + drained is
+  /// constant.
   std::int64_t reservoir = 0;
   HeatReport heat;
   GuardCounts guards;
@@ -220,19 +227,20 @@ class Simulation {
   virtual ~Simulation() = default;
 
   /// Sets the eyes and the last pictures they saw. They apply from the next frame until the next call.
-  /// Methods without gaze ignore them. Before the first call, the other methods use the scene's camera and
-  /// look along its axis. Returns false, and changes nothing, if a picture lies in GL buffers that this back
-  /// end cannot read (EyeLook::shared, on a CPU or with a context of another device): read it back and call
-  /// again. The simulation owns the shared buffers, of this call and of copy_to_gl, until copy_to_gl: GL must
-  /// not read or draw them meanwhile. If the next frame does not update levels, only the gaze is used, and
-  /// the call returns true. base::Error: no eye or more than two, a camera that is not finite, an incomplete
-  /// G-buffer.
+  /// Methods without gaze ignore them. Before the first call, methods with gaze use the scene's camera and a
+  /// gaze along its axis. Returns false, and changes nothing, if a picture lies in GL buffers that this back
+  /// end cannot read (EyeLook::shared, on a CPU or with a context of another device): then read the picture
+  /// back and call again. Until the next copy_to_gl, the simulation owns the shared buffers of this call and
+  /// of copy_to_gl: GL must not read or draw them. If the next frame does not update levels, only the gaze is
+  /// used, and the call returns true. base::Error: no eye or more than two, a camera that is not finite, an
+  /// incomplete G-buffer.
   virtual bool look(const Looks& looks) = 0;
-  /// True if the method uses the picture of the last frame; otherwise it need not be read back.
+  /// True if the method uses the picture of the last frame; otherwise the caller need not read the picture
+  /// back.
   virtual bool follows_picture() const = 0;
   /// Frames since the gate opened.
   virtual int frame() const = 0;
-  /// The same in seconds.
+  /// Simulated time since the gate opened, s.
   virtual double time_s() const { return 0; }
   /// Advances by one frame.
   virtual void step_frame() = 0;
@@ -246,10 +254,10 @@ class Simulation {
   /// Replaces the list of effects from the next frame on. The schedule is compiled anew. Particles,
   /// velocities, levels and guard counts stay. A new effect starts as in a new run: temperatures from the
   /// scene's boxes, foam without particles. Effects that stay keep their state. The number of substeps
-  /// follows the new effects. The run is then bit for bit one that never had the removed effects, and their
-  /// columns are freed. base::Error, with nothing changed: check_effects refuses the list, or it needs more
-  /// substeps than the options or the program allow. base::Error, after which the simulation cannot be used:
-  /// the device is out of memory.
+  /// follows the new effects. From then on the run is bit for bit equal to a run without the removed effects
+  /// that starts from this state. Columns of removed effects are freed. base::Error, with nothing changed:
+  /// check_effects refuses the list, or it needs more substeps than the options or the program allow.
+  /// base::Error, after which the simulation cannot be used: the device is out of memory.
   virtual void set_effects(const std::vector<Effect>&) {}
   /// Sets the duration of the last whole frame, ms, for tau. Methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
@@ -270,15 +278,15 @@ class Simulation {
   virtual std::int64_t particle_count() const = 0;
   /// Maximum number of particles; buffers of this size never grow.
   virtual std::int64_t particle_capacity() const { return particle_count(); }
-  /// Rest spacing d = 2 r of the finest particles that the method can hold, m.
+  /// Rest spacing d = 2 r of the finest particles that the method may have, m.
   virtual double spacing_m() const = 0;
   /// Every radius that read_particles may return, m, finest first.
   virtual std::vector<float> radii_m() const = 0;
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
-  /// Saliency by which levels were chosen last, in the order of read_particles. Children and merged particles
-  /// inherit their parents' value. Only s and target without SimulationOptions::saliency_parts. Empty for
-  /// methods without saliency, and before the first frame.
+  /// Saliency from which the present target levels were computed, in the order of read_particles. Children
+  /// and merged particles inherit their parents' value. Only s and target without
+  /// SimulationOptions::saliency_parts. Empty for methods without saliency, and before the first frame.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
   /// Saliency (Eq. 1-9) of the present state for the given eyes, for any method, as if this were the first
   /// frame. For masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
@@ -297,8 +305,8 @@ class Simulation {
   /// part_times() and momentum(). base::Error if the file cannot be written.
   virtual void save_state(const std::filesystem::path& path) = 0;
   /// Copies positions and radii into a GL buffer of this thread's context, on the device. Returns false if
-  /// this back end cannot (a CPU, or a context of another device) or the buffer is too small: then use
-  /// read_particles and upload.
+  /// this back end cannot write the buffer (a CPU, or a context of another device) or the buffer is too
+  /// small: then use read_particles and upload the result.
   virtual bool copy_to_gl(const GlBufferRef& buffer) = 0;
   /// The scene's obstacles between two frames, in the scene's order, copied to the host.
   virtual std::vector<BodyMotion> read_obstacles() const { return {}; }
@@ -309,7 +317,7 @@ class Simulation {
   /// Like copy_to_gl, with foam_capacity() entries; radius 0 marks an unused entry. Also returns false
   /// without foam.
   virtual bool copy_foam_to_gl(const GlBufferRef&) { return false; }
-  /// All zero unless SimulationOptions::time_parts.
+  /// Times of the last frame's parts; all zero without SimulationOptions::time_parts.
   virtual PartTimes part_times() const = 0;
   /// The passes of a frame, in the schedule's order.
   virtual std::vector<StageTime> passes() const { return {}; }
@@ -318,21 +326,22 @@ class Simulation {
   /// Switches timing of every launch of this back end on (discarding earlier measurements) or off. Costs a
   /// few microseconds per launch.
   virtual void profile_launches(bool) {}
-  /// Time of each pass since then, longest first.
+  /// Time of each pass since profile_launches(true), longest first.
   virtual std::vector<LaunchTime> launch_times() const { return {}; }
   /// Waits for all launched work.
   virtual void synchronize() = 0;
-  /// Bytes of memory held by the particles and by the selection for nozzles and outlets.
+  /// Bytes of memory for particles, nozzles, outlets, saliency, temporal acceleration and foam.
   virtual std::size_t particle_bytes() const = 0;
-  /// The schedule as text: why each pass runs, and why each other known stage does not.
+  /// The schedule as text: why each pass runs, and why each stage that is left out does not run.
   virtual std::string explain() const = 0;
 };
 
-/// Minimum number of substeps per frame: from the scene or the options, and from its acting effects.
-/// base::Error if the options allow too few for an effect, or an effect needs too many.
+/// Minimum number of substeps per frame that the scene or the options, and the effects that act on the
+/// scene's water, require. base::Error if the options allow fewer substeps than an effect needs, or if an
+/// effect needs more than the program allows.
 int least_substeps(const Scene& scene, const SimulationOptions& options);
 
-/// Fills, settles and returns the scene at frame 0. Errors are base::Error.
+/// Fills the scene with water, lets it settle, and returns the simulation at frame 0. Errors are base::Error.
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options);
 
 }  // namespace sim

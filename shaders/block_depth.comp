@@ -1,4 +1,4 @@
-// The farthest depth of each block of pixels: one work group a block.
+// Finds the farthest splatted depth in each block of 16 x 16 px; one work group per block.
 #include "view.glsl"
 #include "occlusion.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;

@@ -1,7 +1,7 @@
-// Sunlight that the water's surface refracts, gathered on the floor: one invocation a cell of the surface map. The
-// light between four rays is spread evenly over the piece of floor between the places where they meet it, so that
-// its brightness is the ratio of both areas. Lost are what the surface reflects, what obstacles above it keep off,
-// what leaves the floor, and what goes in where the surface breaks.
+// Sums on the floor the sunlight that the water's surface refracts: one invocation per cell of the surface map. The
+// light between four neighbouring rays is spread evenly over the piece of floor between the points where the rays
+// land. The brightness of that piece is the ratio of the two areas. Light is lost where the surface reflects it,
+// where an obstacle above the surface blocks it, beyond the edge of the floor, and into water whose surface breaks.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #include "caustic_units.glsl"
@@ -12,11 +12,11 @@ layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Surface { vec4 surface[]; };
 layout(std430, binding = 1) buffer Light { uint light[]; };
 
-const float torn_cells = 12.0;  // rays further apart on the floor met different waters
+const float torn_cells = 12.0;  // floor cells; rays that land farther apart entered different bodies of water
 
 struct Landing {
-  vec2 at;     // on the floor, in cells of its map
-  float kept;  // share of the light that went in
+  vec2 at;     // where the ray meets the floor, in floor cells
+  float kept;  // share of the ray's light that the surface does not reflect
 };
 
 vec4 surface_at(ivec2 cell) {
@@ -24,7 +24,8 @@ vec4 surface_at(ivec2 cell) {
   return surface[inside.y * maps.cells.x + inside.x];
 }
 
-// Rise of the surface for a step of a metre; where one neighbour is other water or none, by the other.
+// Slope of the surface, m/m, from the cells before and after. A neighbour counts only if it has water and its height
+// differs by less than 4 particle radii.
 float rise(vec4 middle, vec4 before, vec4 after) {
   const float limit = 4.0 * middle.y;
   const bool has_before = before.y > 0.0 && abs(before.x - middle.x) < limit;
@@ -42,7 +43,7 @@ Landing landing_of(ivec2 cell) {
   if (pool > 0.0) {
     const vec2 slope = vec2(rise(middle, surface_at(cell - ivec2(1, 0)), surface_at(cell + ivec2(1, 0))),
                             rise(middle, surface_at(cell - ivec2(0, 1)), surface_at(cell + ivec2(0, 1))));
-    // The surface is y = Y(xz - leans y).
+    // Y is the height that the map holds: the surface is y = Y(xz - leans y).
     vec3 n = normalize(vec3(-slope.x, 1.0 + dot(leans, slope), -slope.y));
     if (dot(n, sun) < 0.05) n = vec3(0.0, 1.0, 0.0);
     const vec3 d = refract(-sun, n, into_water);
@@ -53,7 +54,8 @@ Landing landing_of(ivec2 cell) {
   return Landing(at / maps.floor_grid.x, kept);
 }
 
-// Over a piece of floor of at most a cell's size. Pieces that tile the floor light it evenly.
+// Adds `units` of light to a rectangle of the floor, at most one cell large; each cell gets the share that it
+// overlaps. Rectangles that tile the floor light it evenly.
 void lay(vec2 middle, vec2 size, float units) {
   const vec2 from = middle - 0.5 * size;
   const ivec2 low = ivec2(floor(from));
@@ -70,7 +72,7 @@ void lay(vec2 middle, vec2 size, float units) {
 }
 
 #ifdef OBSTACLES
-// Does the light meet an obstacle before it goes into water?
+// True if an obstacle blocks the sunlight of this cell before the light enters the water.
 bool is_kept_off(ivec2 cell) {
   const vec2 place = place_of(cell) + 0.5 * maps.surface_grid.z;
   const vec2 under = place + leans * surface_at(cell).x;
@@ -100,7 +102,7 @@ void main() {
   for (int j = 0; j < parts; ++j) {
     for (int i = 0; i < parts; ++i) {
       const vec2 f = (vec2(i, j) + 0.5) / float(parts);
-      // Where the surface ends or jumps, a part belongs to the nearest corner.
+      // Where the surface ends or jumps, each part uses the ray of the nearest corner instead of a mean of four rays.
       const vec2 w = torn ? step(0.5, f) : f;
       const vec2 at = mix(mix(corners[0].at, corners[1].at, w.x), mix(corners[2].at, corners[3].at, w.x), w.y);
       const float kept =

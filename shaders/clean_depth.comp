@@ -1,4 +1,5 @@
-// Small two-dimensional narrow-range filter: removes the streaks that a separated filter leaves.
+// Narrow-range filter over a small two-dimensional window. Removes the streaks that the separable filter leaves
+// (filter_depth.comp).
 #include "view.glsl"
 #include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
@@ -7,7 +8,7 @@ layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 #include "narrow_range.glsl"
 
-// Half of a 5 x 5 window, from the centre outwards; the other half mirrors it.
+// Offsets of half the samples of a window of 5 x 5 px, nearest first; the other half are their mirror images.
 const ivec2 half_window[12] =
     ivec2[](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(-1, 1), ivec2(2, 0), ivec2(0, 2), ivec2(2, 1),
             ivec2(-2, 1), ivec2(1, 2), ivec2(-1, 2), ivec2(2, 2), ivec2(-2, 2));
@@ -22,7 +23,7 @@ void main() {
     target[at] = centre;
     return;
   }
-  // Never wider than the particle: droplets of a few px keep their shape.
+  // At most half the particle's radius in px, so that droplets of a few px keep their shape.
   const float sigma = min(1.5, 0.5 * radius * centre / rays.x);
   const float falloff = -0.72134752 / max(sigma * sigma, 1e-6);
   const ivec2 room = min(pixel, size.xy - 1 - pixel);
@@ -35,7 +36,7 @@ void main() {
   }
   float nearness = filtered(range);
   if (tank.w > 0.0) {
-    // Smoothing must not lead out of the tank either.
+    // Keeps the smoothed depth inside the tank.
     const vec2 within = tank_range(slope_at(vec2(pixel) + 0.5));
     if (within.x < within.y) nearness = clamp(nearness, 1.0 / within.y, 1.0 / max(within.x, origin.z));
   }

@@ -1,5 +1,6 @@
-// Empties what the splats fill: one work group a tile of 16 x 8 px. A tile without water in the last picture was
-// left empty by it (wet_tiles.glsl); thickness, which walls do not cut, reaches beyond those with water.
+// Clears the buffers of the splat passes: one work group per tile of 16 x 8 px. Depth and front are cleared only in
+// tiles with water in the last picture (wet_tiles.glsl), because the others are still empty. Thickness is cleared in
+// all tiles: walls do not clip it, so that it also fills tiles without water.
 #include "view.glsl"
 #include "counters.glsl"
 #include "wide_list.glsl"

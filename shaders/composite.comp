@@ -13,8 +13,8 @@ layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 #endif
 layout(rgba8, binding = 0) writeonly uniform image2D picture;
 
-const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light that deep water sends back
-const float thin_m = 0.03;                          // films thinner than this fade out at their rim
+const vec3 in_scatter = vec3(0.004, 0.050, 0.080);  // light scattered back by deep water
+const float thin_m = 0.03;                          // m; thinner water reflects less
 
 float water_length(vec2 xy) {
   const vec2 g = xy / thickness_rule.z - 0.5;
@@ -45,8 +45,8 @@ vec3 water(vec3 position, vec3 d, vec3 n, float length_m, float footprint_per_m,
   return mix(body, reflection, fresnel);
 }
 
-// Softens the outline's steps by the share of the 3 x 3 px around a fluid pixel that is fluid. A lone pixel, a
-// distant droplet, keeps a part.
+// Opacity of a fluid pixel, to soften the steps of the outline. It rises with the number of fluid pixels among the 8
+// neighbours: from 0.4 for a lone pixel, such as a distant droplet, to 1.
 float outline_cover(ivec2 pixel) {
   int fluid = 0;
   for (int y = -1; y <= 1; ++y) {
@@ -64,11 +64,11 @@ vec3 encode_srgb(vec3 c) {
 }
 
 #ifdef FOAM
-// White, lit by sun and sky.
+// Light from white foam under sun and sky.
 vec3 foam_light(vec3 n) { return vec3(0.42, 0.45, 0.48) + vec3(0.52, 0.50, 0.46) * max(dot(n, sun), 0.0); }
 
-// How much of a pixel foam covers: on the water or before it, and below its surface. Leaves the pixel empty for the
-// next picture.
+// Share of a pixel that foam covers; x: foam on the water or in front of it, y: foam below its surface. Sets the
+// pixel's sums to 0 for the next picture.
 vec2 foam_cover(int at) {
   const vec2 depths = vec2(cover[2 * at], cover[2 * at + 1]) / foam_units;
   cover[2 * at] = cover[2 * at + 1] = 0u;
@@ -81,7 +81,8 @@ uint scrambled(uint word) {
   return word ^ (word >> 16);
 }
 
-// For who looks at the picture's normals: bubbles show each direction as a sphere does over its disc, in no order.
+// A normal of foamy water for saliency, which reads the G-buffer: the smooth normal mixed with a random one by the
+// share `covered`. The random normals are distributed like those over the visible disc of a sphere.
 vec3 rough_normal(vec3 smooth_one, int at, float covered) {
   const uint first = scrambled(uint(at)), second = scrambled(first + 1u);
   const float squared = float(first >> 8) / 16777216.0, angle = 6.2831853 * float(second >> 8) / 16777216.0;
@@ -129,7 +130,7 @@ void main() {
     if (foam.x > 0.0) normals[at].xyz = rough_normal(normals[at].xyz, at, foam.x);
 #endif
     light = mix(light, shaded, water_cover);
-    // Water that touches the near wall lies behind its frame.
+    // Water nearer than the frame hides it. The tolerance keeps the frame visible over water that touches the wall.
     if (distance_m < 0.999 * frame_at) cover = 0.0;
   }
 #ifdef FOAM

@@ -1,4 +1,4 @@
-// RenderCounts, in its order.
+// The fields of RenderCounts (libsim/render/fluid_renderer.hpp) in the same order.
 layout(std430, binding = 4) buffer Counters {
   uint not_finite;
   uint outside;

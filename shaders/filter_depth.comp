@@ -1,5 +1,6 @@
-// One direction of the narrow-range filter (Truong and Yuksel 2018) with the radius of the pixel's particle. A wide
-// filter takes strided samples; a last, dense round smooths what they step over.
+// One pass of the narrow-range filter (Truong and Yuksel 2018) along x or y. Its width follows from the radius of the
+// particle in front of the pixel. A wide filter uses strided samples; a last pass with `dense` = 1 smooths between
+// them.
 #include "view.glsl"
 #include "wet_tiles.glsl"
 #include "counters.glsl"
@@ -9,7 +10,7 @@ layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
 layout(std430, binding = 3) writeonly buffer Target { float target[]; };
 uniform ivec2 direction;
 uniform int dense;
-uniform int counts;  // 1: the first time through this direction
+uniform int counts;  // 1: count the capped pixels, in the first pass of each direction
 #include "narrow_range.glsl"
 
 void main() {

@@ -1,4 +1,4 @@
-// One invocation a diffuse particle: a soft disc, laid before the water's surface or below it.
+// Splats foam: one invocation per diffuse particle adds a soft disc in front of the water's surface or below it.
 #include "view.glsl"
 #include "foam.glsl"
 #include "usable.glsl"
@@ -6,18 +6,19 @@
 #include "room.glsl"
 #endif
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Foam { vec4 foam[]; };  // x, y, z, radius in m; no radius: nobody
+layout(std430, binding = 0) readonly buffer Foam { vec4 foam[]; };  // x, y, z, radius in m; radius 0: unused entry
 layout(std430, binding = 1) readonly buffer Nearness { float nearness[]; };
-layout(std430, binding = 2) readonly buffer Normals { vec4 normals[]; };  // and the radius of the water's particle
-layout(std430, binding = 3) buffer Cover { uint cover[]; };              // two words a pixel
+layout(std430, binding = 2) readonly buffer Normals { vec4 normals[]; };  // w: radius of the front water particle, m
+layout(std430, binding = 3) buffer Cover { uint cover[]; };              // two words per pixel, see foam.glsl
 uniform uint foam_count;
 
-const float middle_depth = 1.2;   // optical depth through a disc's middle
-const float most_px = 48.0;       // radius of the largest disc
-const float dimmed_per_m = 0.7;   // by the water above it
+const float middle_depth = 1.2;   // optical depth at a disc's centre
+const float most_px = 48.0;       // radius of the largest disc, px
+const float dimmed_per_m = 0.7;   // attenuation by the water above the foam, 1/m
 
-// How far a depth lies below the water's surface at a pixel, m, along its normal, and which share of it still counts as
-// on it: the surface is drawn up to half a particle too high.
+// Distance of foam at `depth` below the water's surface, along the surface's normal, m; 0 above it or without water.
+// `on_top`: share of the foam that counts as on the surface, from 1 at one particle radius below it to 0 at two: the
+// surface is drawn too high, because splatted spheres are larger than particles.
 float below_surface(float depth, ivec2 pixel, int at, out float on_top) {
   on_top = 1.0;
   if (nearness[at] <= 0.0) return 0.0;
@@ -51,7 +52,8 @@ void main() {
   if (meet_obstacles(from, normalize(way)).at < length(way)) return;
 #endif
   const vec2 centre = (eye.xy / depth - rays.yw) / rays.xz;
-  // A disc of a pixel's radius meets a pixel's middle at least; smaller ones are as much thinner.
+  // A disc with a radius of 1 px covers a pixel centre at least. Smaller discs are drawn with this radius; their
+  // optical depth is reduced by the ratio of the areas.
   const float true_px = particle.w / (depth * rays.x);
   const float radius_px = clamp(true_px, 1.0, most_px);
   if (any(lessThan(centre, vec2(-radius_px))) || any(greaterThan(centre, vec2(size.xy) + radius_px))) return;

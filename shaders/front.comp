@@ -1,4 +1,5 @@
-// One invocation a particle: the lowest index among the small splats that hold a pixel's depth.
+// Writes per pixel the lowest index among the small particles whose depth is the pixel's; one invocation per
+// particle.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"

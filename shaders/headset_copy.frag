@@ -1,7 +1,7 @@
-// Copies an sRGB picture pixel by pixel. TO_LINEAR: into an image that holds linear light.
+// Copies an sRGB picture pixel by pixel. With TO_LINEAR the copy is converted to linear light.
 layout(binding = 0) uniform sampler2D picture;
-uniform int x;        // of the picture's column that comes first
-uniform float light;  // by which its levels are multiplied
+uniform int x;        // first column of the picture to copy, px
+uniform float light;  // factor on the picture's sRGB levels
 layout(location = 0) out vec4 colour;
 
 vec3 light_of(vec3 srgb) {  // IEC 61966-2-1

@@ -1,18 +1,19 @@
-// What an eye sees along each ray: a page that stands in the world, behind it the picture as it was drawn for that eye, else black.
-layout(binding = 0) uniform sampler2D picture;  // both eyes', the left one's first
+// Draws the view of one eye, ray by ray: a page placed in the world, behind it the picture drawn for this eye, and
+// black elsewhere.
+layout(binding = 0) uniform sampler2D picture;  // the pictures of both eyes side by side, the left eye's first
 layout(binding = 1) uniform sampler2D page;
 layout(location = 0) out vec4 colour;
 
-uniform vec2 size;    // of what is drawn, px
-uniform int samples;  // of a pixel, 4 or 1: letters are finer than pixels
-uniform float slope;  // of its edges from straight ahead
-uniform vec3 eye;     // m
+uniform vec2 size;    // of the image to draw, px
+uniform int samples;  // samples per pixel, 4 or 1; 4 smooth letters finer than a pixel
+uniform float slope;  // of the ray to the image's edge: tangent of half the field of view
+uniform vec3 eye;     // position, m
 uniform mat3 turn;    // the eye's axes: right, up, back
 uniform int shows_picture, shows_page;
 uniform mat3 picture_turn;      // the eye's axes as the picture was drawn
-uniform vec4 picture_tangents;  // left, right, down, up
-uniform float picture_share;    // of its width that is this eye's
-uniform float light;            // by which its levels are multiplied
+uniform vec4 picture_tangents;  // of the picture's field of view: left, right, down, up
+uniform float picture_share;    // share of the picture's width that shows this eye's view, from the left edge
+uniform float light;            // factor on the picture's levels
 uniform vec3 page_middle;
 uniform mat3 page_turn;
 uniform vec2 page_size;  // m

@@ -1,17 +1,18 @@
-// What a headset's test scene shows along each ray: sky and ground with the horizon between them, a ramp of 256 greys, and discs.
+// Draws a test scene for headsets, ray by ray: sky and ground with the horizon between them, a ramp of 256 greys, and
+// discs.
 layout(location = 0) out vec4 colour;
 
-uniform vec3 eye;       // m
+uniform vec3 eye;       // position, m
 uniform mat3 turn;      // the eye's axes: right, up, back
 uniform vec4 tangents;  // of the field of view: left, right, down, up
-uniform float x;        // px from the left, where the picture begins
-uniform vec2 size;      // px
-uniform vec4 ramp;      // left, right, down, up, m
+uniform float x;        // left edge of the picture, px
+uniform vec2 size;      // of the picture, px
+uniform vec4 ramp;      // edges of the ramp of greys: left, right, down, up, m
 uniform float ramp_z;
-uniform vec4 discs[3];  // middle and radius, m; they face +z
+uniform vec4 discs[3];  // centre x, y, z and radius, m; discs face +z
 uniform vec3 paints[3];
 
-// Where the ray goes through the plane of one z, before the eye.
+// Sets `at` to the point (x, y) where the ray meets the plane at `z`; false if the plane lies behind the eye.
 bool reach(vec3 ray, float z, out vec2 at) {
   const float way = (z - eye.z) / ray.z;
   at = eye.xy + way * ray.xy;
@@ -30,7 +31,7 @@ void main() {
     if (all(greaterThanEqual(along, vec2(0.0))) && all(lessThan(along, vec2(1.0))))
       colour.rgb = vec3(floor(256.0 * along.x) / 255.0);
   }
-  for (int i = 2; i >= 0; --i) {  // the nearest last
+  for (int i = 2; i >= 0; --i) {  // the nearest disc is painted last
     if (reach(ray, discs[i].z, at) && distance(at, discs[i].xy) < discs[i].w) colour.rgb = paints[i];
   }
 }

@@ -1,5 +1,6 @@
-// The one light of the scene, far away: direction towards it. And how it goes into water.
+// The scene's only light, infinitely far away: unit vector towards it.
 const vec3 sun = vec3(0.3536, 0.8130, 0.4625);
-const float into_water = 1.0 / 1.333;  // refractive index of air over water's
+const float into_water = 1.0 / 1.333;  // refractive index of air / that of water
 
-float reflected_share(float facing) { return 0.02 + 0.98 * pow(1.0 - facing, 5.0); }  // Schlick
+// Share of light that water reflects (Schlick); facing: cosine of the angle between ray and normal.
+float reflected_share(float facing) { return 0.02 + 0.98 * pow(1.0 - facing, 5.0); }

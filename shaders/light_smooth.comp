@@ -1,6 +1,7 @@
-// One direction of a Gaussian over the surface as the sun sees it: x height above the floor, y radius of the particles
-// there, both 0 without water, z length of the ray in water, m. Pairs of cells whose mean lies about as high as the
-// middle take part: planes stay planes, and water does not run into what flies above it. FIRST reads the splats.
+// One direction of a Gaussian over the surface map. A cell holds, in m: x height of the surface above the floor, y
+// radius of the particles there, z length of the ray in water; x and y are 0 without water. A pair of mirrored cells
+// takes part only if its mean height is close to the centre's. Planes are therefore preserved, and a pool does not
+// mix with spray above it. FIRST: the input is the splats of light_splat.comp.
 #include "light.glsl"
 #include "floor_maps.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
@@ -16,7 +17,7 @@ layout(std430, binding = 2) writeonly buffer Target { vec4 target[]; };
 uniform ivec2 direction;
 
 const int most_taps = 24;
-const vec2 narrow = vec2(2.0, 4.0);  // particle radii: within the first a pair counts whole, beyond the second not
+const vec2 narrow = vec2(2.0, 4.0);  // height difference, particle radii: up to x a pair counts fully, from y on not
 
 vec4 cell_at(int at) {
 #ifdef FIRST

@@ -1,6 +1,6 @@
-// Water as the sun sees it: one invocation a particle. The highest place of a ray that is in water, and the length of
-// the ray in water. IMAGES: mirror images of the pool beyond the walls, where the water goes on in them: light that
-// came in through the glass is the light of a wider pool, and so is what leaves it.
+// The water's surface along rays of sunlight: one invocation per particle. Each ray gets the height of its highest
+// point in water, and its length in water. IMAGES: splats the mirror images of the pool's particles beyond the walls
+// instead, so that light through the glass is that of a pool which continues beyond the walls.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #include "usable.glsl"
@@ -9,14 +9,14 @@ layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 layout(std430, binding = 1) buffer Top { uint top[]; };              // height in 24 bits, radius in 8; 0: no water
 layout(std430, binding = 2) buffer Thickness { uint thickness[]; };  // fixed point
 #ifdef IMAGES
-layout(std430, binding = 3) readonly buffer OwnTop { uint own_top[]; };  // what the particles themselves left
+layout(std430, binding = 3) readonly buffer OwnTop { uint own_top[]; };  // the surface without mirror images
 layout(std430, binding = 4) readonly buffer OwnThickness { uint own_thickness[]; };
 #endif
 uniform uint particle_count;
 
-const float least_cells = 0.75;  // radius of a sphere that meets a cell's middle wherever it is
+const float least_cells = 0.75;  // smallest splatted radius, cells: covers a cell centre at any position
 
-// Radius in sixteenths of a doubling, over the cell's edge.
+// Radius as 8 bits: 16 log2(radius / edge of a cell) + 128.
 uint radius_code(float radius) {
   return uint(clamp(16.0 * log2(radius / maps.surface_grid.z) + 128.5, 1.0, 255.0));
 }
@@ -55,14 +55,14 @@ void splat(vec3 centre, float own_radius) {
 }
 
 #ifdef IMAGES
-// Is the sun's ray through a particle in water most of its way through the tank? Spray and jets have no image, which
-// would darken the floor a second time.
+// True if the ray of sunlight through a particle is in water for more than half of its path between the surface and
+// the floor or wall. Spray and jets get no mirror image, because it would darken the floor a second time.
 bool is_in_pool(vec4 particle) {
   const vec2 through = particle.xz - leans * particle.y;
   const ivec2 cell = ivec2(floor((through - maps.surface_grid.xy) / maps.surface_grid.z));
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, maps.cells.xy))) return false;
   const int at = cell.y * maps.cells.x + cell.x;
-  const vec2 leaves = -through / leans;  // heights where it leaves by the walls
+  const vec2 leaves = -through / leans;  // heights at which the ray crosses the walls x = 0 and z = 0
   const float height = float(own_top[at] >> 8) * maps.tank.w - max(max(leaves.x, leaves.y), 0.0);
   return float(own_thickness[at]) * maps.floor_grid.z * sun.y > 0.5 * max(height, particle.w);
 }

@@ -1,11 +1,12 @@
-// Normals from the filtered nearness. On the plane n . p = d it is n . (slope, -1) / d: its derivatives by the
-// slopes are the normal's x and y. The smaller of the one-sided differences (van der Laan et al. 2009).
+// Normals from the filtered nearness. On the plane n . p = d, nearness is n . (slope, -1) / d: its derivatives by the
+// two slopes are n.x / d and n.y / d. Each derivative is the smaller of the two one-sided differences (van der Laan
+// et al. 2009).
 #include "view.glsl"
 #include "wet_tiles.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 1) readonly buffer Source { float source[]; };
 layout(std430, binding = 2) readonly buffer Radius { float radii[]; };
-// Eye space, z to the viewer; w: radius of the particle in front.
+// xyz: normal in eye space, z to the viewer; w: radius of the particle in front, m.
 layout(std430, binding = 3) writeonly buffer Normals { vec4 normals[]; };
 
 float nearness_at(ivec2 pixel) {

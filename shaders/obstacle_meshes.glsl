@@ -1,11 +1,12 @@
-// Obstacles that are meshes: signed distances at the nodes of grids, as the solver has them.
+// Obstacles that are meshes: signed distances, m, at the nodes of one grid per mesh. The solver uses the same grids.
 layout(std430, binding = 5) readonly buffer ObstacleGrids {
-  // Eight words an obstacle: low corner, step (floats), nodes, where its distances begin. Then these (floats).
+  // Eight words per obstacle: low corner x, y, z and step (floats, m), nodes along x, y, z, index of the first
+  // distance. The distances of all grids (floats) follow.
   uint obstacle_grids[];
 };
 
 const int most_mesh_steps = 96;
-const int halvings = 8;  // of the last step
+const int halvings = 8;  // bisections of the step that enters the mesh
 
 struct MeshGrid {
   vec3 low;
@@ -23,7 +24,7 @@ MeshGrid mesh_grid(int k) {
   return MeshGrid(low, grid_float(at + 3), nodes, int(obstacle_grids[at + 7]));
 }
 
-// Trilinear, at the nearest place of the grid.
+// Signed distance at p, interpolated trilinearly; outside the grid, that of the grid's nearest point.
 float mesh_distance(MeshGrid grid, vec3 p) {
   const vec3 cells = clamp((p - grid.low) / grid.step, vec3(0.0), vec3(grid.nodes - 1));
   const ivec3 cell = min(ivec3(cells), grid.nodes - 2);
@@ -37,7 +38,7 @@ float mesh_distance(MeshGrid grid, vec3 p) {
   return mix(across.x, across.y, f.z);
 }
 
-// By the differences along the corners of a tetrahedron.
+// Unit normal at p from the distances at four points around it, the corners of a tetrahedron.
 vec3 mesh_normal(MeshGrid grid, vec3 p) {
   vec3 slope = vec3(0.0);
   for (int corner = 0; corner < 4; ++corner) {
@@ -48,7 +49,8 @@ vec3 mesh_normal(MeshGrid grid, vec3 p) {
   return dot(slope, slope) > 0.0 ? normalize(slope) : vec3(0.0, 1.0, 0.0);
 }
 
-// Where a ray goes from outside to inside: steps as long as the distance, then halves of the last one.
+// Distance along a ray to the point where it enters the mesh; -1 if it does not. Steps as long as the signed distance
+// lead to the surface; bisection of the last step finds the point.
 float meet_mesh(MeshGrid grid, vec3 o, vec3 d) {
   const vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
   const vec3 high = grid.low + grid.step * vec3(grid.nodes - 1);

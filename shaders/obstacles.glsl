@@ -1,6 +1,6 @@
-// Rigid obstacles in the tank: where a ray meets them first.
+// Rigid obstacles in the tank, and the first intersection of a ray with them.
 layout(std430, binding = 4) readonly buffer Obstacles {
-  vec4 obstacles[];  // three each: centre and radius; half sides, 1 for a mesh; turn
+  vec4 obstacles[];  // three per obstacle: centre, radius; half sides, 1 for a mesh; unit quaternion
 };
 uniform int obstacle_count;
 
@@ -11,7 +11,7 @@ const float never = 1e30;
 #endif
 
 struct Meeting {
-  float at;  // way along the ray, never = not at all
+  float at;  // distance along the ray; `never`: no intersection
   vec3 normal;
 };
 
@@ -21,7 +21,7 @@ void nearer(inout Meeting m, float at, vec3 normal) {
   if (at > 0.0 && at < m.at) m = Meeting(at, normal);
 }
 
-// Into a ball about (0, y, 0).
+// Point where a ray from outside enters a ball with the centre (0, y, 0).
 void meet_ball(inout Meeting m, vec3 o, vec3 d, float y, float radius) {
   const vec3 from = o - vec3(0.0, y, 0.0);
   const float b = dot(from, d), c = dot(from, from) - radius * radius;
@@ -30,7 +30,7 @@ void meet_ball(inout Meeting m, vec3 o, vec3 d, float y, float radius) {
   nearer(m, at, (from + at * d) / radius);
 }
 
-// Into the side of a cylinder round y.
+// Point where a ray from outside enters a cylinder around the y axis through its side.
 void meet_side(inout Meeting m, vec3 o, vec3 d, float half_length, float radius) {
   const float a = dot(d.xz, d.xz), b = dot(o.xz, d.xz), c = dot(o.xz, o.xz) - radius * radius;
   if (a < 1e-12 || b * b < a * c) return;

@@ -1,7 +1,7 @@
-// Depth is splatted in two rounds. The first takes the particles that lie about as near as the water of the last
-// picture did there; the farthest depth of each block of pixels then tells the second round which particles
-// cannot be seen. Only hidden ones are left out, so the picture does not depend on who went first.
+// Depth is splatted in two rounds. The first round takes the particles close to the surface of the last picture. The
+// second round skips each particle that lies behind the farthest depth of all blocks of pixels under its footprint.
+// Only hidden particles are skipped, so that the picture does not depend on the choice for the first round.
 const int block_px = 16;
-const uint may_be_in_front = 1u;  // bits of touched[]; this one: was in front of a pixel when it was splatted
-const uint in_first_round = 2u;
-const uint is_hidden = 4u;
+const uint may_be_in_front = 1u;  // bit of touched[]: the particle was in front of a pixel when it was splatted
+const uint in_first_round = 2u;   // bit of touched[]: the first round takes the particle
+const uint is_hidden = 4u;        // bit of touched[]: splat_wide.comp skips the particle's depth

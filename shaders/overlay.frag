@@ -1,12 +1,12 @@
-// Paints the value of the front particle over the picture: a scale from blue to yellow, or one colour a class.
+// Paints the value of the front particle over the picture: a scale from blue to yellow, or one colour per class.
 #include "view.glsl"
 layout(std430, binding = 0) readonly buffer Front { uint front[]; };
 layout(std430, binding = 1) readonly buffer Values { float values[]; };
 layout(std430, binding = 2) readonly buffer Normals { vec4 normals[]; };
 layout(location = 0) out vec4 colour;
 
-uniform vec2 range;       // values of the scale's ends
-uniform bool classes;     // values are whole numbers from 0
+uniform vec2 range;       // values at the ends of the colour scale
+uniform bool classes;     // values are class numbers, 0 to 3
 uniform uint value_count;
 
 vec3 scale_colour(float t) {
@@ -17,7 +17,7 @@ vec3 scale_colour(float t) {
   return mix(stops[low], stops[low + 1], at - float(low));
 }
 
-// Distinct for readers with any colour vision (Okabe and Ito's set).
+// Colours that differ for any colour vision (Okabe and Ito's set).
 vec3 class_colour(float value) {
   const vec3 stops[4] =
       vec3[](vec3(0.90, 0.62, 0.00), vec3(0.00, 0.62, 0.45), vec3(0.34, 0.71, 0.91), vec3(0.80, 0.47, 0.65));
@@ -32,6 +32,6 @@ void main() {
   const float value = values[particle];
   const float facing = 0.55 + 0.45 * abs(normals[at].z);
   const vec3 paint = classes ? class_colour(value) : scale_colour((value - range.x) / (range.y - range.x));
-  // Not a number stands out.
+  // NaN is painted magenta.
   colour = vec4(value == value ? facing * paint : vec3(1.0, 0.0, 1.0), 0.8);
 }

@@ -1,5 +1,5 @@
-// What stands around the fluid: a tiled floor, a glass tank with frame and level marks, ground and sky. Linear
-// light.
+// Surroundings of the fluid: a tiled floor, a glass tank with frame and level marks, ground and sky. Colours are
+// linear light.
 #include "light.glsl"
 const float frame_m = 0.06;
 
@@ -29,7 +29,7 @@ float checker(vec2 p, vec2 width) {
   return 0.5 - 0.5 * i.x * i.y;
 }
 
-// Share of a footprint of `width` m that lies within `half_line` m of zero distance.
+// Share of a footprint of `width` m that a line of half width `half_line` m covers, at `distance` m from its middle.
 float line(float distance, float half_line, float width) {
   return clamp((half_line + 0.5 * width - distance) / max(width, 1e-4), 0.0, 1.0) *
          min(1.0, 2.0 * half_line / max(width, 1e-4));
@@ -70,10 +70,10 @@ Crossing cross_tank(vec3 o, vec3 d) {
 
 const vec3 frame_colour = vec3(0.10, 0.11, 0.12);
 
-// How much of the pixel the frame covers where a ray pierces a face; the top has a rim only.
+// Share of a footprint of `width` m that the frame covers around point p of a face of the tank.
 float frame_cover(vec3 p, int axis, float width) { return line(edge_distance(p, axis), frame_m, width); }
 
-// From a point inside the tank.
+// Light that arrives along the ray d at point o inside the tank.
 vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
   const Crossing c = cross_tank(o, d);
 #ifdef OBSTACLES
@@ -97,7 +97,8 @@ vec3 seen_from_inside(vec3 o, vec3 d, float footprint_per_m, float travelled) {
   return mix(glass, frame_colour, frame_cover(p, c.leave_axis, width));
 }
 
-// How much of the pixel the frame on the near side of the tank covers; `at`: its distance, 0 where there is none.
+// Share of the pixel that the frame on the tank's near side covers. `at`: distance to that side along the ray, m; 0
+// if the eye is inside the tank or the ray misses it.
 float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at) {
   at = 0.0;
   if (c.leave <= max(c.enter, 0.0) || c.enter <= 0.0) return 0.0;
@@ -105,7 +106,7 @@ float near_frame(Crossing c, vec3 o, vec3 d, float footprint_per_m, out float at
   return frame_cover(o + c.enter * d, c.enter_axis, footprint_per_m * c.enter);
 }
 
-// From anywhere, without that frame.
+// Light that arrives along the ray d at any point o, without the frame on the near side.
 vec3 seen(Crossing c, vec3 o, vec3 d, float footprint_per_m) {
 #ifdef OBSTACLES
   const Meeting met = meet_obstacles(o, d);

@@ -1,5 +1,5 @@
-// What stands between the sun and the floor: one invocation a cell of the floor map. The ray of sunlight that comes
-// there through flat water as high as the surface is where that ray goes in.
+// Sunlight that obstacles and flying water block on its way to the floor: one invocation per cell of the floor map.
+// The ray to the cell is refracted by a flat surface, as high as the water where the ray enters it.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #ifdef OBSTACLES
@@ -7,11 +7,11 @@
 #endif
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Surface { vec4 surface[]; };
-layout(std430, binding = 1) writeonly buffer Shadow { vec2 shadow[]; };  // share of the sun; way through the pool, m
+layout(std430, binding = 1) writeonly buffer Shadow { vec2 shadow[]; };  // unblocked share; path in the pool, m
 
-const float turned_aside_per_m = 4.0;  // by water in the air, whose many surfaces send light elsewhere
-const float sun_radius = 0.00465;      // half of its angle, rad
-const int rays = 8;                    // to the sun from a cell, each from another place of both
+const float turned_aside_per_m = 4.0;  // 1/m, light scattered by flying water
+const float sun_radius = 0.00465;      // angular radius, rad
+const int rays = 8;                    // per cell, between different points of cell and sun
 
 vec4 surface_near(vec2 place) {
   const vec2 g = (place - maps.surface_grid.xy) / maps.surface_grid.z - 0.5;
@@ -21,7 +21,7 @@ vec4 surface_near(vec2 place) {
   return mix(mix(surface[at], surface[at + 1], f.x), mix(surface[next], surface[next + 1], f.x), f.y);
 }
 
-// The surface where the ray that comes to a place of the floor goes into the water.
+// Surface map where the ray that reaches a point of the floor enters the water; found by iteration.
 vec4 entry_of(vec2 place) {
   vec4 found = surface_near(place);
   for (int k = 0; k < 3; ++k) {
@@ -32,13 +32,14 @@ vec4 entry_of(vec2 place) {
 }
 
 #ifdef OBSTACLES
-// Looking down from beyond the tank, so that what stands on the floor is met from outside.
+// True if an obstacle blocks the ray within `length_m` m above `low`. The test ray points down from the far end, so
+// that it enters an obstacle on the floor from outside.
 bool meets(vec3 low, vec3 up, float length_m) {
   return meet_obstacles(low + length_m * up, -up).at < length_m;
 }
 
-// May an obstacle stand in the light of a place? A ball round it has a shadow of at most 1.6 radii about that of its
-// middle, whatever part of the way is water.
+// True if an obstacle may shade a point of the floor. The shadow of the obstacle's bounding ball lies within 1.6 of
+// the ball's radii around the shadow of its centre, whatever part of the path is in water.
 bool may_be_dark(vec2 place, float depth) {
   for (int k = 0; k < obstacle_count; ++k) {
     const vec4 centre = obstacles[3 * k];
@@ -56,7 +57,7 @@ float open_share(vec2 place, float depth) {
   const vec3 across = normalize(cross(sun, vec3(0.0, 0.0, 1.0))), along = cross(across, sun);
   int open = 0;
   for (int k = 0; k < rays; ++k) {
-    // Vogel's spiral over the sun's disc, the same turned over the cell.
+    // Points of Vogel's spiral over the sun's disc; over the cell the same points with swapped axes.
     const float turn = 2.3999632 * float(k), out_to = sqrt((float(k) + 0.5) / float(rays));
     const vec2 disc = out_to * vec2(cos(turn), sin(turn));
     const vec3 up = normalize(sun + sun_radius * (disc.x * across + disc.y * along));

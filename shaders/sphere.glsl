@@ -1,18 +1,18 @@
-// Spheres as the splat passes see them. `precise`: the depth pass and the front pass must agree in every bit.
+// Spheres of the splat passes. `precise`: the depth pass and the front pass must compute the same bits.
 #include "usable.glsl"
 layout(std430, binding = 0) readonly buffer Particles { vec4 particles[]; };
 uniform uint particle_count;
 
-// With what its samples need of the view: a loop over pixels does not load that again and again.
+// A sphere with copies of the view's data that its samples need, so that a loop over pixels does not load them again.
 struct Sphere {
   vec3 centre;  // eye space, z = positive depth
   float radius;
-  bool cut;   // reaches through a wall, the floor or a lid:
-  vec3 wall;  // where on each axis, from the eye (far away: nowhere)
+  bool cut;   // true if the sphere reaches through a wall, the floor or a lid
+  vec3 wall;  // position of that wall on each axis, relative to the eye, m; far away: none
   vec3 inward;
   mat3 to_world;
   float near;
-  uint nearest;  // bits of a depth that no sample of it comes below
+  uint nearest;  // bits of a lower bound of the sphere's depth
 };
 
 Sphere sphere_of(vec4 particle) {
@@ -44,7 +44,8 @@ float radius_in_cells(Sphere s, vec4 grid) {
 }
 bool is_subpixel(Sphere s, vec4 grid) { return !crosses_near(s) && radius_in_cells(s, grid) < 0.7072; }
 
-// Depths of a ray's way in and out; a sphere below pixel size is met as if the ray went through its centre.
+// Depths at which a ray enters and leaves the whole sphere; false if it misses. The ray is assumed to pass through
+// the centre of a subpixel sphere.
 bool meets_whole(Sphere s, vec2 slope, bool subpixel, out float entry, out float leave) {
   precise float inverse = 1.0 / (slope.x * slope.x + slope.y * slope.y + 1.0);
   precise float middle = (s.centre.x * slope.x + s.centre.y * slope.y + s.centre.z) * inverse;
@@ -60,7 +61,7 @@ bool meets_whole(Sphere s, vec2 slope, bool subpixel, out float entry, out float
   return square > 0.0 && leave > s.near;
 }
 
-// Moves the way in back and the way out forth, to the walls.
+// Clips the ray's section in the sphere to the inside of the walls; false if nothing is left.
 bool between_walls(Sphere s, vec2 slope, inout float entry, inout float leave) {
   precise vec3 ray = world_ray(slope, s.to_world);
   precise vec3 at = s.wall / ray;
@@ -76,7 +77,7 @@ vec2 tangent_slopes(float x, float z, float radius) {
   return vec2(x * z - root, x * z + root) / (z * z - radius * radius);
 }
 
-// Slopes of the box around a sphere in front of the near plane.
+// Lowest and highest slope along one axis of the part of a sphere in front of the near plane.
 vec2 clipped_slopes(float x, float z, float radius) {
   const float low = x - radius, high = x + radius;
   return vec2(low / (low < 0 ? origin.z : z + radius), high / (high > 0 ? origin.z : z + radius));
@@ -96,7 +97,7 @@ ivec4 footprint(Sphere s, vec4 grid, ivec2 cells) {
                           : tangent_slopes(s.centre.x, s.centre.z, s.radius);
   const vec2 y = crossing ? clipped_slopes(s.centre.y, s.centre.z, s.radius)
                           : tangent_slopes(s.centre.y, s.centre.z, s.radius);
-  // A hundredth of a cell of slack for rounding: meets() decides.
+  // The tolerance of 0.01 cells covers rounding; meets_whole() decides for each cell.
   const vec2 low = ceil((vec2(x.x, y.x) - grid.yw) / grid.xz - 0.51);
   const vec2 high = floor((vec2(x.y, y.y) - grid.yw) / grid.xz - 0.49) + 1.0;
   return ivec4(clamp(low, vec2(0), limit), clamp(high, vec2(0), limit));
@@ -109,8 +110,8 @@ vec2 cell_slope(ivec2 cell, vec4 grid) {
   return slope;
 }
 
-// Length of the ray inside the sphere, uncut, in thickness units; below cell size the sphere's volume over the cell.
-// `precise`: whoever splats a sphere adds the same.
+// Length of the ray inside the whole sphere, in thickness units; for a subpixel sphere, its volume / area of the
+// cell. `precise`: every invocation that splats this sphere must add the same value.
 uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid, float units_per_m) {
   precise float chord;
   if (subpixel) {
@@ -118,10 +119,10 @@ uint chord_units(Sphere s, vec2 slope, bool subpixel, vec4 grid, float units_per
     chord = 4.18879 * s.radius * s.radius * s.radius / (cell.x * cell.y);
   } else if (crosses_near(s)) {
     float entry, leave;
-    if (!meets_whole(s, slope, false, entry, leave)) return 0u;  // the depth decides where there is water
+    if (!meets_whole(s, slope, false, entry, leave)) return 0u;
     chord = (leave - entry) * sqrt(dot(slope, slope) + 1.0);
   } else {
-    // The centre's distance from the ray by their cross product.
+    // Squared distance of the centre from the ray, by the cross product.
     precise float x = s.centre.y - s.centre.z * slope.y;
     precise float y = s.centre.z * slope.x - s.centre.x;
     precise float z = s.centre.x * slope.y - s.centre.y * slope.x;

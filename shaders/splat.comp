@@ -1,18 +1,19 @@
-// One invocation a particle: counts it, splats it when it is small, lists it when it is not. Two rounds.
+// Splats the particles in two rounds (occlusion.glsl), one invocation per particle. Small footprints are splatted
+// here, larger ones are listed for splat_wide.comp.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"
 #include "counters.glsl"
 #include "wide_list.glsl"
 #include "occlusion.glsl"
-layout(std430, binding = 2) readonly buffer Last { float last_nearness[]; };  // of the last picture, smoothed
+layout(std430, binding = 2) readonly buffer Last { float last_nearness[]; };  // filtered nearness of the last picture
 layout(std430, binding = 7) readonly buffer Blocks { uint farthest[]; };
 layout(local_size_x = 64) in;
-uniform int thread_limit;  // px a side that one invocation splats
-uniform int group_limit;   // px a side that one work group splats
+uniform int thread_limit;  // largest footprint that one invocation splats, px per side
+uniform int group_limit;   // largest footprint that one team of invocations splats, px per side
 uniform int second_round;
 
-// True when every pixel of the footprint already holds something nearer than the sphere's nearest point.
+// True if the sphere lies behind the splatted depth of every pixel in the blocks under its footprint.
 bool hidden(Sphere s, ivec4 box) {
   const int blocks_x = (size.x + block_px - 1) / block_px;
   const ivec2 low = box.xy / block_px, high = (box.zw - 1) / block_px;
@@ -49,8 +50,9 @@ void splat_small_thickness(Sphere s) {
   }
 }
 
-// Whatever the last picture holds, and wherever the eye was. Three radii are the particles in front and one more:
-// with fewer, blocks keep holes through which the next layers seem to be seen.
+// True if the first round takes the sphere: its centre lies at most 3 splatted radii behind the surface of the last
+// picture, or it crosses the near plane. With fewer radii, pixels without a splat remain in many blocks, so that the
+// second round cannot skip the particles behind them.
 bool goes_first(Sphere s) {
   if (crosses_near(s)) return true;
   const vec2 xy = (s.centre.xy / s.centre.z - rays.yw) / rays.xz;
@@ -58,7 +60,7 @@ bool goes_first(Sphere s) {
   return (s.centre.z - 3.0 * s.radius) * last_nearness[pixel.y * size.x + pixel.x] <= 1.0;
 }
 
-// False when this round has nothing to do with particle i.
+// True if this round takes particle i.
 bool take_turn(uint i) {
   if (second_round == 1) return (touched[i] & in_first_round) == 0u;
   const vec4 particle = particles[i];

@@ -1,5 +1,5 @@
-// Listed particles. A team of 8 x 4 invocations takes one; those of the tile items are split among
-// 8 by gl_NumWorkGroups.z / 8 work groups.
+// Splats the particles with large footprints (wide_list.glsl). A team of 8 x 4 invocations splats a group item. The
+// footprint of a tile item is split among 8 x (gl_NumWorkGroups.z / 8) work groups.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"
@@ -8,7 +8,7 @@
 layout(local_size_x = 8, local_size_y = 16) in;
 uniform int tiles;  // 0: the group items, 1: the tile items
 const ivec2 team = ivec2(8, 4);
-const int ahead = 4;  // pixels of an invocation whose depths are read before the first is compared
+const int ahead = 4;  // number of depths that an invocation reads before it compares the first one
 
 #ifdef FRONT
 #include "front.glsl"
@@ -17,7 +17,7 @@ bool takes_part(uint known) { return (known & may_be_in_front) != 0u; }
 bool takes_part(uint known) { return (known & is_hidden) == 0u; }
 #endif
 
-// True when this tells of a particle that may be in front.
+// True if the particle may be in front at this pixel; always false in the front pass.
 bool splat_pixel(Sphere s, ivec2 pixel, int at, uint held, uint i) {
 #ifdef FRONT
   splat_front(s, pixel, false, rays, at, held, i);
@@ -27,7 +27,8 @@ bool splat_pixel(Sphere s, ivec2 pixel, int at, uint held, uint i) {
 #endif
 }
 
-// Every step-th pixel each way, from `first` on; columns are counted from a whole sector of memory.
+// Splats every step-th pixel along x and y, from `first` on. Columns count from a multiple of 8 px, where a sector of
+// memory begins.
 void splat_pixels(Sphere s, uint i, ivec2 first, ivec2 step) {
   const ivec4 box = footprint(s, rays, size.xy);
   const int down = step.y * size.x;
@@ -43,7 +44,7 @@ void splat_pixels(Sphere s, uint i, ivec2 first, ivec2 step) {
       }
     }
   }
-  if (in_front) touched[i] |= may_be_in_front;  // whoever else writes there writes the same
+  if (in_front) touched[i] |= may_be_in_front;  // other invocations write the same value
 }
 
 void splat_cells(Sphere s, ivec2 first, ivec2 step) {

@@ -1,5 +1,5 @@
-// Which tiles of 16 x 8 px hold water, and the radius of the particle in front of each pixel: one work group a tile.
-// See wet_tiles.glsl. Starts the filter.
+// Marks the tiles of 16 x 8 px that hold water (wet_tiles.glsl); one work group per tile. Also writes the inputs of
+// the depth filter: nearness, and the radius of the particle in front of each pixel.
 #include "view.glsl"
 #include "counters.glsl"
 layout(local_size_x = 16, local_size_y = 8) in;

@@ -1,4 +1,4 @@
-// Bit 0: the work group's tile holds water; bit 1: it did in the last picture. A tile with neither keeps what the
-// last picture left there, which says that there is none.
+// One word per tile. Bit 0: the tile holds water; bit 1: it did in the last picture. The passes skip a tile with
+// neither bit, because the last picture left its pixels empty.
 layout(std430, binding = 5) readonly buffer Wet { uint wet[]; };
 bool is_dry() { return wet[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] == 0u; }

@@ -1,4 +1,4 @@
-// Turns the list lengths into work groups: of the items since the last round, or of all.
+// Sets the numbers of work groups for the listed particles: those listed in this round, or all of them.
 #include "counters.glsl"
 #include "wide_list.glsl"
 layout(local_size_x = 1) in;

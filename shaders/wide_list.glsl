@@ -1,7 +1,8 @@
-// Particles whose footprints are too large for one invocation, and the work groups that take them. The list grows
-// in two rounds; a round's own part begins at *_start.
-const uint group_row = 32768u;  // work groups in x; the rest goes into y
-const uint group_teams = 4u;    // group items that a work group takes
+// List of the particles whose footprints are too large for one invocation, and the numbers of work groups that splat
+// them. One team of invocations splats a group item, many work groups a tile item. The list grows in two rounds; the
+// items of the current round begin at group_start and tile_start.
+const uint group_row = 32768u;  // most work groups along x; further ones lie along y
+const uint group_teams = 4u;    // group items per work group
 layout(std430, binding = 5) buffer WideList {
   uint group_items;
   uint tile_items;

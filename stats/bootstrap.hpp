@@ -1,5 +1,6 @@
 #pragma once
-/// Resampling of participants: draws that are the same on every machine, and intervals from them.
+/// Bootstrap over participants: random draws that are the same on every machine, and confidence intervals
+/// from the resampled estimates.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +14,7 @@ struct BootstrapOptions {
   int resamples = 2000;
   std::uint64_t seed = 1;
   double confidence = 0.95;  ///< in (0, 1)
-  /// called after each resample with the number done; may be empty
+  /// called after each resample with the number of resamples done so far; may be empty
   std::function<void(int)> progress = {};
 };
 
@@ -22,16 +23,20 @@ struct BootstrapOptions {
 /// of the standard library is used.
 std::vector<double> resample_weights(int n, std::uint64_t seed, std::uint64_t resample);
 
-/// Tail probability of the expanded percentile interval: Phi(-sqrt(n / (n-1)) t(n-1)). n >= 2.
+/// Tail probability of the expanded percentile interval: Phi(-sqrt(n / (n-1)) t), where t is Student's
+/// quantile at (1 + confidence) / 2 with n - 1 degrees of freedom. n is the number of units, at least 2
+/// (std::invalid_argument otherwise).
 double expanded_tail(int n, double confidence);
 
 /// Expanded percentile interval (Hesterberg 2015, section 5.3): quantiles of the resampled estimates at
-/// expanded_tail, which corrects the percentile interval's narrowness for few units. std::invalid_argument
-/// when `estimates` is empty or n < 2.
+/// expanded_tail(n) and 1 - expanded_tail(n). The plain percentile interval is too narrow if the number of
+/// units n is small; the expanded tail corrects this. std::invalid_argument when `estimates` is empty or n <
+/// 2.
 std::array<double, 2> expanded_percentile_interval(std::span<const double> estimates, int n,
                                                    double confidence);
 
-/// Standard deviation of resampled estimates (divisor N - 1). Needs at least two.
+/// Standard error: the standard deviation of N resampled estimates, with divisor N - 1. std::invalid_argument
+/// if N < 2.
 double bootstrap_se(std::span<const double> estimates);
 
 }  // namespace stats

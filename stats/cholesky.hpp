@@ -10,9 +10,9 @@ namespace stats {
 /// Factorisation L L^T = A (Golub and Van Loan 2013, algorithm 4.2.1).
 class Cholesky {
  public:
-  /// `matrix` is n x n, row-major; only its lower triangle is read. Empty unless every pivot exceeds
-  /// `least_pivot` times its diagonal element, that is, unless each column is independent of the others
-  /// beyond rounding.
+  /// `matrix` is n x n, row-major; only its lower triangle is read. Returns nothing if a pivot is not finite
+  /// or is at most `least_pivot` times its diagonal element: a column is then a linear combination of the
+  /// others, up to rounding.
   static std::optional<Cholesky> of(std::span<const double> matrix, double least_pivot = 1e-13);
 
   /// Solves A x = b.

@@ -14,8 +14,9 @@ struct MeanInterval {
   std::size_t n = 0;
 };
 
-/// Interval mean -+ t(n - 1) s / sqrt(n) of independent values. std::invalid_argument unless all values are
-/// finite and confidence lies in (0, 1).
+/// The mean of n independent values with its interval mean -+ t s / sqrt(n), where t is Student's quantile
+/// with n - 1 degrees of freedom and s the sample's standard deviation. std::invalid_argument unless all
+/// values are finite and confidence lies in (0, 1).
 MeanInterval mean_interval(std::span<const double> values, double confidence = 0.95);
 
 /// Mean of each group of `size` consecutive values. Repeats of one condition are not independent and count as

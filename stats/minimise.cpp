@@ -39,14 +39,16 @@ class Descent {
     if (!std::isfinite(at_.value)) throw std::invalid_argument("the start lies outside the domain");
   }
 
-  /// Steps until the next step promises a decrease below `least`. False if no step lowers the value before
-  /// that.
+  /// Takes BFGS steps from the approximation `inverse` of the inverse Hessian (empty: a scaled identity)
+  /// until the decrease predicted for the next step is below `least`. Returns false if no step length lowers
+  /// the value, or after 500 steps.
   bool bfgs(Vector inverse, double least);
   const Point& at() const { return at_; }
   Minimum newton();
 
  private:
-  /// The first of the steps 1, 1/2, 1/4 ... along `direction` with a sufficient decrease.
+  /// Line search: the first of the step lengths 1, 1/2, 1/4 ... along `direction` that lowers the value by at
+  /// least `decrease` * length * |slope|. Returns nothing if no length above 1e-12 does.
   std::optional<Point> step(const Vector& direction, double slope, double decrease) const;
   Vector hessian() const;
   void update_inverse(Vector& inverse, const Vector& s, const Vector& y) const;
@@ -68,7 +70,8 @@ std::optional<Point> Descent::step(const Vector& direction, double slope, double
   return std::nullopt;
 }
 
-/// Eq. 6.17 of Nocedal and Wright, skipped if the curvature is not positive.
+/// BFGS update of the inverse Hessian (Nocedal and Wright 2006, Eq. 6.17). Skipped if the curvature s^T y is
+/// not positive.
 void Descent::update_inverse(Vector& inverse, const Vector& s, const Vector& y) const {
   const double curvature = dot(s, y);
   if (!(curvature > 1e-10 * std::sqrt(dot(s, s) * dot(y, y)))) return;

@@ -7,8 +7,8 @@
 
 namespace stats {
 
-/// Returns the value at x and writes the gradient to the second span. Infinite outside the domain; the
-/// gradient is then not read.
+/// Returns the objective's value at x (first argument) and writes its gradient to the second. The value is
+/// infinite outside the domain, where the gradient is not read.
 using Objective = std::function<double(std::span<const double>, std::span<double>)>;
 
 struct Minimum {
@@ -25,8 +25,8 @@ struct Minimum {
 /// (std::invalid_argument).
 Minimum minimise(const Objective& objective, std::vector<double> start);
 
-/// The same for one of many similar problems: BFGS alone, started with the inverse Hessian of another problem
-/// (row-major). Returns no Hessian.
+/// Minimises one of many similar problems by BFGS alone. `inverse_hessian` (row-major) is that of a similar
+/// problem at its minimum. Returns no Hessian.
 Minimum minimise_near(const Objective& objective, std::vector<double> start,
                       std::vector<double> inverse_hessian);
 

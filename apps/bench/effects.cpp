@@ -1,4 +1,4 @@
-/// vip-bench effects: the cost per frame of each of a scene's effects.
+/// vip-bench effects: milliseconds per frame that each effect of a scene costs.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -41,7 +41,8 @@ sim::SimulationOptions choice_of(const EffectsOptions& options) {
   return out;
 }
 
-/// A variant's fluid. All exist at once, so that their frames are timed in turn.
+/// The fluid of one variant of the scene's effects. All variants exist at the same time, so that their frames
+/// are timed in turn.
 struct Running {
   measure::EffectCost cost;
   std::unique_ptr<sim::Simulation> fluid;
@@ -78,7 +79,7 @@ bool same(const std::vector<sim::ParticleState>& a, const std::vector<sim::Parti
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), equal);
 }
 
-/// Counts the launches of one more frame, which is not timed.
+/// Counts the kernel launches of one more frame, which is not timed.
 void count_launches(Running& running) {
   running.fluid->profile_launches(true);
   running.fluid->step_frame();
@@ -110,7 +111,7 @@ std::vector<measure::EffectCost> costs_of(const sim::Scene& scene, const Effects
   return costs;
 }
 
-/// Writes the results to every requested output.
+/// Prints the results as a table and writes them to the requested files.
 template <class Costs>
 void tell(const EffectsOptions& options, const measure::EffectsRun& run, const Costs& costs) {
   const figures::TextTable table = measure::to_table(run, costs);
@@ -124,7 +125,7 @@ void run_effects(const EffectsOptions& options) {
   check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   sim::SimulationOptions choice = choice_of(options);
-  // The same in every variant, so that an effect does not pay for shorter substeps.
+  // All variants use the same substeps, so that the cost of an effect contains no cost of shorter substeps.
   choice.substeps = sim::least_substeps(scene, choice);
   const measure::EffectsRun run{scene.name,
                                 sim::method_name(choice.method),

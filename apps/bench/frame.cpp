@@ -27,8 +27,8 @@ namespace apps {
 
 namespace {
 
-/// The account with the names of the database's columns. frame: counted from the opening of the gate. Null if
-/// not measured.
+/// The account of a frame, with the names of the database's columns. frame: number of frames since the gate
+/// opened. Values that were not measured are null.
 base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
   base::Json out{{"frame", frame}, {"particles", facts.particles_by_level}};
   const auto t = facts.tolerance.value_or(study::FrameTolerance{});
@@ -51,7 +51,7 @@ base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
   return out;
 }
 
-/// Null if the run did not diverge.
+/// The divergence as JSON; null if the run did not diverge.
 base::Json divergence_json(const std::optional<sim::Divergence>& divergence) {
   if (!divergence) return {};
   base::Json out{{"frame", divergence->frame},
@@ -73,14 +73,14 @@ std::unique_ptr<sim::Simulation> make_fluid(const sim::Scene& scene, const Frame
   return measure::make_settled(scene, std::move(out));
 }
 
-/// Support radius (4 r) of the first particle over the rest spacing.
+/// Ratio of the kernel's support radius h (4 r of the first particle) to the rest spacing d.
 double h_over_d(const sim::Simulation& fluid) {
   std::vector<sim::RenderParticle> particles;
   fluid.read_particles(particles);
   return particles.empty() ? 0 : 4 * static_cast<double>(particles.front().radius_m) / fluid.spacing_m();
 }
 
-/// Draws pictures besides the solver, or says why not.
+/// Times the drawing of pictures. If no pictures are drawn, `timer` is null and `left_out` is the reason.
 struct Pictures {
   std::unique_ptr<measure::RenderTimer> timer;
   std::string left_out;
@@ -102,7 +102,8 @@ Pictures make_pictures(const sim::Scene& scene, const FrameOptions& options) {
           ""};
 }
 
-/// The accounts of all frames, with mean number of particles and mean fraction solved.
+/// The accounts of all frames. solved: mean fraction of particles that are solved; particles: mean number of
+/// particles.
 struct Accounts {
   base::Json all = base::Json::array();
   double solved = 0, particles = 0;
@@ -116,7 +117,8 @@ struct Accounts {
   }
 };
 
-/// Measures a state without counting its launches among the frames' launches.
+/// Adds the current state to `accuracy`. The kernel launches of this measurement do not count as launches of
+/// the frames.
 void measure_apart(sim::Simulation& fluid, measure::Accuracy& accuracy, measure::LaunchSums* launches) {
   if (launches) {
     launches->add(fluid.launch_times());
@@ -126,7 +128,7 @@ void measure_apart(sim::Simulation& fluid, measure::Accuracy& accuracy, measure:
   if (launches) fluid.profile_launches(true);
 }
 
-/// Launches and bandwidth for the result; empty without --passes.
+/// Kernel launches by pass and memory bandwidth for the JSON result; empty without --passes.
 struct Passes {
   base::Json launches = base::Json::array();
   base::Json bandwidth_gb_s;
@@ -136,7 +138,7 @@ Passes passes_of(sim::Simulation& fluid, const FrameOptions& options, measure::L
   if (!options.passes) return {};
   launches.add(fluid.launch_times());
   fluid.profile_launches(false);
-  // Measured after the frames, so that data that the copies leave in caches do not affect them.
+  // Measured after the frames, because the copies of this measurement change the caches.
   const double gb_s = sim::copy_bandwidth_gb_s(sim::choose_backend(options.backend));
   return {measure::launches_json(launches.all(), options.frames, water, gb_s), gb_s};
 }

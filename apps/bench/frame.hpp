@@ -16,14 +16,13 @@ struct FrameOptions {
   std::string backend = "auto";
   std::string tau = "live";
   std::string rate, ptpe;
-  std::string setting;  ///< best.toml, replaces method, n_star, tau and the solver's numbers; empty = none
+  std::string setting;  ///< setting file; replaces method, n_star, tau and the solver's numbers; empty = none
   std::string json;
   std::string save_state;
   int frames = 100;
   int warm_up = 5;
   int measure_every = 0;
-  sim::SimulationOptions
-      fluid;  ///< the solver's numbers; method, n_* and back end come from the strings above
+  sim::SimulationOptions fluid;  ///< the solver's numbers; method, n_* and back end are in the strings above
   bool no_render = false;
   bool passes = false;
   bool look = false;
@@ -32,7 +31,7 @@ struct FrameOptions {
   int views = 1;
 };
 
-/// Runs the frames and returns all figures.
+/// Runs the frames and returns all measured values.
 base::Json run_frames(const FrameOptions& options);
 
 }  // namespace apps

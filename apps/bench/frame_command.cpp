@@ -38,7 +38,7 @@ constexpr const char* floors_help =
     "take\n"
     "less than its floor. - stands where nothing is known.";
 
-/// An option for each number of the solver.
+/// Adds an option for each number of the solver.
 void add_solver_numbers(CLI::App& command, sim::SimulationOptions& fluid) {
   for (const sim::SolverNumber& number : sim::solver_numbers()) {
     std::visit(
@@ -102,7 +102,7 @@ constexpr const char* peers_method = "HiRes";
 constexpr const char* peers_n_star = "4k";
 constexpr double peers_dt_s = 0.005;
 
-/// --peers fixes the whole run; only options that do not change it may be combined with it.
+/// Refuses options that change the run of --peers, which is fixed.
 void refuse_beside_peers(const CLI::App& command) {
   constexpr std::array allowed{"--peers",  "--backend", "--frames",     "--warm-up",      "--no-render",
                                "--passes", "--json",    "--save-state", "--measure-every"};
@@ -113,7 +113,7 @@ void refuse_beside_peers(const CLI::App& command) {
   }
 }
 
-/// Runs the peers' setting instead of the options' own.
+/// Runs the conditions of data/peers.csv instead of those in `options`, and prints the comparison.
 base::Json run_peers(FrameOptions options) {
   const auto peers = measure::read_peers(base::find_input("data/peers.csv"));
   options.scene = peers_scene;
@@ -123,7 +123,7 @@ base::Json run_peers(FrameOptions options) {
   options.no_render = true;
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   base::Json result = run_frames(options);
-  // The program does not know the name of a GPU.
+  // Unknown for a GPU, whose name the program cannot read.
   const std::string machine = result["backend"] == "cpu" ? base::describe_machine() : "";
   const measure::OurRow ours = measure::our_row(result, peers_dt_s, scene.solver_iterations, machine);
   print_frame(result);
@@ -134,7 +134,7 @@ base::Json run_peers(FrameOptions options) {
   return result;
 }
 
-/// --setting fixes all numbers of the solver.
+/// Refuses options that change numbers of the solver, because --setting fixes them all.
 void refuse_beside_setting(const CLI::App& command) {
   constexpr std::array allowed{"scene",     "--setting",   "--backend", "--frames",
                                "--warm-up", "--no-render", "--passes",  "--look",
@@ -158,7 +158,7 @@ void take_setting(FrameOptions& options) {
   if (const auto tau = options.fluid.temporal.fixed_tau) options.tau = "fixed:" + base::shortest(*tau);
 }
 
-/// Runs and prints the requested frames.
+/// Runs the requested frames, prints the results and returns them.
 base::Json run(const FrameOptions& options) {
   if (options.peers) return run_peers(options);
   base::Json result = run_frames(options);

@@ -1,4 +1,4 @@
-/// vip-bench growth: growth of a substep's time with the number of particles.
+/// vip-bench growth: how the milliseconds of a substep grow with the number of particles.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -74,11 +74,11 @@ measure::GrowthRow run_size(const sim::Scene& scene, const measure::CellSize& si
   return out;
 }
 
-/// Checks the sizes before the work, not after it.
+/// Checks before any run that there are at least two sizes, which the exponent needs.
 void check_sizes(const std::string& words, const std::vector<measure::CellSize>& sizes) {
   const auto other = [&](const measure::CellSize& size) { return size.n_star != sizes.front().n_star; };
   if (std::any_of(sizes.begin(), sizes.end(), other)) return;
-  throw base::Error("--n-star " + words, "names one size; an exponent needs two",
+  throw base::Error("--n-star " + words, "names one size; the exponent of growth needs two",
                     "write two or more, such as 4k,8k,16k");
 }
 

@@ -37,13 +37,13 @@ struct HeadsetBenchOptions {
   bool passes = false;
 };
 
-/// Milliseconds of each frame; every stage ends when the device is idle.
+/// Milliseconds of each stage, by frame. A stage ends when the GPU is idle.
 struct Stages {
   std::vector<double> step, draw, hand_over, whole;
   measure::PassTable passes = {};
 };
 
-/// Steps and draws a live fluid for both eyes in every slot, one stage after another.
+/// Steps a live fluid and draws it for both eyes in every frame slot, one stage after another.
 class HeadsetBench {
  public:
   explicit HeadsetBench(const HeadsetBenchOptions& options)

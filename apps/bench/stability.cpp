@@ -1,4 +1,4 @@
-/// vip-bench stability: safety margin of the hard cases.
+/// vip-bench stability: how far the numbers of each hard case can change before the case fails.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -26,13 +26,14 @@ using sim::cases::Setting;
 
 struct StabilityOptions {
   std::string cases = "all", methods = "all", backend = "auto";
-  std::string effects;  ///< scene file whose effects the cases' water has
+  std::string effects;  ///< scene file whose effects act on the water of all cases; empty: no effects
   std::string csv, markdown, svg;
   double most = 4, resolution = 1.5;
   bool quick = false, full = false;
 };
 
-/// One case under one method: a run at its own numbers and a search per knob.
+/// One case with one method: a run at the case's usual numbers, and a search for the limit of each knob
+/// (frame step, iterations, or the quantity that the case scales).
 struct Job {
   const HardCase* hard_case;
   Setting setting;
@@ -63,7 +64,7 @@ std::vector<sim::MethodKind> methods_of(const std::string& words) {
   return out;
 }
 
-/// The failed findings of a case; empty if it passed.
+/// The failed findings of a case as text; empty if the case passed.
 std::string failure(const Outcome& outcome) {
   if (outcome.passes()) return "";
   Outcome failed{.findings = {}, .stopped = outcome.stopped};
@@ -73,13 +74,15 @@ std::string failure(const Outcome& outcome) {
   return text.starts_with("; ") ? text.substr(2) : text;
 }
 
-/// With effects, water comes to rest elsewhere and at other speeds, so only stability counts.
+/// Runs a case. With effects only stability is judged, because effects change the rest positions and the
+/// speeds of the water.
 Outcome run(const HardCase& hard_case, const Setting& setting) {
   const Outcome outcome = hard_case.run(setting);
   return setting.effects.empty() ? outcome : of_stability(outcome);
 }
 
-/// A number that the program refuses counts as a failure.
+/// Runs a case; the failed findings as text, empty if the case passed. A setting that the program refuses
+/// counts as failed.
 std::string failure(const HardCase& hard_case, const Setting& setting) {
   try {
     return failure(run(hard_case, setting));
@@ -115,10 +118,10 @@ void turn(const Job& job, const StabilityOptions& options, measure::MapCell& cel
   cell.failed = limit.failed;
 }
 
-/// Calls `step` after each part of the work.
+/// Fills job.cells. Calls `step` after the run at the usual numbers and after each knob.
 void measure(Job& job, const StabilityOptions& options, const std::function<void()>& step) {
   const HardCase& one = *job.hard_case;
-  // A failure of the back end throws here as an error.
+  // This run is not caught: if the back end fails, its error ends the command.
   const std::string at_its_own = failure(run(one, job.setting));
   step();
   for (const measure::Knob knob : measure::all_knobs) {
@@ -141,7 +144,8 @@ void measure(Job& job, const StabilityOptions& options, const std::function<void
   }
 }
 
-/// On the CPU, cases run in parallel, one thread each: results do not depend on the number of threads.
+/// Measures all jobs; on the CPU in parallel, one thread per job. Results do not depend on the number of
+/// threads.
 void measure_all(std::vector<Job>& jobs, const StabilityOptions& options, sim::Backend backend) {
   base::Progress progress("cases", jobs.size() * steps_of_a_job);
   std::size_t done = 0;
@@ -171,7 +175,7 @@ std::vector<sim::Effect> effects_of(const std::string& path) {
   return effects;
 }
 
-/// "cohesion tension_n_m = 1000"
+/// One text per effect, such as "cohesion tension_n_m = 1000".
 std::vector<std::string> in_words(const std::vector<sim::Effect>& effects) {
   std::vector<std::string> out;
   for (const auto& effect : effects) {
@@ -214,7 +218,7 @@ void run_stability(StabilityOptions options) {
   if (options.quick) options.most = options.resolution = 2;
   if (options.resolution > options.most) {
     throw base::Error("--resolution " + figures::shortest(options.resolution),
-                      "is coarser than all that is tried",
+                      "is larger than every factor that the search tries",
                       "use at most --most, which is " + figures::shortest(options.most));
   }
   check_apart("", {{"--csv", options.csv}, {"--markdown", options.markdown}, {"--svg", options.svg}});

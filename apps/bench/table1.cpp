@@ -1,4 +1,4 @@
-/// vip-bench table1: the paper's Table 1 on this machine.
+/// vip-bench table1: the paper's Table 1, measured on this machine.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -21,7 +21,7 @@ namespace apps {
 
 namespace {
 
-/// Options as typed.
+/// Options with the words from the command line.
 struct Table1Words : measure::Table1Options {
   std::string checkpoints_word = "all";
 };
@@ -47,8 +47,8 @@ std::string started(const std::vector<measure::StartQuality>& starts, const std:
 struct Table1 {
   std::vector<measure::ScoreBlock> blocks;
   std::string notes;
-  std::string then_path;                         ///< file of an earlier run; empty = none
-  std::optional<measure::CellScores> then = {};  ///< scores of its pictures
+  std::string then_path;                         ///< file of an earlier run for comparison; empty = none
+  std::optional<measure::CellScores> then = {};  ///< scores in the file `then_path`
 
   std::string text() const {
     const std::string change = then ? "now - " + then_path + ":\n\n" +
@@ -59,7 +59,7 @@ struct Table1 {
   }
 };
 
-/// rows.csv -> rows_WORD.csv
+/// Path of a further table next to `csv`: "rows.csv" gives "rows_WORD.csv".
 std::filesystem::path beside(const std::filesystem::path& csv, const std::string& word) {
   return csv.parent_path() / (csv.stem().string() + "_" + word + csv.extension().string());
 }
@@ -87,12 +87,12 @@ void write_outputs(const measure::Table1Options& options, const Table1& table) {
   }
 }
 
-/// The scenes and sizes, checked against the options before the first run.
+/// All scenes and sizes of the table. plan_of() checks them before the first run.
 struct Plan {
   std::vector<sim::CellScene> scenes;
   std::vector<measure::CellSize> sizes;
   std::vector<sim::Preset> presets;
-  std::vector<measure::ScoreBlock> blocks;  ///< without values
+  std::vector<measure::ScoreBlock> blocks;  ///< the blocks of the table, still without scores
   std::size_t runs = 0;
 };
 
@@ -116,8 +116,8 @@ Plan plan_of(const measure::Table1Options& options) {
   return out;
 }
 
-/// Writes the files after each scene and size, and before its film, so that an interrupted run leaves its
-/// results.
+/// Writes the output files after the pictures of each scene and size, and again after its film, so that an
+/// interrupted run has stored its results.
 void run_table1(const measure::Table1Options& options) {
   check_apart("", {{"--csv", options.csv},
                    {"--markdown", options.markdown},

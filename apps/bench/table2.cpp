@@ -1,4 +1,4 @@
-/// vip-bench table2: the paper's Table 2 on this machine.
+/// vip-bench table2: the paper's Table 2, measured on this machine.
 
 #include <epoxy/gl.h>
 
@@ -36,17 +36,19 @@ constexpr base::PictureSize picture_size{1280, 720};
 struct Table2Options : measure::TableOptions {
   int frames = 300;
   int warm_up = 60;
-  std::string methods = "all";  ///< or names separated by commas
-  std::string ptpe;             ///< fitted.toml; empty: the paper's model
+  std::string methods = "all";  ///< "all", or names separated by commas
+  std::string ptpe;             ///< file of a fitted PTPE model; empty: the paper's model
   stats::PtpeModel model;
 };
 
-/// One value per frame of one cell, without warm-up. Parts come from another run of the same frames.
+/// Times of one cell, one value per frame without warm-up. saliency_ms, levels_ms, activation_ms and solve_ms
+/// come from a second run of the same frames.
 struct CellRun {
   std::vector<double> particles, step_ms, render_ms, frame_ms;
   std::vector<double> saliency_ms, levels_ms, activation_ms, solve_ms;
-  double seen_ms = 0;  ///< mean time to pass the picture to saliency: in step_ms, not in frame_ms
-  std::vector<double> followed_ms;  ///< frame times that tau followed, including warm-up
+  /// Mean time of passing the picture to saliency; contained in step_ms, but not in frame_ms.
+  double seen_ms = 0;
+  std::vector<double> followed_ms;  ///< frame times from which tau was computed, including warm-up
   sim::PictureWay seen_way = sim::PictureWay::None;
 };
 
@@ -62,7 +64,7 @@ Moments moments_of(const std::vector<double>& values) {
   return out;
 }
 
-/// Measures wall times. Within a step, only the method itself waits for the device.
+/// Measures the wall times of all frames. Within a step only the method itself waits for the device.
 CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& choice,
                     const Table2Options& options) {
   const auto made = sim::make_simulation(scene.scene, choice);
@@ -95,8 +97,9 @@ CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& c
   return run;
 }
 
-/// Runs the same frames again, with a clock that waits between parts. A measured tau follows the frame times
-/// of the first run, so that the clock does not change what is solved.
+/// Runs the same frames again and waits for the device after each part, to time the parts. A measured
+/// tau is computed from the frame times of the first run, so that waiting does not change which particles are
+/// solved.
 void time_parts(const sim::CellScene& scene, sim::SimulationOptions choice, const Table2Options& options,
                 CellRun& run) {
   choice.time_parts = true;
@@ -106,7 +109,7 @@ void time_parts(const sim::CellScene& scene, sim::SimulationOptions choice, cons
   for (int frame = 1; frame <= options.frames; ++frame) {
     eye.look(fluid, sim::gaze_point(scene.scene, frame));
     fluid.step_frame();
-    // Otherwise GL's pending drawing would count as saliency of the next frame.
+    // Draws now, because pending drawing would be timed as saliency of the next frame.
     if (fluid.follows_picture()) eye.draw(fluid);
     glFinish();
     fluid.frame_time(run.followed_ms[static_cast<std::size_t>(frame - 1)]);
@@ -151,7 +154,8 @@ std::vector<std::string> row_of(const sim::CellScene& scene, const measure::Cell
           figures::number(hires_ms / step_ms, 3)};
 }
 
-/// HiRes always runs, because the others are compared with it.
+/// True if `words` names the method. Always true for HiRes, because the other methods are compared with
+/// HiRes.
 bool wanted(sim::MethodKind method, const std::string& words) {
   if (words == "all" || method == sim::MethodKind::HiRes) return true;
   bool found = false;
@@ -173,12 +177,13 @@ constexpr const char* table2_columns_help =
     "of a second run of the same frames under a clock that waits for the device between them: they may add\n"
     "up to more than a step.";
 
-/// A row: a method and the source of its tau.
+/// A row of the table: a method and the source of its tau.
 struct RowPlan {
   sim::MethodKind method;
   std::string tau;
 };
-/// If tau is given, each accelerated method gets a second row that follows the measured frame rate.
+/// The rows of the table. If --tau is not "live", each accelerated method gets a second row, in which tau
+/// follows the measured frame rate.
 std::vector<RowPlan> rows_of(const Table2Options& options) {
   std::vector<RowPlan> out;
   for (const auto& traits : sim::all_methods()) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Options that both tables share.
+/// Options that vip-bench table1 and table2 share.
 
 #include <string>
 

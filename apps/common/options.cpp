@@ -20,7 +20,8 @@ std::optional<Number> signed_number(std::string_view text) {
   return base::parse_number<Number>(text);
 }
 
-/// Rewrites the digits without leading zeros, "10" for "010".
+/// Checks a whole number and rewrites it without leading zeros: "10" for "010". Returns the problem, or an
+/// empty text.
 template <class Whole>
 std::string check_whole(std::string& text) {
   const auto value = signed_number<Whole>(text);

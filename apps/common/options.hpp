@@ -1,6 +1,6 @@
 #pragma once
-/// Options that several commands share, and checks of options: values that a file or a screen cannot hold are
-/// errors and are never clamped, cut or passed on.
+/// Options that several commands share, and checks of option values. A value that a file or a screen cannot
+/// represent is an error; it is never clamped or cut.
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -19,7 +19,7 @@ CLI::Option* add_database(CLI::App& command, std::string& database);
 
 /// Adds the database of vip-stats, as a positional argument or as --db; the command must call check_given().
 void add_database_argument(CLI::App& command, std::string& database);
-/// Adds --incomplete, which all commands that read a study have (study::StudyFile).
+/// Adds --incomplete, an option of all commands that read a study (study::StudyFile).
 void add_incomplete(CLI::App& command, bool& incomplete);
 /// Throws CLI::RequiredError if add_database_argument() got no database.
 void check_given(const std::string& database);
@@ -27,40 +27,41 @@ void check_given(const std::string& database);
 /// Adds --plan FILE of vip-stats; its help lists the content of a plan.
 CLI::Option* add_plan(CLI::App& command, std::string& plan);
 
-/// --method NAME, --n-star NUMBER and --backend NAME of commands that run one fluid, each with its default.
+/// Adds --method NAME, --n-star NUMBER or --backend NAME to a command that runs one fluid. The present value
+/// of the argument is the default.
 CLI::Option* add_method(CLI::App& command, std::string& method);
 CLI::Option* add_n_star(CLI::App& command, std::string& n_star);
 CLI::Option* add_backend(CLI::App& command, std::string& backend);
-/// --backend of vip-study, which checks the name.
+/// --backend of vip-study; refuses an unknown name.
 CLI::Option* add_backend(CLI::App& command, std::string& backend, const char* what);
 
-/// --size WIDTHxHEIGHT (parse_picture_size) with its default, or empty by default.
+/// --size WIDTHxHEIGHT (parse_picture_size). The value of `size` is the default; an empty `size` has none.
 CLI::Option* add_size(CLI::App& command, base::PictureSize& size, const char* what);
 CLI::Option* add_size(CLI::App& command, std::optional<base::PictureSize>& size, const char* what);
 
-/// --screen-width-mm and --viewing-distance-mm.
+/// Adds --screen-width-mm and --viewing-distance-mm.
 std::array<CLI::Option*, 2> add_viewing(CLI::App& command, std::optional<double>& screen_width_mm,
                                         std::optional<double>& viewing_distance_mm,
                                         const char* width_of_what);
 
-/// Adds a CLI::Range check and the default to the help of a whole number.
+/// Adds an option for a whole number from low to high; the help shows the range and the default.
 CLI::Option* add_count(CLI::App& command, const char* name, int& value, int low, int high, const char* what);
 
-/// Accepts finite numbers from low to high (CLI::Range lets NaN through).
+/// Accepts finite numbers from low to high. Unlike CLI::Range, it refuses NaN.
 CLI::Validator number_in(double low, double high);
 
 /// Accepts texts of at most this many bytes.
 CLI::Validator text_up_to(std::size_t most_bytes);
 
-/// Throws base::Error if the file cannot be written (base::check_output): before an hour of work, not after
-/// it.
+/// Throws base::Error if the file cannot be written (base::check_output), when the command line is parsed:
+/// before the work and not after it.
 CLI::Validator output_file();
 
-/// The same for files in a folder (base::check_output_folder).
+/// As output_file(), for files in a folder (base::check_output_folder).
 CLI::Validator output_folder();
 
-/// `outputs`: path by option; an empty path is skipped. base::Error if one would overwrite the database or
-/// another output.
+/// base::Error if an output would overwrite the database or another output. `outputs`: path by option; an
+/// empty path is skipped.
 void check_apart(const std::filesystem::path& database, const std::map<std::string, std::string>& outputs);
 
 /// Throws CLI::ValidationError naming the first argument that is not one plain line of UTF-8
@@ -68,8 +69,8 @@ void check_apart(const std::filesystem::path& database, const std::map<std::stri
 void check_arguments(int argc, const char* const* argv);
 
 /// Adds a check, before all others, to each numeric option of `app` and its commands: a whole number must be
-/// digits that fit in 64 bits, any other number must be finite. CLI11 itself clamps to the nearest number and
-/// reads 010 as eight.
+/// digits that fit in 64 bits, any other number must be finite. Without this check, CLI11 clamps to the
+/// nearest number and reads 010 as eight.
 void check_numbers(CLI::App& app);
 
 }  // namespace apps

@@ -19,15 +19,15 @@ namespace apps {
 
 namespace {
 
-/// OpenMP threads that spin while they wait starve the other threads of a small machine, including the
-/// pacing. The runtime reads its settings once, before main(), so the program restarts with them set.
-/// Settings of the user are not changed.
+/// Makes waiting OpenMP threads sleep instead of spin. On a small machine, spinning threads delay the other
+/// threads, including the pacing. The OpenMP runtime reads its settings once, before main(), so the program
+/// sets them and restarts. Settings of the user are not changed.
 void wait_passively(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   std::error_code ignored;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
   if (program.empty() || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
-  execv(program.c_str(), argv);  // returns only when it failed; the program then runs as it is
+  execv(program.c_str(), argv);  // returns only if it fails; the program then continues without the setting
 }
 
 /// Text of --version: the version and the build options.
@@ -41,7 +41,7 @@ int run_commands(CLI::App& app, int argc, char** argv) {
   try {
     check_arguments(argc, argv);
     app.parse(argc, argv);
-  } catch (const CLI::RuntimeError& ended) {  // a command's own exit status
+  } catch (const CLI::RuntimeError& ended) {  // the exit status that a command chose
     return ended.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
@@ -85,8 +85,8 @@ int run_program(CLI::App& app, int argc, char** argv) {
     return base::for_terminal(CLI::FailureMessage::simple(failed, error)) + "\n";
   });
   check_numbers(app);
-  // With these ignored, a file-size limit or a pipe without a reader is an error of the write and does not
-  // end the process.
+  // With these signals ignored, a file-size limit or a pipe without a reader makes the write fail and does
+  // not end the process.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {

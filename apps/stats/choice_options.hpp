@@ -1,5 +1,5 @@
 #pragma once
-/// Options shared by all commands: which protocols and questions to analyse, and at which level.
+/// Options shared by all commands: the protocols and questions to analyse, and the level of a pilot's curve.
 
 #include <CLI/CLI.hpp>
 
@@ -11,9 +11,9 @@
 namespace apps {
 
 struct ChoiceOptions {
-  std::string protocol;  ///< name, with or without version, or leading digits of the SHA-256; empty: all
-  std::string question;  ///< its id; empty: all
-  std::optional<double> level;  ///< empty: see level_of()
+  std::string protocol;         ///< name with or without version, or first digits of the SHA-256; empty: all
+  std::string question;         ///< id of the question; empty: all questions
+  std::optional<double> level;  ///< level of the fitted curve; empty: see level_of()
 
   study::TaskSelection selection(study::TaskKind task, const stats::AnalysisPlan& plan) const {
     return {task, protocol, plan, question, level};

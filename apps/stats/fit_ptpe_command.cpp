@@ -1,4 +1,4 @@
-/// vip-stats fit-ptpe: from the ratings of a pilot to the solver's file.
+/// vip-stats fit-ptpe: fits the ratings of a pilot and writes the solver's file.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -32,19 +32,20 @@ namespace {
 
 struct FitCommand {
   std::string database, out, json, svg, truth, plan;
-  std::optional<std::string> exclude;  ///< instead of the plan's rule for timing verdicts
-  std::optional<std::uint64_t> seed;   ///< instead of the plan's
-  double max_width = 0.35;  ///< largest half width of the curve's band for the solver, as a share of mu
+  std::optional<std::string> exclude;  ///< replaces the plan's rule for timing verdicts
+  std::optional<std::uint64_t> seed;   ///< replaces the plan's seed
+  /// Largest half width of the curve's band with which the solver's file is written, as a part of mu.
+  double max_width = 0.35;
   bool force = false;
   bool accept_form = false;
   bool incomplete = false;
-  std::string lacking;  ///< what an incomplete database lacks
+  std::string lacking;  ///< description of what an incomplete database lacks; empty: complete
   ChoiceOptions choice;
-  stats::AnalysisPlan rules;  ///< the plan in force
+  stats::AnalysisPlan rules;  ///< the analysis plan, of --plan or the default
   stats::BootstrapOptions bootstrap;
 
   bool too_wide(const study::PilotFit& fit) const { return !(fit.relative_half_width() <= max_width); }
-  /// True if there are doubts that --force overrules, that is, all except that about the form.
+  /// True if the fit has any doubt that --force overrules: any doubt except form_rejected.
   bool doubted(const study::PilotFit& fit) const {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code != stats::form_rejected; });
@@ -53,7 +54,7 @@ struct FitCommand {
     return std::any_of(fit.doubts.begin(), fit.doubts.end(),
                        [](const auto& doubt) { return doubt.code == stats::form_rejected; });
   }
-  /// True if something prevents the solver's file and was not overruled.
+  /// True if a problem prevents the solver's file and no option overrules this problem.
   bool barred(const study::PilotFit& fit) const {
     return (!force && (too_wide(fit) || doubted(fit))) || (!accept_form && other_form(fit));
   }
@@ -68,7 +69,8 @@ void write_json(const FitCommand& command, base::Json json) {
   if (!command.json.empty()) base::write_file_atomically(command.json, json.dump(2) + "\n");
 }
 
-/// `what`: as "own pilot 1.0, question "smooth""; empty if none was chosen.
+/// Throws the error of a fit that failed. `what`: name of the fit, such as "own pilot 1.0, question
+/// "smooth""; empty if none was chosen.
 [[noreturn]] void no_fit(const FitCommand& command, const std::string& what, const std::string& reason,
                          const std::string& mend) {
   throw base::Error(command.database,
@@ -81,7 +83,7 @@ std::string fitted_name(const study::ChosenTask& chosen) {
   return chosen.protocol.name + " " + chosen.protocol.version + ", question \"" + chosen.question.id + "\"";
 }
 
-/// Writes fit.json and prints the fit; with a truth also whether it was recovered.
+/// Writes the fit as JSON and prints it. With a truth, also reports whether the fit recovered the truth.
 void report(const FitCommand& command, const study::PilotFit& fit,
             const std::optional<stats::PtpeModel>& truth) {
   auto json = study::fit_json(fit);
@@ -100,8 +102,8 @@ void report(const FitCommand& command, const study::PilotFit& fit,
   if (recovery) std::printf("%s", study::format_recovery(fit, *recovery).c_str());
 }
 
-/// Refuses a curve that the ratings do not support or that is too uncertain, since it would not be a real
-/// calibration.
+/// Refuses to write the solver's file for a curve that is too uncertain or that the ratings do not support,
+/// because such a curve is no calibration.
 void refuse_for_solver(const FitCommand& command, const study::PilotFit& fit) {
   if (!command.barred(fit)) return;
   const bool wide = command.too_wide(fit) && !command.force;
@@ -113,7 +115,7 @@ void refuse_for_solver(const FitCommand& command, const study::PilotFit& fit) {
   }
   if (wide) {
     reasons += fmt::format(
-        "{}the interval is too wide for a calibration: mu(delta) is open by up to +-{:.0f} %, the limit is "
+        "{}the interval is too wide for a calibration: mu(delta) is uncertain by up to +-{:.0f} %, the limit is "
         "+-{:.0f} %",
         reasons.empty() ? "" : "; ", 100 * fit.relative_half_width(), 100 * command.max_width);
   }
@@ -125,8 +127,8 @@ void refuse_for_solver(const FitCommand& command, const study::PilotFit& fit) {
   throw base::Error(command.database, reasons, mend + "; no configuration and no figure were written");
 }
 
-/// Writes the record before the file, so that a calibration in force is always in the record. Locked, so that
-/// of two fits neither loses the other's line, and the file in force is the last in the record.
+/// Writes the record before the solver's file, so that every solver's file is in the record. The lock keeps
+/// the lines of two simultaneous fits; the last line then belongs to the current file.
 void hand_to_solver(const FitCommand& command, const study::PilotFit& fit) {
   const base::FileLock lock(command.out);
   const auto text = sim::format_ptpe_file(study::ptpe_file(fit));
@@ -154,7 +156,7 @@ void hand_to_solver(const FitCommand& command, const study::PilotFit& fit) {
   base::write_file_atomically(command.out, text);
 }
 
-/// Advice for a fit that failed.
+/// The remedy in the error of a fit that failed.
 std::string mend_of(const study::PilotFit& fit) {
   if (!fit.level_within_scale()) return study::mend_of_level(fit.data.question);
   return "collect more answers, or choose another --level";
@@ -180,7 +182,7 @@ void fit_one(const FitCommand& command, const study::TaskStudy& study, const stu
   if (!command.out.empty()) hand_to_solver(command, fit);
 }
 
-/// With output files only one fit is allowed. Without them every protocol and question is fitted separately.
+/// The protocols and questions to fit, each separately. With output files only one fit is allowed.
 stats::Result<std::vector<study::ChosenTask>> chosen_pilots(const FitCommand& command,
                                                             const study::TaskStudy& study) {
   const auto selection = command.choice.selection(study::TaskKind::Pilot, command.rules);
@@ -211,7 +213,7 @@ void fit_ptpe(FitCommand& command) {
     no_fit(command, "", chosen.reason(),
            study::mend_of_choice(study, command.choice.selection(study::TaskKind::Pilot, command.rules)));
   }
-  std::optional<base::Error> failure;  // of one fit; the others are still made
+  std::optional<base::Error> failure;  // the first fit that failed; the other fits are still made
   for (const study::ChosenTask& one : *chosen) {
     if (chosen->size() > 1) std::printf("%s:\n", fitted_name(one).c_str());
     try {

@@ -17,7 +17,7 @@ namespace apps {
 
 namespace {
 
-/// An interval of frame rates.
+/// An interval of frame rates as text.
 std::string rates(const std::array<double, 2>& ci, int decimals) {
   if (ci[1] > study::highest_rate) return fmt::format("[{:.{}f}, no upper bound]", ci[0], decimals);
   return fmt::format("[{:.{}f}, {:.{}f}]", ci[0], decimals, ci[1], decimals);
@@ -28,7 +28,7 @@ std::string slopes(const std::array<double, 2>& ci) {
   return fmt::format("[{:.{}f}, {:.{}f}]", ci[0], decimals, ci[1], decimals);
 }
 
-/// One line: a, b and their intervals, or the reason why there are none.
+/// Prints one line: a, b and their intervals, or the reason why there is no estimate.
 void print_estimate(double level, const char* name, const std::string& reason, double a, double b,
                     const std::array<double, 2>* a_ci, const std::array<double, 2>* b_ci) {
   std::printf("  level %-4.3g %-26s ", level, name);
@@ -51,7 +51,7 @@ void print_contour(double level, const char* name, const stats::PilotEstimate& c
                  &contour.spread->b_ci);
 }
 
-/// " mu(0) = 23.1 [22.0, 24.3], mu(5) = ...".
+/// Prints " mu(0) = 23.1 [22.0, 24.3], mu(5) = ...": the curve at each of `deltas`, with intervals.
 template <class Curve>
 void print_points(const std::vector<double>& deltas, const Curve& curve) {
   for (const double delta : deltas) {
@@ -62,7 +62,8 @@ void print_points(const std::vector<double>& deltas, const Curve& curve) {
   std::printf("\n");
 }
 
-/// Prints the curve at the deviations shown, the form test, and the lack-of-fit test.
+/// Prints the curve at the standard deviations of the shown frame rates, the test of its form, and the
+/// lack-of-fit test.
 void print_curve(const study::PilotFit& fit) {
   const auto& direct = fit.chosen().direct;
   if (!direct.jackknife) return;

@@ -1,4 +1,4 @@
-/// vip-stats: analyses a database into figures, decisions and the solver's file.
+/// vip-stats: analyses a database; writes results, verdicts on hypotheses and the solver's file.
 
 #include "apps/common/program.hpp"
 #include "apps/stats/commands.hpp"

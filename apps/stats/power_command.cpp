@@ -1,4 +1,4 @@
-/// vip-stats power: the power of a study of n participants, by simulation on its protocol's own plan.
+/// vip-stats power: the power of a study with n participants, from simulated studies of its protocol.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -81,7 +81,8 @@ void complete(PowerCommand& command, const CLI::App& options) {
   check_kind(request, kind, options);
   request.n =
       command.n.empty() ? std::vector{request.protocol.participants} : study::parse_participants(command.n);
-  // Numbers of studies that take about half a minute on two cores, for any count of numbers of participants.
+  // Default numbers of simulated studies. They take about half a minute on two cores, however many numbers of
+  // participants are requested.
   const bool many = request.n.size() > 12;
   const int usual_studies = many ? 1000 : 2000, usual_pilots = many ? 200 : 400;
   request.studies = command.studies > 0               ? command.studies
@@ -96,22 +97,24 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    if (kind == study::PowerKind::Task2) std::erase(request.worlds, "margin");          // the same as null
-    if (!request.protocol.design.effects.empty()) std::erase(request.worlds, "paper");  // has no effects
+    if (kind == study::PowerKind::Task2) std::erase(request.worlds, "margin");  // equals "null" in Task 2
+    if (!request.protocol.design.effects.empty())
+      std::erase(request.worlds, "paper");  // the paper varies no effects
     return;
   }
   std::vector<std::string> unique;
   for (const auto& one : request.worlds) {
     if (std::find(unique.begin(), unique.end(), one) == unique.end()) unique.push_back(one);
   }
-  // If an effect was given, its world is added.
+  // --effect or --difference adds the world "effect".
   if ((request.effect || request.difference) &&
       std::find(unique.begin(), unique.end(), "effect") == unique.end())
     unique.insert(unique.begin(), "effect");
   request.worlds = unique;
 }
 
-/// Writes all files or none: every text is made before the first is written.
+/// Makes the texts of all files before it writes the first file, so that an error in making a text leaves no
+/// file.
 void write_files(const PowerCommand& command, const study::Json& json) {
   const std::string text = command.json.empty() ? "" : json.dump(2) + "\n";
   const std::string table = command.csv.empty() ? "" : study::power_csv(json);
@@ -172,7 +175,7 @@ void merge(PowerCommand& command, const CLI::App& options) {
   write_and_print(command, study::join_shards(command.request, command.shards));
 }
 
-/// Options of the calculation and its files, shared with `merge`.
+/// Adds the options of the calculation and of its output files, which `power` and `power merge` share.
 void add_request_options(CLI::App& sub, PowerCommand& command) {
   study::PowerRequest& request = command.request;
   sub.add_option("protocol", command.protocol,

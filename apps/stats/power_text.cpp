@@ -10,7 +10,7 @@ namespace apps {
 
 namespace {
 
-/// Most numbers of participants that are printed; the files hold all.
+/// Largest count of numbers of participants that are printed; the output files contain all.
 constexpr std::size_t printed_columns = 6;
 
 std::vector<std::size_t> columns_to_print(const study::Json& json) {
@@ -58,7 +58,8 @@ void print_hypothesis(const study::Json& hypothesis, const study::Json& settings
                 hypothesis.at("n_for_power").get<int>());
 }
 
-/// Single tests, corrected and uncorrected, if only one number of participants was requested.
+/// Prints the power of each single test, corrected and uncorrected. Only for a request with one number of
+/// participants.
 void print_tests(const study::Json& hypothesis) {
   for (const auto& test : hypothesis.at("tests")) {
     const study::Json& at = test.at("curve").at(0);

@@ -5,7 +5,7 @@
 
 namespace apps {
 
-/// Prints the calculation's head, and its figures at up to six numbers of participants, on stdout.
+/// Prints the request and the results for up to six numbers of participants on stdout.
 void print_power(const study::PowerRequest& request, const study::Json& json);
 
 }  // namespace apps

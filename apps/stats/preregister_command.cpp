@@ -1,4 +1,5 @@
-/// vip-stats preregister: protocol, hypotheses, rules and seed under one hash, before the data.
+/// vip-stats preregister: writes protocol, hypotheses, rules and seed under one hash before the data are
+/// collected.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,4 +1,4 @@
-/// vip-stats report: a study's results as one page, with the same numbers as JSON and CSV.
+/// vip-stats report: writes a study's results as one HTML page, and the same numbers as JSON and CSV.
 
 #include <CLI/CLI.hpp>
 #include <array>

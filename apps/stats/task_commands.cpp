@@ -1,4 +1,4 @@
-/// vip-stats task1, task2: tables, tests and verdicts.
+/// vip-stats task1 and task2: print tables, tests and verdicts of a task.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -49,12 +49,13 @@ std::string interval_text(const study::Json& ci) {
   return "[" + number_text(ci[0], digits) + ", " + number_text(ci[1], digits) + "]";
 }
 
-/// "95 % interval".
+/// Heading of the column of intervals, such as "95 % interval".
 std::string interval_head(const study::Json& json) {
   return fmt::format("{:g} % interval", 100 * json.at("plan").at("confidence").get<double>());
 }
 
-/// The length of the longest name, at least `least`; a method's name may include a level of effects.
+/// The length of the longest name, at least `least`. Names are not of fixed length, as a method's name may
+/// include a level of effects.
 template <class Name>
 int width_of(const study::Json& list, int least, const Name& name) {
   for (const auto& one : list) least = std::max(least, static_cast<int>(name(one).size()));
@@ -78,14 +79,15 @@ void print_cells(const study::Json& task, const std::string& interval) {
 
 std::string pair_name(const study::Json& pair) { return word(pair.at("a")) + " over " + word(pair.at("b")); }
 
-/// A pair's test in one word; the rules below name it in full.
+/// Short name of a pair's test for the table. The printed rules below the table give the full name.
 const char* test_word(const study::Json& pair) {
   return pair.contains("by_person") ? "shares" : pair.at("test").is_null() ? "-" : "binomial";
 }
 
-/// Prints the kinds of the pairs' intervals, with the pairs' names if the kinds differ.
+/// Prints the names of the kinds of confidence intervals. If the pairs have different kinds, prints the pairs
+/// of each kind too.
 void print_interval_names(const study::Json& pairs) {
-  std::vector<std::pair<std::string, std::string>> names;  // of intervals, of their pairs
+  std::vector<std::pair<std::string, std::string>> names;  // kind of interval, names of its pairs
   for (const auto& pair : pairs) {
     const bool people = pair.contains("by_person");
     if (!people && !pair.at("clopper_pearson").is_array()) continue;
@@ -152,8 +154,8 @@ void print_hypotheses(const study::Json& json) {
   }
 }
 
-/// Prints the protocol's name, since a database may hold several protocols of a task, each analysed by
-/// itself.
+/// Prints the protocol's name, because a database may contain several protocols of a task, which are analysed
+/// separately.
 void print_name(const study::Json& json) {
   const study::Json& protocol = json.at("study").at("protocols").at(0);
   std::printf("protocol %s %s, SHA-256 %.12s\n", word(protocol.at("name")).c_str(),
@@ -203,7 +205,7 @@ void run(const TaskCommand& command) {
   request.level = command.choice.level;
   request.incomplete = command.incomplete;
   if (!command.plan.empty()) request.plan = study::read_plan(command.plan);
-  // Opened before the data are read; without an output file nothing is registered.
+  // Opened before the data are read. Only output files are registered.
   std::optional<study::RegisteredFiles> files;
   if (!command.json.empty() || !command.csv.empty())
     files.emplace(study::StudyFile(command.database, command.incomplete));

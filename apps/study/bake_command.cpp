@@ -26,7 +26,7 @@ struct BakeCommand {
   int frames = 600;
   double content_step_s = 0;
   bool force = false;
-  // Only with a protocol:
+  // The options below apply only to --protocol.
   std::optional<base::PictureSize> size;
   std::string keep = "particles";
   std::optional<double> screen_width_mm, viewing_distance_mm;
@@ -109,7 +109,7 @@ void bake_all(const BakeCommand& command) {
   bake_protocol(protocol, request, [&] {
     if (StopSignals::stop_requested())
       throw base::Error(command.out, "stopped on request; bakes that are complete stay, no other was written",
-                        "run the same command again: it goes on from there");
+                        "run the same command again: it continues with the other bakes");
   });
 }
 

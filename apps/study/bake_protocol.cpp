@@ -19,12 +19,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Positions of 16 bits per axis, the largest that a frame can be.
+/// A stored particle has three coordinates of 16 bits, the largest format of a frame.
 constexpr std::uint64_t bytes_of_particle = 6;
 constexpr std::uint64_t bytes_of_temperature = 2;
-/// Position and radius.
+/// A stored foam particle has a position and a radius.
 constexpr std::uint64_t bytes_of_foam = 8;
-/// Pictures of the scenes take about 0.6 bytes per pixel.
+/// Upper bound; pictures of the scenes take about 0.6 bytes per pixel.
 constexpr std::uint64_t bytes_of_pixel = 1;
 
 struct Task {
@@ -32,7 +32,7 @@ struct Task {
   sim::BakeHeader header;
   fs::path out;
 
-  /// Relative cost of making this bake.
+  /// Cost of making this bake relative to other bakes: frames x particles.
   double weight() const {
     return static_cast<double>(header.frame_count) *
            static_cast<double>(sim::particle_count(sim::parse_method(header.method), header.n_star));
@@ -74,13 +74,13 @@ std::vector<std::string> all_departures(const sim::BakeHeader& found, const sim:
   return out;
 }
 
-/// The error's first line, without the remedy, which is applied here.
+/// The first line of the error: the problem without the remedy, which the program applies itself.
 std::string problem_of(const base::Error& error) {
   const std::string text = error.what();
   return text.substr(0, text.find('\n'));
 }
 
-/// Why the existing bake must be made again; empty if it is valid.
+/// The reason why an existing bake must be made again; empty if the bake is valid.
 std::string fault_of(const Task& task, const std::function<void()>& stop) {
   try {
     const sim::BakeReader bake(task.out);
@@ -89,12 +89,13 @@ std::string fault_of(const Task& task, const std::function<void()>& stop) {
     study::read_whole(bake, stop);
     return "";
   } catch (const base::Error& error) {
-    stop();  // a request to stop is not a fault of the bake
+    stop();  // throws if the user stopped the reading, which is no fault of the bake
     return problem_of(error);
   }
 }
 
-/// Tasks whose bake is missing or invalid; prints on stdout which bakes are kept or made again.
+/// The tasks whose bake is missing or invalid. Prints on stdout which bakes are kept and which are made
+/// again.
 std::vector<Task> left_to_make(std::vector<Task> tasks, const std::function<void()>& stop) {
   std::vector<Task> out;
   for (Task& task : tasks) {

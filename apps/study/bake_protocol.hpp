@@ -9,19 +9,20 @@
 namespace apps {
 
 struct ProtocolBakes {
-  std::string file;  ///< of the protocol
+  std::string file;  ///< path of the protocol file
   std::filesystem::path folder;
   study::SessionLook look;
-  bool pictures = false;  ///< store pictures too
+  bool pictures = false;  ///< true: also store pictures
 };
 
-/// Upper bound of a bake's size, bytes, from the particles and pixels of its header; ignores max_particles.
+/// Upper bound of a bake's size, bytes, from method, n_*, frames, foam and pixels in its header.
 std::uint64_t most_bytes(const sim::BakeHeader& header);
 
 /// Makes the bakes of plan_bakes() in `folder`, which is made if missing; prints on stdout which bakes it
-/// keeps, makes and leaves out. An existing bake is read completely and kept if it holds the wanted fluid and
-/// was made by this version and renderer. `stop` is called before each frame and may throw to end the work:
-/// complete bakes stay. base::Error: nothing can be baked, too little disk space, errors of write_bake().
+/// keeps, makes and leaves out. An existing bake is read completely and kept if it contains the wanted fluid
+/// and was made by this version and renderer. `stop` is called before each frame and may throw to stop
+/// baking; complete bakes remain. base::Error: nothing can be baked, too little disk space, errors of
+/// write_bake().
 void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& request,
                    const std::function<void()>& stop);
 

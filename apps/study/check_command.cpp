@@ -24,12 +24,13 @@ namespace apps {
 
 namespace {
 
-/// Up to this many frames in all settings, common refresh rates are checked without --compare.
+/// If all settings together have at most this many frames, the common refresh rates are checked even without
+/// --compare.
 constexpr std::int64_t most_compared = 8000;
 
 struct CheckOptions {
   std::string protocol;
-  double refresh_hz = 0;  ///< 0: not given
+  double refresh_hz = 0;  ///< refresh rate of the display, Hz; 0: not given
   std::string json;
   bool compare = false;
   bool measure = false;
@@ -38,7 +39,7 @@ struct CheckOptions {
   std::optional<double> screen_width_mm, viewing_distance_mm;
 };
 
-/// Checks scenes, methods, n_* and effects, which libstudy only passes on.
+/// Checks scenes, methods, n_* and effects, which the reader of protocols does not check against libsim.
 void check_stimuli(const study::Protocol& protocol, const std::string& file) {
   for (const auto& what : study::stimuli_of(protocol)) {
     try {
@@ -62,7 +63,7 @@ std::vector<study::RefreshCheck> check_common(const study::Protocol& protocol) {
   return checks;
 }
 
-/// Measures without cached times, on a display without a window.
+/// Measures all live cells on a headless display, without using cached times.
 study::MeasuredReport measure_here(const CheckOptions& options, const CheckReport& report,
                                    const study::Viewing& viewing) {
   const study::Protocol& protocol = report.protocol;
@@ -98,7 +99,7 @@ CheckReport make_report(const CheckOptions& options, const study::Protocol& prot
   return report;
 }
 
-/// Each scene once for each level of effects, with the level in its name.
+/// One copy of each scene for each level of effects, with the level in the scene's name.
 std::vector<study::FramedScene> with_levels(const study::Protocol& protocol,
                                             const std::vector<study::FramedScene>& scenes) {
   if (protocol.design.effects.empty()) return scenes;
@@ -115,7 +116,7 @@ std::vector<study::FramedScene> with_levels(const study::Protocol& protocol,
 
 void check_protocol(const CheckOptions& options) {
   if (options.measure && options.refresh_hz <= 0) {
-    throw base::Error("--measure", "needs the refresh of the display, which no method exceeds",
+    throw base::Error("--measure", "needs the refresh rate of the display, which limits the frame rates",
                       "add --refresh HZ");
   }
   const auto path = study::find_protocol(options.protocol);

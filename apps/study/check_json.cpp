@@ -26,7 +26,7 @@ base::Json setting_json(const study::CheckedSetting& checked, const study::Refre
   return json;
 }
 
-/// The level; null if the design does not vary effects.
+/// The level of effects; null if the design does not vary effects.
 base::Json effects_json(const study::StimulusSpec& what) {
   return what.effects.empty() ? base::Json() : base::Json(what.effects);
 }
@@ -97,7 +97,8 @@ void add_measured(base::Json& json, const study::MeasuredReport& measured) {
   }
 }
 
-/// The analyses that vip-stats will report besides the answers by cell.
+/// The analyses that vip-stats will report in addition to the answers by cell, and the tests that it will not
+/// report.
 base::Json analyses_json(const study::Protocol& protocol) {
   auto tested = base::Json::array(), fitted = tested, not_tested = tested;
   const auto shown = study::hypotheses_of(protocol, {});

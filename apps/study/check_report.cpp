@@ -18,7 +18,7 @@ namespace {
 
 using study::TimingSource;
 
-/// Why a setting is not exact, with the stimulus if each stimulus has its own setting.
+/// The reason why a setting is not exact. Names the stimulus too if each stimulus has its own setting.
 std::string remark_of(const CheckReport& report, std::size_t setting, const std::string& reason) {
   if (report.protocol.design.timing != TimingSource::Table2) return reason;
   const auto& cells = report.settings[setting].cells;
@@ -32,7 +32,8 @@ double longest_ms(const study::RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
 }
 
-/// Prints the analyses that vip-stats will report; it describes the answers of any protocol.
+/// Prints the tests and fits that vip-stats will report for this protocol. The answers by cell are not
+/// printed, because vip-stats reports them for every protocol.
 void print_analyses(const study::Protocol& protocol) {
   const auto shown = study::hypotheses_of(protocol, {});
   std::string ids;
@@ -45,7 +46,8 @@ void print_analyses(const study::Protocol& protocol) {
     std::printf("not tested: %s, as %s\n", id.c_str(), reason.c_str());
 }
 
-/// What the longer of the two durations additionally includes.
+/// Explains why the longer of the two expected durations is longer: slow reading and longer breaks. Empty if
+/// neither applies.
 std::string slower_words(const study::Protocol& protocol) {
   const auto any = [&](auto holds) {
     return std::any_of(protocol.blocks.begin(), protocol.blocks.end(), holds);
@@ -133,7 +135,7 @@ void print_speed(const CheckReport& report) {
               1000 * content.content_step_s);
 }
 
-/// True if the scene has free obstacles, which a bake of particles does not store.
+/// True if the stimulus's scene has free obstacles, which a bake of particles does not store.
 bool has_free_obstacles(const study::PlannedStimulus& one) {
   return sim::any_free(sim::read_scene(base::find_input(one.what.scene)).obstacles);
 }

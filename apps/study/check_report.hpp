@@ -16,19 +16,20 @@ struct CheckReport {
   study::Protocol protocol;
   study::SessionOutline outline;
   study::PlannedBalance balance;
-  std::vector<study::CheckedSetting> settings;  ///< none under TimingSource::Native
-  std::optional<study::RefreshCheck> refresh;   ///< at the display's own rate, if given
-  std::vector<study::RefreshCheck> common;      ///< at the common rates, if they were checked
+  std::vector<study::CheckedSetting> settings;  ///< all settings of the frame rate; none if native
+  std::optional<study::RefreshCheck> refresh;   ///< check at the rate of --refresh; none: not given
+  std::vector<study::RefreshCheck> common;      ///< checks at the common rates; may be empty
   std::optional<study::MeasuredReport> measured;
   std::vector<study::FramedScene> scenes;
 };
 
-/// The protocol's words for its mean and its timing source.
+/// Words of protocol files for the kind of mean and for the source of the timing.
 const char* mean_name(const study::Protocol& protocol);
 const char* timing_name(const study::Design& design);
-/// Overrun bound of all showings, which are equally long, s.
+/// Time past its planned end after which any showing is cut, s. All showings of a protocol have the same
+/// duration.
 double overrun_s(const study::Protocol& protocol);
-/// Play speeds of the slowest and the fastest setting.
+/// Smallest and largest play speed (simulated time / display time) over all settings.
 study::Span play_speeds(const CheckReport& report);
 
 void print_report(const CheckReport& report);

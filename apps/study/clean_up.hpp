@@ -1,5 +1,5 @@
 #pragma once
-/// Withdrawals by the commands, and what is printed after a withdrawal or a merge.
+/// Carries out withdrawals for the commands, and prints the results of a withdrawal or a merge.
 
 #include <filesystem>
 #include <string>
@@ -12,17 +12,18 @@ namespace apps {
 
 void print_list(const char* title, const std::vector<std::string>& lines);
 
-/// Prints what is missing in a study that is read with --incomplete.
+/// Prints `lacking`, the description of the data that an incomplete study lacks; nothing if empty.
 void print_lacking(const std::filesystem::path& database, const std::string& lacking);
 
-/// Prints the result of a clean-up.
+/// Prints which files were cleaned or deleted, and which are still left.
 void print_clean_up(const study::CleanUp& done);
 
-/// Withdraws, and prints all that was deleted. base::Error if something could not be deleted.
+/// Deletes the data of a participant and prints what was deleted. base::Error if something could not be
+/// deleted.
 void withdraw_and_tell(const std::filesystem::path& database, const std::string& participant);
 
-/// base::Error if a requested withdrawal is still to be done, so that none of that person's data go into an
-/// export.
+/// base::Error if a requested withdrawal has not been carried out, so that no export contains data of a
+/// person who withdrew.
 void check_no_withdrawal_is_due(const study::StudyFile& study);
 
 }  // namespace apps

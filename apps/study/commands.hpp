@@ -22,7 +22,7 @@ void add_merge_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);
 void add_headset_command(CLI::App& app);
 
-/// --db, --max-pages, --events: shared by run and resume.
+/// Adds the options --db, --max-pages and --events of run and resume.
 void add_play_options(CLI::App& command, PlayOptions& options);
 
 }  // namespace apps

@@ -27,7 +27,7 @@ struct HeadsetOptions {
   ShowChoice show;
 };
 
-/// "72, 80, 90".
+/// The texts of all values, joined by commas: "72, 80, 90".
 template <class Values, class Text>
 std::string listed(const Values& values, Text text) {
   std::string out;
@@ -63,7 +63,7 @@ void print_offer(const study::HeadsetOffer& offer) {
   row("extensions", listed(offer.extensions, [](const std::string& name) { return name; }));
 }
 
-/// One line per setting of the frame rate, with the refresh rates at which its mean and SD are reached
+/// Prints one line per setting of the frame rate, with the refresh rates at which its mean and SD are reached
 /// exactly: "mean 40, SD 5 frames/s exact at 90, 120 Hz".
 void print_exact_settings(const std::vector<study::CheckedSetting>& settings,
                           const std::vector<study::RefreshCheck>& checks) {

@@ -25,10 +25,10 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-/// Longest wait for READY and for the runtime to end the session.
+/// Longest wait until the runtime's state is READY, and until the runtime ends the session.
 constexpr Seconds most_idle{30};
 
-/// Angles of a ray to the right and up from the head's forward direction, degrees.
+/// Direction of a ray relative to the head's forward direction: angle to the right and angle up, degrees.
 std::array<double, 2> angles_in_head(const study::HeadsetPose& head, const study::HeadsetPose& ray) {
   const auto axes = study::axes_of(head);
   const auto direction = study::direction_of(ray);
@@ -44,7 +44,7 @@ struct GazeCount {
   std::array<double, 2> sum_deg{};
 
   void add(const study::HeadsetGaze& gaze, const study::HeadsetPose& head) {
-    if (gaze.sampled_ns && *gaze.sampled_ns == last_ns) return;  // a repeated sample of a slow tracker
+    if (gaze.sampled_ns && *gaze.sampled_ns == last_ns) return;  // a slow tracker repeats its last sample
     last_ns = gaze.sampled_ns.value_or(-1);
     ++samples;
     if (!gaze.ray.turn_valid || !head.turn_valid) return;
@@ -109,7 +109,7 @@ void print_report(const ShowReport& report) {
   row("ended", report.ended);
 }
 
-/// One headset session of the show; another may follow if it is lost.
+/// One OpenXR session that shows the test scene. If the session is lost, show_sessions() makes another Show.
 class Show {
  public:
   Show(std::unique_ptr<study::HeadsetSession> session, const study::TestScene& scene,
@@ -133,7 +133,7 @@ class Show {
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
 
-  /// False if the session is lost; another one may be made.
+  /// Shows the scene until the time is over or the runtime asks to exit. False if the session is lost.
   bool run(double& seconds_left) {
     auto idle_since = std::chrono::steady_clock::now();
     while (true) {
@@ -204,7 +204,7 @@ class Show {
   sim::Offscreen picture_;
   const study::TestScene& scene_;
   ShowReport& report_;
-  double asked_hz_;  ///< 0: none
+  double asked_hz_;  ///< requested refresh rate, Hz; 0: none
   std::optional<std::int64_t> last_ns_;
   bool asked_to_exit_ = false, runtime_ends_ = false, pushed_ = false;
 };

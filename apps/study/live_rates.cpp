@@ -26,7 +26,7 @@ const study::Cell& first_cell(const study::Protocol& protocol, const study::Meas
   return protocol.design.cells.at(static_cast<std::size_t>(one.cells.front()));
 }
 
-/// Stimuli with live cells, with only these cells.
+/// The stimuli that have live cells. MeasuredStimulus::cells contains only the live cells.
 std::vector<study::MeasuredStimulus> live_stimuli(const study::Protocol& protocol,
                                                   const study::CellStimuli& stimuli) {
   std::vector<study::MeasuredStimulus> out;
@@ -48,7 +48,7 @@ const study::FramedScene& framed(int cell, const MeasuringPlace& place) {
   throw std::logic_error("measure_live: a scene that was not framed");
 }
 
-/// How the display shows a cell; a headset has no framing.
+/// Size and angles with which the display shows a cell; for a headset, the display's description.
 std::string look_of(int cell, const MeasuringPlace& place) {
   if (place.scenes.empty()) return place.display.description();
   const study::FramedScene& scene = framed(cell, place);
@@ -59,7 +59,8 @@ std::string look_of(int cell, const MeasuringPlace& place) {
   return out.str();
 }
 
-/// Cache key of all that the times depend on: stimulus, framing, machine and number of steps.
+/// Cache key of the measured times. It contains everything on which the times depend: stimulus, framing,
+/// numbers of steps, tau, machine, renderer and program.
 std::string key_of(const study::Protocol& protocol, const study::CellStimuli& stimuli,
                    const study::MeasuredStimulus& one, const std::string& description,
                    const MeasuringPlace& place) {
@@ -96,7 +97,8 @@ void tell_length(const study::Protocol& protocol, const std::vector<const study:
                where.c_str(), base::duration_words(seconds).c_str());
 }
 
-/// "3 of 30 live cells do not reach their setting, for example HiRes faucet 32k at (17, 4): ...".
+/// Text of the error, such as "3 of 30 live cells do not reach their setting, for example HiRes faucet 32k at
+/// (17, 4): ...".
 std::string refusal(const study::MeasuredReport& report) {
   const auto slow = [](const study::MeasuredCell& one) { return one.too_slow; };
   const auto count = std::count_if(report.cells.begin(), report.cells.end(), slow);

@@ -1,5 +1,5 @@
 #pragma once
-/// Measures the rates of live cells on this station before a participant begins.
+/// Measures the frame rates of live cells on this station before a participant begins.
 
 #include <functional>
 #include <set>
@@ -10,29 +10,30 @@
 
 namespace apps {
 
-/// Where and how live cells are measured; the display's GL context is current.
+/// Display, framing and options for measuring live cells. The display's GL context must be current.
 struct MeasuringPlace {
   study::Display& display;
-  const std::vector<study::FramedScene>& scenes;  ///< as the display frames them
-  double refresh_hz = 0;                          ///< 0: none or not known
+  const std::vector<study::FramedScene>& scenes;  ///< as the display frames them; empty for a headset
+  double refresh_hz = 0;                          ///< refresh rate of the display, Hz; 0: none or not known
   std::function<void()> each;                     ///< called after every frame; may be empty
   std::function<bool(int cell)> anew;             ///< true: measure even if times are cached; empty: false
 };
 
 struct LiveTimes {
   std::vector<study::MeasuredStimulus> stimuli;
-  std::set<int> kept;  ///< cells with cached times
+  std::set<int> kept;  ///< cells whose times were read from the cache
 };
 
-/// Runs each live stimulus through a trial at the display's size and angle, unless this program measured it
-/// before on this station: times are cached in sim::default_cache_folder(). First prints on stderr how long
-/// it takes. base::Error for an unknown scene, method or n_*.
+/// Times each live stimulus during one trial at the display's size and angle. Uses the times in
+/// sim::default_cache_folder() if the same program measured the stimulus on this machine before. First prints
+/// on stderr how long the measuring takes. base::Error for an unknown scene, method or n_*.
 LiveTimes measure_live(const study::Protocol& protocol, study::CellStimuli& stimuli,
                        const MeasuringPlace& place);
 
-/// Measures and judges the live cells of a session in real time (else nothing), and prints the rates on
-/// stderr. base::Error naming the cells that do not reach their setting, unless accept_slow. Cells that fail
-/// by cached times are measured again first, because the station may have been busy then.
+/// Measures and judges the live cells of a session, and prints their rates on stderr. Does nothing on a
+/// virtual clock. base::Error for cells that do not reach their setting, unless accept_slow. A cell that is
+/// too slow by cached times is measured again first, because the station may have been busy at the earlier
+/// measurement.
 study::MeasuredReport check_live(const study::Protocol& protocol, study::SessionSetup& setup,
                                  bool accept_slow);
 

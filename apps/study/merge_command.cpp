@@ -21,7 +21,8 @@ struct MergeCommand {
   bool incomplete = false;
 };
 
-/// Prints the balance of all stations together; on stderr, imbalances and their possible reasons.
+/// Prints the balance of the design over all stations. Prints imbalances and their possible reasons on
+/// stderr.
 void print_balance(const study::Merge& done, const std::string& into) {
   std::vector<std::string> lines;
   for (const study::Balance& one : done.balance) lines.push_back(study::describe(one));

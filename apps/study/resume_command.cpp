@@ -22,10 +22,10 @@ namespace {
 
 struct ResumeOptions {
   PlayOptions play;
-  std::vector<std::string> settings, stimuli;  ///< setting files; bakes: files or folders
+  std::vector<std::string> settings, stimuli;  ///< setting files; bakes (files or folders)
 };
 
-/// Parses a stored protocol; an earlier version's format may no longer be supported.
+/// Parses a stored protocol. base::Error if this version no longer reads the protocol's format.
 study::Protocol read_again(const study::OpenRun& run, const std::string& place) {
   try {
     return study::parse_protocol(run.protocol_text, "protocol " + run.protocol_name,
@@ -38,7 +38,7 @@ study::Protocol read_again(const study::OpenRun& run, const std::string& place) 
   }
 }
 
-/// The protocol from its text in the database; base::Error if its hash has changed.
+/// The protocol from its text in the database. base::Error if its hash differs from the stored hash.
 study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& place) {
   study::Protocol protocol = read_again(run, place);
   if (run.trial_seconds) study::override_trial_seconds(protocol, *run.trial_seconds);
@@ -49,7 +49,7 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
   return protocol;
 }
 
-/// Refuses settings other than those with which the sessions began.
+/// Refuses a solver setting that differs from the recorded settings of the sessions.
 void check_settings(const std::vector<std::string>& files, const study::RunOptions& recorded,
                     const std::string& place) {
   for (const std::string& file : files) {
@@ -60,14 +60,15 @@ void check_settings(const std::vector<std::string>& files, const study::RunOptio
     for (const std::string& one : recorded.settings)
       own += (own.empty() ? "" : ", ") + base::sha256_hex(one).substr(0, 12);
     throw base::Error("--setting " + file,
-                      "is not what the sessions of " + place + " began with (" +
-                          (own.empty() ? "no setting" : own) + "; this is " +
-                          base::sha256_hex(text).substr(0, 12) + ")",
+                      "is not a setting with which the sessions of " + place +
+                          " began (SHA-256 recorded: " + (own.empty() ? "no setting" : own) +
+                          "; of this file: " + base::sha256_hex(text).substr(0, 12) + ")",
                       "leave it out: resume takes the recorded setting");
   }
 }
 
-/// Refuses changed stimuli. Only records a changed station and how its display frames the scenes.
+/// Refuses stimuli that differ from the recorded stimuli. Does not refuse another station or framing, but
+/// stores them.
 void check_unchanged(study::Store& store, const study::OpenRun& run, const study::SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {
@@ -89,7 +90,7 @@ void check_unchanged(study::Store& store, const study::OpenRun& run, const study
   }
 }
 
-/// The options of each run, with the current path of its bake.
+/// The recorded options of each run, with the present path of its bake.
 std::vector<study::RunOptions> recorded_options(const std::vector<study::OpenRun>& runs,
                                                 const std::vector<std::string>& stimuli,
                                                 const std::string& place) {

@@ -1,4 +1,4 @@
-/// vip-study run: plans sessions, writes the plan, plays them.
+/// vip-study run: plans sessions, stores the plan and plays the sessions.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -38,11 +38,11 @@ struct RunCommand {
   std::int64_t seed = 0;
   std::optional<double> trial_seconds;
   std::string bake, ptpe;
-  std::vector<std::string> settings;  ///< files
+  std::vector<std::string> settings;  ///< paths of setting files
   std::optional<base::PictureSize> size;
 };
 
-/// P01, P02, ... or the given codes.
+/// The codes of --participant; for an observer without codes, P01, P02, ...
 std::vector<std::string> participant_codes(const RunCommand& command, const study::Protocol& protocol) {
   if (!command.codes.empty()) return command.codes;
   if (command.run.observer.empty())
@@ -54,7 +54,8 @@ std::vector<std::string> participant_codes(const RunCommand& command, const stud
   return codes;
 }
 
-/// Default clock and display: real time and a window for a person, neither for an observer.
+/// Default display, clock and gaze: a window in real time for a person; no display and the virtual clock for
+/// an observer.
 void choose_defaults(study::RunOptions& run) {
   const bool person = run.observer.empty();
   if (run.display.empty()) run.display = person ? "window" : "none";
@@ -62,7 +63,7 @@ void choose_defaults(study::RunOptions& run) {
   if (run.gaze.empty()) run.gaze = run.display == "none" ? "none" : "fixed";
 }
 
-/// Sets the size; without one, a window fills the monitor.
+/// Sets the size of the picture. Without --size, a window fills the monitor.
 void take_size(const std::optional<base::PictureSize>& size, study::RunOptions& run) {
   if (!size && run.display != "window") return;
   run.width_px = size ? size->width : 0;
@@ -81,7 +82,7 @@ std::optional<std::string> read_ptpe(const std::string& path) {
   return base::read_file(path, 1 << 20);
 }
 
-/// Checks the files one by one, so that an error names its file.
+/// Reads and checks the setting files one by one, so that an error names the wrong file.
 std::vector<std::string> read_settings(const std::vector<std::string>& paths,
                                        const study::Protocol& protocol) {
   std::vector<std::string> texts;
@@ -117,7 +118,7 @@ study::SessionPlan common_plan(const RunCommand& command, const study::Protocol&
   return session;
 }
 
-/// Each participant takes the slot that is least used at that point.
+/// Plans a session for each participant. Each takes the slot of the assignment that is least used so far.
 study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& protocol,
                              study::SessionPlan session, const std::vector<std::string>& codes,
                              std::vector<int> taken) {
@@ -131,8 +132,8 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   return run;
 }
 
-/// Refuses a run without a station number if former sessions have one, since a station deals only its own
-/// share of the assignment. Only warns of a different number.
+/// Refuses a run without a station number if earlier sessions have a station number, because each station
+/// assigns only its part of the slots. Prints only a warning if the station number differs.
 void check_station_number(study::Store& store, const study::Protocol& protocol,
                           const study::SessionPlan& common, const std::string& database) {
   std::optional<study::StationNumber> other;
@@ -196,7 +197,8 @@ void run(RunCommand& command) {
   open_mirror(command.play, setup);
   setup.rates = check_live(protocol, setup, command.play.accept_slow);
   command.run.accept_slow = command.play.accept_slow;
-  // Stored with this version's defaults, which another version may change.
+  // The stored specification contains the defaults of this version, because another version may have other
+  // defaults.
   command.run.observer = setup.participant->simulated().value_or("");
   const study::SessionPlan common = common_plan(command, protocol, setup, ptpe);
   if (!setup.departure().empty())

@@ -104,7 +104,8 @@ void print_done(const study::UnitDone& unit, const study::Protocol& protocol) {
   std::fflush(stdout);
 }
 
-/// Routes events of a run to the console, and requests of the console to the session.
+/// Reports the events of a run to the console or the progress bar, and gives the requests of the console to
+/// the session.
 class Steering {
  public:
   Steering(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
@@ -159,7 +160,7 @@ class Steering {
     return hooks;
   }
 
-  /// True if reopened trials are still to be shown.
+  /// True if the console has reopened trials that must be shown again.
   bool take_reopened() { return console_ && console_->take_reopened(); }
 
  private:
@@ -172,14 +173,14 @@ class Steering {
   const study::Protocol& protocol_;
   const study::WindowRequest& window_;
   bool events_;
-  std::vector<std::string> warnings_;  ///< of the station, for the console
+  std::vector<std::string> warnings_;  ///< station warnings for the console
   std::size_t done_ = 0;
   std::optional<base::Progress> progress_;
   std::optional<study::Console> console_;
   std::optional<study::ConsoleTerminal> terminal_;
 };
 
-/// Prints the remaining duration in real time on stderr, before the first step.
+/// Prints the expected duration of all sessions on stderr. For sessions in real time.
 void print_length(const study::OpenRun& run, const study::Protocol& protocol,
                   const study::SessionSetup& setup) {
   const bool person = !setup.participant->simulated();
@@ -192,7 +193,7 @@ void print_length(const study::OpenRun& run, const study::Protocol& protocol,
                run.sessions.size() == 1 ? "" : "s", base::duration_words(seconds).c_str());
 }
 
-/// The session's current state in the store; none if it has no open unit.
+/// Reads the session from the store again; none if the session has no open unit.
 std::optional<study::OpenSession> read_open_session(study::Store& store, std::int64_t id) {
   for (study::OpenRun& run : store.open_runs()) {
     for (study::OpenSession& session : run.sessions) {
@@ -202,7 +203,7 @@ std::optional<study::OpenSession> read_open_session(study::Store& store, std::in
   return {};
 }
 
-/// A person's session that ended before its last step.
+/// A person's session that ended before its last unit.
 struct EndedEarly {
   std::string participant;
   study::Ending ending;
@@ -218,8 +219,8 @@ RunEnd tell_end(const EndedEarly& early) {
   return turned_away ? RunEnd::TurnedAway : RunEnd::Stopped;
 }
 
-/// Call after the console's screen closed: prints which sessions ended early, and a summary of each person's
-/// session and of a single one.
+/// Prints which sessions ended early, and a summary of each session; if a run has several sessions, only of
+/// people's sessions. Call after the console's screen has closed.
 RunEnd tell_ends(const study::OpenRun& run, const std::vector<EndedEarly>& all,
                  const std::filesystem::path& database) {
   RunEnd end = RunEnd::Done;

@@ -1,5 +1,5 @@
 #pragma once
-/// Plays the open sessions of a database; shared by run and resume.
+/// Plays the open sessions of a database, for vip-study run and resume.
 
 #include <csignal>
 #include <filesystem>
@@ -12,8 +12,9 @@
 
 namespace apps {
 
-/// During its lifetime, SIGINT, SIGTERM, SIGHUP (unless ignored, as by nohup) and SIGPIPE ask the session to
-/// stop at the next frame, so that closing the terminal ends it cleanly.
+/// While this object exists, SIGINT, SIGTERM, SIGPIPE and SIGHUP stop the session at the next frame, so that
+/// closing the terminal ends the session cleanly. SIGHUP stays ignored if the program started with it
+/// ignored, as under nohup.
 class StopSignals {
  public:
   StopSignals();
@@ -26,51 +27,53 @@ class StopSignals {
   std::vector<std::pair<int, struct sigaction>> before_;
 };
 
-/// Prints on stderr which program locks the database, after a second and then every ten seconds; waits until
-/// the lock is released or a stop is requested.
+/// Makes the function that is called while another program locks the database. It prints the name of that
+/// program on stderr, first after a second and then every ten seconds. The waiting ends when the lock is
+/// released or a stop is requested.
 study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database);
 
-/// Options of run and resume for output and the file's size.
+/// Options that vip-study run and resume share.
 struct PlayOptions {
   std::filesystem::path database;
   std::int64_t max_pages = 0;  ///< 0 = no limit
-  bool console = false;        ///< the experimenter's, in the terminal
-  bool accept_slow = false;    ///< see RunOptions
-  bool events = false;         ///< a line on stdout for each committed unit, without answers
-  bool mirror = false;         ///< the experimenter sees the participant's pages in a second window
-  bool mirror_reveal = false;  ///< and also stimuli, which are otherwise black
+  bool console = false;        ///< the experimenter's console in the terminal
+  bool accept_slow = false;    ///< also play live cells that are too slow here
+  bool events = false;  ///< print a line on stdout for each begun and each committed unit, without answers
+  bool mirror = false;  ///< the experimenter sees the participant's pages in a second window
+  bool mirror_reveal = false;  ///< the second window also shows stimuli, which are otherwise black
 };
 
-/// Opens the mirror if requested. base::Error if there is no window, or no room for a second one.
+/// Opens the experimenter's second window if options.mirror is set. base::Error if there is no participant's
+/// window or if the second window cannot be opened.
 void open_mirror(const PlayOptions& options, const study::SessionSetup& setup);
 
-/// How people's sessions ended: the last of these values that applies to any of them. Sessions of observers
-/// are Done.
+/// How the sessions of a run ended: the largest value over all sessions of people. Sessions of observers
+/// count as Done.
 enum class RunEnd {
   Done,
   TurnedAway,  ///< consent was refused, or an answer excluded the person
-  Stopped      ///< by the participant, a stop rule or the experimenter
+  Stopped      ///< a session was stopped by the participant, a stop rule or the experimenter
 };
 
-/// Plays all sessions of an open run with a progress bar, and prints which ended early. base::Error naming
-/// resume if it was stopped on request.
+/// Plays all sessions of an open run with a progress bar, and prints which sessions ended early. If the run
+/// is stopped on request, base::Error whose remedy is vip-study resume.
 RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
                 study::SessionSetup& setup, const PlayOptions& options);
 
-/// Work left after a command has played and closed its database.
+/// Result of the played sessions, and the withdrawals to carry out after the database is closed.
 struct Played {
   RunEnd end = RunEnd::Done;
-  std::vector<std::string> withdraw;  ///< participants who requested it at the end
+  std::vector<std::string> withdraw;  ///< participants who asked for deletion at the end of their session
 };
 
-/// Carries out the withdrawals, then ends the command with the exit status of sessions that ended early: 3
-/// stopped, 4 turned away.
+/// Carries out the withdrawals. Then, if a session ended early, ends the command with exit status 3 (stopped)
+/// or 4 (turned away).
 void end_command(const std::filesystem::path& database, const Played& played);
 /// The exit statuses as text for --help.
 extern const char* const exit_status_help;
 
-/// One line per setting: nominal, realised mu and delta, late frames, verdicts, grade. Prints nothing if no
-/// schedule was played.
+/// Prints one line per setting of the frame rate: nominal and realised mu and delta, late frames, verdicts
+/// and grade. Prints nothing if no schedule was played.
 void print_certificate(const std::filesystem::path& database, const study::OpenRun& run,
                        const study::Protocol& protocol);
 

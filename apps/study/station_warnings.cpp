@@ -35,8 +35,8 @@ std::vector<std::string> check_window_station(study::Store& store, const study::
 
 std::string clock_problem(const std::string& now, const std::string& newest, const std::string& built) {
   const std::string mend =
-      "\n  mend: set the clock (timedatectl set-ntp true) and start again; or go on: the record keeps the "
-      "order, and vip-stats report says which times it does not go by";
+      "\n  mend: set the clock (timedatectl set-ntp true) and start again; or continue: the record keeps the "
+      "order of events, and vip-stats report names the times that it does not use";
   const std::string told = "the clock of this computer says " + now;
   if (now < built) return told + ", which is before this program was built, on " + built.substr(0, 10) + mend;
   const auto now_s = base::seconds_of_utc(now), newest_s = base::seconds_of_utc(newest);

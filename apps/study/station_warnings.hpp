@@ -1,5 +1,5 @@
 #pragma once
-/// Warnings about the station before a session: clock, location of the database, screen, computer.
+/// Warnings about a station before a session, about its clock, database folder, screen and computer.
 
 #include <filesystem>
 #include <string>
@@ -10,16 +10,17 @@
 
 namespace apps {
 
-/// Describes what is wrong with the clock: `now` is before the day `built`, before `newest` (the latest time
-/// in the database; empty: none) or more than a year after it. Empty: none.
+/// The problem of this computer's clock: `now` is before the day `built`, before `newest`, or more than a
+/// year after `newest`. newest: latest time in the database; empty: no data. Returns an empty text if there
+/// is no problem.
 std::string clock_problem(const std::string& now, const std::string& newest, const std::string& built);
 
-/// Prints clock_problem() and place_problems() on stderr and returns them; the experimenter may go on. Call
-/// before anything of the session is written.
+/// Prints clock_problem() and place_problems() on stderr and returns them. The session may continue in spite
+/// of them. Call before anything of the session is written.
 std::vector<std::string> warn_of_station(study::Store& store, const std::filesystem::path& database);
 
-/// Call before the first step: logs those warnings in each session; with a window, also logs and prints the
-/// facts of screen and computer. Returns all warnings.
+/// Logs the warnings of warn_of_station() in each session. With a window, also logs and prints the facts of
+/// screen and computer. Returns all warnings. Call before the first unit.
 std::vector<std::string> check_station(study::Store& store, const study::OpenRun& run,
                                        const study::Protocol& protocol, const study::SessionSetup& setup,
                                        const std::filesystem::path& database);

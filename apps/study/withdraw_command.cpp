@@ -21,7 +21,7 @@ struct WithdrawCommand {
   bool yes = false;
 };
 
-/// Asks for the code once more, because the deletion is final.
+/// Asks for the participant's code again, because the deletion is final.
 void confirm(const WithdrawCommand& command) {
   if (command.yes) return;
   std::string typed;

@@ -41,7 +41,7 @@ std::vector<sim::Effect> turned_on(const std::vector<EffectSwitch>& switches) {
     const auto needs = sim::traits_of(effect.kind).needs;
     return needs != sim::no_effect && !find(out, needs);
   };
-  // Others may need the effects that are turned off.
+  // Repeats, because an effect may need an effect that was just removed.
   for (auto at = out.begin(); (at = std::find_if(out.begin(), out.end(), lacks)) != out.end();) out.erase(at);
   return out;
 }
@@ -54,7 +54,7 @@ void drop_what_cannot_run(std::vector<EffectSwitch>& switches) {
 std::vector<sim::Effect> left_on(const std::vector<sim::Effect>& listed, const std::string& off) {
   if (off.empty()) return listed;
   auto switches = switches_of(listed, listed);
-  // A trailing comma gives an empty word, which no effect has.
+  // The added comma ends the last word. A comma at the end of `off` gives an empty word, which is refused.
   for (const std::string& word : base::split(off + ",")) {
     const auto is_it = [&](const auto& one) { return word == sim::traits_of(one.effect.kind).word; };
     const auto found = std::find_if(switches.begin(), switches.end(), is_it);

@@ -1,5 +1,5 @@
 #pragma once
-/// Turns a scene's effects on and off in a viewer. No window, no GL.
+/// Turns a scene's effects on and off in a viewer. The code needs no window and no GL.
 
 #include <string>
 #include <vector>
@@ -8,23 +8,23 @@
 
 namespace apps {
 
-/// An effect that the scene lists.
+/// A switch and a slider for an effect that the scene lists.
 struct EffectSwitch {
   sim::Effect effect;
   double most = 0;  ///< upper end of the coefficient's slider: four times the scene's value
   bool on = false;
 };
-/// One switch per listed effect, set as in `running`.
+/// One switch per effect of `listed`; on if the effect is in `running`, with its coefficient.
 std::vector<EffectSwitch> switches_of(const std::vector<sim::Effect>& listed,
                                       const std::vector<sim::Effect>& running);
-/// The effects that are on, except those that need one that is off.
+/// The effects that are on, without effects that need an effect that is off.
 std::vector<sim::Effect> turned_on(const std::vector<EffectSwitch>& switches);
-/// Turns off effects with coefficient 0, and those that need one that is off.
+/// Turns off each effect with coefficient 0, and each effect that needs an effect that is off.
 void drop_what_cannot_run(std::vector<EffectSwitch>& switches);
-/// The listed effects without these kinds, given as words with commas, and without those that need them.
-/// base::Error for a word that is not listed.
+/// The listed effects without the kinds in `off` (words with commas) and without effects that need one of
+/// these kinds. base::Error for a word that is no listed effect.
 std::vector<sim::Effect> left_on(const std::vector<sim::Effect>& listed, const std::string& off);
-/// "cohesion, air_drag", or "no effects".
+/// Names of the effects, such as "cohesion, air_drag"; "no effects" if there are none.
 std::string in_words(const std::vector<sim::Effect>& effects);
 
 }  // namespace apps

@@ -25,7 +25,8 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// frame_0040.png; with several overlays, a painted one has its name in it: frame_0040_level.png.
+/// File of a picture: frame_0040.png. With several overlays, the name contains the overlay:
+/// frame_0040_level.png.
 std::filesystem::path picture_path(const std::string& folder, int frame, OverlayKind overlay, bool several) {
   std::string name = fmt::format("frame_{:04}", frame);
   if (several && overlay != OverlayKind::None)
@@ -63,14 +64,14 @@ class PictureFolder {
  private:
   std::string folder_;
   std::vector<OverlayKind> overlays_;
-  std::vector<std::string> legends_;  // of the last frame
+  std::vector<std::string> legends_;  // legends of the pictures of the last frame
   int written_ = 0;
 };
 
-/// Number of frames over which --ptpe takes the frame rate.
+/// Number of last frames over which --ptpe measures the frame rate.
 constexpr int last_frames = 30;
 
-/// Frame times without the time for writing pictures.
+/// Times of steps and drawing, without the time for writing pictures.
 struct Timing {
   stats::FpsWindow window{last_frames};
   double step_s = 0, draw_s = 0;
@@ -88,7 +89,8 @@ void print_timing(const Timing& timing, int frames, const PreparedFluid& prepare
               measured.c_str());
 }
 
-/// True if the frame must be drawn: saliency reads each picture, and tau refers to frames that are shown.
+/// True if the frame must be drawn: for its picture, for a method that reads each picture, or for the frame
+/// rate of tau.
 bool is_drawn(int frame, int frames, bool kept, const ViewOptions& options, const PreparedFluid& prepared) {
   if (kept || options.png_folder.empty() || prepared.follows_picture) return true;
   return prepared.ptpe && (prepared.follows_rate || frame >= frames - last_frames);

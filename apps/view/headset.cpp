@@ -22,7 +22,8 @@ namespace {
 
 std::sig_atomic_t volatile interrupted = 0;
 
-/// While it lives, Ctrl-C ends the view cleanly, so that the runtime sees the session end.
+/// While this object exists, Ctrl-C stops the viewer after the current frame, so that the OpenXR session ends
+/// in order.
 class Interrupt {
  public:
   Interrupt() : before_(std::signal(SIGINT, [](int) { interrupted = 1; })) { interrupted = 0; }
@@ -34,14 +35,14 @@ class Interrupt {
   void (*before_)(int);
 };
 
-/// Statistics of what was shown.
+/// Statistics of the shown frames.
 struct Shown {
   int frames = 0;
   stats::FpsWindow fps{30};
   std::string ended;
 };
 
-/// Shows the scene around the person in real time, or slower if the fluid takes longer.
+/// Shows the scene in a headset in real time, or slower if computing the fluid takes longer.
 class HeadsetViewer {
  public:
   HeadsetViewer(study::HeadsetDisplay& display, const ViewOptions& options)
@@ -51,7 +52,7 @@ class HeadsetViewer {
         clock_(display),
         recorder_(display,
                   display.session().eye_gaze ? study::GazeOrigin::Tracker : study::GazeOrigin::Head) {
-    recorder_.start();  // its samples are not stored
+    recorder_.start();  // gives the current gaze; its samples are not stored
     fmt::print("shown in    {}\n", display.description());
     fmt::print("levels      follow {}\n",
                display.session().eye_gaze ? "the eye tracker" : "the head's direction");
@@ -60,7 +61,8 @@ class HeadsetViewer {
     frame_ns_ = std::llround(1e9 * prepared.frame_dt_s);
     study::Viewing viewing;
     viewing.ray = [this] { return recorder_.ray(); };
-    // The fluid starts once, because steps never go back.
+    // Gives the prepared fluid away once. No second fluid is needed, because the viewer's steps never go
+    // back.
     const auto fluid = std::make_shared<std::unique_ptr<sim::Simulation>>(std::move(prepared.fluid));
     const auto make = [fluid] { return std::move(*fluid); };
     fluid_.emplace(prepared.scene, prepared.frame_dt_s, prepared.scene.name, make, viewing);
@@ -87,20 +89,20 @@ class HeadsetViewer {
         display_.turn();
         continue;
       }
-      display_.take_spoilt();  // the next picture is drawn again anyway
+      display_.take_spoilt();  // discards cuts, because the viewer draws every picture anew
       const std::int64_t before_ns = display_.now_ns();
       fluid_->prepare(shown.frames);
       recorder_.take();
       recorder_.take_slots();
       display_.render(*fluid_);
       const std::int64_t computed_ns = display_.now_ns() - before_ns;
-      // The slot nearest to the frame's due time, or the first one that can be met.
+      // The frame slot nearest to the due time, or the first slot that can still be reached.
       const auto period_ns = std::llround(1e9 / display_.refresh_hz());
       const auto times = display_.present(display_.first_onset(due_ns - period_ns / 2), clock_);
       if (on_ns > 0 && times.predicted_display_ns > on_ns)
         shown.fps.push(1e-9 * static_cast<double>(times.predicted_display_ns - on_ns));
       on_ns = times.predicted_display_ns;
-      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // lost time is not caught up
+      if (on_ns > due_ns + period_ns) due_ns = on_ns;  // delays are not made up by faster frames
       due_ns += frame_ns_;
       ++shown.frames;
       display_.hold(due_ns - computed_ns, clock_);
@@ -113,13 +115,13 @@ class HeadsetViewer {
     return state == study::HeadsetState::Visible || state == study::HeadsetState::Focused;
   }
 
-  std::string scene_;  ///< its file
+  std::string scene_;  ///< path of the scene file
   std::optional<int> frames_;
   study::HeadsetDisplay& display_;
   study::HeadsetClock clock_;
   study::HeadsetRecorder recorder_;
   std::optional<study::LiveFluid> fluid_;
-  std::int64_t frame_ns_ = 0;  ///< of the fluid
+  std::int64_t frame_ns_ = 0;  ///< duration of a frame of the fluid, ns
 };
 
 void print(const Shown& shown) {
@@ -129,18 +131,18 @@ void print(const Shown& shown) {
   fmt::print("ended       {}\n", shown.ended);
 }
 
-/// Null if there is no headset; prints why.
+/// Connects to a headset. If there is none, prints the reason and returns null.
 std::unique_ptr<study::HeadsetDisplay> connect(const std::string& clock) {
   const bool stands_still = clock == "virtual";
   study::HeadsetRules rules;
   rules.hold = study::Hold::State;
-  ::setenv("XR_LOADER_DEBUG", "none", 0);  // the program prints one line of its own instead
+  ::setenv("XR_LOADER_DEBUG", "none", 0);  // silences the loader, because the program prints one line itself
   try {
     return std::make_unique<study::HeadsetDisplay>(
         stands_still ? study::SlotDrive::Caller : study::SlotDrive::Thread,
         study::HeadsetChoice{.eye_gaze = true}, rules);
   } catch (const base::Error& error) {
-    if (stands_still) throw;  // no person watches
+    if (stands_still) throw;  // on the virtual clock no person watches, so there is no desktop view
     const std::string told = error.what();
     fmt::print(stderr, "no headset: {}; shown on the desktop\n", told.substr(0, told.find('\n')));
     return nullptr;

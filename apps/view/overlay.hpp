@@ -25,23 +25,23 @@ enum class OverlayKind {
 };
 
 /// "none", "acuity", "manifold", "temporal", "combined", "saliency", "level", "speed", "density", "active",
-/// "temperature"; others are a base::Error.
+/// "temperature"; base::Error for other names.
 OverlayKind parse_overlay(std::string_view name);
-/// Several, separated by commas; at least one.
+/// Parses one or more names, separated by commas.
 std::vector<OverlayKind> parse_overlays(std::string_view names);
-/// In the order of the enum.
+/// Names of the overlays in the order of OverlayKind.
 const std::vector<std::string>& overlay_names();
-/// The same with the paper's symbols: "acuity f_a".
+/// Names of the overlays with the paper's symbols, such as "acuity f_a".
 const std::vector<std::string>& overlay_titles();
 
-/// Reads values of a simulation and paints them over the picture of it that was just drawn.
+/// Reads values of the particles of a simulation and paints them over the simulation's last picture.
 class OverlayPainter {
  public:
-  /// `finest_spacing_m` is 2 r_*. The scene gives the range of temperatures.
+  /// The scene gives the range of temperatures. `finest_spacing_m`: spacing of the finest particles, 2 r_*.
   OverlayPainter(const sim::Scene& scene, double finest_spacing_m)
       : finest_spacing_m_(finest_spacing_m), temperatures_(scene) {}
   void paint(OverlayKind kind, sim::Simulation& fluid, sim::FluidPicture& picture, unsigned framebuffer);
-  /// Meaning of the last paint's colours, e.g. "speed 0 to 10 m/s".
+  /// Meaning of the last paint's colours, e.g. "speed 0 to 15 m/s".
   const std::string& legend() const { return legend_; }
 
  private:

@@ -23,7 +23,7 @@ void PassMeans::push(const std::vector<sim::StageTime>& passes, double frame_s) 
   for (const auto& pass : passes) frame.ms.push_back(pass.ms);
   frames_.push_back(std::move(frame));
   seconds_ += frame_s;
-  // Keeps at least the last frame, however long it was.
+  // Never removes the last frame, even if it took longer than span_s.
   while (frames_.size() > 1 && seconds_ > span_s) {
     seconds_ -= frames_.front().seconds;
     frames_.pop_front();

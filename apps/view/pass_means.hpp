@@ -1,5 +1,5 @@
 #pragma once
-/// Mean times of the schedule's passes for the window's panel. No window, no GL.
+/// Mean times of the schedule's passes for the window's panel. The code needs no window and no GL.
 
 #include <deque>
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace apps {
 
-/// A row of the panel.
+/// A row of the panel: one pass of the schedule.
 struct PassRow {
   std::string name, phase;
-  std::string effect;  ///< word of the effect that the pass belongs to; empty if it belongs to none
-  double ms = 0;       ///< per frame, mean over the last second
-  double share = 0;    ///< of all passes, 0 to 1; 0 if they took no time
+  std::string effect;  ///< name of the effect that the pass computes; empty for a pass of the solver itself
+  double ms = 0;       ///< time per frame, mean over the last second
+  double share = 0;    ///< part of the time of all passes, 0 to 1; 0 if they took no time
 };
 
-/// Times of the frames of the last second.
+/// Pass times of the frames of the last second.
 class PassMeans {
  public:
   static constexpr double span_s = 1;
@@ -25,9 +25,9 @@ class PassMeans {
   /// Adds the last frame's pass times and its total duration, s. A new schedule discards the old times.
   void push(const std::vector<sim::StageTime>& passes, double frame_s);
   void clear() { *this = {}; }
-  /// In the schedule's order; none before the first frame.
+  /// The passes in the schedule's order, with their mean times; empty before the first frame.
   std::vector<PassRow> rows() const;
-  /// Sum over all passes of a frame, mean over the last second.
+  /// Time of all passes together, per frame, mean over the last second.
   double total_ms() const;
 
  private:
@@ -37,7 +37,7 @@ class PassMeans {
   };
   std::vector<sim::StageTime> passes_;
   std::deque<Frame> frames_;
-  double seconds_ = 0;  ///< of all stored frames
+  double seconds_ = 0;  ///< total duration of all stored frames
 };
 
 }  // namespace apps

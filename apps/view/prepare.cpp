@@ -32,7 +32,7 @@ sim::SimulationOptions chosen(const ViewOptions& options) {
   return out;
 }
 
-/// True if the options still have the values of the setting file.
+/// True if method, preset, n_star and levels still have the values of the setting file.
 bool as_set(const ViewOptions& options) {
   if (!options.setting) return false;
   const sim::SolverSetting& of = options.setting->setting;
@@ -78,7 +78,7 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
       as_set(options) ? sim::to_options(options.setting->setting, sim::choose_backend(options.backend), 1)
                       : chosen(options);
   choice.cache = sim::default_cache_folder();
-  // In a window, overlays may be chosen later.
+  // In a window the user may choose an overlay of saliency later.
   choice.saliency_parts = options.overlay != "none" || options.display == "window";
   if (prepared.ptpe) choice.temporal.model = prepared.ptpe->model;
   prepared.frame_dt_s = choice.frame_dt_s > 0 ? choice.frame_dt_s : prepared.scene.frame_dt_s;

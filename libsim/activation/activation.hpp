@@ -1,6 +1,7 @@
 #pragma once
-/// Temporal acceleration (ViP-Fluid section 4.3, Algorithm 3, Eq. 12-14): in a frame whose tau is negative
-/// some particles are not solved; they inherit velocities from the velocity grid.
+/// Temporal acceleration (ViP-Fluid section 4.3, Algorithm 3, Eq. 12-14): while the frame rate tolerance tau
+/// is negative, the solver skips some particles in each frame; they inherit velocities from the velocity
+/// grid.
 
 #include "libsim/activation/percentile_range.hpp"
 #include "libsim/activation/velocity_grid.hpp"
@@ -10,7 +11,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Settings of Algorithm 3 in the form that kernels use; sim::Readings explains each.
+/// Settings of Algorithm 3 in the form that kernels use; sim::Readings documents each.
 struct ActivationRules {
   explicit ActivationRules(const Readings& readings = {})
       : relative_level_change(readings.dimensionless_levels),
@@ -30,63 +31,67 @@ struct ActivationRules {
   /// minimum and maximum.
   bool robust_range;
   bool inherit_change;
-  bool pressed;  ///< only with inherit_change
+  bool pressed;  ///< gravity and coarse pressure move unsolved particles too; only with inherit_change
   float near_spacings;
   float damping;
   bool others_yield;
-  /// Always solve: particles just made by a split or a merge, spray (less than a fifth of the neighbours at
-  /// rest), particles within h of a wall, and particles faster than h / 2 per substep.
+  /// Always solve: particles just made by a split or a merge, spray (less than a fifth of the neighbours of a
+  /// particle inside water), particles within h of a wall, and particles faster than h / 2 per substep.
   bool keep_fragile_active;
   int longest_rest;
   int least_work;
   float speed_floor;  ///< epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2
 };
 
-/// Fields of Column::Rest.
-constexpr std::uint8_t rest_count_mask = 0x0f;  ///< see Choose::count_after; at most 15
-constexpr std::uint8_t rest_nowhere = 0x40;     ///< the grid has no velocity here
-constexpr std::uint8_t rest_sparse = 0x80;      ///< had few neighbours when last solved
+/// Bit fields of Column::Rest.
+constexpr std::uint8_t rest_count_mask = 0x0f;  ///< frames without a solve, at most 15 (Choose::count_after)
+constexpr std::uint8_t rest_nowhere = 0x40;     ///< flag: the velocity grid has no velocity at the particle
+constexpr std::uint8_t rest_sparse = 0x80;  ///< flag: the particle had few neighbours when it was last solved
 
-/// rho / rho_0 of a particle with a fifth of the neighbours at rest: its own share, 0.194, plus a fifth of
-/// the neighbours' share.
+/// rho / rho_0 of a particle with a fifth of the neighbours of a particle inside water: 0.194 from itself,
+/// plus a fifth of the neighbours' 0.806.
 constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 
-/// If the scene lists tension, water below this rho / rho_0 also counts as spray: surface accelerations do
-/// not show in the mean over a cell.
+/// Particles below this rho / rho_0 count as spray if the scene has the effect tension, because the mean over
+/// a cell does not contain the accelerations at the surface.
 constexpr float surface_density = 0.98f;
 
-/// Value of Active: solved, but excluded from the cell means that resting particles inherit.
+/// Value of Column::Active: the particle is solved, but excluded from the cell means that unsolved particles
+/// inherit.
 constexpr std::uint8_t solved_apart = 2;
 
 using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
                                   columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Indices of the sums in Activation::before and after, grouped by the cell in which the particles started.
+/// Indices of sums in Activation::before and after. These two sum the solved and the unsolved particles by
+/// the cell in which each particle started the frame.
 constexpr int sum_of_solved = 0;
-constexpr int sum_of_resting = 1;  ///< only with ActivationRules::pressed
-/// Only in `after`: sums of the solved particles by position, on the cells of `grid` (in full frames: of all
-/// particles) and of `near`.
+constexpr int sum_of_resting = 1;  ///< of the unsolved particles; only with ActivationRules::pressed
+/// Indices of sums in Activation::after alone, by present position: sum_of_grid on the cells of
+/// Activation::grid (solved particles; in full frames all particles), sum_of_near on those of
+/// Activation::near (solved particles).
 constexpr int sum_of_grid = 2;
 constexpr int sum_of_near = 3;
 
-/// State of temporal acceleration. V, E, the range and the frame counter persist; the rest is rebuilt each
-/// frame.
+/// State of temporal acceleration. The mean velocities V, the energies E, the range and the frame counter
+/// persist; everything else is rebuilt each frame.
 struct Activation {
   ActivationRules rules;
   float beta = 1;  ///< lowest probability of being solved; 1 = all particles are solved, whatever F_pim
   std::uint32_t seed = 1;
-  std::uint32_t frame = 0;  ///< number of the coming frame, part of the random number key
+  std::uint32_t frame = 0;  ///< number of the next frame, part of the key of the random numbers
 
-  VelocityGrid grid;  ///< V^n and E^n
+  VelocityGrid grid;  ///< mean velocity V^n and kinetic energy E^n per cell
   /// Mean velocities on the cells from which unsolved particles inherit; finer than the cells of V and E.
   VelocityGrid near;
   PercentileRange range;
   Array<float> importance;   ///< F_pim, Eq. 12
   Array<float> probability;  ///< p_i, Algorithm 3 line 8
-  bool columns_set = false;  ///< Active and Rest have been written
-  bool all_marked = false;   ///< Active is 1 for all particles
+  bool columns_set = false;  ///< true once the columns Active and Rest have been written
+  bool all_marked = false;   ///< true while Active is 1 for all particles
 
-  // Means over cells that Eq. 13 and 14 sample: dV/dx, dV/dy, dV/dz per cell, dV/dl, sum over levels, dE.
+  // Inputs of Eq. 13 and 14 per cell: differences of V between cells along x, y and z, differences of V
+  // between levels, V summed over levels, differences of E between cells along x, y and z.
   Array<Vec4> slope_x, slope_y, slope_z, across_levels, total, energy_slope;
   CellMomentum before, after;  ///< sums before and after the solve; see sum_of_solved
   Array<Vec4> change;          ///< velocity change that unsolved particles inherit
@@ -94,8 +99,9 @@ struct Activation {
   Array<int> ranks, slots, slot_of;
   Scanner scanner;
 
-  /// Lists the active particles for the passes of a substep, and sets what the passes read of the others:
-  /// lambda 0, the rest density, the predicted position in both buffers. slot_of is the inverse of slots.
+  /// Lists the active particles for the passes of a substep. For the others, which these passes read, it sets
+  /// lambda to 0, the density to rho_0 and both buffers of the predicted position to one value. slot_of is
+  /// the inverse of slots.
   void list_active(ActiveListView particles);
   std::size_t bytes() const;
 };

@@ -4,11 +4,11 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-constexpr float range_share = 0.1f;  ///< per frame, share of the step to the new percentiles
+constexpr float range_share = 0.1f;  ///< per frame, the range moves by this share towards the new percentiles
 
 SIM_FN Vec3 difference(Vec4 high, Vec4 low, float steps) { return (1 / steps) * (xyz(high) - xyz(low)); }
 
-/// Inputs of Eq. 13 and 14 from V in one cell and level: differences between cells and between levels.
+/// Inputs of Eq. 13 and 14 in one cell and level: differences of V between cells and between levels.
 struct VelocitySlopes {
   const Vec4* velocity;
   CellBlock block;
@@ -29,7 +29,7 @@ struct VelocitySlopes {
     across_levels[i] = with_w(by_level(level, cell), known);
   }
 
-  /// Central difference per cell, one-sided next to the border and to cells without a value.
+  /// Central difference of V per cell; one-sided next to the border and to cells without a value.
   SIM_FN Vec3 along(int level, int cell, int stride, int at, int size) const {
     const Vec4 none{0, 0, 0, value_unknown};
     const Vec4* here = velocity + level * block.size() + cell;
@@ -38,7 +38,8 @@ struct VelocitySlopes {
     return between(low, *here, high, 1, 1);
   }
 
-  /// The same over the levels that have particles in the cell.
+  /// Difference of V per level, between the nearest finer and the nearest coarser level with particles in the
+  /// cell.
   SIM_FN Vec3 by_level(int level, int cell) const {
     const int cells = block.size();
     Vec4 low{0, 0, 0, value_unknown};
@@ -125,7 +126,8 @@ struct Importance {
     counter.add(i, f);
   }
 
-  /// Eq. 12; 0 and a flag if the grid has no velocity.
+  /// F_pim of particle i, Eq. 12. If the grid has no velocity at the particle: 0, and the flag rest_nowhere
+  /// is set.
   SIM_FN float of(int i) const {
     const CellCorners corners = grid.corners(xyz(position[i]));
     const int offset = level[i] * grid.cells();
@@ -139,7 +141,7 @@ struct Importance {
     return std::isfinite(f) ? f : 0;
   }
 
-  /// f_in, Eq. 13
+  /// f_in, Eq. 13.
   SIM_FN float within(int offset, const CellCorners& corners, Vec4 v) const {
     const Vec3 x = xyz(sample(slope_x, offset, corners));
     const Vec3 y = xyz(sample(slope_y, offset, corners));
@@ -149,7 +151,7 @@ struct Importance {
     return gradient / (length(xyz(v)) + speed_floor) + gradient / (length(all) + speed_floor);
   }
 
-  /// f_cr, Eq. 14
+  /// f_cr, Eq. 14.
   SIM_FN float across(int offset, const CellCorners& corners, Vec4 v) const {
     float by_level = length(xyz(sample(across_levels, offset, corners)));
     if (relative_level_change) by_level /= length(xyz(v)) + speed_floor;

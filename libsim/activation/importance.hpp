@@ -7,7 +7,7 @@ namespace sim::SIM_BACKEND {
 
 using ImportanceView = ColumnView<columns(Column::Position, Column::Level), columns(Column::Rest)>;
 
-/// Writes activation.importance from V^n and E^n, and the flag rest_nowhere in Rest; updates
+/// Computes activation.importance from V^n and E^n, sets the flag rest_nowhere in Rest, and updates
 /// activation.range. saliency: s in [0, 1] per particle; nullptr counts as 0. speed_floor: epsilon_v, m/s.
 void measure_importance(Activation& activation, ImportanceView particles, const float* saliency,
                         float speed_floor);

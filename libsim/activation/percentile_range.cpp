@@ -6,7 +6,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Sets a percentile at the bin where the count passes it.
+/// Computes the 1st and the 99th percentile, each in the bin in which the cumulative count reaches it.
 struct Place {
   BinCounts counts;
   ValueRange* now;
@@ -48,7 +48,7 @@ struct FollowPercentiles {
   }
 };
 
-/// Floats of equal sign are ordered like their bits.
+/// The bits as an integer: floats >= 0 have the same order as their bits.
 SIM_FN int bits_of(float value) {
   int bits;
   memcpy(&bits, &value, sizeof bits);

@@ -8,22 +8,22 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Bounds of a normalisation; low > high before the first update.
+/// Bounds for normalising a quantity; low > high before the first update.
 struct ValueRange {
   float low, high;
 
-  /// 0 at low, 1 at high, clamped; 1 everywhere if the range has zero width.
+  /// Maps low to 0 and high to 1, linearly and clamped; every value to 1 if the range has zero width.
   SIM_FN float normalised(float value) const {
     if (!(high > low)) return 1;
     return at_most(at_least((value - low) / (high - low), 0.0f), 1.0f);
   }
 };
 
-/// Counts values inside a kernel; without a histogram it counts nothing.
+/// Counts values in a logarithmic histogram, for kernels; without a histogram it counts nothing.
 struct ValueCounter {
   Histogram histogram{nullptr, 0};
 
-  /// The i-th value.
+  /// Counts the i-th value.
   SIM_FN void add(int i, float value) const {
     if (histogram.counts) histogram.add(i, bin_of(value), 1);
   }
@@ -37,14 +37,15 @@ struct ValueCounter {
     const int bin = static_cast<int>(above * bins_an_octave);
     return bin < 0 ? 0 : bin < bins ? bin : bins - 1;
   }
-  /// The value `at` bins from the first bin; `at` may be fractional.
+  /// The value at a distance of `at` bins from the start of the first bin; `at` may be fractional.
   SIM_FN static float value_at(float at) { return exp2f(at / bins_an_octave - octaves / 2); }
 };
 
-/// Data stays on the device. Values below 2^-16 count as 2^-16, above 2^16 as 2^16.
+/// The range and the counts are stored on the device. Values below 2^-16 count as 2^-16, above 2^16 as 2^16.
 class PercentileRange {
  public:
-  /// For the pass before follow_percentiles(), which consumes the counts.
+  /// The counter for the pass that measures the values; follow_percentiles() then evaluates and resets the
+  /// counts.
   ValueCounter counter() { return {histogram_.view(ValueCounter::bins)}; }
   /// Moves both bounds by `share` towards the 1st and 99th percentile of the n values counted by counter();
   /// sets them directly the first time. Percentiles are exact to an eighth of an octave (9 %). n = 0 changes
@@ -56,7 +57,7 @@ class PercentileRange {
   const ValueRange* range() const { return range_.data(); }
   /// Copies the range to the host (a synchronisation).
   ValueRange read() const { return range_.to_host()[0]; }
-  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
+  /// Saves or restores the state that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(range_);

@@ -6,11 +6,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Number of particles that a team sums before it writes to memory: adjacent particles share a cell.
+/// Number of consecutive particles that a team sums before it writes to memory, because adjacent particles
+/// often share a cell.
 constexpr int run_length = 16;
 SIM_FN int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
-/// Higher speeds, m/s, count as this speed, so that sums stay below 2^63.
+/// Largest velocity component in the sums, m/s; faster ones are clamped, so that sums stay below 2^63.
 constexpr float fastest = 1000;
 
 SIM_FN std::uint64_t fixed(float value) {
@@ -35,21 +36,21 @@ SIM_FN void add_at_once(MomentumSum& to, const MomentumSum& sum) {
   atomic_add(&to.z, sum.z);
 }
 
-/// A lane's sum for one entry; -1 while there is none.
+/// A lane's running sum for the entry `place` of `sums`; place is -1 before the first value.
 template <class Sum>
 struct PlaceSum {
   Sum* sums;
   int place = -1;
   Sum sum{};
 
-  /// Directs the next values to entry `here`.
+  /// Selects entry `here` for the next values; first adds the sum to the previous entry.
   SIM_FN void move_to(int here) {
     if (here == place) return;
     if (place >= 0) add_at_once(sums[place], sum);
     place = here;
     sum = {};
   }
-  /// Ends the run; the lanes' sums for one entry are written together.
+  /// Adds all lanes' remaining sums to memory, with one atomic addition per entry.
   template <class Team>
   SIM_FN void finish(Team team) {
     constexpr int none = 2147483647;
@@ -64,7 +65,7 @@ struct PlaceSum {
   }
 };
 
-/// Each index is one run of particles for one sum.
+/// Adds one run of run_length particles to one of the sums; each index is one run and sum.
 struct AddMomentum {
   struct To {
     MomentumOf of;
@@ -125,7 +126,7 @@ struct AddEnergy {
   }
 };
 
-/// Resets the sums to zero.
+/// Converts the sums to energies, and resets the sums to zero.
 struct FinishEnergy {
   std::uint64_t* sums;
   float* energy;
@@ -169,7 +170,7 @@ void VelocityGrid::fit(const Domain& domain, float edge) {
                         static_cast<double>(size.z) / std::pow(static_cast<double>(edge), 3.0);
   constexpr double most = 1 << 22;
   if (wanted > most) edge *= static_cast<float>(std::cbrt(wanted / most));
-  // A tank of ten edges gets ten cells, despite rounding errors of its size.
+  // The 1e-4 absorbs rounding errors: a tank ten edges long gets ten cells.
   const auto count = [&](float length) {
     return std::max(1, static_cast<int>(std::ceil(length / edge - 1e-4f)));
   };

@@ -1,6 +1,6 @@
 #pragma once
-/// Mean velocity of each level and kinetic energy of all levels, on cells of edge 10 d_* (ViP-Fluid section
-/// 4.3: 1000 finest particles per cell). V and E persist from frame to frame.
+/// Mean velocity V of each level and kinetic energy E of all levels, on cells of edge 10 d_* (ViP-Fluid
+/// section 4.3: 1000 finest particles per cell). V and E persist from frame to frame.
 
 #include <cstdint>
 
@@ -12,13 +12,13 @@ namespace sim::SIM_BACKEND {
 
 constexpr int grid_levels = 4;
 
-/// Sums over the particles of one cell and level in fixed point, so that the order of addition does not
-/// matter: mass in m_*, momentum in m_* m/s times 2^20.
+/// Mass (in m_*) and momentum (in m_* m/s times 2^20) of the particles of one cell and level, in fixed point,
+/// so that the order of addition does not matter.
 struct MomentumSum {
   std::uint64_t mass, x, y, z;
 };
 
-/// momentum / mass of a non-empty sum.
+/// momentum / mass, m/s; the sum must not be empty.
 SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {
   const auto part = [&](std::uint64_t momentum) {
     return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(momentum)) /
@@ -27,18 +27,20 @@ SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {
   return {part(sum.x), part(sum.y), part(sum.z)};
 }
 
-/// Origin of the value of a cell and level; stored in w.
+/// Origin of the velocity of a cell and level, stored in its w; value_unknown: there is no velocity.
 constexpr float value_unknown = 0;
 constexpr float value_borrowed = 1;  ///< from the previous frame, or from other levels
 constexpr float value_measured = 2;  ///< from particles of this level
 
-/// The eight cell centres around a position, clamped at the grid's borders, and their weights.
+/// The eight cell centres around a position, clamped at the grid's borders, and their weights for
+/// interpolation.
 struct CellCorners {
   int cell[8];
   float weight[8];
 };
 
-/// The cells in the form that kernels use. Index of (level, cell): level x cells + cell.
+/// The grid's cells in the form that kernels use. The value of (level, cell) has the index level x cells() +
+/// cell.
 struct GridFrame {
   CellFrame frame;
   CellBlock block;
@@ -76,7 +78,7 @@ struct GridFrame {
   }
 };
 
-/// Weighted mean over the corners that have a value; w of the result is 0 if none has.
+/// Weighted mean over the corners that have a value; if none has one, w of the result is value_unknown.
 SIM_FN Vec4 sample(const Vec4* values, int offset, const CellCorners& corners) {
   Vec3 sum{0, 0, 0};
   float weights = 0;
@@ -96,14 +98,14 @@ using MovingView = Reads<Column::Position, Column::Velocity, Column::Level>;
 /// The particles in a sum. Resting and Solved are values of Active; All does not read Active.
 enum class Whose : std::uint8_t { Resting = 0, Solved = 1, All = 254, Unused = 255 };
 
-/// One sum: which particles, over which cells.
+/// Selects the particles and the cells of one sum.
 struct MomentumOf {
   Whose whose = Whose::Unused;
   GridFrame grid{};
   const int* cell_of = nullptr;  ///< cell of each particle; nullptr: from its position
 };
 
-/// Mass and momentum by cell and level, several sums in one launch.
+/// Sums of mass and momentum by cell and level; several sums are computed in one launch.
 class CellMomentum {
  public:
   static constexpr int most = 4;
@@ -114,10 +116,10 @@ class CellMomentum {
     static_assert(n <= most);
     measure(particles, active, sums, n);
   }
-  /// The k-th sum: [level x cells + cell]; nullptr if it is Nobody's. Valid until the next measure() or
+  /// The k-th sum: [level x cells + cell]; nullptr if it is Whose::Unused. Valid until the next measure() or
   /// reserve().
   const MomentumSum* of(int k) const { return of_[k]; }
-  /// Allocates sums over a total of `cells`.
+  /// Allocates memory for sums with a total of `cells` cells; discards earlier sums.
   void reserve(int cells) {
     for (auto& sum : of_) sum = nullptr;
     sums_.reserve(grid_levels * static_cast<std::size_t>(cells));
@@ -131,7 +133,7 @@ class CellMomentum {
   MomentumSum* of_[most] = {};
 };
 
-/// Converts sums to means and fills empty entries.
+/// Converts momentum sums to mean velocities, and fills entries without particles.
 struct FinishVelocity {
   const MomentumSum* sums;
   Vec4* velocity;
@@ -157,25 +159,25 @@ struct FinishVelocity {
 
 class VelocityGrid {
  public:
-  /// Places cells of `edge` over the domain: ceil(extent / edge), at least one per axis. Discards all values
-  /// if the cells change.
+  /// Covers the domain with cells of `edge`: ceil(extent / edge), at least one per axis. Edges are longer if
+  /// there would be more than 2^22 cells. Discards all values if the cells change.
   void fit(const Domain& domain, float edge);
   GridFrame frame() const { return {frame_, block_}; }
   int cells() const { return block_.size(); }
 
   /// The pass that computes V from a sum over frame(): mass-weighted mean velocity per cell and level, m/s.
-  /// An empty entry keeps the measured value of the previous frame, once, or takes the mean of the other
-  /// levels. Without a sum (nullptr) V does not change.
+  /// An entry without particles keeps the previous frame's measured value for one frame, then takes the mean
+  /// over all levels. Without a sum (nullptr) V does not change.
   Pass<FinishVelocity> finish_velocity(const MomentumSum* sums) {
     return {sums ? grid_levels * cells() : 0, {sums, velocity_.data(), cells()}};
   }
-  /// Updates E: kinetic energy per cell, all particles, in m_* m2/s2 (J per kg of m_*).
+  /// Updates E: kinetic energy of all particles per cell, in m_* m2/s2 (times m_* in kg: J).
   void update_energy(MovingView particles);
 
   const Array<Vec4>& velocity() const { return velocity_; }
   const Array<float>& energy() const { return energy_; }
   std::size_t bytes() const;
-  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
+  /// Saves or restores the state that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(frame_, block_, velocity_, energy_);
@@ -187,7 +189,7 @@ class VelocityGrid {
 
   CellFrame frame_;
   CellBlock block_;
-  Array<std::uint64_t> energy_sums_;  ///< zero outside update_energy
+  Array<std::uint64_t> energy_sums_;  ///< zero except during update_energy()
   Array<Vec4> velocity_;
   Array<float> energy_;
 };

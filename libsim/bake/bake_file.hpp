@@ -10,10 +10,11 @@
 /// The footer is written last, so that a truncated file is detected. Positions have 16 bit per axis over each
 /// frame's bounding box: the error is at most extent / 131070, which the writer keeps below a twentieth of
 /// the finest radius. Foam's radii and temperatures are stored likewise, each over its range in the frame.
-/// All else is exact, including each frame's account (not in format 1). Since format 3 the header records how
-/// the fluid was viewed and the inputs of tau; since format 4 the computed effects, and foam is stored. Since
-/// format 5 particles may have temperatures, and the header records what was painted and the picture's
-/// effects. A bake without these is written in format 4. Equal content gives equal bytes (no date is stored).
+/// All else is exact, including each frame's account (not in format 1). Since format 3 the header contains
+/// the view (BakedView) and the inputs of tau. Since format 4 it contains the computed effects, and foam is
+/// stored. Since format 5 particles may have temperatures, and the header contains the overlay and the
+/// picture's effects. A bake without contents of format 5 is written in format 4. Equal content gives equal
+/// bytes (no date is stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -30,15 +31,17 @@
 
 namespace sim {
 
-/// How the fluid was viewed during the bake.
+/// The picture and the gaze for which the fluid was computed during the bake.
 struct BakedView {
-  /// Size of the drawn picture, stored or only for the method; 0 x 0 = none was drawn.
+  /// Size of the picture that was drawn, to be stored or only for the method; 0 x 0 = no picture was drawn.
   int width_px = 0, height_px = 0;
-  double camera_angle_deg = 0;             ///< vertical, of that picture, in (0, 180); 0 = none was drawn
-  std::optional<double> visual_angle_deg;  ///< assumed angle that it fills of the eye's view; none = unknown
-  std::string renderer;                    ///< renderer of the picture: gl_description()
-  /// Assumed gaze: "middle" of the picture, along the "scene"'s keys, or "none": the method follows none.
-  /// Empty = unknown (formats before 3).
+  /// Vertical angle of the picture's camera, in (0, 180); 0 = no picture was drawn.
+  double camera_angle_deg = 0;
+  /// Assumed angle that the picture fills of the eye's view; none = unknown.
+  std::optional<double> visual_angle_deg;
+  std::string renderer;  ///< renderer of the picture: gl_description()
+  /// Assumed gaze: "middle" (of the picture), "scene" (the scene's gaze keys) or "none" (the method follows
+  /// no gaze). Empty = unknown (formats before 3).
   std::string gaze;
   std::vector<GazeKey> gaze_path;  ///< as in Scene::gaze; empty = no path
 
@@ -47,8 +50,8 @@ struct BakedView {
 
 /// Inputs of temporal acceleration.
 struct BakedTolerance {
-  FrameRate rate;          ///< from which tau followed
-  stats::PtpeModel model;  ///< gives tau and beta
+  FrameRate rate;          ///< from which tau was computed
+  stats::PtpeModel model;  ///< the PTPE model that gives tau and beta
   std::uint32_t seed = 1;  ///< for the random choice of active particles
 };
 
@@ -58,8 +61,8 @@ struct BakeHeader {
   std::string scene_sha256;
   std::string scene_text;       ///< the scene file, so that the bake can be drawn without it; at most 1 MiB
   std::string method;           ///< as returned by method_name()
-  std::string backend;          ///< that computed the bake
-  std::string program_version;  ///< that wrote the bake
+  std::string backend;          ///< name of the back end that computed the bake
+  std::string program_version;  ///< of the program that wrote the bake
   std::int64_t n_star = 0;
   std::int64_t max_particles = 0;  ///< upper bound for every frame
   std::int64_t frame_count = 0;
@@ -71,22 +74,24 @@ struct BakeHeader {
   int picture_height_px = 0;
   std::string camera;  ///< "view" or "overview"; empty without pictures
   BakedView view;
-  std::optional<BakedTolerance> tolerance;  ///< none = the method solves every particle, or unknown
-  /// The computed effects: format_effects(). None = those of scene_text (formats before 4).
+  std::optional<BakedTolerance> tolerance;  ///< none = the method solves every particle, or it is unknown
+  /// The effects that were computed, as format_effects() writes them. None = those of scene_text (formats
+  /// before 4).
   std::optional<std::string> effects = {};
   /// Upper bound on a frame's diffuse particles of the effect foam; 0 = not stored, or a format before 4.
   std::int64_t max_foam = 0;
   /// Reference of the particles' temperatures (effect heat), K. None = not stored, or a format before 5.
   std::optional<double> reference_k = {};
-  /// What was to be painted over the water: "temperature", or nothing. Part of the pictures.
+  /// Overlay that colours the water in the pictures: "temperature", or empty for none.
   std::string overlay = {};
-  /// Effects of the picture: format_picture_effects(). None = those of scene_text, or a format before 5.
+  /// Effects of the picture, as format_picture_effects() writes them. None = those of scene_text, or a format
+  /// before 5.
   std::optional<std::string> picture_effects = {};
 
   bool has_pictures() const { return picture_width_px > 0; }
 };
 
-/// Sizes of the parts.
+/// Sizes of a bake file and of its parts.
 struct BakeSizes {
   std::uint64_t file_bytes = 0;
   std::uint64_t particle_bytes = 0;
@@ -94,27 +99,30 @@ struct BakeSizes {
   std::uint64_t picture_bytes = 0;
 };
 
-/// Writes to a temporary name next to `path` and renames it in finish(). If destroyed before, it leaves no
-/// file. Errors (an existing file that may not be overwritten, no permission, a full disk, particles that
-/// cannot be quantised) are base::Error.
+/// Writes a bake file under a temporary name next to `path`; finish() renames it. A writer destroyed before
+/// that leaves no file. Errors (an existing file that may not be overwritten, no permission, a full disk,
+/// particles that cannot be quantised) are base::Error.
 class BakeWriter {
  public:
   BakeWriter(const std::filesystem::path& path, const BakeHeader& header, bool overwrite = false);
-  /// Reports the errors of the constructor for this path, without touching it: call before long work.
+  /// Throws the errors that the constructor would throw for this path, without changing any file; to be
+  /// called before long work.
   static void check_target(const std::filesystem::path& path, bool overwrite);
   ~BakeWriter();
   BakeWriter(const BakeWriter&) = delete;
   BakeWriter& operator=(const BakeWriter&) = delete;
 
-  /// Adds the next frame's particles, and the solver's account of it (Simulation::account). temperature_k:
-  /// per particle, above the header's reference_k; required if the header states that, otherwise ignored.
+  /// Adds the next frame: its particles, and the solver's account of it (Simulation::account). temperature_k:
+  /// per particle, K above the header's reference_k; required if the header has reference_k, otherwise it
+  /// must be empty.
   void add_frame(double time_s, const std::vector<RenderParticle>& particles, const FrameAccount& account,
                  const std::vector<float>& temperature_k = {});
-  /// Adds the foam of the last frame, before its picture; required if the header states max_foam.
+  /// Adds the foam of the last added frame, before its picture; required if the header's max_foam is above 0.
   void add_foam(const std::vector<RenderParticle>& foam);
-  /// Adds the picture of the last frame: 4 x width x height bytes, bottom row first; alpha is dropped.
+  /// Adds the picture of the last added frame: 4 x width x height bytes, bottom row first; alpha is dropped.
   void add_picture(ByteSpan rgba);
-  /// Writes index and footer, syncs, renames. All frames stated in the header must have been added.
+  /// Writes index and footer, syncs, and renames the file. All frames stated in the header must have been
+  /// added.
   BakeSizes finish();
 
  private:
@@ -167,12 +175,12 @@ class PictureReader {
 
 /// The format in which a bake with this header is written.
 std::uint32_t format_of(const BakeHeader& header);
-/// The baked scene, with the computed effects. base::Error: a scene that cannot be read.
+/// The baked scene, with the effects that were computed and drawn. base::Error: a scene that cannot be read.
 Scene baked_scene(const BakeHeader& header);
 
-/// Header bytes in the present format.
+/// The header as bytes, in the format that format_of() gives.
 Bytes format_bake_header(const BakeHeader& header);
-/// The inverse, also for earlier formats; base::Error at `place` for anything out of range.
+/// Reads header bytes of this or an earlier format; base::Error at `place` for any value out of range.
 BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::string& place);
 
 }  // namespace sim

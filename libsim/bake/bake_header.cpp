@@ -77,7 +77,7 @@ void check(const BakedView& view, const ByteReader& in) {
   const auto within = [&](bool good, const std::string& what) {
     if (!good) in.fail("has a header whose " + what + " is out of range");
   };
-  within(is_size(view.width_px, view.height_px), "size of the picture seen");
+  within(is_size(view.width_px, view.height_px), "size of the drawn picture");
   within(view.drawn() ? is_angle(view.camera_angle_deg) : view.camera_angle_deg == 0, "camera's angle");
   within(!view.visual_angle_deg || is_angle(*view.visual_angle_deg), "angle of the eye's view");
   for (const GazeKey& key : view.gaze_path) {
@@ -99,7 +99,7 @@ void check(const BakeHeader& header, const ByteReader& in) {
     within(std::isfinite(radius) && radius > 0, "radius");
   }
   within(is_size(header.picture_width_px, header.picture_height_px), "picture size");
-  within(header.max_foam >= 0 && header.max_foam <= max_bake_foam, "count of foam");
+  within(header.max_foam >= 0 && header.max_foam <= max_bake_foam, "number of foam particles");
   within(!header.reference_k || (std::isfinite(*header.reference_k) && *header.reference_k > 0),
          "reference temperature");
   within(header.overlay.empty() || (header.overlay == "temperature" && header.reference_k), "overlay");

@@ -144,7 +144,7 @@ struct BakeReader::State {
     sort_index(bytes, chunks, offset);
   }
 
-  /// Kind of the next chunk.
+  /// Kind that the next chunk of the index must have.
   bake::ChunkKind next_kind() const {
     if (header.max_foam > 0 && foam.size() < particles.size()) return bake::ChunkKind::Foam;
     if (!header.has_pictures() || pictures.size() == particles.size()) return bake::ChunkKind::Particles;
@@ -152,7 +152,8 @@ struct BakeReader::State {
     return key ? bake::ChunkKind::KeyPicture : bake::ChunkKind::Picture;
   }
 
-  /// Chunks are contiguous from the header to the index, ordered by frame.
+  /// Sorts the index by kind. Checks that chunks are contiguous from the header to the index, and ordered by
+  /// frame.
   void sort_index(ByteSpan bytes, std::uint64_t chunks, std::uint64_t end) {
     ByteReader in(bytes, source.name());
     std::uint64_t next = body_begin;
@@ -186,7 +187,7 @@ struct BakeReader::State {
   const bake::IndexEntry& at(const std::vector<bake::IndexEntry>& entries, std::int64_t frame) const {
     if (frame < 0 || frame >= static_cast<std::int64_t>(entries.size())) {
       throw base::Error(source.name(), "has no frame " + std::to_string(frame),
-                        "ask for 0 to " + std::to_string(entries.size()) + " exclusive");
+                        "use a frame number from 0 to below " + std::to_string(entries.size()));
     }
     return entries[static_cast<std::size_t>(frame)];
   }

@@ -29,7 +29,7 @@ struct BakeWriter::State {
 
   ~State() { XXH3_freeState(content); }
 
-  /// True if every frame so far has all its parts.
+  /// True if every frame added so far has its foam and its picture.
   bool complete() const {
     return (header.max_foam == 0 || foams == frames) && (!header.has_pictures() || pictures == frames);
   }
@@ -113,7 +113,7 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
   if (s.frames == s.header.frame_count || !s.complete())
     throw std::logic_error("BakeWriter: a frame too many, or the last frame's foam or picture is missing");
   if (particles.size() > static_cast<std::size_t>(s.header.max_particles)) {
-    throw base::Error(place, "holds more particles than the header states", "state the largest count");
+    throw base::Error(place, "has more particles than max_particles of the header", "raise max_particles");
   }
   const bool warm = s.header.reference_k.has_value();
   if (temperature_k.size() != (warm ? particles.size() : 0))
@@ -134,7 +134,7 @@ void BakeWriter::add_foam(const std::vector<RenderParticle>& foam) {
     throw std::logic_error("BakeWriter: foam without its frame, or that the header does not state");
   const std::string place = bake::frame_place(s.path.string(), "foam", s.foams);
   if (foam.size() > static_cast<std::size_t>(s.header.max_foam))
-    throw base::Error(place, "holds more foam than the header states", "state the largest count");
+    throw base::Error(place, "has more foam than max_foam of the header", "raise max_foam");
   encode_foam(foam, particle_zstd_level, place, s.chunk);
   s.write_chunk(bake::ChunkKind::Foam);
   s.sizes.foam_bytes += s.chunk.size();

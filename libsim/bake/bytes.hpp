@@ -1,5 +1,5 @@
 #pragma once
-/// Little-endian values into and out of byte buffers. Every read is checked against the end.
+/// Writes and reads little-endian values in byte buffers. Every read is checked against the buffer's end.
 
 #include <bit>
 #include <cstdint>
@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "bake files are read a
 using Bytes = std::vector<std::uint8_t>;
 using ByteSpan = std::span<const std::uint8_t>;
 
-/// Appends to the caller's buffer.
+/// Appends values to the caller's buffer.
 class ByteWriter {
  public:
   explicit ByteWriter(Bytes& out) : out_(out) {}
@@ -30,7 +30,7 @@ class ByteWriter {
     bytes({reinterpret_cast<const std::uint8_t*>(&value), sizeof value});
   }
   void bytes(ByteSpan data) { out_.insert(out_.end(), data.begin(), data.end()); }
-  /// 32-bit length, then the characters.
+  /// Writes the text's length in 32 bits, then its characters.
   void string(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
     bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -40,7 +40,7 @@ class ByteWriter {
   Bytes& out_;
 };
 
-/// Reads from the front of a span. base::Error naming `place` if it has fewer bytes than requested.
+/// Reads values from the front of a span. If too few bytes are left: base::Error that names `place`.
 class ByteReader {
  public:
   ByteReader(ByteSpan data, std::string place) : data_(data), place_(std::move(place)) {}
@@ -60,7 +60,9 @@ class ByteReader {
   }
   std::string string(std::size_t max_size) {
     const auto size = get<std::uint32_t>();
-    if (size > max_size) fail("holds a text of " + std::to_string(size) + " characters");
+    if (size > max_size)
+      fail("has a text of " + std::to_string(size) + " characters; at most " + std::to_string(max_size) +
+           " are allowed");
     const ByteSpan text = take(size);
     return {reinterpret_cast<const char*>(text.data()), text.size()};
   }

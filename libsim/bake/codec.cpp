@@ -9,10 +9,10 @@ namespace sim {
 
 namespace {
 
-/// Flags after the counts.
+/// Bits of the byte after the counts: which facts follow.
 enum FactBits : std::uint8_t { has_temporal = 1, has_tau = 2, has_rate = 4, has_guards = 8, all_bits = 15 };
 
-/// Every guard in the order of the file.
+/// Calls visit for every guard counter, in the order of the file.
 template <typename Guards, typename Visit>
 void each_guard(Guards& guards, Visit visit) {
   visit(guards.speed_limited);
@@ -27,7 +27,7 @@ void each_guard(Guards& guards, Visit visit) {
 
 double finite(ByteReader& in) {
   const auto value = in.get<double>();
-  if (!std::isfinite(value)) in.fail("holds a tolerance that is not finite");
+  if (!std::isfinite(value)) in.fail("has a tolerance that is not finite");
   return value;
 }
 
@@ -81,12 +81,13 @@ BakeFacts get_facts(ByteReader& in, std::uint32_t format, std::size_t levels) {
   if (format < 2) return facts;
   const auto bits = in.get<std::uint8_t>();
   if (bits > all_bits || (!(bits & has_temporal) && bits & (has_tau | has_rate)))
-    in.fail("holds unknown facts");
+    in.fail("has facts of an unknown kind");
   if (bits & has_temporal) account.temporal = get_temporal(in, bits, account.particles());
   if (bits & has_guards) {
     each_guard(account.guards.emplace(), [&](std::uint64_t& count) {
       count = in.get<std::uint64_t>();
-      if (count > static_cast<std::uint64_t>(INT64_MAX)) in.fail("states a count that no guard reaches");
+      if (count > static_cast<std::uint64_t>(INT64_MAX))
+        in.fail("states an impossible number of guard cases");
     });
   }
   return facts;

@@ -1,6 +1,6 @@
 #pragma once
 /// Chunks of a bake file: particle frames and pictures as compressed bytes. Lossless except for the
-/// quantisation of positions and temperatures.
+/// quantisation of positions, temperatures and radii of foam.
 
 #include <array>
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace sim {
 
-/// Facts of a frame; precede its particles and its picture.
+/// Facts of a frame, stored before its particles and before its picture.
 struct BakeFacts {
   double time_s = 0;     ///< since the gate opened
-  FrameAccount account;  ///< one count per radius of the file's header; files of format 1 hold nothing else
+  FrameAccount account;  ///< particle counts, one per radius of the file's header; format 1 stores only these
 };
 
 /// The particles of one frame, ordered by level, and within a level in the solver's order.
@@ -25,7 +25,7 @@ struct BakeFrame {
   std::vector<RenderParticle> foam;  ///< Simulation::read_foam; empty if the bake stores none
   /// Per particle, K above BakeHeader::reference_k; empty if the bake stores none.
   std::vector<float> temperature_k;
-  double temperature_error_k = 0;  ///< upper bound of their error
+  double temperature_error_k = 0;  ///< upper bound on the error of temperature_k
 };
 
 /// A picture, bottom row first as in OpenGL, 4 bytes per pixel (R, G, B, 255).
@@ -46,11 +46,11 @@ inline constexpr int max_picture_side = 8192;
 inline constexpr double max_temperature_error_k = 0.1;
 
 /// Quantises to 16 bit per axis over the frame's bounding box: an axis of extent e has an error of at most e
-/// / 131070 (+ float rounding). That must stay below a twentieth of the finest radius. base::Error at
+/// / 131070 (+ float rounding). This error must stay below a twentieth of the finest radius. base::Error at
 /// `place`: a frame with a larger extent, a particle that is not finite, or a radius that is not in
 /// `radius_by_level_m`. The counts of `account` are recomputed from the particles. temperature_k: per
-/// particle, in their order, as 16 bit over this frame's range, with an error of at most a 131070th of it;
-/// nullptr stores none. base::Error if one is not finite, or max_temperature_error_k is exceeded.
+/// particle, in their order, as 16 bit over this frame's range, with an error of at most 1 / 131070 of the
+/// range; nullptr stores none. base::Error if one is not finite, or max_temperature_error_k is exceeded.
 void encode_particles(double time_s, const FrameAccount& account,
                       const std::vector<RenderParticle>& particles,
                       const std::vector<float>& radius_by_level_m, const std::vector<float>* temperature_k,
@@ -58,31 +58,32 @@ void encode_particles(double time_s, const FrameAccount& account,
 
 /// How a file stores its particles.
 struct ParticleLayout {
-  std::uint32_t format = 0;  ///< of the file
+  std::uint32_t format = 0;  ///< format of the file
   std::vector<float> radius_by_level_m;
   std::int64_t max_particles = 0;
   bool temperatures = false;
 };
 
-/// The inverse. Refuses (base::Error at `place`) counts beyond `max_particles` before it allocates, and data
-/// that decode to a size other than stated. `scratch` is reused between calls.
+/// Decodes the bytes of encode_particles(). Refuses (base::Error at `place`) counts beyond `max_particles`
+/// before it allocates, and data that decode to a size other than stated. `scratch` is reused between calls.
 void decode_particles(ByteSpan payload, const ParticleLayout& layout, const std::string& place,
                       Bytes& scratch, BakeFrame& out);
 
-/// Foam: position and radius of each particle, 16 bit over the frame's range of each.
+/// Encodes foam: position and radius of each particle, each value with 16 bit over its range in the frame.
 void encode_foam(const std::vector<RenderParticle>& foam, int zstd_level, const std::string& place,
                  Bytes& out);
-/// The inverse. Refuses (base::Error at `place`) counts beyond `max_foam` before it allocates.
+/// Decodes the bytes of encode_foam(). Refuses (base::Error at `place`) counts beyond `max_foam` before it
+/// allocates.
 void decode_foam(ByteSpan payload, std::int64_t max_foam, const std::string& place, Bytes& scratch,
                  std::vector<RenderParticle>& out);
 
-/// Pictures: colour planes G, R - G, B - G; each row is the residual of one of five predictors (none, left,
-/// above, gradient, previous picture), then zstd. `previous` is the previous picture, or empty for a key
-/// picture. Alpha is dropped.
+/// Encodes a picture: colour planes G, R - G, B - G; each row is the residual of one of five predictors
+/// (none, left, above, gradient, previous picture), then zstd. `previous` is the previous picture, or empty
+/// for a key picture. Alpha is dropped.
 void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, int width_px, int height_px,
                     int zstd_level, Bytes& out);
 
-/// The inverse, with the same `previous`; it may not overlap out.rgba.
+/// Decodes the bytes of encode_picture(), with the same `previous`, which may not overlap out.rgba.
 void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, ByteSpan previous,
                     int width_px, int height_px, const std::string& place, Bytes& scratch, BakePicture& out);
 
@@ -90,15 +91,15 @@ void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, 
 /// format 4, bit for bit as before format 5 existed (format_of).
 inline constexpr std::uint32_t bake_format = 5;
 
-/// Facts at the front of both kinds of chunk: time and counts; since format 2 one byte that says what was
-/// measured (FactBits), followed by tau, mu and delta, beta and the number of active particles, and the
-/// guards, as far as measured.
+/// Writes and reads the facts at the front of particle and picture chunks: time and counts; since format 2
+/// one byte that says which values were measured (FactBits), followed by tau, mu and delta, beta and the
+/// number of active particles, and the guards, as far as measured.
 void put_facts(ByteWriter& out, const BakeFacts& facts);
 BakeFacts get_facts(ByteReader& in, std::uint32_t format, std::size_t levels);
 
-/// zstd of `data`, or the data unchanged if they would shrink by more than 4096 to 1; the first byte says
-/// which. unpack() refuses any size other than `size`, and allocates only after checking the ratio, so that
-/// memory stays proportional to the file.
+/// pack() appends a byte for the kind, then `data` compressed by zstd, or unchanged if the ratio would exceed
+/// 4096 to 1. unpack() refuses any size other than `size`, and allocates only after checking the ratio, so
+/// that memory stays proportional to the file.
 void pack(ByteSpan data, int zstd_level, Bytes& out);
 void unpack(ByteReader& in, std::size_t size, Bytes& out);
 

@@ -12,16 +12,16 @@ namespace sim {
 
 namespace {
 
-// Numbers as 16 bit over their range: an axis of extent e has an error of at most e / 131070.
+// Numbers are stored with 16 bit over their range: a range of extent e has an error of at most e / 131070.
 
 constexpr float axis_steps = 65535;
 
-/// The range of a quantity.
+/// Range of the values of one quantity in a frame.
 struct Axis {
   float min = 0, max = 0;
 };
 
-/// Upper bound on the error of a number in this range.
+/// Upper bound on the error of a number that is stored with 16 bit over this range.
 double error_of(const Axis& range) {
   return (double(range.max) - double(range.min)) / (2 * double(axis_steps));
 }
@@ -49,7 +49,7 @@ void encode_axis(std::size_t n, Value value, const Axis& range, std::uint8_t* pl
   }
 }
 
-/// Accumulates the differences and passes each value to `set`.
+/// Inverse of encode_axis(): sums the differences and passes each value to `set`.
 template <typename Set>
 void decode_axis(const std::uint8_t* planes, std::size_t n, const Axis& range, Set set) {
   const float scale = (range.max - range.min) / axis_steps;
@@ -77,7 +77,7 @@ std::array<Axis, count> get_axes(ByteReader& in) {
     axis.max = in.get<float>();
     if (!std::isfinite(axis.min) || !std::isfinite(axis.max) || axis.max < axis.min ||
         !std::isfinite(axis.max - axis.min)) {
-      in.fail("has a box that is none");
+      in.fail("has a range of values that is not valid");
     }
   }
   return axes;
@@ -114,8 +114,8 @@ void check_error(const Box& box, const std::vector<float>& radii, const std::str
     if (error < double(finest) / 20) continue;
     throw base::Error(
         place,
-        fmt::format("particles spread over {:.4g} m, which 16 bit resolve to {:.3g} m; radius "
-                    "{:.3g} m needs a twentieth",
+        fmt::format("particles spread over {:.4g} m, which 16 bit resolve to {:.3g} m; at most a "
+                    "twentieth of the radius {:.3g} m is allowed",
                     axis.max - axis.min, error, finest),
         "keep the fluid inside the tank, or use a smaller n_* (--n-star, or n_star in a protocol)");
   }
@@ -130,8 +130,8 @@ std::vector<std::uint32_t> order_by_level(const std::vector<RenderParticle>& par
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto found = std::find(radii.begin(), radii.end(), particles[i].radius_m);
     if (found == radii.end()) {
-      throw base::Error(place, "a particle's radius is none of the bake's levels",
-                        "name every radius in the header");
+      throw base::Error(place, "a particle's radius is not among the header's radii",
+                        "list every radius in radius_by_level_m");
     }
     level[i] = static_cast<std::uint8_t>(found - radii.begin());
     ++counts[level[i]];
@@ -171,7 +171,7 @@ void encode_particles(double time_s, const FrameAccount& account,
                       const std::vector<float>& radius_by_level_m, const std::vector<float>* temperature_k,
                       int zstd_level, const std::string& place, Bytes& out) {
   if (particles.size() > static_cast<std::size_t>(max_bake_particles)) {
-    throw base::Error(place, "holds more particles than a bake may",
+    throw base::Error(place, "has more particles than a bake can store",
                       "use a smaller n_* (--n-star, or n_star in a protocol)");
   }
   BakeFacts facts{time_s, account};

@@ -7,13 +7,13 @@ namespace sim {
 
 namespace {
 
-/// The basis of a row's prediction.
+/// The pixels from which the pixels of a row are predicted.
 enum Predictor : std::uint8_t { None, Left, Above, Gradient, Previous, predictors };
 
 using Row = std::uint8_t*;
 using ConstRow = const std::uint8_t*;
 
-/// G, R - G, B - G of an RGBA picture, one plane after the other.
+/// Writes the planes G, R - G and B - G of an RGBA picture, one after the other.
 void split_planes(ByteSpan rgba, std::size_t pixels, std::uint8_t* planes) {
   for (std::size_t i = 0; i < pixels; ++i) {
     const std::uint8_t green = rgba[4 * i + 1];
@@ -80,7 +80,8 @@ void encode_picture(const BakeFacts& facts, ByteSpan rgba, ByteSpan previous, in
   split_planes(rgba, pixels, planes.data());
   if (!previous.empty()) split_planes(previous, pixels, old_planes.data());
 
-  // First the predictors of all rows, then all residuals: similar bytes are adjacent.
+  // The data are the predictors of all rows, then all residuals: similar bytes are adjacent and compress
+  // better.
   Bytes data(rows + 3 * pixels), trial(width);
   for (std::size_t y = 0; y < rows; ++y) {
     ConstRow row = planes.data() + y * width;

@@ -12,7 +12,7 @@ PictureRing::PictureRing(const BakeReader& bake, std::size_t capacity)
   const auto bytes = static_cast<std::size_t>(bake.header().picture_width_px) *
                      static_cast<std::size_t>(bake.header().picture_height_px) * 4;
   if (bytes == 0) throw std::logic_error("PictureRing: the bake has no pictures");
-  // Touch the memory now, to avoid page faults while frames are shown.
+  // Write to the memory now, to avoid page faults while pictures are shown.
   for (Slot& each : slots_) each.picture.rgba.assign(bytes, 0);
   thread_ = std::thread([this] { decode_loop(); });
 }
@@ -56,7 +56,8 @@ const BakePicture& PictureRing::take(std::int64_t frame) {
   return slot(freed_).picture;
 }
 
-/// A jump forwards by up to two rings is decoded through; any other jump restarts at a key picture.
+/// True if `frame` comes within the next two ring lengths: then the pictures before it are decoded and
+/// dropped. For any other jump the decoding restarts, at a key picture.
 bool PictureRing::comes_later(std::int64_t frame) const {
   std::int64_t next = expected_;
   for (std::size_t i = 0; i < 2 * slots_.size(); ++i, next = after(next)) {
@@ -90,7 +91,8 @@ void PictureRing::wait_beyond(std::uint64_t seen) {
 }
 
 void PictureRing::decode_loop() {
-  // Lower priority than the thread that shows pictures. Failure under unusual limits is harmless.
+  // A lower priority than that of the thread that shows pictures. Under unusual limits the call fails, which
+  // is harmless.
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 5);
   std::uint64_t round = 0;
   std::int64_t next = 0;
@@ -98,7 +100,7 @@ void PictureRing::decode_loop() {
     const std::uint64_t calls = calls_;
     if (stop_) return;
     if (round != round_) {
-      // If a newer round is set meanwhile, the following slots carry the older number and are dropped.
+      // If the consumer starts a newer round meanwhile, the next slots have the older number and are dropped.
       round = round_;
       next = first_;
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures of a bake, decoded ahead in a separate thread, so that showing one needs no decoding.
+/// Pictures of a bake, decoded in advance by a separate thread, so that showing a picture needs no decoding.
 
 #include <atomic>
 #include <cstdint>
@@ -12,11 +12,12 @@
 
 namespace sim {
 
-/// For one consumer. The BakeReader must have pictures and outlive the ring. Taking a ready picture takes no
-/// lock: a preempted decoding thread never blocks the consumer.
+/// Ring buffer of decoded pictures for one consumer thread. The BakeReader must have pictures and outlive the
+/// ring. Taking a ready picture takes no lock: a preempted decoding thread never blocks the consumer.
 class PictureRing {
  public:
-  /// 24 pictures are 0.2 s at the shortest interval of the pilot (8 ms), and 22 MB at 640x360.
+  /// `capacity`: number of pictures. 24 pictures are 0.2 s at the pilot's shortest interval (8 ms), and 22 MB
+  /// at 640x360.
   explicit PictureRing(const BakeReader& bake, std::size_t capacity = 24);
   ~PictureRing();
   PictureRing(const PictureRing&) = delete;
@@ -25,8 +26,9 @@ class PictureRing {
   /// Decodes from `frame` on; after the last picture it continues at `frame` again. Returns when the ring is
   /// full.
   void start(std::int64_t frame);
-  /// The picture of `frame`; valid until the next call. Waits if it is not decoded yet; a frame that is not
-  /// ahead restarts the decoding there. Errors of the file are thrown here, at their frame.
+  /// The picture of `frame`; valid until the next call. Waits if it is not decoded yet. If `frame` is not
+  /// among the next pictures, decoding restarts at `frame`. Errors of the file are thrown here, at their
+  /// frame.
   const BakePicture& take(std::int64_t frame);
   /// Number of times that take() had to wait since start().
   std::int64_t waits() const { return waits_; }
@@ -39,14 +41,14 @@ class PictureRing {
     std::exception_ptr error;
   };
 
-  // Used by the decoding thread.
+  // Functions of the decoding thread.
   void decode_loop();
   void decode_into(Slot& into, std::uint64_t round, std::int64_t frame);
 
-  // Used by the consumer.
+  // Functions of the consumer thread.
   void restart_at(std::int64_t frame);
   void drop_front();
-  /// Waits until more than `seen` slots have been filled in total.
+  /// Waits until filled_ exceeds `seen`.
   void wait_beyond(std::uint64_t seen);
   bool comes_later(std::int64_t frame) const;
   std::int64_t after(std::int64_t frame) const;
@@ -57,21 +59,22 @@ class PictureRing {
   PictureReader reader_;
   std::vector<Slot> slots_;
 
-  // Total slots filled and released: filled_ - freed_ of them are ready. Each counter is written by one side
-  // only.
+  // Numbers of slots filled and released since the start; filled_ - freed_ slots contain pictures. Each
+  // counter is written by one thread only.
   std::atomic<std::uint64_t> filled_ = 0;
   std::atomic<std::uint64_t> freed_ = 0;
-  // The consumer's request: a round begins at first_ and loops to loop_to_. Slots of older rounds are
-  // dropped.
+  // The consumer's request: round number round_ begins at frame first_, and after the last frame continues at
+  // loop_to_. Slots of earlier rounds are dropped.
   std::atomic<std::uint64_t> round_ = 0;
   std::atomic<std::int64_t> first_ = 0;
   std::atomic<std::int64_t> loop_to_ = 0;
-  /// Incremented for every change that the decoding thread must check.
+  /// Incremented for every change that the decoding thread must notice.
   std::atomic<std::uint64_t> calls_ = 0;
   std::atomic<bool> stop_ = false;
 
-  std::optional<std::int64_t> held_;  ///< frame that the consumer holds: the slot at freed_
-  std::int64_t expected_ = 0;         ///< next frame of this round that the consumer has not received
+  /// The frame last given to the consumer, in the slot at freed_; none = released.
+  std::optional<std::int64_t> held_;
+  std::int64_t expected_ = 0;  ///< next frame of this round that the consumer has not received
   std::int64_t waits_ = 0;
   std::thread thread_;
 };

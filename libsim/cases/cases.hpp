@@ -1,11 +1,11 @@
 #pragma once
-/// The cases, one file each.
+/// The hard cases of the fluid; each case, with its variants, is defined in one file.
 
 #include "libsim/cases/hard_case.hpp"
 
 namespace sim::cases {
 
-/// LoRes, HiRes, FovFluid, Ours, Ours-TSp.
+/// All methods: LoRes, HiRes, FovFluid, Ours, Ours-TSp.
 std::vector<MethodKind> every_method();
 
 HardCase rest_tank();

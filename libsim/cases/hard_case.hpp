@@ -1,6 +1,6 @@
 #pragma once
-/// Hard cases of the fluid, S1 to S24: one definition each, for tests and for the stability map.
-/// docs/results.md describes each case and the measured results.
+/// Hard cases of the fluid, S1 to S24, each defined once for tests and for the stability map. docs/results.md
+/// describes each case and the measured results.
 
 #include <limits>
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace sim::cases {
 
-/// Small: seconds on one core. Full: as the catalogue of cases specifies.
+/// Size of a case. Small: takes seconds on one core. Full: the size that the catalogue of cases specifies.
 enum class Size { Small, Full };
 
-/// Parameters of a case. 0 = the case's own value.
+/// Parameters of a case. For times and counts, 0 = the case's own value.
 struct Setting {
   MethodKind method = MethodKind::HiRes;
   Backend backend = Backend::Cpu;
@@ -23,7 +23,8 @@ struct Setting {
   int iterations = 0;     ///< constraint projections per substep, 1 .. LiveNumbers::most_iterations
   double scale = 1;       ///< factor for HardCase::scaled, > 0
   Size size = Size::Small;
-  std::vector<Effect> effects = {};  ///< additional effects of the water; settled states have none
+  /// Effects in addition to the scene's; settled start states are computed without them.
+  std::vector<Effect> effects = {};
 };
 
 /// One measured quantity with its gate.
@@ -34,18 +35,18 @@ struct Finding {
   double value = 0;
   Gate gate = Gate::Reported;
   double limit = 0;
-  /// The limit from the catalogue of cases, if the gate is looser (docs/results.md has the reason).
+  /// The limit that the catalogue of cases requires, if the gate is looser (docs/results.md has the reason).
   std::optional<double> asked;
   std::string unit;  ///< empty = a ratio or a count
 
-  /// False for NaN.
+  /// True if the value meets its limit; false for NaN with a limit.
   bool passes() const;
   /// Distance to the limit, as a share of the limit: 0 at the limit, below 0 beyond it. Infinite for a value
   /// that is only reported, and for a limit of 0 that is met.
   double margin() const;
 };
 
-/// Why a run stopped early.
+/// When and why a run stopped early.
 struct Stop {
   int frame = 0;  ///< frames since the start
   std::string cause;
@@ -54,7 +55,7 @@ struct Stop {
 /// The result of a case.
 struct Outcome {
   std::vector<Finding> findings;
-  std::optional<Stop> stopped;  ///< a failed run stops early
+  std::optional<Stop> stopped;  ///< set if the run failed and stopped early
 
   bool passes() const;
   /// The smallest margin of the findings; at most -1 for a stopped run.
@@ -66,25 +67,25 @@ struct Outcome {
 /// True if the finding shows that water was lost, braked or compressed, which no effect may cause. Other
 /// findings, such as where and how fast water comes to rest, may change with effects.
 bool is_of_stability(const Finding& finding);
-/// The outcome without the findings for which is_of_stability() is false.
+/// The outcome with only those findings for which is_of_stability() is true.
 Outcome of_stability(Outcome outcome);
 
 struct HardCase {
-  const char* id;     ///< "S2"; a second case of the same row has a letter: "S8b"
-  const char* suite;  ///< of its test suite: "S02TallColumn"
+  const char* id;     ///< such as "S2"; a second case of a row of the catalogue has a letter: "S8b"
+  const char* suite;  ///< name of its test suite, such as "S02TallColumn"
   const char* title;
   const char* asked;  ///< requirement in words
   std::vector<MethodKind> methods;
   const char* scaled;  ///< the quantity that Setting::scale multiplies: "30 m/s of the jet"; empty = nothing
-  double frame_dt_s;   ///< the case's own, s
-  int iterations;      ///< the case's own
+  double frame_dt_s;   ///< simulated time of a frame, if the setting has none, s
+  int iterations;      ///< projections per substep, if the setting has none
   /// base::Error for a missing back end; results of the simulation are never an error.
   Outcome (*run)(const Setting&);
 };
 
-/// In order of their ids.
+/// All hard cases, in ascending order of their ids.
 const std::vector<HardCase>& hard_cases();
-/// base::Error that names the known cases.
+/// The case with this id; base::Error that names the known cases if there is none.
 const HardCase& hard_case(std::string_view id);
 
 }  // namespace sim::cases

@@ -1,4 +1,4 @@
-/// S2: a column of 80 finest layers at eight solves per frame, starting from an unsettled lattice.
+/// S2: a column of 80 finest layers with eight projections per frame, starting from an unsettled lattice.
 
 #include <cmath>
 
@@ -15,10 +15,12 @@ Outcome run_s02(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = std::lround(10 * 10 * height / d / 8);
   if (setting.substeps == 0) options.substeps = 2;
-  // With levels the water keeps splitting and merging, and 40 layers of LoRes fall as far as 80.
+  // The gates are looser for methods with levels, which keep splitting and merging, and for LoRes, whose 40
+  // layers fall as far as 80 finest layers.
   const MethodTraits& method = traits_of(setting.method);
   const bool fine = !method.adaptive() && method.start_level == 0;
-  // With temporal acceleration the largest density is chaotic: 1.13 to 1.19 for eight seeds of its choice.
+  // With temporal acceleration the largest density is chaotic: 1.13 to 1.19 for eight seeds of the random
+  // choice of active particles.
   const bool temporal = method.temporal;
   Watch watch(with_effects(scene, setting), options, {.density = fine ? 1.15 : temporal ? 1.25 : 1.2});
   const double filled = centre_height(watch.state());
@@ -37,8 +39,8 @@ Outcome run_s02(const Setting& setting) {
       at_most("rise of 99.9 % of the water", (top - height) / start_spacing(setting.method), 5, "d");
   rise.asked = 2;
   return watch.outcome({lost, densest, rise,
-                        // Before the pre-stabilisation at the frame's beginning existed, the lattice shot up
-                        // at 7 m/s, and its centre rose by 41 %.
+                        // Before the solver had its pre-stabilisation at the frame's beginning, the lattice
+                        // shot up at 7 m/s, and its centre rose by 41 %.
                         at_most("v_rms", fastest_rms, 2.5, "m/s"),
                         reported("v_rms at last", rms_speed(watch.state()), "m/s")});
 }
@@ -50,7 +52,7 @@ HardCase tall_column() {
       .id = "S2",
       .suite = "S02TallColumn",
       .title = "column of 80 layers",
-      .asked = "height lost < 3 %, rho < 1.15, nobody above H + 2 d, with two substeps of four iterations",
+      .asked = "height lost < 3 %, rho < 1.15, no water above H + 2 d, with two substeps of four iterations",
       .methods = every_method(),
       .scaled = "80 layers",
       .frame_dt_s = 1.0 / 60,

@@ -1,4 +1,4 @@
-/// S3: level 3 below, level 0 above, at rest, without splits and merges.
+/// S3: water of level 3 below water of level 0, at rest, without splits and merges.
 
 #include <cmath>
 

@@ -11,7 +11,7 @@ namespace sim::cases {
 
 namespace {
 
-/// A velocity for each particle, by its offset from the centre.
+/// Sets each particle's velocity to flow(offset of the particle from the centre).
 template <class Flow>
 void stir(State& state, const Vec3d& centre, Flow flow) {
   for (auto& p : state) {
@@ -23,14 +23,14 @@ void stir(State& state, const Vec3d& centre, Flow flow) {
   }
 }
 
-/// Requirements for both: no clumps, and no energy gain. A unilateral constraint cannot hold negative
-/// pressure, so voids open; they are only reported.
+/// Runs one of the two cases; appends its findings to `out`. Required are no clumps and no energy gain. A
+/// unilateral constraint cannot sustain negative pressure, so voids open; they are only reported.
 void follow(Outcome& out, const std::string& what, const Setting& setting, Scene& scene, const State& start,
             double seconds, double least) {
   scene.gravity_m_s2 = 0;
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.5, .outside_m = 0.1 * d});
-  // One close pair in a thousand is chance; one in a hundred is a clump.
+  // Measured at 1 % of the particles: one close pair in a thousand is chance, one in a hundred is a clump.
   double close = 2, closest = 2, energy = 1;
   const double began = kinetic_energy(start);
   for (int frame = 0; frame < frames_of(setting, seconds) && watch.step(); ++frame) {
@@ -56,8 +56,8 @@ Outcome run_s07(const Setting& setting) {
   const bool levels = traits_of(setting.method).adaptive();
   Outcome out;
   {
-    // A slab between two walls. Without tension all of it flies outwards on straight lines; at spin t = 1 it
-    // covers twice its area.
+    // The square is a slab between two walls. Without tension all of it flies outwards on straight lines; at
+    // spin x t = 1 it covers twice its area.
     const double side = 12 * size, room = 48 * size, thick = 6 * size;
     Scene scene = tank({room, room, thick}, {1, 1, 1});
     const double low = (room - side) / 2, middle = room / 2;
@@ -66,7 +66,7 @@ Outcome run_s07(const Setting& setting) {
     follow(out, "square", setting, scene, start, 1 / spin, levels || setting.size == Size::Full ? 0.07 : 0.5);
   }
   {
-    // Its thickness decreases to 0.67 of the initial value.
+    // The sphere's thickness decreases to 0.67 of the initial value.
     const double radius = 5 * size, room = 48 * size, middle = room / 2;
     Scene scene = tank({room, room, room}, {1, 1, 1});
     State cube = block(setting.method, {middle - radius, middle - radius, middle - radius},

@@ -17,7 +17,7 @@ double drift(const State& state) {
 }
 
 Outcome run_s09(const Setting& setting) {
-  // A bar of 6 m x 1.2 m x 1.2 m, 1 m before a wall, without gravity.
+  // The jet is a bar of water, 6 m x 1.2 m x 1.2 m, 1 m before a wall, without gravity.
   constexpr double length = 40 * d, gap = 1, width = 8 * d;
   const double speed = 30 * setting.scale;
   Scene scene = tank({12, 8, 8}, {1, 1, 1});
@@ -27,8 +27,8 @@ Outcome run_s09(const Setting& setting) {
       block(setting.method, low, {low[0] + length, low[1] + width, low[2] + width}, {speed, 0, 0});
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.5, .outside_m = 1e-6});
-  // The wall receives rho A v^2 while the middle of the bar arrives: v^2 / length per second of the bar's
-  // momentum.
+  // While the middle of the bar arrives, the wall receives the force rho A v^2. Divided by the bar's mass,
+  // this is a change of its mean velocity by v^2 / length per second.
   const double dt = frame_dt_of(setting);
   const int first = static_cast<int>(std::ceil(2 * gap / speed / dt - 1e-9));
   const int last = static_cast<int>(std::floor((gap + 0.75 * length) / speed / dt + 1e-9));
@@ -53,7 +53,7 @@ HardCase jet() {
   return {.id = "S9",
           .suite = "S09Jet",
           .title = "jet of 30 m/s at a wall",
-          .asked = "tunnels through nothing, momentum flux within 15 %",
+          .asked = "no particle passes a wall, momentum flux within 15 %",
           .methods = every_method(),
           .scaled = "30 m/s of the jet",
           .frame_dt_s = 1.0 / 60,

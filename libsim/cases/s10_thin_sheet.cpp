@@ -10,7 +10,8 @@ namespace sim::cases {
 
 namespace {
 
-/// Area, m2, covered by the particles above this height as drawn, 1.5 radii wide, seen from above.
+/// Area, m2, that the particles above this height cover as seen from above; each is drawn as a disc of 1.5
+/// radii.
 double covered_m2(const State& state, double above_m) {
   constexpr double cell = d / 4;
   constexpr int side = 128;

@@ -1,5 +1,5 @@
-/// S11: water that sloshes from corner to corner of a tank, driven by kicks; S11b: with a slab that forms a
-/// wedge with the floor.
+/// S11: water that sloshes from corner to corner of a tank, driven by sudden velocity changes; S11b: the same
+/// with a slab that forms a wedge with the floor.
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +17,14 @@ double distance_to(const Obstacle& slab, double x, double y, double z) {
   return signed_distance(slab, slab.start, {x, y, z});
 }
 
-/// A slab that rises from the floor at 30 degrees, through both side walls; the water under it is in the
-/// wedge.
+/// A slab that rises from the floor at 30 degrees and extends beyond both side walls; the water under it is
+/// in the wedge.
 Obstacle slab_over(double side) {
   constexpr double rise = std::numbers::pi / 6, length = 8 * d, thick = 4 * d;
   Obstacle out;
   out.shape = ObstacleShape::Box;
   out.size_m = {length, thick, 2 * side};
-  // The edge of its lower face is on the floor.
+  // One edge of the slab's lower face lies on the floor.
   const double along = length / 2, up = thick / 2;
   out.start.centre_m = {side / 4 + along * std::cos(rise) - up * std::sin(rise),
                         along * std::sin(rise) + up * std::cos(rise), side / 2};
@@ -32,7 +32,7 @@ Obstacle slab_over(double side) {
   return out;
 }
 
-/// Particles deeper in an obstacle than the tolerance.
+/// Number of particles that are deeper in an obstacle than the tolerance.
 int inside(const State& state, const std::vector<Obstacle>& obstacles, double tolerance_m) {
   int out = 0;
   for (const auto& p : state) {
@@ -44,8 +44,8 @@ int inside(const State& state, const std::vector<Obstacle>& obstacles, double to
   return out;
 }
 
-/// Largest rho / rho_0 within a support of two or three walls, in the last projection. An obstacle counts as
-/// a wall.
+/// Largest rho / rho_0, in the last projection, of particles closer than their support to at least two walls.
+/// An obstacle counts as a wall.
 double densest_in_corners(const Simulation& fluid, const Scene& scene) {
   std::vector<RenderParticle> places;
   std::vector<float> error;
@@ -66,8 +66,8 @@ double densest_in_corners(const Simulation& fluid, const Scene& scene) {
   return out;
 }
 
-/// Finds particles that hang in the air: two frames without motion, and without neighbours. A flying particle
-/// moves by g dt^2 more in each frame than in the previous one.
+/// Counts particles that hang in the air: two frames without motion, and no neighbours. A flying particle's
+/// motion per frame grows by g dt^2 each frame.
 class Hanging {
  public:
   explicit Hanging(double frame_dt_s) : still_m_(gravity * frame_dt_s * frame_dt_s / 3) {}
@@ -123,7 +123,7 @@ Outcome slosh(const Setting& setting, bool with_wedge) {
   Hanging air(frame_dt_of(setting));
   for (int frame = 0; frame < frames; ++frame) {
     if (frame % period == 0) {
-      // Towards each corner in turn.
+      // The velocity change points towards each corner in turn.
       const int turn = frame / period;
       State state = watch.state();
       for (auto& p : state) {
@@ -155,7 +155,7 @@ HardCase corners() {
   return {.id = "S11",
           .suite = "S11Corners",
           .title = "water that sloshes into corners for 60 s",
-          .asked = "nobody outside by > 0.1 d, rho < 1.3 in corners, nobody stuck in the air",
+          .asked = "no particle outside by > 0.1 d, rho < 1.3 in corners, none stuck in the air",
           .methods = every_method(),
           .scaled = "2 m/s of the kicks",
           .frame_dt_s = 1.0 / 60,
@@ -168,7 +168,7 @@ HardCase wedge() {
   out.id = "S11b";
   out.suite = "S11Wedge";
   out.title = "water that sloshes into a wedge of 30 degrees for 60 s";
-  out.asked = "nobody outside or in the slab by > 0.1 d, rho < 1.3 in corners, nobody stuck in the air";
+  out.asked = "no particle outside or in the slab by > 0.1 d, rho < 1.3 in corners, none stuck in the air";
   out.run = run_with_wedge;
   return out;
 }

@@ -1,4 +1,5 @@
-/// S12: 2, 64 and 1,000 particles at one point, also at a corner of grid cells.
+/// S12: 2, 64 and 1,000 particles at one point, inside a cell of the neighbour search or at the corner of
+/// cells.
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +15,11 @@ namespace {
 
 Outcome run_s12(const Setting& setting) {
   Outcome out;
-  // Three cells of 1.1 h from the origin.
+  // The corner of cells: three cells of edge 1.1 h from the origin.
   constexpr double corner = 3 * 1.1 * 2 * d;
   for (const double place : {1.0, corner}) {
     for (const int n : {2, 64, 1000}) {
-      if (place == corner && n == 1000) continue;  // a thousand are slow, and behave the same there
+      if (place == corner && n == 1000) continue;  // 1,000 take long, and behave as at the other point
       Scene scene = tank({2, 2, 2}, {2, 2, 2});
       State start;
       const auto at = static_cast<float>(place);
@@ -31,7 +32,7 @@ Outcome run_s12(const Setting& setting) {
       }
       const std::string what = fmt::format("{} at {:.2f} m: ", n, place);
       const double fall = std::sqrt(2 * gravity * 1);
-      // A released thousand triggers the speed limit, which a gate could not distinguish from a defect.
+      // 1,000 particles fly apart at the speed limit, which a gate could not distinguish from a defect.
       Finding fastest = n < 1000 ? at_most(what + "fastest", watch.fastest_m_s(), 1.3 * fall, "m/s")
                                  : reported(what + "fastest", watch.fastest_m_s(), "m/s");
       fastest.asked = fall;

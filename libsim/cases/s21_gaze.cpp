@@ -11,7 +11,7 @@ namespace sim::cases {
 
 namespace {
 
-/// Mass in the fovea around `point`, and the share of it that is at least as fine as its target.
+/// Mass, m_*, in the fovea around a point, and the share of this mass that is at least as fine as its target.
 struct Fovea {
   double mass = 0, share = 0;
 };
@@ -57,7 +57,7 @@ Outcome run_s21(const Setting& setting) {
     }
   };
   double least_mass = mass(pool.state);
-  // Frames until 90 % of the fovea's mass is on target; `most` + 1 if it never is.
+  // Number of frames until 90 % of the fovea's mass is on target; most + 1 if it never is.
   const auto frames_to_follow = [&](const Vec3d& point, int most) {
     for (int frame = 1; frame <= most; ++frame) {
       frames_at(point, 1, true);
@@ -71,13 +71,13 @@ Outcome run_s21(const Setting& setting) {
   const double coarse = static_cast<double>(watch.state().size()) / mass(pool.state);
   const int followed = frames_to_follow(right, 20);
   frames_at(left, 60, true);
-  // Held for half a second, then the view's axis.
+  // While the gaze is lost, the method uses the last gaze for half a second, then the view's axis.
   frames_at(left, 60, false);
   const int back = frames_to_follow(left, 10);
   return watch.outcome(
       {at_most("frames after a jump", followed, 20), at_most("frames after a loss", back, 10),
        at_most("frames in which more than 5 % split", beyond, 0),
-       // Otherwise no level followed the gaze.
+       // A larger value would mean that no level followed the gaze.
        at_most("particles before the jump over all", coarse, 0.75),
        at_least("mass in the fovea", least_mass, 100, "m_*"),
        at_least("frames without gaze", static_cast<double>(watch.report().guards.gaze_lost), 60),

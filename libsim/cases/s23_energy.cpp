@@ -1,4 +1,4 @@
-/// S23: a closed dam without forcing gains no energy.
+/// S23: a breaking dam in a closed tank without forcing gains no energy.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace sim::cases {
 
 namespace {
 
-/// Divided by m_*, m2/s2.
+/// Potential plus kinetic energy divided by m_*, m2/s2.
 double energy(const State& state) {
   return gravity * centre_height(state) * mass(state) + kinetic_energy(state);
 }

@@ -1,4 +1,4 @@
-/// S24: a random gaze over a tank whose nozzle pours water taken from its corners.
+/// S24: long runs with a random gaze over a tank whose nozzle pours water taken from the tank's corners.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace sim::cases {
 
 namespace {
 
-/// Memory of the process, MiB; 0 if unknown.
+/// Resident memory of the process, MiB; 0 if unknown.
 double resident_mib() {
   std::ifstream in("/proc/self/statm");
   double size = 0, resident = 0;
@@ -31,7 +31,7 @@ Outcome run_s24(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = small ? 64 : 2048;
   Watch watch(with_effects(scene, setting), options, {.density = 2, .outside_m = 0.1 * d});
-  // The long run is for the GPU: three cores took seven minutes for it.
+  // The long run is only for the GPU: three CPU cores took seven minutes for it.
   const double seconds = small ? 20 : setting.backend == Backend::Cuda ? 300 : 120;
   const int frames = frames_of(setting, seconds, scene.frame_dt_s);
   const auto began = watch.fluid().particle_count();
@@ -42,7 +42,7 @@ Outcome run_s24(const Setting& setting) {
   std::mt19937 random(7);
   const auto draw = [&] { return static_cast<double>(random()) / 4294967296.0; };
   for (int frame = 0; frame < frames; ++frame) {
-    // Fixations of 0.1 to 0.6 s anywhere in the tank.
+    // The gaze stays 0.1 to 0.6 s at each random point of the water.
     if (--fixation <= 0) {
       fixation = frames_of(setting, 0.1 + 0.5 * draw(), scene.frame_dt_s);
       Vec3d point{};
@@ -66,11 +66,12 @@ Outcome run_s24(const Setting& setting) {
                         at_most("frames whose count does not balance", static_cast<double>(unbalanced), 0),
                         at_most("frames whose mass is off", static_cast<double>(mass_off), 0),
                         at_most("growth of the particles' memory", grown, 0.01),
-                        // Includes all other memory of the process; a test that runs this case alone has a
-                        // gate.
+                        // Only reported, because it includes all other memory of the process. A test that
+                        // runs this case alone has a gate for it.
                         reported("growth of the process", resident_mib() - memory, "MiB"),
                         watch.outside_finding(),
-                        // 64 coarsest particles sometimes leave the corners empty.
+                        // Only reported, because a tank of 64 coarsest particles sometimes has none in the
+                        // corners.
                         reported("layers left out", static_cast<double>(watch.report().guards.nozzle_waited)),
                         reported("largest rho / rho_0", watch.densest()),
                         at_least("poured", static_cast<double>(watch.report().poured), 1, "m_*")});

@@ -28,14 +28,14 @@ bool Watch::step() {
       outside(state_, scene_.tank_size_m, std::isfinite(bounds_.outside_m) ? bounds_.outside_m : 1e9);
   out_ = std::max(out_, out);
   if (report_.guards.not_finite > 0) {
-    end(fmt::format("{} particles are not finite or far outside", report_.guards.not_finite));
+    end(fmt::format("{} particles are not finite or far outside the tank", report_.guards.not_finite));
   }
-  if (out > 0) end(fmt::format("{} particles are outside", out));
+  if (out > 0) end(fmt::format("{} particles are outside the tank", out));
   if (!(densest_ <= bounds_.density)) {
-    end(fmt::format("density {:.3f} where {:.3f} is the bound", densest_, bounds_.density));
+    end(fmt::format("rho / rho_0 reached {:.3f}; the limit is {:.3f}", densest_, bounds_.density));
   }
   if (!(fastest_ <= bounds_.speed_m_s)) {
-    end(fmt::format("{:.2f} m/s where {:.2f} is the bound", fastest_, bounds_.speed_m_s));
+    end(fmt::format("a particle reached {:.2f} m/s; the limit is {:.2f} m/s", fastest_, bounds_.speed_m_s));
   }
   return !stopped_;
 }
@@ -71,7 +71,7 @@ SimulationOptions options_of(const Setting& setting) {
 }
 
 SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start) {
-  // 512 finest particles in the box from which the spacing follows.
+  // The finest spacing follows from the volume of the water and n_*: 512 finest particles in this box give d.
   scene.water.front().min_m = {0, 0, 0};
   scene.water.front().max_m = {8 * d, 8 * d, 8 * d};
   SimulationOptions out = options_of(setting);

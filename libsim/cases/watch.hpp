@@ -9,11 +9,11 @@
 
 namespace sim::cases {
 
-/// Limits beyond which a run has failed and stops.
+/// Limits of measured values; a run beyond a limit has failed and stops.
 struct Bounds {
   double density = std::numeric_limits<double>::infinity();  ///< rho / rho_0
   double speed_m_s = std::numeric_limits<double>::infinity();
-  double outside_m = std::numeric_limits<double>::infinity();  ///< beyond floor and walls
+  double outside_m = std::numeric_limits<double>::infinity();  ///< distance beyond floor and walls
 };
 
 class Watch {
@@ -28,19 +28,19 @@ class Watch {
   const State& state() const { return state_; }  ///< after the last frame
   const FrameReport& report() const { return report_; }
   int frame() const { return frame_; }
-  double densest() const { return densest_; }  ///< over all frames
-  /// The largest rho / rho_0 that is not exceeded in this share of the frames. 0 < share <= 1; 0 without a
+  double densest() const { return densest_; }  ///< largest rho / rho_0 over all frames
+  /// The rho / rho_0 that is not exceeded in this share of the frames, 0 < share <= 1; 0 if there is no
   /// frame.
   double densest_in(double share) const;
   double fastest_m_s() const { return fastest_; }
-  int out() const { return out_; }                    ///< particles outside, in the worst frame
+  int out() const { return out_; }                    ///< largest number of particles outside in a frame
   int short_frames() const { return short_frames_; }  ///< frames that requested more substeps than they got
 
   /// Findings shared by most cases. Each gets its gate from the bounds.
   Finding density_finding() const;
   Finding speed_finding() const;
   Finding outside_finding() const;
-  /// Ends the case: the findings, and the reason of a stop.
+  /// The case's result: these findings, and the reason of a stop.
   Outcome outcome(std::vector<Finding> findings) const;
 
  private:
@@ -52,21 +52,22 @@ class Watch {
   State state_;
   FrameReport report_;
   int frame_ = 0;
-  std::vector<double> densities_;  ///< the maximum of each frame
+  std::vector<double> densities_;  ///< largest rho / rho_0 of each frame
   double densest_ = 0, fastest_ = 0;
   int out_ = 0, short_frames_ = 0;
   std::optional<Stop> stopped_;
 };
 
-/// The scene with the setting's effects.
+/// The scene with the setting's effects in addition to its own.
 Scene with_effects(Scene scene, const Setting& setting);
-/// Method, back end and parameters of the setting. Ours-TSp runs at tau = -10: beta = 0.67.
+/// Options with the setting's method, back end and parameters. Ours-TSp runs at tau = -10: beta = 0.67.
 SimulationOptions options_of(const Setting& setting);
-/// The same for a run that starts with these particles, whose finest spacing is d.
+/// Options for a run that starts with the particles `start`; sets the scene's water so that the finest
+/// spacing is d.
 SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start);
 /// Simulated time of a frame, s: the setting's or `usual`.
 double frame_dt_of(const Setting& setting, double usual = 1.0 / 60);
-/// At least one.
+/// Number of frames in this simulated time; at least one.
 int frames_of(const Setting& setting, double seconds, double usual_dt_s = 1.0 / 60);
 
 Finding at_most(std::string name, double value, double limit, std::string unit = "");

@@ -14,18 +14,21 @@ inline constexpr double gravity = 9.81;
 
 using State = std::vector<ParticleState>;
 
-/// A tank with a block of water in its corner, without a file. The participant's view is from the front.
+/// The scene of a tank with a block of water in its corner, built without a scene file. The participant's
+/// view is from the front.
 Scene tank(const Vec3d& size, const Vec3d& water, int settle_frames = 0);
 
-/// Height of about this many layers of spacing d, m; the number is even, because LoRes halves it, and at
-/// least two.
+/// Height of about this many layers of spacing d, m. The number of layers is even, because LoRes halves it,
+/// and at least two.
 double even_layers(double layers);
 
-/// Level and spacing, m, of the particles with which a method starts if the finest spacing is d.
+/// start_level: level of the particles with which a method starts. start_spacing: their spacing if the finest
+/// spacing is d, m.
 int start_level(MethodKind method);
 double start_spacing(MethodKind method);
 
-/// The lattice of particles with which a method starts in the box, at one velocity; ids from `first_id`.
+/// The lattice of particles with which a method starts in the box, all with the same velocity; ids count from
+/// `first_id`.
 State block(MethodKind method, const Vec3d& low, const Vec3d& high, const Vec3d& velocity = {},
             int first_id = 0);
 
@@ -38,23 +41,24 @@ double rms_speed(const State& state);       ///< weighted by mass, m/s
 double kinetic_energy(const State& state);  ///< divided by m_*, m2/s2
 /// Height below which this share of the mass is, m.
 double height_of_share(const State& state, double share);
-/// Particles outside [0, size] in x and z or below the floor by more than `tolerance_m`, or not finite.
+/// Number of particles outside [0, size] in x and z or below the floor by more than `tolerance_m`, or not
+/// finite.
 int outside(const State& state, const Vec3d& size, double tolerance_m);
 
 /// Distance from each particle to its nearest neighbour divided by the mean of their spacings, in ascending
 /// order; at most 2.
 std::vector<double> nearest_distances(const State& state);
 
-/// A settled pool of 8 finest layers, 4,096 particles of HiRes, seen from the front.
+/// A settled pool, 8 finest layers deep, of 4,096 particles of HiRes, seen from the front.
 struct Pool {
   static constexpr std::int64_t n_star = 512;
   Scene scene;
   State state;
 };
-/// Settles once per back end; thread-safe.
+/// Computes the pool at the first call for a back end; thread-safe.
 const Pool& settled_pool(Backend backend);
 
-/// One eye at the view's position that looks at `point`. `valid`: the tracker's flag.
+/// The gaze of one eye at the view's position that looks at `point`. `valid`: the eye tracker's flag.
 Looks look_at(const Scene& scene, const Vec3d& point, bool valid = true);
 
 }  // namespace sim::cases

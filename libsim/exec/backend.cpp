@@ -6,7 +6,7 @@ namespace sim {
 
 #ifdef SIM_HAS_CUDA
 namespace cuda {
-/// Empty if a device responds, otherwise the reason.
+/// The reason why no CUDA device responds; empty if one responds.
 std::string device_problem();
 std::int64_t device_bytes_taken();
 std::string device_name();

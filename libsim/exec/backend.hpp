@@ -1,5 +1,5 @@
 #pragma once
-/// The back ends by name.
+/// Choice of a back end by its name.
 
 #include <cstdint>
 #include <optional>
@@ -12,8 +12,8 @@ enum class Backend { Cpu, Cuda };
 
 inline std::string backend_name(Backend backend) { return backend == Backend::Cpu ? "cpu" : "cuda"; }
 
-/// "cpu", "cuda" or "auto" (CUDA if a device responds, otherwise the CPU). "cuda" without a device is a
-/// base::Error.
+/// The back end "cpu", "cuda" or "auto" (CUDA if a device responds, otherwise the CPU). "cuda" without a
+/// device is a base::Error.
 Backend choose_backend(std::string_view name);
 
 /// Bytes of the device's memory in use, by this program or others; none on the CPU.

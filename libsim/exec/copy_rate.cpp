@@ -9,11 +9,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Twice this exceeds most caches.
+/// Size of the array that is copied; source and destination together exceed most caches.
 constexpr std::size_t bytes = std::size_t{256} << 20;
 constexpr std::size_t repeats = 5;
 #ifdef SIM_CUDA
-/// Copies per timing: one takes a fraction of a millisecond, and waiting for it some microseconds.
+/// Number of copies per timing: one copy takes a fraction of a millisecond, and waiting for its end some
+/// microseconds.
 constexpr int in_a_row = 8;
 #else
 constexpr int in_a_row = 1;
@@ -27,7 +28,7 @@ struct CopyOne {
 
 template <class Copy>
 double median_seconds(Copy copy) {
-  copy();  // first touch
+  copy();  // untimed: touches the memory pages first
   synchronize();
   std::array<double, repeats> seconds{};
   for (double& each : seconds) {

@@ -1,13 +1,14 @@
 #pragma once
-/// What kernels call on either back end: atomic operations, fast quotients and roots, and the lanes of a
-/// team.
+/// Functions that kernels call on both back ends: atomic operations, fast quotients and roots, and the lanes
+/// of a team.
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
 
-/// Prefix of functions that kernels call; APART: for rarely used ones, which are not inlined.
+/// SIM_FN: prefix of functions that kernels call. SIM_FN_APART: the same for rarely used functions, which are
+/// not inlined.
 #ifdef SIM_CUDA
 #include <cuda_runtime.h>
 #define SIM_FN __host__ __device__ __forceinline__
@@ -40,7 +41,7 @@ SIM_FN void atomic_add(std::uint64_t* target, std::uint64_t value) {
 #endif
 }
 
-/// *target += amount; returns the old value.
+/// Atomically adds `amount` to *target, and returns the old value.
 SIM_FN std::uint64_t atomic_take(std::uint64_t* target, std::uint64_t amount) {
 #ifdef __CUDA_ARCH__
   return atomicAdd(reinterpret_cast<unsigned long long*>(target), static_cast<unsigned long long>(amount));
@@ -61,7 +62,8 @@ SIM_FN int atomic_take(int* target, int amount) {
 #endif
 }
 
-/// A unique number: the count of earlier calls. The threads of a warp share one atomic operation.
+/// Returns a unique number: the count of earlier calls for this target. The threads of a warp share one
+/// atomic operation.
 SIM_FN int atomic_next(int* target) {
 #ifdef __CUDA_ARCH__
   const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(target));
@@ -91,7 +93,7 @@ SIM_FN void atomic_max(std::uint64_t* target, std::uint64_t value) {
 #endif
 }
 
-/// Sets a flag that other threads may set too.
+/// Sets *flag to 1; other threads may do the same at the same time.
 SIM_FN void atomic_raise(int* flag) {
 #ifdef __CUDA_ARCH__
   volatile int* const seen = flag;
@@ -109,7 +111,7 @@ void atomic_add(T* target, T value) {
   *target += value;
 }
 
-/// *target += amount; returns the old value.
+/// Atomically adds `amount` to *target, and returns the old value.
 template <class T>
 T atomic_take(T* target, T amount) {
   T was;
@@ -121,7 +123,7 @@ T atomic_take(T* target, T amount) {
   return was;
 }
 
-/// A unique number: the count of earlier calls.
+/// Returns a unique number: the count of earlier calls for this target.
 inline int atomic_next(int* target) { return atomic_take(target, 1); }
 
 template <class T>
@@ -130,7 +132,7 @@ void atomic_max(T* target, T value) {
   if (value > *target) *target = value;
 }
 
-/// Sets a flag that other threads may set too.
+/// Sets *flag to 1; other threads may do the same at the same time.
 inline void atomic_raise(int* flag) {
 #pragma omp atomic write
   *flag = 1;
@@ -150,7 +152,7 @@ SIM_FN float quotient(float a, float b) {
 }
 SIM_FN float reciprocal(float x) { return quotient(1, x); }
 
-/// sqrt(x), with the same accuracy.
+/// sqrt(x) to about one unit in the last place.
 SIM_FN float rough_root(float x) {
 #ifdef __CUDA_ARCH__
   float root;
@@ -161,7 +163,7 @@ SIM_FN float rough_root(float x) {
 #endif
 }
 
-/// A distance r > 0 from its square, and divisions by it: on the GPU both use one reciprocal root.
+/// The root r > 0 of a square, and divisions by r; on the GPU both use one reciprocal root.
 struct Root {
 #ifdef __CUDA_ARCH__
   float r, inverse;
@@ -177,8 +179,9 @@ struct Root {
 #endif
 };
 
-/// A functor of for_each_team gets the lanes that share its index: lane k processes a loop's steps k, k +
-/// size, ... and the partial results are summed. Here there is one lane, and everything is optimised away.
+/// The lanes that share one index in for_each_team. Lane k processes the steps k, k + size, ... of a
+/// functor's inner loop; sum() combines the partial results. Here there is one lane, and the compiler removes
+/// all calls.
 struct OneLane {
   static constexpr int size = 1;
   SIM_FN int rank() const { return 0; }
@@ -191,7 +194,7 @@ struct OneLane {
     return value;
   }
   SIM_FN bool any(bool mine) const { return mine; }
-  /// The smallest of the lanes' values by T::before, which must order all unequal values.
+  /// The first of the lanes' values in the order of T::before, which must order all unequal values.
   template <class T>
   SIM_FN T first(T value) const {
     return value;

@@ -1,5 +1,5 @@
 #pragma once
-/// A GL buffer by name, for code that calls no GL.
+/// Reference to an OpenGL buffer, for code that calls no OpenGL.
 
 #include <cstddef>
 #include <cstdint>

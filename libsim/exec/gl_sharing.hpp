@@ -23,10 +23,10 @@ class GlSharing {
     return *this;
   }
 
-  /// Registers buffers of the current context and releases earlier ones, unless they are the same. False if
-  /// one cannot be shared: the back end is the CPU, or GL runs on another device.
+  /// Registers buffers of the current GL context and releases those registered before, unless both lists are
+  /// equal. False if a buffer cannot be shared: the back end is the CPU, or GL runs on another device.
   bool accept(const std::vector<GlBufferRef>& buffers);
-  /// The accepted buffers as memory, in the same order, until unmap(); mapping twice has no further effect.
+  /// The accepted buffers as memory, in the same order, until unmap(). Mapping twice has no further effect.
   /// Earlier GL commands finish first, and GL waits for work launched meanwhile. Each switch between GL and
   /// the back end takes time on the device (docs/decisions.md): map once per frame, and unmap where GL
   /// continues anyway.
@@ -43,8 +43,8 @@ class GlSharing {
 
   Access access_;
   std::vector<GlBufferRef> buffers_;
-  std::vector<void*> resources_;  ///< one per buffer; empty if they were refused
-  std::vector<void*> memory_;     ///< of each buffer while mapped
+  std::vector<void*> resources_;  ///< handles, one per buffer; empty if the buffers cannot be shared
+  std::vector<void*> memory_;     ///< address of each buffer while mapped
 };
 
 }  // namespace sim::SIM_BACKEND

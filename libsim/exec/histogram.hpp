@@ -1,6 +1,6 @@
 #pragma once
-/// Counts in bins, and the bin that contains a rank: percentiles without a sort, independent of the order of
-/// the values.
+/// Histograms on the device: counts per bin, and the bin that contains a given rank. They give percentiles
+/// without a sort, independent of the order of the values.
 
 #include "libsim/exec/one_block.hpp"
 
@@ -18,7 +18,7 @@ struct Histogram {
   }
 };
 
-/// A histogram's counts in a block's scratch memory: of bins, of runs of 16 and of 256 bins.
+/// A histogram's counts in a block's scratch memory: per bin, per run of 16 bins and per run of 256 bins.
 class BinCounts {
  public:
   static constexpr int run = 16;
@@ -34,7 +34,7 @@ class BinCounts {
 
   SIM_FN int runs() const { return bins_ / run; }
 
-  /// Adds up the sets and resets them to zero.
+  /// Adds up the histogram's sets of counters, and resets these to zero.
   template <class Block>
   SIM_FN void take(Block block, const Histogram& from) const {
     block.each(bins_, AddCopies{from, count_});
@@ -42,7 +42,7 @@ class BinCounts {
     block.each(runs() / run, AddRun{in_run_, in_long_run_});
   }
 
-  /// Count in the runs before this one.
+  /// Number of values in the runs before run `at`.
   SIM_FN int before(int at) const {
     int sum = 0;
     for (int k = 0; k < at / run; ++k) sum += in_long_run_[k];
@@ -50,8 +50,8 @@ class BinCounts {
     return sum;
   }
 
-  /// Calls found(bin, count before it, its count) if the bin with this rank, counted from run `from`, is in
-  /// run `at`.
+  /// Calls found(bin, number of values before the bin, number in the bin) if run `at` contains the value of
+  /// this rank. Ranks and numbers count from the start of run `from`.
   template <class Found>
   SIM_FN void find(int at, int from, int rank, Found found) const {
     int below = before(at) - before(from);
@@ -91,7 +91,7 @@ class BinCounts {
   int* in_long_run_;
 };
 
-/// Calls f(block, counts) with a histogram's counts.
+/// Calls f(block, counts) with the counts of a histogram.
 template <class F>
 struct TakeCounts {
   Histogram histogram;
@@ -104,7 +104,7 @@ struct TakeCounts {
   }
 };
 
-/// The counters' memory. All zero except while counting.
+/// The memory of a histogram's counters, which are zero except while values are counted.
 class HistogramStore {
  public:
   Histogram view(int bins) {

@@ -15,7 +15,7 @@ struct LaunchTime {
   double ms = 0;  ///< from launch to end, on the device's clock if it has one
 };
 
-/// The entries in descending order of time, each with its label.
+/// The entries in descending order of time, each with its label (the key).
 inline std::vector<LaunchTime> longest_first(const std::map<std::string, LaunchTime>& passes) {
   std::vector<LaunchTime> out;
   for (const auto& [label, pass] : passes) out.push_back({label, pass.launches, pass.ms});

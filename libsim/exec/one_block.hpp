@@ -5,7 +5,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// The indices from `first` below `end` processed by one thread.
+/// The indices that one thread processes: first, first + stride, ... below end.
 struct Walk {
   int first, stride, end;
 
@@ -47,7 +47,7 @@ struct OneWarp {
 #endif
   }
   /// f(0) + ... + f(n-1), bit-identical for all lanes and in each run. All lanes must call it together, with
-  /// the same n; f may read what their previous each() wrote.
+  /// the same n. f may read values written by the preceding each().
   template <class F>
   SIM_FN float sum(int n, F f) const {
     float out = walk(n).sum(f);
@@ -56,8 +56,8 @@ struct OneWarp {
 #endif
     return out;
   }
-  /// The smallest f(i) below `most`, and its first index, the same for all lanes; otherwise `most` and n.
-  /// Call it like sum(), with the same `most`.
+  /// The smallest f(i) below `most`, and its first index, the same for all lanes; otherwise `most` and n. As
+  /// for sum(), all lanes must call it together, with the same n and `most`.
   template <class F>
   SIM_FN float least(int n, float most, int& where, F f) const {
     float out = walk(n).least(most, where, f);
@@ -92,7 +92,7 @@ struct OneBlock {
     spread(n, f);
     wait();
   }
-  /// The same, but the calls have finished only after the next wait.
+  /// Calls f(i) for i = 0 ... n-1; the calls have finished only after the next wait().
   template <class F>
   SIM_FN void spread(int n, F f) const {
 #ifdef __CUDA_ARCH__
@@ -119,7 +119,7 @@ struct OneBlock {
   }
 };
 
-/// Bytes of shared memory that a block can have.
+/// Largest shared memory of a block, bytes.
 std::size_t most_block_memory();
 
 template <bool Beside, class F>
@@ -130,9 +130,9 @@ __global__ void __launch_bounds__(OneBlock::most)
   f(OneBlock{}, Beside ? reinterpret_cast<unsigned char*>(beside) : spare);
 }
 
-/// Calls f(block, room) once, for passes over so few cells that launching each would cost more than running
-/// it. `width`: number of indices of its widest steps. `room`: `bytes` of scratch memory, in shared memory if
-/// that is large enough, otherwise in `spare`.
+/// Calls f(block, room) once, for a sequence of passes over so few cells that one launch per pass would take
+/// longer than the passes. `width`: largest number of indices of a pass. `room`: `bytes` of scratch memory,
+/// in shared memory if that is large enough, otherwise in `spare`.
 template <class F>
 void in_one_block(const char* label, int width, std::size_t bytes, Array<unsigned char>& spare, F f) {
   static_assert(std::is_trivially_copyable_v<F>);
@@ -159,7 +159,7 @@ struct OneBlock {
   void each(int n, F f) const {
     for (int i = 0; i < n; ++i) f(i);
   }
-  /// The same, but the calls have finished only after the next wait.
+  /// Calls f(i) for i = 0 ... n-1; the calls have finished only after the next wait().
   template <class F>
   void spread(int n, F f) const {
     each(n, f);
@@ -182,8 +182,7 @@ struct OneBlock {
   }
 };
 
-/// Calls f(block, room) once, for passes over so few cells that launching each would cost more than running
-/// it. `width`: number of indices of its widest steps. `room`: `bytes` of scratch memory.
+/// Calls f(block, room) once, for a sequence of passes over few cells. `room`: `bytes` of scratch memory.
 template <class F>
 void in_one_block(const char* label, int /*width*/, std::size_t bytes, Array<unsigned char>& spare, F f) {
   const LaunchTimer timer(label);

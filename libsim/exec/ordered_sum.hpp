@@ -1,5 +1,5 @@
 #pragma once
-/// Sums that stay in the back end's memory, added in the same order in every run.
+/// Sums in the back end's memory, added in the same order in every run.
 
 #include "libsim/exec/one_block.hpp"
 
@@ -7,9 +7,9 @@ namespace sim::SIM_BACKEND {
 
 namespace ordered_sum_detail {
 
-/// Terms added by a team.
+/// Number of terms that a team adds.
 constexpr int run_length = 64;
-/// Sums of runs that a block adds in parallel.
+/// Number of partial sums that a block computes in parallel.
 constexpr int rows = 128;
 
 template <class F>
@@ -64,7 +64,7 @@ struct AddRuns {
 
 }  // namespace ordered_sum_detail
 
-/// The memory of such sums; not allocated before the first sum.
+/// Computes sums in a fixed order; its memory is allocated at the first sum.
 class OrderedSum {
  public:
   /// Calls take(f(0) + ... + f(n-1)) once, on the device. f may also write data of index i. `most`: largest n

@@ -1,18 +1,18 @@
 #pragma once
-/// Several small passes in one launch; none of them may read or write what another one writes.
+/// Several small passes in one launch. No pass may read or write data that another of them writes.
 
 #include "libsim/exec/space.hpp"
 
 namespace sim::SIM_BACKEND {
 
-/// Calls f(0) ... f(n-1); n may be 0, not negative.
+/// A pass that calls f(0) ... f(n-1); n may be 0, not negative.
 template <class F>
 struct Pass {
   int n;
   F f;
 };
 
-/// The indices of `first`, then those of `second`.
+/// Two passes as one: first the indices of `first`, then those of `second`.
 template <class First, class Second>
 struct BothPasses {
   int first_n;
@@ -28,7 +28,7 @@ struct BothPasses {
   }
 };
 
-/// All passes in one launch, in any order.
+/// Runs all passes in one launch, in any order.
 template <class F>
 void for_each_pass(const char* label, Pass<F> all) {
   for_each(label, all.n, all.f);

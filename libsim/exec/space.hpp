@@ -18,7 +18,7 @@ namespace sim::SIM_BACKEND {
 
 /// Switches the profile of this back end on (discarding earlier measurements) or off.
 void profile_launches(bool on);
-/// One entry per label, longest first; waits for all launched work.
+/// The profile: one entry per label, longest first; waits for all launched work.
 std::vector<LaunchTime> launch_times();
 
 /// Timer around each launch; off unless a bench switches it on.
@@ -40,7 +40,8 @@ class LaunchTimer {
   static bool on;
 };
 
-/// Memory of the back end. Errors (out of memory, device lost) are base::Error.
+/// Memory of the back end. Errors (out of memory, device lost): base::Error on a GPU, std::bad_alloc on the
+/// CPU.
 void* allocate(std::size_t bytes);
 void release(void* pointer) noexcept;
 void copy_to_host(void* host, const void* device, std::size_t bytes);
@@ -50,7 +51,7 @@ void fill_zero(void* device, std::size_t bytes);
 /// Waits until all launched work is done; throws its errors.
 void synchronize();
 
-/// A column of trivially copyable values in the back end's memory. Movable only.
+/// An array of trivially copyable values in the back end's memory. Movable only.
 template <class T>
 class Array {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -76,7 +77,7 @@ class Array {
     }
     size_ = size;
   }
-  /// Allocates for later sizes; contents are undefined if it grows.
+  /// Allocates memory for later sizes; contents are undefined if the memory grows.
   void reserve(std::size_t capacity) {
     const std::size_t size = size_;
     if (capacity > capacity_) resize(capacity);
@@ -148,8 +149,9 @@ bool launches_overlap();
 /// neighbours.
 int team_wish(int n);
 
-/// Launches `kernel` after the previous launch. If the device supports it, its blocks start while the last
-/// blocks of the previous launch end, and wait there: each kernel must call begin_kernel() first.
+/// Launches `kernel` after the previous launch. If the device supports it, the kernel's blocks start while
+/// the last blocks of the previous launch end. They wait in begin_kernel(), which each kernel must call
+/// first.
 template <class... Parameters, class... Arguments>
 void launch(const char* label, void (*kernel)(Parameters...), unsigned blocks, unsigned threads,
             std::size_t shared_bytes, Arguments... arguments) {
@@ -191,8 +193,8 @@ void for_each(const char* label, int n, F f) {
          0, n, f);
 }
 
-/// Lanes for each of n indices: a functor of for_each_team may define its own measured number, `int lanes(int
-/// n) const`.
+/// Number of lanes per index for n indices: f.lanes(n) if the functor defines `int lanes(int n) const`,
+/// otherwise team_wish(n).
 template <class F>
 int lanes_for(const F& f, int n) {
   if constexpr (requires { f.lanes(n); }) {
@@ -202,8 +204,8 @@ int lanes_for(const F& f, int n) {
   }
 }
 
-/// Minimum number of blocks that a multiprocessor must be able to hold. By default the compiler gives a
-/// thread so few registers that it waits for each load separately; passes over neighbours gain more from
+/// Minimum number of blocks that a multiprocessor must be able to run at once. By default the compiler gives
+/// a thread so few registers that it waits for each load separately; passes over neighbours gain more from
 /// overlapping loads than from more blocks.
 constexpr int least_team_blocks = 4;
 
@@ -247,8 +249,8 @@ void for_each_team(const char* label, int n, F f) {
 
 #else
 
-/// Number of indices that a thread takes at once: enough to hide the cost of taking them, and several turns
-/// per thread, so that the load is balanced.
+/// Number of indices that a thread takes at once: enough to hide the cost of taking them, and few enough that
+/// each thread takes several times, which balances the load.
 int grain_of(int n);
 
 /// Calls f(0) ... f(n-1) in any order; does nothing if n is 0. `label` names the pass in errors and profiles.
@@ -284,7 +286,7 @@ void for_each_team(const char* label, int n, F f) {
 /// Sums values[0..n-1] in double over fixed chunks, so that the result does not depend on the number of
 /// threads.
 double fixed_order_sum(const Array<float>& values, int n);
-/// Largest value; 0 if n is 0.
+/// Largest of values[0..n-1], none of which may be negative; 0 if n is 0.
 float maximum(const Array<float>& values, int n);
 
 }  // namespace sim::SIM_BACKEND

@@ -87,7 +87,7 @@ void count_digits(const std::uint64_t* keys, int n, int shift, Histogram& counts
   }
 }
 
-/// Converts counts to start indices; true if one bucket contains everything.
+/// Converts counts to start indices; true if one bucket contains all keys.
 bool place_digits(Histogram& counts, int n) {
   int sum = 0;
   for (int b = 0; b < buckets; ++b) {
@@ -162,7 +162,7 @@ float maximum(const Array<float>& values, int n) {
   return most;
 }
 
-// On the CPU, particles reach GL by upload, and pictures reach the back end by read-back.
+// The CPU back end shares no buffers with GL: particles reach GL by upload, and pictures are read back.
 GlSharing::~GlSharing() = default;
 bool GlSharing::accept(const std::vector<GlBufferRef>&) { return false; }
 const std::vector<void*>& GlSharing::map() { return memory_; }

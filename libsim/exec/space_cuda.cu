@@ -46,7 +46,7 @@ std::string device_problem() {
   int devices = 0;
   const cudaError_t status = cudaGetDeviceCount(&devices);
   if (status != cudaSuccess) return cudaGetErrorString(status);
-  return devices ? "" : "no CUDA device answers";
+  return devices ? "" : "no CUDA device was found";
 }
 
 std::int64_t device_bytes_taken() {

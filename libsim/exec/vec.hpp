@@ -1,5 +1,6 @@
 #pragma once
-/// Small vectors for kernels, in the back end's namespace: two compilers must not share one weak symbol.
+/// Small vectors for kernels. They are in the back end's namespace, because two compilers must not share one
+/// weak symbol.
 
 #include <cmath>
 
@@ -16,8 +17,8 @@ struct alignas(16) Vec4 {
   float x, y, z, w;
 };
 
-/// max(a, b) and min(a, b) for a bound b that is not NaN: if a is NaN, the result is b, as in fmaxf and
-/// fminf. Those are function calls on the CPU, and a call in a loop prevents vectorisation.
+/// at_least: max(a, b); at_most: min(a, b). The bound b must not be NaN; if a is NaN, the result is b, as
+/// with fmaxf and fminf. On the CPU, fmaxf and fminf are function calls and would prevent vectorisation.
 SIM_FN float at_least(float a, float b) {
 #ifdef __CUDA_ARCH__
   return fmaxf(a, b);
@@ -32,7 +33,7 @@ SIM_FN float at_most(float a, float b) {
   return a < b ? a : b;
 #endif
 }
-/// floor(x), clamped to the two bounds.
+/// floor(x), clamped to low .. high.
 SIM_FN int floor_within(float x, int low, int high) {
 #ifdef __CUDA_ARCH__
   return min(max(__float2int_rd(x), low), high);

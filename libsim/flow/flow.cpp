@@ -29,7 +29,7 @@ struct ListCorners {
     keys[place] = std::uint64_t{ordered(dot(up, xyz(position[i])))} << 32 | static_cast<std::uint32_t>(id[i]);
     order[place] = i;
   }
-  /// Bits that are ordered like the numbers.
+  /// The float's bits as an unsigned integer that has the same order.
   SIM_FN static std::uint32_t ordered(float height) {
     std::uint32_t bits = 0;
     memcpy(&bits, &height, sizeof bits);
@@ -68,7 +68,7 @@ struct Weigh {
   SIM_FN void operator()(int k) const { mass[k] = 1 << level[taken[k]]; }
 };
 
-/// Stores the index where the sum first reaches `need` > 0: true for one k only.
+/// Finds the shortest front part of the list whose mass reaches `need` > 0. Exactly one k writes the result.
 struct FindCut {
   const int* mass;
   const int* sum;
@@ -85,7 +85,7 @@ struct SetAll {
   SIM_FN void operator()(int i) const { values[i] = value; }
 };
 
-/// Removes taken particles; their ids come first in the list of the new ones.
+/// Marks taken particles as removed; the new particles get the taken ids first.
 struct Leave {
   const int* taken;
   const int* id;
@@ -112,15 +112,15 @@ struct Stay {
   }
 };
 
-/// Further new particles get the lowest free ids.
+/// Gives the lowest free ids to the new particles beyond the number of taken ones.
 struct TakeFree {
   const int* free_ids;
   int* ids;
   SIM_FN void operator()(int k) const { ids[k] = free_ids[k]; }
 };
 
-/// Initialises the new particles as steady members of their level. Their saliency is not measured yet: 0, as
-/// for unknown ones.
+/// Initialises the new particles; their target and history equal their level. Their saliency is not measured
+/// yet and is set to 0.
 struct Make {
   const int* ids;
   Vec4* position;
@@ -184,7 +184,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   }
   if (layers <= 0) return 0;
 
-  // Remaining particles, then copies as space for the new ones, to be overwritten.
+  // The new order: the remaining particles, then copies of a particle, which the new particles overwrite.
   kept_.resize(static_cast<std::size_t>(n));
   id_.resize(static_cast<std::size_t>(made));
   for_each("keep", n, SetAll{kept_.data(), 1});
@@ -198,7 +198,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
                  .temperature = p.temperature(),
                  .heat = heat});
   if (made > cut.taken) {
-    // Particles just taken still count: their ids are already in use again.
+    // The taken particles' ids do not count as free: new particles have them already.
     list_free_ids(p, nullptr, scanner_, free_, free_sum_, free_ids_);
     for_each("take ids", made - cut.taken, TakeFree{free_ids_.data(), id_.data() + cut.taken});
   }

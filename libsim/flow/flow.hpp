@@ -1,5 +1,5 @@
 #pragma once
-/// Water that enters and leaves a run through nozzles and outlets, and the heat that goes with it.
+/// Water that enters and leaves a run through nozzles and outlets, and its heat.
 
 #include <cmath>
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace sim::SIM_BACKEND {
 /// m_* times kelvin above the reference, as integer multiples of `unit`, so that the order of the threads
 /// does not matter. Negative values in two's complement.
 struct HeatLedger {
-  std::uint64_t poured;   ///< by nozzles
-  std::uint64_t taken;    ///< for nozzles
+  std::uint64_t poured;   ///< with the water that nozzles added
+  std::uint64_t taken;    ///< with the water that nozzles took from the corners
   std::uint64_t drained;  ///< through outlets
   std::uint64_t walls;    ///< from walls with a given temperature
 
@@ -32,7 +32,8 @@ struct HeatLedger {
   }
 };
 
-/// The corners [low, low + edge] and [high - edge, high] in x and z, at any height.
+/// The four corner columns of a tank: x and z each lie in [low, low + edge] or [high - edge, high]; y is
+/// free.
 struct Corners {
   Vec3 low{}, high{};
   float edge = 0;
@@ -44,12 +45,12 @@ struct Corners {
   }
 };
 
-/// The source of a nozzle's water: the particles in the four corner columns of the tank that lie lowest along
-/// gravity.
+/// The source of a nozzle's water: in the four corner columns of the tank, the particles that are lowest with
+/// respect to gravity.
 class CornerColumns {
  public:
-  /// Orders the particles in the corners by their height along `up`, lowest first, ties by id: the result
-  /// does not depend on the particles' order in memory. Returns their number, which is read back from the
+  /// Lists the particles in the corners by their height along `up`, lowest first, ties by id, so that the
+  /// result does not depend on the particles' order in memory. Returns their number, read back from the
   /// device.
   int find(Reads<Column::Position, Column::Id> particles, const Corners& corners, Vec3 up);
   /// Indices of the particles found by `find`.
@@ -71,19 +72,19 @@ using ExchangeView =
 /// Exchanges particles of any levels for particles of one level, with equal mass in units of m_*.
 class Exchange {
  public:
-  /// End of the taken particles in the list.
+  /// The particles that are taken from the front of the list.
   struct Cut {
     int taken;
-    int mass;  ///< of the taken particles, m_*
+    int mass;  ///< mass of these particles, m_*
   };
 
-  /// Takes the first particles of `lowest_first` (`found` of them) until they and the reservoir suffice for a
-  /// whole number of layers, at most `layers` of `sites` particles of `level`. Removes them, appends the
-  /// layers' particles and stores the remaining mass, less than the heaviest particle's, in the reservoir.
-  /// New particles get the freed ids, then the lowest free ids below the capacity. The caller sets their
-  /// positions and velocities, and their temperatures if they have any; the heat of the taken particles is
-  /// then added to `heat`. Returns the number of layers made: fewer than requested if the mass or the
-  /// capacity does not suffice.
+  /// Takes particles from the front of `lowest_first` (which has `found` entries) until their mass and the
+  /// reservoir suffice for a whole number of layers, at most `layers`. A layer has `sites` particles of
+  /// `level`. Removes the taken particles, appends the layers' particles and stores the remaining mass, less
+  /// than the heaviest particle's, in the reservoir. New particles get the freed ids, then the lowest free
+  /// ids below the capacity. The caller sets their positions and velocities, and their temperatures if they
+  /// have any; the heat of the taken particles is then added to `heat`. Returns the number of layers made:
+  /// fewer than requested if the mass or the capacity does not suffice.
   int run(Particles& particles, const LevelSupports& supports, const int* lowest_first, int found, int sites,
           int layers, int level, std::int64_t& reservoir, HeatLedger* heat);
   std::size_t bytes() const;
@@ -95,24 +96,25 @@ class Exchange {
   Array<Cut> cut_;
 };
 
-/// The nozzles of a run: what they have poured and where it came from.
+/// The nozzles of a run, and the amounts of water that they took and added.
 struct Jets {
   std::vector<Nozzle> nozzles;
-  std::vector<Poured> before;   ///< per nozzle, in layers of its present level
+  std::vector<Poured> before;   ///< amount that each nozzle has added, in layers of its present level
   double finest_spacing_m = 0;  ///< d_*
   double frame_dt_s = 0;        ///< > 0
   Corners corners;
-  bool by_target = false;  ///< the level of the layers follows the targets around the mouth
-  int level = 0;           ///< of the poured particles
-  int frame = 0;           ///< number of the frame that begins
-  bool pouring = false;    ///< this frame started with new layers
+  /// True if the level of new layers is the median target of the particles near the mouth.
+  bool by_target = false;
+  int level = 0;         ///< level of the particles that are added
+  int frame = 0;         ///< number of the frame that begins
+  bool pouring = false;  ///< true if this frame started with new layers
   CornerColumns columns;
   Exchange exchange;
-  Array<int> mass_by_target;   ///< near a mouth
+  Array<int> mass_by_target;   ///< mass of the particles near a mouth by target level, m_*
   std::int64_t reservoir = 0;  ///< taken from the corners and not yet poured, in m_*
   std::int64_t poured = 0;     ///< since the run began, in m_*
   std::int64_t made = 0;       ///< particles added by pouring since the run began
-  std::int64_t taken = 0;      ///< particles taken from the corners
+  std::int64_t taken = 0;      ///< particles taken from the corners since the run began
   std::uint64_t waited = 0;    ///< layers not poured because the corners held too little mass
 };
 
@@ -121,17 +123,17 @@ using OutflowView = ColumnView<columns(Column::Position, Column::Level),
                                        Column::Predicted, Column::Density),
                                columns(Column::Temperature)>;
 
-/// Removes what leaves through outlets: particles on the far side of a plane that has an opening.
+/// Removes particles that left through outlets: those on the far side of a plane that has an opening.
 class Outflow {
  public:
-  /// Particles and their mass in units of m_*.
+  /// Number of particles, and their mass in units of m_*.
   struct Amount {
     int particles, mass;
   };
 
   /// Removes the particles that passed an opening; the others keep their order and their densities of the
-  /// last projection. The removed ids become free. The heat that leaves is added to `heat`, if not null.
-  /// Waits for a read-back.
+  /// last projection. The removed ids become free. The heat of the removed particles is added to `heat`, if
+  /// not null. Waits for a read-back from the device.
   Amount run(Particles& particles, OutflowView view, const Walls& walls, HeatLedger* heat);
   std::size_t bytes() const;
 
@@ -142,7 +144,7 @@ class Outflow {
   Array<Amount> left_;
 };
 
-/// Totals of a whole run.
+/// Water that left through outlets since the run began.
 struct Drained {
   std::int64_t particles = 0;
   std::int64_t mass = 0;  ///< in m_*

@@ -6,12 +6,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Uniform in [0, 1); `which` numbers the draws of one diffuse particle.
+/// Uniform random number in [0, 1); `which` numbers the draws of one diffuse particle.
 SIM_FN float draw(std::uint32_t seed, std::uint32_t which) { return uniform_of(random_bits(seed, which)); }
 
 SIM_FN float specific_energy(Vec3 v) { return 0.5f * dot(v, v); }
 
-/// -sum_j V_j grad W_ij, outwards: -grad W points from j to i.
+/// The sum -sum_j V_j grad W_ij (V_j: volume), which points out of the water: -grad W points from j to i.
 struct SumSurface {
   Vec4 self;
   int i;
@@ -29,7 +29,7 @@ struct SumSurface {
   }
 };
 
-/// n_i = -h_i sum_j V_j grad W_ij, and the closing speed of the water.
+/// Computes the outward normal n_i = -h_i sum_j V_j grad W_ij, and samples the closing speed of the water.
 template <class Bounds>
 struct Surface {
   const Vec4* position;
@@ -47,7 +47,7 @@ struct Surface {
   SIM_FN void operator()(int i) const {
     normal[i] = {0, 0, 0, 0};
     approach[i] = 0;
-    // Too coarse to emit, and to be next to emitting water.
+    // This water is too coarse to emit and to lie next to emitting water.
     if (level[i] > coarsest_seen) return;
     if (!(energy(specific_energy(xyz(velocity[i]))) > 0)) return;
     const Vec4 self = position[i];
@@ -60,8 +60,8 @@ struct Surface {
   }
 };
 
-/// Minimum |n| of surface particles, and minimum cosine between velocity and n for a particle that moves the
-/// surface outwards (Eq. 6).
+/// least_normal: minimum |n| of surface particles. least_push: minimum cosine between velocity and n for a
+/// particle that moves the surface outwards (Eq. 6).
 constexpr float least_normal = 0.3f;
 constexpr float least_push = 0.6f;
 
@@ -88,8 +88,8 @@ struct SumCurvature {
   }
 };
 
-/// Number of births of each particle: its foam's volume divided by that of a diffuse particle, randomly
-/// rounded.
+/// Number of diffuse particles that each water particle emits: the emitted volume divided by the volume of a
+/// diffuse particle, randomly rounded.
 struct CountBirths {
   const Vec4* position;
   const Vec4* velocity;
@@ -112,8 +112,9 @@ struct CountBirths {
     births[i] = static_cast<int>(volume / rules.volume + uniform_of(chance));
   }
 
-  /// Potential of a convex surface that moves outwards, times its area divided by the particle's volume, 1/m;
-  /// 0 elsewhere. Curvature grows with what is resolved, and so does no area of crests.
+  /// Potential of a convex surface that moves outwards, times its area per volume of the particle, 1/m; 0
+  /// elsewhere. The factor is the area, because curvature grows with the resolution and the area of crests
+  /// does not.
   SIM_FN float crest(int i) const {
     const Vec3 n = xyz(normal[i]);
     const float size = length(n);
@@ -134,7 +135,7 @@ struct MarkFree {
   SIM_FN void operator()(int slot) const { free[slot] = !(place[slot].w > 0); }
 };
 
-/// Fills the free slots in order.
+/// Fills the free slots, in ascending order, with the emitted particles.
 template <class Bounds>
 struct Emit {
   const Vec4* position;
@@ -159,13 +160,14 @@ struct Emit {
     const int asked = sums[water - 1];
     const int room = free_of[capacity - 1];
     if (rank >= asked) return;
-    // If more are requested than fit, those that fit are spread evenly over all.
+    // If more particles are requested than slots are free, the emitted particles are spread evenly over the
+    // requests.
     const int k = asked <= room ? rank : static_cast<int>(static_cast<std::int64_t>(rank) * asked / room);
     const int i = parent_of(k);
     put(slot, i, k - (sums[i] - births[i]));
   }
 
-  /// The first index whose sum exceeds k.
+  /// The water particle that emits the k-th diffuse particle: the first index whose inclusive sum exceeds k.
   SIM_FN int parent_of(int k) const {
     int low = 0;
     int high = water - 1;
@@ -180,8 +182,9 @@ struct Emit {
     return low;
   }
 
-  /// The c-th birth of particle i: in the cylinder that the particle swept in this frame (Fig. 4), with the
-  /// closing speed of the water as the speed off the axis.
+  /// Stores the c-th diffuse particle of water particle i in `slot`: at a random position in the cylinder
+  /// that particle i swept in this frame (Fig. 4). Its speed away from the cylinder's axis is its distance
+  /// from the axis times `approach`.
   SIM_FN void put(int slot, int i, int c) const {
     const std::uint32_t seed =
         random_bits(static_cast<std::uint32_t>(id[i]), frame, static_cast<std::uint32_t>(c));

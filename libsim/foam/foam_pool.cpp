@@ -20,7 +20,8 @@ float MeetingCells::edge_of(const Domain& domain, float wish) {
                          static_cast<double>(count_along(size.y, edge)) *
                          static_cast<double>(count_along(size.z, edge));
     if (cells <= most_cells) return edge;
-    // In flat tanks only one or two axes save cells, and the cube root is too small.
+    // The cube root suffices only if all three axes save cells. In flat tanks fewer axes do, and the loop
+    // repeats.
     edge *= static_cast<float>(std::max(1.01, std::cbrt(cells / most_cells)));
   }
 }
@@ -29,7 +30,7 @@ void MeetingCells::lay(const Domain& domain, float edge, float finest_support) {
   const auto count = [&](float length) { return static_cast<int>(count_along(length, edge)); };
   const Vec3 size = domain.high - domain.low;
   grid = {{domain.low, edge}, {count(size.x), count(size.y), count(size.z)}};
-  // Rounding errors of a length must not cut a cell.
+  // The 0.9999 prevents a cut by rounding errors of the length.
   const auto rest = [&](float length, int n) {
     const float left = length / edge - static_cast<float>(n - 1);
     return left > 0.9999f ? 1 : left;

@@ -4,17 +4,18 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A cell, the 26 around it, and the direction to each in edges.
+/// Number of cells in the block of a cell and the 26 around it, and index of the middle cell. way_to(k):
+/// vector from the middle cell to cell k, in edges.
 constexpr int nearby = 27;
 constexpr int middle = 13;
 SIM_FN Vec3 way_to(int k) {
   return {static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1), static_cast<float>(k / 9 - 1)};
 }
 
-/// Least squares for the gradient of v: sum of w |dv - G dx|^2 / dx^2.
+/// Least-squares fit of the gradient G of v: minimises the sum of w |dv - G dx|^2 / dx^2.
 struct GradientFit {
   Vec3 bx{}, by{}, bz{};            // sum of w dv dx / dx^2, one row per component of v
-  Vec3 diagonal{}, off_diagonal{};  // the same with dx for dv; the second yz, xz, xy
+  Vec3 diagonal{}, off_diagonal{};  // sum of w dx dx / dx^2: the diagonal, then yz, xz, xy
   float weight = 0;
 
   SIM_FN void add(Vec3 dx, Vec3 dv, float w) {
@@ -27,10 +28,11 @@ struct GradientFit {
     weight += w;
   }
 
-  /// Mean of |G e| - e G e over 13 directions, evenly distributed.
+  /// Mean of |G e| - e G e over 13 evenly distributed unit vectors e.
   SIM_FN float approach() const {
     if (!(weight > 0)) return 0;
-    // Across a sheet there is nothing to fit: this minimum keeps the system regular and makes G 0 there.
+    // Across a thin sheet there are no cells to fit. This minimum keeps the system regular, and G is 0 across
+    // the sheet.
     const float least = 0.02f / 3 * weight;
     const float xx = diagonal.x + least;
     const float yy = diagonal.y + least;
@@ -77,7 +79,8 @@ struct Meet {
     return all;
   }
 
-  /// Side lengths of a cell as shares of the grid's edge: 1, or less where a high wall cuts the cell.
+  /// Side lengths of a cell as shares of the edge: 1, or less where the wall at the high end of an axis cuts
+  /// the cell.
   SIM_FN Vec3 sides(int x, int y, int z) const {
     const CellBlock& block = grid.block;
     return {x == block.nx - 1 ? last.x : 1, y == block.ny - 1 ? last.y : 1, z == block.nz - 1 ? last.z : 1};
@@ -100,7 +103,7 @@ struct Meet {
       const int x = own_x + k % 3 - 1;
       const int y = own_y + k / 3 % 3 - 1;
       const int z = own_z + k / 9 - 1;
-      // Space beyond the tank is not counted as missing.
+      // Cells beyond the tank do not count as missing water.
       if (k == middle || !block.holds(x, y, z)) continue;
       const Vec3 theirs = sides(x, y, z);
       const float room = theirs.x * theirs.y * theirs.z;
@@ -109,7 +112,7 @@ struct Meet {
       const float wet = at_most(static_cast<float>(other.mass) / full, room);
       const Vec3 at{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
       const Vec3 centre = grid.frame.low + grid.frame.edge * (at + 0.5f * theirs);
-      // Nor is space in an obstacle.
+      // The empty part of a cell in an obstacle does not count as missing water.
       whole += weight * (in_a_body(bounds, centre) ? wet : room);
       if (other.mass == 0) continue;
       const Vec3 both = 0.5f * (mine + theirs);

@@ -8,7 +8,8 @@ namespace {
 
 constexpr float earth_gravity = 9.81f;
 
-/// rho / rho_0 at a position, and the weighted means of the water's velocity and support.
+/// Sums over the water at a position: rho / rho_0, and its velocity and support, each weighted by its share
+/// of rho / rho_0.
 struct SumWater {
   Vec3 x;
   const Vec4* velocity;
@@ -57,7 +58,7 @@ struct Move {
     velocity[slot] = with_w(v, share);
   }
 
-  /// The share including the space hidden by walls and obstacles.
+  /// rho / rho_0 as if water continued behind walls and inside obstacles.
   SIM_FN float filled(const SumWater& round) const {
     if (!(round.share > 0)) return 0;
     Vec3 unused;
@@ -67,14 +68,15 @@ struct Move {
 
   SIM_FN Vec3 moved(Vec3 v, float share, const SumWater& round) const {
     if (share < FoamKinds::spray) {
-      // Exact for a drag proportional to the speed.
+      // Spray: the exact solution for a drag proportional to the speed.
       const float kept = expf(-rules.air_drag * rules.dt);
       const float fall = rules.air_drag * rules.dt > 1e-4f ? (1 - kept) / rules.air_drag : rules.dt;
       return kept * v - fall * rules.gravity.lift();
     }
     const Vec3 carried = (1 / round.share) * round.momentum;
     if (share <= FoamKinds::bubble) return carried;
-    // Buoyancy of 2 g, including the added mass, and the drag that gives this speed of rise.
+    // Bubbles: the buoyancy is 2 g, including the added mass; the drag is chosen so that `rise` is the final
+    // speed.
     const float follows = 1 - expf(-2 * earth_gravity / rules.rise * rules.dt);
     const Vec3 wish = carried + (rules.rise * rules.gravity.strength / earth_gravity) * rules.gravity.up;
     return v + follows * (wish - v);

@@ -1,6 +1,6 @@
 #pragma once
-/// The water around a point, found in the grid of the last substep: at a frame's end not all particles have
-/// neighbour lists, and diffuse particles never have them.
+/// The water particles around a point, found in the grid of the last substep. Neighbour lists do not suffice:
+/// at a frame's end not all particles have them, and diffuse particles have none.
 
 #include "libsim/neighbors/grid.hpp"
 #include "libsim/neighbors/neighbour_list.hpp"
@@ -12,13 +12,14 @@ struct WaterRound {
   CellTable cells;
   const Vec4* position;
 
-  /// Calls visit(j, position of j) for all water within pair reach of a particle of support h at x, that is,
-  /// closer than (h + h_j) / 2, and for some more.
+  /// Calls visit(j, position of j) for all water particles closer than (h + h_j) / 2 to a particle of support
+  /// h at x, and for some farther ones.
   template <class Visit>
   SIM_FN void with_pairs(Vec4 x, Visit& visit) const {
     for (int l = 0; l < cells.levels; ++l) in_level(x, cells.level[l], visit);
   }
-  /// The same for all water whose support contains x: closer than h_j.
+  /// Calls visit(j, position of j) for all water particles closer to x than their own support h_j, and for
+  /// some farther ones.
   template <class Visit>
   SIM_FN void that_reaches(Vec3 x, Visit& visit) const {
     for (int l = 0; l < cells.levels; ++l) in_level(with_w(x, cells.level[l].support), cells.level[l], visit);

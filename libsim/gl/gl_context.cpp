@@ -37,7 +37,7 @@ struct Trial {
   void* native;
 };
 
-/// epoxy aborts the program if a library is missing, so check first.
+/// base::Error if a library is missing. Without this check epoxy would abort the program.
 void require_libraries() {
   for (const char* library : {"libEGL.so.1", "libGL.so.1"}) {
     void* handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
@@ -119,7 +119,7 @@ struct EglState final : public GlContext::State {
   }
 
   bool make_current() override {
-    eglBindAPI(EGL_OPENGL_API);  // per thread
+    eglBindAPI(EGL_OPENGL_API);  // each thread has its own bound API
     return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
   }
   void release() override { eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }

@@ -13,7 +13,7 @@ struct EglHandles {
   void* context = nullptr;
 };
 
-/// The same for GLX.
+/// GLX handles of a context, for other libraries.
 struct GlxHandles {
   void* display = nullptr;  ///< null: not a GLX context
   void* config = nullptr;
@@ -22,7 +22,8 @@ struct GlxHandles {
   unsigned visual = 0;
 };
 
-/// A context without a window, current on the thread that created it; destroyed with the object.
+/// A context without a window; destroyed with the object. The functions make_headless() and make_on_x() leave
+/// it current on the calling thread.
 class GlContext {
  public:
   /// Uses EGL. Order of attempts: EGL devices with hardware (a GPU without a display), Mesa's surfaceless
@@ -34,15 +35,16 @@ class GlContext {
   GlContext& operator=(GlContext&&) noexcept;
   ~GlContext();
 
-  /// Uses GLX on the X display of $DISPLAY, for libraries that do not support EGL. base::Error if there is
-  /// none.
+  /// Uses GLX on the X display that $DISPLAY names, for libraries that do not support EGL. base::Error if
+  /// there is no such display or it gives no OpenGL 4.5 core context.
   static GlContext make_on_x();
 
   /// Another context that shares textures and buffers with this one; not current on any thread. base::Error
   /// if the driver refuses.
   GlContext make_shared() const;
 
-  /// Makes it current on the calling thread (release it on the other one first).
+  /// Makes the context current on the calling thread. If it is current on another thread, call release()
+  /// there first.
   void make_current();
   /// Leaves the calling thread without a current context.
   void release();

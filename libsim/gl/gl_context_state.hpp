@@ -1,5 +1,5 @@
 #pragma once
-/// Implementation of a GlContext, for each window system.
+/// Interface of a GlContext's implementations: one for EGL, one for GLX.
 
 #include <memory>
 

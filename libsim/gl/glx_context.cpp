@@ -17,7 +17,7 @@ namespace sim {
 
 namespace {
 
-/// libX11, loaded on demand: no other program needs it.
+/// libX11, loaded at run time, so that programs without a GLX context do not need the library.
 struct XLibrary {
   Display* (*open)(const char*) = nullptr;
   int (*close)(Display*) = nullptr;
@@ -34,7 +34,7 @@ struct XLibrary {
  private:
   XLibrary() {
     void* handle = dlopen("libX11.so.6", RTLD_LAZY | RTLD_LOCAL);
-    void* gl = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);  // without it epoxy aborts the program
+    void* gl = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);  // epoxy aborts the program if libGL is missing
     if (!handle || !gl)
       throw base::Error("OpenGL", "no libX11.so.6 or libGL.so.1 on this machine",
                         "install libx11-6 and libgl1");
@@ -54,8 +54,8 @@ struct XLibrary {
   }
 };
 
-/// Records X errors of one connection while it exists. Xlib's own handler ends the program, and a driver
-/// without OpenGL 4.5 causes such an error.
+/// Catches and records the X errors of one connection during the lifetime of this object. Xlib's default
+/// handler would end the program, and a driver without OpenGL 4.5 causes such an error.
 class XErrors {
  public:
   explicit XErrors(Display* display) : lock_(mutex_) {
@@ -81,7 +81,7 @@ class XErrors {
   }
 
  private:
-  // Error handlers are per process.
+  // Static, because a process has only one handler of X errors.
   static inline std::mutex mutex_;
   static inline std::atomic<Display*> watched_;
   static inline std::atomic<bool> found_;
@@ -90,7 +90,7 @@ class XErrors {
   std::lock_guard<std::mutex> lock_;
 };
 
-/// The connection stays open as long as a context uses it.
+/// Connects to the X display that $DISPLAY names. The connection closes with its last owner.
 std::shared_ptr<Display> open_display() {
   const XLibrary& x = XLibrary::get();
   Display* display = x.open(nullptr);
@@ -150,7 +150,7 @@ struct GlxState final : public GlContext::State {
     if (context && !errors.any()) return true;
     if (context) glXDestroyContext(display.get(), context);
     context = nullptr;
-    drawable = 0;  // it may not exist; closing the connection frees it
+    drawable = 0;  // the server may not have made the surface; closing the connection frees it
     return false;
   }
 };

@@ -34,7 +34,7 @@ Image black(int width, int height) {
           std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
 }
 
-/// GL counts rows from the bottom.
+/// Reverses the rows: GL starts with the bottom row, an Image with the top row.
 Image from_the_top(Image image) {
   const auto row = [&](int y) { return image.rgba.begin() + std::ptrdiff_t{4} * image.width * y; };
   for (int low = 0, high = image.height - 1; low < high; ++low, --high)
@@ -44,8 +44,8 @@ Image from_the_top(Image image) {
 
 }  // namespace
 
-/// Does not read through the framebuffer: for pixels stored by compute shaders one driver took sixty times as
-/// long that way (docs/decisions.md).
+/// Reads the texture, not the framebuffer: one driver took sixty times as long to read pixels through the
+/// framebuffer if compute shaders had stored them (docs/decisions.md).
 Image Offscreen::read() const {
   Image image = black(width_, height_);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -5,7 +5,8 @@
 
 namespace sim {
 
-/// RGBA8 colour only. Needs a current context at every call and when it is destroyed.
+/// A framebuffer with an RGBA8 colour texture, without depth. Needs a current context at every call and when
+/// it is destroyed.
 class Offscreen {
  public:
   /// At least 1 x 1 px; base::Error for a size that the driver refuses.

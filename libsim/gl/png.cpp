@@ -19,7 +19,7 @@ std::string png_bytes(const Image& image, const std::string& place) {
   const std::size_t row_bytes = 4 * static_cast<std::size_t>(image.width);
   if (image.width < 1 || image.height < 1 ||
       image.rgba.size() != row_bytes * static_cast<std::size_t>(image.height)) {
-    throw base::Error(place, "no picture to write", "");
+    throw base::Error(place, "the picture to write is empty or has too few bytes", "give 4 bytes per pixel");
   }
   png_image header;
   std::memset(&header, 0, sizeof header);
@@ -31,7 +31,7 @@ std::string png_bytes(const Image& image, const std::string& place) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgba.data(), 0, nullptr)) {
-    throw base::Error(place, std::string("PNG encoding failed: ") + header.message, "");
+    throw base::Error(place, std::string("PNG encoding failed: ") + header.message, "use a smaller picture");
   }
   bytes.resize(size);
   return bytes;

@@ -28,7 +28,7 @@ Image png_of(std::string_view bytes, const std::string& place);
 /// writable, disk full.
 void write_png(const std::filesystem::path& path, const Image& image);
 
-/// png_of() a file's bytes. Errors (base::Error): also a missing file.
+/// Decodes a PNG file. Errors (base::Error): a missing file, and those of png_of().
 Image read_png(const std::filesystem::path& path);
 
 /// A picture in the format of the image metrics; row 0 is the top.

@@ -6,7 +6,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Each index adds every `stride`th particle, to reduce contention for one sum.
+/// Sums the momentum of all particles. Each index adds every `stride`th particle, to reduce contention for
+/// the one sum.
 struct AddMomentum {
   const Vec4* velocity;
   const std::uint8_t* level;
@@ -29,7 +30,7 @@ struct BeginSums {
   }
 };
 
-/// Excludes momentum that guards removed since the last mark.
+/// Assigns the change since the last mark to one cause, and momentum that guards removed to Change::Braked.
 struct Count {
   int change;
   const Guards* guards;

@@ -8,29 +8,30 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Causes to which a change of the water's momentum is booked.
+/// Causes of a change of the water's momentum, as the account lists them.
 enum class Change { None, Forces, Flow, Levels, Viscosity, Effects, Inherited, Projections, Braked, count };
 enum class WallPart { MissingDensity, CoarsePressure, Clamp, count };
 
-/// A gauge in solver coordinates: the wall's plane, and a box that is infinite across the wall and beyond
-/// each edge that the gauge reaches.
+/// A gauge in solver coordinates: its wall, and a box that is infinite across the wall and beyond each edge
+/// of the wall that the gauge reaches.
 struct GaugeBox {
   int wall;
   Vec3 low, high;
-  /// Share of a box about `at` that lies inside the gauge.
+  /// Share of the box at - half .. at + half that lies inside the gauge.
   SIM_FN float share(Vec3 at, Vec3 half) const {
     return share_within(at.x, half.x, low.x, high.x) * share_within(at.y, half.y, low.y, high.y) *
            share_within(at.z, half.z, low.z, high.z);
   }
 };
 
-/// Sums for a wall or a gauge: mass in m_* times displacement in m.
+/// Pushes of a wall or within a gauge, by cause: mass in m_* times displacement in m, as integer multiples of
+/// `unit`.
 struct WallSum {
   std::uint64_t parts[static_cast<int>(WallPart::count)];
   static constexpr float unit = 1.0f / (1ull << 36);
 };
 
-/// Output of kernels: the walls' sums, then the gauges'.
+/// Records the pushes of walls, for kernels. `sums`: first those of the walls, then those of the gauges.
 struct WallRecord {
   WallSum* sums;
   const GaugeBox* gauges;
@@ -39,14 +40,15 @@ struct WallRecord {
   /// Weight of a push, including its repeats in later momentum steps.
   float times;
 
-  /// Adds `push`, in m_* m along the normal, spread over a box about `at`.
+  /// Adds a wall's push on a particle, m_* m along the wall's normal; the push is spread over the box at -
+  /// half .. at + half.
   SIM_FN void add(int wall, WallPart part, Vec3 at, Vec3 half, float push) const {
     add(sums[wall], part, push);
     for (int k = 0; k < gauge_count; ++k) {
       if (gauges[k].wall == wall) add(sums[wall_count + k], part, push * gauges[k].share(at, half));
     }
   }
-  /// The same for a particle of support h, as a cube of its spacing.
+  /// Adds a wall's push on a particle of support h, spread over a cube of the particle's spacing h / 2.
   SIM_FN void add(int wall, WallPart part, Vec3 at, float h, float push) const {
     add(wall, part, at, Vec3{h / 4, h / 4, h / 4}, push);
   }
@@ -72,29 +74,30 @@ struct RecordClamp {
   }
 };
 
-/// Momentum divided by m_*, m/s: totals, and changes by cause.
+/// Momentum of the water, m_* m/s: totals, and changes by cause.
 struct MomentumSums {
-  Momentum now, last, first;  ///< the present, the last mark, the frame's beginning
+  Momentum now, last, first;  ///< at present, at the last mark, at the frame's beginning
   Momentum taken;             ///< removed by guards up to the last mark
   Momentum changed[static_cast<int>(Change::count)];
 };
 
 class ImpulseRecorder {
  public:
-  /// Records all later frames. room_m: Scene::room_m.
+  /// Starts the recording of all later frames. room_m: Scene::room_m.
   void begin(const std::vector<Gauge>& gauges, const Vec3d& room_m, float finest_support);
   bool on() const { return on_; }
-  /// True if position changes by walls count as impulses now. False during position corrections that do not
-  /// change velocity.
+  /// True while changes of position by walls count as impulses; false during position corrections that do not
+  /// change the velocity.
   bool recording() const { return on_ && !paused_; }
   void pause(bool yes) { paused_ = yes; }
   bool paused() const { return paused_; }
   WallRecord record_to(float times = 1);
 
   void begin_frame(const Particles& particles, const Guards* guards);
-  /// Books the change since the last mark; does nothing for Change::None or while off.
+  /// Assigns the change of momentum since the last mark to the cause `as`; does nothing for Change::None or
+  /// while off.
   void mark(Change as, const Particles& particles, const Guards* guards);
-  /// `rest_density` in kg/m3, `dt` of a substep.
+  /// Returns the frame's account. `rest_density` in kg/m3; `dt`: duration of a substep, s.
   MomentumAccount end_frame(float rest_density, float dt);
 
  private:

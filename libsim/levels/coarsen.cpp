@@ -41,7 +41,8 @@ class Coarsening {
         return;
       }
     }
-    // Above the leaves the median is moved to a multiple of eight.
+    // A node of more than eight particles is divided at a multiple of eight, so that every leaf has exactly
+    // eight.
     const std::size_t unit = node.size() > 8 ? 8 : 1;
     const std::size_t half = (node.size() / unit + 1) / 2 * unit;
     split(node, half);
@@ -49,7 +50,7 @@ class Coarsening {
     visit(node.subspan(half));
   }
 
-  /// Moves the `half` lowest along the longest axis to the front.
+  /// Moves the `half` particles with the lowest coordinates along the node's longest axis to its front.
   void split(Node node, std::size_t half) const {
     const std::size_t axis = longest_axis(node);
     std::nth_element(node.begin(), node.begin() + static_cast<std::ptrdiff_t>(half), node.end(),
@@ -77,8 +78,8 @@ class Coarsening {
     return longest;
   }
 
-  /// Masses are equal, so the mass-weighted mean is the plain mean. Members are added in the order of their
-  /// ids.
+  /// Merges a node's particles. Their masses are equal, so the mass-weighted mean is the plain mean. Sums
+  /// follow the order of the ids, so that the input's order does not change the rounding.
   ParticleState merged(Node node, int level) const {
     std::sort(node.begin(), node.end(),
               [&](std::size_t a, std::size_t b) { return finest_[a].id < finest_[b].id; });
@@ -108,7 +109,7 @@ void check(std::span<const ParticleState> finest, std::span<const std::uint8_t> 
     if (p.level != 0) throw std::invalid_argument("coarsening starts from particles of level 0");
     if (targets[i] > 3) throw std::invalid_argument("target levels are 0 to 3");
     if (!std::isfinite(p.x_m) || !std::isfinite(p.y_m) || !std::isfinite(p.z_m))
-      throw std::invalid_argument("coarsening needs finite places");
+      throw std::invalid_argument("coarsening needs finite positions");
   }
 }
 

@@ -9,11 +9,12 @@ struct CountBirths {
   const std::uint8_t* gone;
   int* births;
   SIM_FN void operator()(int i) const {
-    births[i] = gone[i] ? 0 : 1 << SplitCode::unpacked(split_code[i]).k;  // k = 0: no split
+    births[i] = gone[i] ? 0 : 1 << SplitCode::unpacked(split_code[i]).k;  // 1 if k = 0: no split
   }
 };
 
-/// sums contains the inclusive sum of births.
+/// Lists the source of each new particle, and the particle's index among the children of this source. `sums`:
+/// inclusive prefix sums of `births`.
 struct ListSources {
   const int* births;
   const int* sums;
@@ -34,8 +35,8 @@ struct MarkNew {
   SIM_FN void operator()(int i) const { fresh[i] = child[i] > 0; }
 };
 
-/// Converts copies of the parent into children. The first keeps the parent's id, the others take free ids in
-/// order.
+/// Converts copies of the parent into children. The first child keeps the parent's id; the others take free
+/// ids in ascending order.
 struct PlaceChildren {
   const int* order;
   const int* child;
@@ -78,7 +79,8 @@ struct GrowOlder {
   SIM_FN void operator()(int i) const { age[i] = static_cast<std::uint8_t>(age[i] < 255 ? age[i] + 1 : 255); }
 };
 
-/// Allocates this frame's scratch; later calls do not reallocate.
+/// Sizes the scratch arrays for this frame. They have memory for the maximum number of particles, so that
+/// later calls do not reallocate.
 void fit_scratch(LevelState& l, LevelView p) {
   const auto room = static_cast<std::size_t>(p.capacity());
   const auto size = static_cast<std::size_t>(p.size());

@@ -5,16 +5,17 @@
 
 namespace sim::SIM_BACKEND {
 
-/// True if the distance of a particle at `other` from one of support h at `centre` is at least `share` of the
-/// sum of radii.
+/// True if a particle at `other` and a particle of support h at `centre` are at least `share` of the sum of
+/// their radii apart.
 SIM_FN bool clear_of(Vec4 other, Vec3 centre, float h, float share) {
   const Vec3 offset = xyz(other) - centre;
   const float least = share * (other.w + h) / 4;
   return dot(offset, offset) >= least * least;
 }
 
-/// True if a merged particle of support h at `centre` would overlap a coarser one among the neighbours of
-/// particle i (Fig. 5 d2). `level`: level of its members.
+/// True if a merged particle of support h at `centre` would overlap a neighbour of particle i that is coarser
+/// than `level` (ViP-Fluid, Fig. 5 d2). `level`: level of the two particles that merge. `share`: as in
+/// clear_of.
 template <class Team>
 SIM_FN bool overlaps_coarser(const Vec4* position, const std::uint8_t* levels,
                              const ParticleNeighbours& neighbours, int i, int level, Vec3 centre, float h,
@@ -44,7 +45,7 @@ struct Joining {
   SIM_FN Vec3 mean(const Vec4* values, int a, int b) const {
     return 0.5f * (xyz(values[a]) + xyz(values[b]));
   }
-  /// Kinetic energy lost when i merges with an equal mass of j, J.
+  /// Kinetic energy, J, that is lost when particle i merges with an equal mass taken from particle j.
   SIM_FN float loss(int j, int i) const {
     const Vec3 difference = xyz(velocity[j]) - xyz(velocity[i]);
     return 0.25f * mass_of(position[i].w, rest_density) * dot(difference, difference);
@@ -55,7 +56,7 @@ struct Joining {
     level[i] = static_cast<std::uint8_t>(now);
     history[i] = steady_history(now);
   }
-  /// Removes a particle and books the lost energy.
+  /// Marks particle i as removed, and counts the merge and the kinetic energy lost in it, J.
   SIM_FN void leave(int i, float lost) const {
     gone[i] = 1;
     atomic_add(&counts->merges, std::uint64_t{1});

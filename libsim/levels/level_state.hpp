@@ -1,5 +1,6 @@
 #pragma once
-/// State of splitting and merging between frames, and their rules in the form that kernels use (paper 3.3).
+/// State of splits and merges that lasts between frames, and the rules of splits and merges as kernels use
+/// them (ViP-Fluid 3.3).
 
 #include <cstdint>
 
@@ -11,7 +12,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Rules of Algorithms 1 and 2 in the form that kernels use; sim::Readings explains the ones it defines.
+/// Rules of Algorithms 1 and 2 in the form that kernels use. sim::Readings explains the members that are
+/// copied from it.
 struct LevelRules {
   explicit LevelRules(const Readings& readings = {}, int levels = most_levels)
       : coarsest(levels - 1),
@@ -36,33 +38,38 @@ struct LevelRules {
   float merge_reach;
   float merge_overlap;
   bool merge_keeps_steps;
-  /// A particle wants to be coarser only if Eq. 9, without its floor, exceeds its level by this much.
+  /// A particle may become coarser only if N (1 - s) of Eq. 9 exceeds its level + 1 by this much, in levels.
   float dead_band;
   float kick_filter;
   float calm_viscosity;
 
   // Rules that the paper leaves open.
-  /// Frames after which a particle without a partner searches farther, and after which finer laggards no
-  /// longer block their neighbours: when most have merged, a few have no partner in reach.
+  /// looks_farther: frames without a merge partner after which a particle searches beyond merge_reach. lags:
+  /// frames without a partner after which a finer particle no longer prevents merges of its neighbours. When
+  /// most particles of a level have merged, the last few have no partner within merge_reach.
   int looks_farther = 6, lags = 32;
-  /// Number of listed neighbours, reduced beside a wall, from which a particle counts as inside the fluid.
-  /// Water has 40, its surface 29, a sheet of two layers 26: sheets and drops never merge over a distance.
+  /// Minimum number of listed neighbours of a particle that counts as inside the fluid; beside a wall the
+  /// minimum is reduced. A particle has 40 in deep water, 29 at the surface and 26 in a sheet of two layers.
+  /// So particles of sheets and drops never merge beyond merge_reach.
   float inside_count = 30;
-  bool relays = true;  ///< particles without partner may merge through a coarser particle between them
-  /// A merged pair of such particles must keep this share of the sum of radii from coarser ones: they were
-  /// refused for long, and removing the last particles of a level among coarser water justifies some overlap.
+  bool relays = true;  ///< particles without a merge partner may merge through a coarser particle
+  /// Minimum distance between coarser particles and a particle that merges through a heavier one (relay.cpp),
+  /// as a share of the sum of their radii. It is smaller than merge_overlap: some overlap is accepted in
+  /// order to remove the last particles of a level among coarser water.
   float stranded_overlap = 0.5f;
-  /// Share of its constraint that a particle enforces in a projection while the youngest particle within its
-  /// support is 0, 1, ... frames old; overlaps after a split or a merge separate gradually.
+  /// Share of its density constraint that a particle enforces in a projection, while the youngest particle
+  /// within its support is 0, 1, ... frames old. So overlaps after a split or a merge separate gradually.
   static constexpr int ease_frames = 5;
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
-  /// Number of position-only projections near particles that just split or merged.
+  /// Number of projections of the particles near ones that just split or merged, at the beginning of a
+  /// frame's first substep (parting.cpp). These projections change positions, not velocities.
   int partings = 3;
-  /// The same, with their neighbours, where gravity moves a particle by less than this share of the finest
-  /// support in a substep.
+  /// Replaces `partings` if gravity moves a particle in a substep, g dt^2, by less than the share
+  /// `parts_widely` of the finest support. The neighbours of the moved particles then move too.
   int wide_partings = 8;
   float parts_widely = 1.0f / 1600;
-  /// The same in weightless water, of all particles: nothing brings back water that was pushed away.
+  /// Replaces `partings` in weightless water, where all particles move: no force would bring back water that
+  /// overlaps push away.
   int weightless_partings = 10;
 };
 
@@ -74,7 +81,7 @@ struct LevelCounts {
   std::uint64_t split_deferred;  ///< particle-turns in which the throttle delayed a split
   std::uint64_t split_at_wall;   ///< particle-turns in which the children did not fit between the walls
   std::uint64_t split_no_room;   ///< particle-turns in which a split exceeded the capacity
-  std::uint64_t merge_overlap;   ///< particle-turns in which any merge would overlap a larger particle
+  std::uint64_t merge_overlap;   ///< particle-turns in which every merge would overlap a larger particle
   std::uint64_t merge_step;      ///< particle-turns in which a finer neighbour prevented a merge
   std::uint64_t energy_lost_uj;  ///< kinetic energy lost in merges, 1e-6 J
 };
@@ -93,36 +100,38 @@ struct LevelState {
   LevelRules rules;
   TargetSphere forced;
   std::uint32_t frame = 0;  ///< counter for the random numbers
-  LevelTurns turns;         ///< of saliency, splits and merges
+  LevelTurns turns;         ///< the frames that update saliency, splits and merges
   bool changed = false;     ///< a particle split or merged in this frame
   Array<LevelCounts> counts;
   /// Initialises Target, History, Age and Waiting; called once when a run begins.
   void begin(NewLevelsView particles);
 
-  // Scratch of one frame; kept to reuse its memory.
+  // Scratch arrays of one frame. They are members, so that each frame reuses their memory.
   Scanner scanner;
   Sorter sorter;
-  Array<std::uint8_t> status, status_next;  ///< of splits, during their selection
+  Array<std::uint8_t> status, status_next;  ///< state of each particle while splits are chosen (split.cpp)
   Array<std::uint8_t> split_code;           ///< packed SplitCode; 0 = no split
   Array<std::uint8_t> wish;                 ///< 1 = wants to merge
   Array<std::uint8_t> gone;                 ///< 1 = merged into another
-  Array<std::uint8_t> graded;               ///< targets of the next sweep
+  Array<std::uint8_t> graded;               ///< targets that a sweep of the grading writes
   Array<int> partner;                       ///< proposed merge partner
-  Array<int> births;                        ///< number of particles that replace each one
-  Array<int> places;                ///< inclusive sums of births; before that the mutual merge partners
-  Array<int> order, child;          ///< source of each new particle, and its child index
-  Array<int> flags, sums;           ///< flags of particles that split, and their prefix sums
-  Array<std::uint64_t> keys;        ///< keys of splits for sorting by priority
-  Array<int> free_ids;              ///< ascending
-  Array<int> beside, beside_count;  ///< slots near fresh particles, and their number
-  // The two particles for which a relay bids share memory with the birth counts, which are written later in
-  // the frame; the best bids share memory with the split keys, which are no longer needed.
+  Array<int> births;          ///< number of particles that replace each particle; 0 = merged into another
+  Array<int> places;          ///< inclusive sums of births; before that the mutual merge partners
+  Array<int> order, child;    ///< source of each new particle, and its child index
+  Array<int> flags, sums;     ///< flags of particles that split, and their prefix sums
+  Array<std::uint64_t> keys;  ///< keys of splits for sorting by priority
+  Array<int> free_ids;        ///< ids that no particle uses, ascending
+  Array<int> beside, beside_count;  ///< slots near fresh particles (just split or merged); count
+  // Relays (relay.cpp) reuse memory. The two particles for which a relay bids are stored in `births` and
+  // `places`, which compact() overwrites later in the frame. The best bids are stored in `keys`, which splits
+  // no longer need.
   Array<int>& first_bid() { return births; }
   Array<int>& second_bid() { return places; }
   Array<std::uint64_t>& taken_bids() { return keys; }
 };
 
-/// Two bits per frame, the newest lowest: the history of a particle whose target was `level` for four frames.
+/// History of a particle whose target was `level` in the last four frames. A history has two bits per frame;
+/// the newest frame has the lowest bits.
 SIM_FN std::uint8_t steady_history(int level) { return static_cast<std::uint8_t>(0x55 * level); }
 
 /// The smallest target of the last four frames.

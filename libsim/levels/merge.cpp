@@ -6,19 +6,20 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Updates ages and histories, and finds the particles that want to be coarser and have wanted it for four
-/// frames; a target counts for all frames since the previous turn.
+/// Updates ages and histories. Sets `wish` for the particles whose target was coarser than their level in
+/// each of the last four frames. A target counts for all frames since the previous turn (update of the
+/// levels).
 struct Remember {
   const std::uint8_t* level;
   const std::uint8_t* target;
   const std::uint8_t* split_code;
-  const std::uint8_t* active;  ///< nullptr if all were solved
+  const std::uint8_t* active;  ///< 1 = solved in the last frame; nullptr if all were
   std::uint8_t* history;
   std::uint8_t* age;
   std::uint8_t* waiting;
   std::uint8_t* wish;
   std::uint8_t* gone;
-  int frames;  ///< since the last turn
+  int frames;  ///< frames since the last turn
   SIM_FN void operator()(int i) const {
     for (int k = 0; k < frames && k < 4; ++k)
       history[i] = static_cast<std::uint8_t>(history[i] << 2 | target[i]);
@@ -33,7 +34,9 @@ struct Remember {
   }
 };
 
-/// Withdraws the wish if a merge would leave a neighbour two levels finer, now or soon.
+/// Withdraws a particle's wish to merge if a neighbour, by its present level or its target, would be two
+/// levels finer than the merged particle. The level of a neighbour that has waited for `lags` frames does not
+/// count.
 struct KeepSteps {
   const Vec4* position;
   const std::uint8_t* level;
@@ -52,7 +55,7 @@ struct KeepSteps {
     out[i] = held ? 0 : wish[i];
     if (held) atomic_add(&counts->merge_step, std::uint64_t{1});
   }
-  /// Checks this lane's neighbours.
+  /// Checks this lane's share of the neighbours of particle i.
   template <class Team>
   SIM_FN bool finer_beside(int i, Team team) const {
     const Vec4 self = position[i];
@@ -64,7 +67,7 @@ struct KeepSteps {
       if (!finer && target[j] >= level[i]) continue;
       const Vec4 other = position[j];
       const Vec3 offset = xyz(self) - xyz(other);
-      // The support it will have once it is coarser.
+      // Mean support of the pair once particle i is one level coarser.
       const float h = 0.5f * (supports.h[level[i] + 1] + other.w);
       if (dot(offset, offset) < h * h) return true;
     }
@@ -72,7 +75,8 @@ struct KeepSteps {
   }
 };
 
-/// Order of preference of pairs: the nearer first, then random; the same from both sides.
+/// Order in which pairs merge: the pair with the smaller distance first; equal distances in random order.
+/// Both particles of a pair compute the same key.
 struct PairKey {
   float distance2;
   std::uint32_t chance;
@@ -88,7 +92,8 @@ SIM_FN PairKey pair_key(Vec4 a, Vec4 b, int id_a, int id_b) {
 }
 SIM_FN Vec3 middle(Vec4 a, Vec4 b) { return 0.5f * (xyz(a) + xyz(b)); }
 
-/// A neighbour as a partner: ordered by the pair's key, then by its index in the list.
+/// A neighbour as a possible merge partner. Candidates are ordered by the pair's key, then by their index in
+/// the neighbour list.
 struct Candidate {
   PairKey key;
   int place;  ///< -1: none
@@ -98,7 +103,7 @@ struct Candidate {
   }
 };
 
-/// Each wishing particle proposes the nearest partner of its level with which it may merge.
+/// Each particle that wants to merge proposes the nearest partner of its level with which it may merge.
 template <class Boundary>
 struct Propose {
   const Vec4* position;
@@ -141,8 +146,8 @@ struct Propose {
     return -1;
   }
 
-  /// Members are at most merge_reach radii of the new particle from its centre, except for particles that
-  /// search farther.
+  /// Returns the nearest candidate after `tried`. A candidate is within merge_reach, unless it or particle i
+  /// has waited long enough to search farther (looks_farther).
   template <class Team>
   SIM_FN Candidate first_after(const Candidate& tried, int i, float reach2, Team team) const {
     const Vec4 self = position[i];
@@ -175,7 +180,8 @@ struct Propose {
   }
 };
 
-/// Of mutual proposals whose new particles would overlap each other, the first in order is kept.
+/// Refuses a mutual proposal if its merged particle would overlap that of a mutual proposal that comes before
+/// it in the order of PairKey.
 struct KeepApart {
   const Vec4* position;
   const std::uint8_t* level;
@@ -196,7 +202,8 @@ struct KeepApart {
     }
     if (team.rank() == 0) out[i] = kept;
   }
-  /// True if an earlier pair, with one of a member's neighbours in this lane, needs the space.
+  /// True if the merged particle of i and j would overlap that of a pair that comes before it in the order of
+  /// PairKey. Checks this lane's share of the neighbours of `member`, which is i or j.
   template <class Team>
   SIM_FN bool early_beside(int i, int j, int member, Team team) const {
     const PairKey own = pair_key(position[i], position[j], id[i], id[j]);

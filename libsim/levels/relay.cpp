@@ -4,15 +4,15 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Value of a relay's bid for a stranded particle, which accepts the largest bid. The value is random, new in
-/// each frame, and never 0.
+/// Value of a relay's bid for a stranded particle (both are defined below). A stranded particle accepts the
+/// largest bid. The value is random, new in each frame, and never 0.
 SIM_FN std::uint64_t worth_of(int relay_id, std::uint32_t frame) {
   const auto id = static_cast<std::uint32_t>(relay_id);
   return ~(static_cast<std::uint64_t>(random_bits(id, frame, 0x3e1u)) << 32 | id);
 }
 
-/// A stranded neighbour of a relay, ordered by the coarsest level, then distance, then index in the list.
-/// Stranded: waited for long without a merge partner.
+/// A stranded neighbour of a relay: a particle that has waited long without a merge partner. Coarser
+/// neighbours come first, then nearer ones, then those with a lower index in the list.
 struct Stranded {
   int level;
   float distance2;
@@ -23,10 +23,11 @@ struct Stranded {
   }
 };
 
-/// Two stranded particles merge through a coarser particle between them, the relay, so that the last few of a
-/// level, which are too far apart for pairs, are not left behind. A relay of twice their mass gives each of
-/// them a half: three particles of masses 1, 2, 1 become two of mass 2, and no displacement is longer than in
-/// a merge. A heavier relay only pairs them.
+/// Two stranded particles merge through a coarser particle between them, the relay. Otherwise the last
+/// particles of a level, which are too far apart to merge directly, would remain. A relay with twice a
+/// stranded particle's mass gives each of the two a half of itself: particles of masses 1, 2, 1 become two of
+/// mass 2. No particle moves farther than in a direct merge. A heavier relay does not change; it only selects
+/// the two.
 template <class Boundary>
 struct Bid {
   const Vec4* position;
@@ -47,11 +48,12 @@ struct Bid {
   LevelSupports supports;
   std::uint32_t frame;
 
-  /// True for a particle that waited without a partner and still exists.
+  /// True if particle i wants to merge, has waited long without a partner, and was not merged in this turn.
   SIM_FN bool stranded(int i) const {
     return wish[i] && !gone[i] && age[i] > 0 && waiting[i] >= rules.looks_farther;
   }
-  /// The relay selects its nearest two stranded neighbours of one level that may join.
+  /// Particle j, as a relay, selects its nearest two stranded neighbours that have the same level and may
+  /// merge.
   template <class Team>
   SIM_FN void operator()(int j, Team team) const {
     int a = -1;
@@ -69,7 +71,8 @@ struct Bid {
     atomic_max(&taken[a], worth);
     atomic_max(&taken[b], worth);
   }
-  /// Index of the stranded neighbour nearest to relay j, of the coarsest level that has one; -1: none.
+  /// Index of the stranded neighbour nearest to relay j, among its stranded neighbours of the coarsest level;
+  /// -1: none.
   template <class Team>
   SIM_FN int nearest(int j, Team team) const {
     const Stranded found = first_after({most_levels, 0, -1}, j, -1, team);
@@ -104,10 +107,11 @@ struct Bid {
     }
     return team.first(best);
   }
-  /// True if the relay gives each of such members a half of itself.
+  /// True if relay j has twice the mass of `member`, so that it gives each of the two members a half of
+  /// itself.
   SIM_FN bool halves(int j, int member) const { return level[member] + 1 == level[j]; }
-  /// True if a merged particle between them keeps the distance from the relay and its neighbours that a merge
-  /// requires.
+  /// True if a particle merged at the midpoint of a and b would be outside obstacles and at least
+  /// stranded_overlap away from relay j and the coarser neighbours of j.
   template <class Team>
   SIM_FN bool free_between(int j, int a, int b, Team team) const {
     const Vec3 centre = 0.5f * (xyz(position[a]) + xyz(position[b]));
@@ -116,7 +120,8 @@ struct Bid {
            !overlaps_coarser(position, level, neighbours, j, level[a], centre, h, rules.stranded_overlap,
                              team);
   }
-  /// True if the two new particles, at half the distance of the stranded ones, are far enough apart.
+  /// True if the two new particles would be far enough apart. Their distance is half the distance of a and b.
+  /// h: support of the relay, and so of each new particle.
   SIM_FN bool apart(int a, int b, float h) const {
     const Vec3 offset = xyz(position[a]) - xyz(position[b]);
     const float least = 2 * rules.merge_overlap * 2 * h / 4;
@@ -138,18 +143,19 @@ struct JoinHalves {
     if (a < 0) return;
     const std::uint64_t worth = worth_of(id[j], frame);
     if (taken[a] != worth || taken[b] != worth) return;
-    // A relay that accepted a bid itself may be modified by it at this moment.
+    // Skips a relay for which another relay bids: another thread may be modifying it.
     if (taken[j]) return;
     const int kept = id[a] < id[b] ? a : b;
     const int left = kept == a ? b : a;
     const std::uint8_t* level = joining.level;
     if (level[a] + 1 < level[j]) {
-      joining.join(kept, left);  // the relay only pairs them
+      joining.join(kept, left);  // the relay does not change
     } else {
       share(j, kept, left);
     }
   }
-  /// Each takes a half of the relay; the relay's index stores one of the two results.
+  /// Merges `kept` and `left` with one half of relay j each. Index `kept` stores the first result, index j
+  /// the second; `left` is removed.
   SIM_FN void share(int j, int kept, int left) const {
     const Vec4* x = joining.position;
     const Vec4* v = joining.velocity;

@@ -6,11 +6,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Particles that the last frame did not solve are paused (Alg. 3 line 16).
+/// Result of the selection for a particle. keeps: it does not split. paused: the last frame did not solve it
+/// (Alg. 3 line 16), so it may not split. wants: not yet decided. splits: it is selected.
 enum Status : std::uint8_t { keeps, paused, wants, splits };
 
-/// Priority of splits: first the particles with the most levels to go, which are the most salient; then
-/// random, drawn anew each frame.
+/// Priority of a split: first by k, the number of levels down to the target, because particles with a large k
+/// are the most salient; then by a random number, drawn anew each frame.
 SIM_FN std::uint64_t priority(int k, int id, std::uint32_t frame) {
   const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id), frame, 0x5b1u);
   return static_cast<std::uint64_t>(k) << 62 | static_cast<std::uint64_t>(chance >> 2) << 32 |
@@ -28,8 +29,9 @@ struct MarkSplits {
   }
 };
 
-/// One round of choosing particles so that no two within one spacing split: it chooses those with the highest
-/// priority within one spacing. Undecided ones may be chosen in the next round.
+/// One round of the selection of splits, in which no two particles within one spacing of each other are
+/// chosen. A particle is chosen if it has the highest priority within one spacing. A particle that stays
+/// undecided may be chosen in the next round.
 struct ChooseApart {
   const Vec4* position;
   const std::uint8_t* level;
@@ -69,8 +71,8 @@ struct ChooseApart {
 
 constexpr int rounds = 3;
 
-/// Finds a rotation that keeps all children inside the walls, for the wanted k or, failing that, a smaller
-/// one.
+/// Finds a rotation with which all 2^k children lie inside the walls and outside obstacles, for the wanted k
+/// or, if there is none, for a smaller k.
 template <class Boundary>
 struct FitChildren {
   const Vec4* position;
@@ -142,7 +144,7 @@ struct CountChildren {
   }
 };
 
-/// Refuses splits beyond the frame's share, and splits whose children exceed the capacity.
+/// Refuses splits beyond the maximum number per turn, and splits whose children exceed the capacity.
 struct Refuse {
   const int* order;
   const int* extra_sums;
@@ -157,7 +159,8 @@ struct Refuse {
   }
 };
 
-/// Keeps the first `most` by priority, within the capacity.
+/// Refuses all splits except the `most` with the highest priority. Also refuses splits whose additional
+/// particles exceed `room`.
 void limit(LevelState& l, LevelView p, int chosen, int most, int room) {
   l.keys.resize(static_cast<std::size_t>(chosen));
   l.order.resize(static_cast<std::size_t>(chosen));

@@ -25,7 +25,8 @@ struct Turn {
   SIM_FN Vec3 operator()(Vec3 v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
 };
 
-/// Uniform over all rotations (K. Shoemake 1992), from (id, frame, attempt).
+/// A random rotation, uniform over all rotations (K. Shoemake 1992), computed from id, frame and attempt
+/// alone.
 SIM_FN Turn random_turn(int id, std::uint32_t frame, int attempt) {
   const auto uniform = [&](std::uint32_t which) {
     const std::uint32_t salt = 3 * static_cast<std::uint32_t>(attempt) + which;
@@ -67,12 +68,12 @@ struct LevelFluid {
   Solids solids;                    ///< walls, and obstacles if there are any
   LevelSupports supports;
   float rest_density;  ///< kg/m3
-  float wall_gap;      ///< minimum distance to a wall, as a share of d
+  float wall_gap;      ///< minimum distance to a wall, as a share of the particle diameter d
 };
 
-/// True if the particle is surrounded by water, or by water and walls. Counts its neighbours as if all were
-/// of its level: a coarser one is listed at a larger distance, and so counts as more than one, but less than
-/// its mass ratio.
+/// True if particle i is surrounded by water, or by water and walls: it has at least `least` neighbours, or
+/// fewer beside a wall. Neighbours are weighted. A coarser neighbour is listed at a larger distance, and so
+/// counts as more than one neighbour, but as less than its mass ratio.
 template <class Boundary, class Team>
 SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const ParticleNeighbours& neighbours,
                          int i, float least, Team team) {
@@ -89,7 +90,8 @@ SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const Part
   return team.sum(count) >= least * (1 - walls.missing(xyz(self), self.w, gradient));
 }
 
-/// True if this position is outside all obstacles. No wall can be between two particles.
+/// True if position x, between two particles, is outside all obstacles. Without obstacles it always is,
+/// because no wall lies between two particles.
 SIM_FN bool free_of_bodies(const Walls&, Vec3) { return true; }
 SIM_FN bool free_of_bodies(const Solids& solids, Vec3 x) { return solids.nearest_body(x) > 0; }
 
@@ -100,10 +102,11 @@ bool choose_splits(LevelState& levels, const LevelFluid& fluid);
 void merge_pairs(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
 /// Merges particles that waited without a partner, through a coarser particle between two of them.
 void relay_stranded(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
-/// Creates the children and closes the gaps: the number of particles changes. `particles` are the fluid's.
+/// Creates the children of splits and removes merged particles from the arrays. The number of particles
+/// changes. `particles`: the particles of `fluid`.
 void compact(LevelState& levels, const LevelFluid& fluid, Particles& particles, bool any_split);
 
-/// Updates ages in a frame without splits and merges.
+/// Increases the age of all particles, in a frame that does not update the levels.
 void grow_older(LevelState& levels, const LevelView& particles);
 /// All splits and merges of a frame; levels.changed is true if there were any.
 void split_and_merge(LevelState& levels, const LevelFluid& fluid, Particles& particles);

@@ -47,7 +47,7 @@ std::string in_words(const CellKey& key) {
 }
 
 std::string exact(double value) {
-  if (std::isnan(value)) return "nan";  // the sign of a NaN means nothing
+  if (std::isnan(value)) return "nan";  // one text for every NaN: its sign has no meaning
   return base::shortest(value);
 }
 
@@ -66,7 +66,7 @@ bool reads_row(const std::vector<std::string>& cells, CellKey& key, CellValues& 
   return good;
 }
 
-/// "3 pictures ..., the first: ...", or empty.
+/// "3 WHAT, the first: KEY", with the number of keys and the first of them; empty without keys.
 std::string told(const std::vector<CellKey>& keys, const std::string& what) {
   if (keys.empty()) return "";
   return std::to_string(keys.size()) + " " + what + ", the first: " + in_words(keys.front());

@@ -12,15 +12,15 @@
 
 namespace measure {
 
-/// Metrics of one picture against HiRes.
+/// Metrics that compare one picture with that of HiRes.
 inline constexpr std::array still_metrics{Metric::PsnrFov, Metric::PsnrSalient, Metric::PsnrOverall,
                                           Metric::PsnrFluid, Metric::SsimStatic};
 
-/// One picture of Table 1.
+/// The key of one picture of Table 1.
 struct CellKey {
   std::string scene, n_star, preset, method;
   int checkpoint = 0;  ///< frame
-  std::string start;   ///< checkpoint_digest: pictures from different starts are not compared
+  std::string start;   ///< checkpoint_digest(): pictures from different starts are not compared
   int gaze = 0;        ///< from 1, in the order of gaze_points
   int repeat = 0;      ///< from 1
   friend bool operator<(const CellKey& a, const CellKey& b) {
@@ -40,8 +40,8 @@ figures::TextTable cell_rows(const std::vector<ScoreBlock>& blocks);
 /// Reads the CSV of cell_rows(). base::Error at the file and its line.
 CellScores read_cells(const std::filesystem::path& path);
 
-/// base::Error unless the pictures of the blocks are exactly those of `then`. The starts of the blocks must
-/// be known; their values are not used. `path` is the file's.
+/// base::Error unless the pictures of the blocks are exactly those of `then`. Compares keys only, not values;
+/// ScoreBlock::starts must be filled in. `path` is the file of `then`.
 void check_paired(const std::vector<ScoreBlock>& blocks, const CellScores& then, const std::string& path);
 
 /// Mean of now - then with its 95 % interval (Student's t over pairs of checkpoint and gaze point, repeats

@@ -1,5 +1,5 @@
 #pragma once
-/// Settings and cells that both tables share.
+/// Options and cells that the commands for the paper's Tables 1 and 2 share.
 
 #include <cstdint>
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace measure {
 
-/// Options of both tables, as typed.
+/// Options of both commands, as typed.
 struct TableOptions {
   std::string scene = "all";
   std::string n_star = "32k";    ///< one, or several separated by commas
@@ -30,7 +30,7 @@ struct CellSize {
 std::vector<CellSize> sizes_of(const std::string& words);
 std::vector<sim::Preset> presets_of(const std::string& word);
 
-/// The tau of temporal acceleration; none = measured live.
+/// The value of the option --tau for one cell; none if tau is measured live.
 std::optional<double> tau_of(const std::string& word, const std::string& scene, const std::string& n_star,
                              sim::MethodKind method);
 

@@ -71,7 +71,8 @@ std::vector<std::uint8_t> targets_by_id(const std::vector<sim::ParticleState>& s
   std::vector<std::uint8_t> out;
   for (const auto& particle : state) {
     if (particle.id > most || by_id[static_cast<std::size_t>(particle.id)] == none)
-      throw base::Error("start", "particle " + std::to_string(particle.id) + " has no target", "");
+      throw base::Error("start", "particle " + std::to_string(particle.id) + " has no target",
+                        "give a target for each particle");
     out.push_back(by_id[static_cast<std::size_t>(particle.id)]);
   }
   return out;

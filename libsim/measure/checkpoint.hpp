@@ -10,11 +10,11 @@
 
 namespace measure {
 
-/// HiRes at one frame of its run.
+/// The particles and the picture of HiRes at one frame of its run.
 struct Checkpoint {
   int frame = 0;
   std::vector<sim::ParticleState> state;  ///< ordered by id
-  sim::GBuffer seen;                      ///< its picture
+  sim::GBuffer seen;                      ///< picture of this frame
 };
 
 /// `count` different gaze points at a frame: the scene's own gaze at that frame, then the points of its other
@@ -26,7 +26,7 @@ std::vector<sim::Vec3d> gaze_points(const sim::Scene& scene, int frame, int coun
 std::vector<sim::ParticleState> perturbed(const std::vector<sim::ParticleState>& state, int repeat);
 
 /// The target of each particle of a state ordered by id: values[i] belongs to ids[i]. base::Error if a
-/// particle has none.
+/// particle has no value.
 std::vector<std::uint8_t> targets_by_id(const std::vector<sim::ParticleState>& state,
                                         const std::vector<int>& ids,
                                         const std::vector<sim::ParticleSaliency>& values);

@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view magic = "ViP-Lab checkpoint 1\n";  // change the number with the layout
+constexpr std::string_view magic = "ViP-Lab checkpoint 1\n";  // raise the number if the layout changes
 constexpr std::size_t most_file_bytes = std::size_t{4} << 30;
 constexpr std::size_t shown_digits = 12;
-constexpr int packing = 1;  // the fastest level is enough: most of a file is pixels without water
+constexpr int packing = 1;  // fastest compression level; enough, because most pixels hold no water
 static_assert(std::is_trivially_copyable_v<sim::ParticleState> && sizeof(sim::ParticleState) == 32);
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
@@ -86,7 +86,7 @@ void write_checkpoint(const fs::path& folder, const CheckpointOf& of, const Chec
 Checkpoint read_checkpoint(const fs::path& folder, const CheckpointOf& of) {
   const fs::path path = folder / checkpoint_name(of);
   if (!fs::exists(path)) {
-    throw base::Error(path.string(), "is not there",
+    throw base::Error(path.string(), "does not exist",
                       "store it with --checkpoints-to and the same scene, n_* and checkpoints");
   }
   const std::string bytes = base::read_file(path, most_file_bytes);

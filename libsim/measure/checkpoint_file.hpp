@@ -1,7 +1,7 @@
 #pragma once
 /// A checkpoint of Table 1 as a file, so that several versions of the program can start from the same water
-/// and picture: a text header that says what it belongs to, then the compressed particles and picture, with
-/// their SHA-256.
+/// and picture: a text header with the fields of CheckpointOf, then the compressed particles and picture,
+/// with their SHA-256.
 
 #include <filesystem>
 #include <string>
@@ -21,18 +21,19 @@ struct CheckpointOf {
   base::PictureSize size;  ///< of the checkpoint's picture
 };
 
-/// SingleDam_32768_f060.checkpoint
+/// File name of a checkpoint, such as SingleDam_32768_f060.checkpoint.
 std::string checkpoint_name(const CheckpointOf& of);
 
-/// Writes a file of that name into an existing folder, by rename.
+/// Writes the checkpoint to a file of this name in an existing folder; a rename replaces an older file.
 void write_checkpoint(const std::filesystem::path& folder, const CheckpointOf& of,
                       const Checkpoint& checkpoint);
 
-/// First digits of the SHA-256 of particles and picture: runs with equal digests start from the same water.
+/// First 12 digits of the SHA-256 of particles and picture: runs with equal digests start from the same
+/// water.
 std::string checkpoint_digest(const Checkpoint& checkpoint);
 
-/// base::Error at the file if it is missing, damaged, not a checkpoint, or another checkpoint (which is
-/// named).
+/// Reads the file of this name. base::Error at the file if it is missing, damaged, not a checkpoint, or has
+/// other fields than `of`; the first different field is named.
 Checkpoint read_checkpoint(const std::filesystem::path& folder, const CheckpointOf& of);
 
 }  // namespace measure

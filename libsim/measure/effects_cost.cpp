@@ -33,7 +33,7 @@ std::vector<sim::Effect> with_needs(const std::vector<sim::Effect>& all, const s
   std::vector<sim::Effect> out{effect};
   for (auto needs = sim::traits_of(effect.kind).needs; needs != sim::no_effect;
        needs = sim::traits_of(needs).needs) {
-    // The scene's reader guarantees that needed effects are listed.
+    // The scene's reader ensures that a scene lists each needed effect.
     if (const sim::Effect* other = find(all, needs)) out.insert(out.begin(), *other);
   }
   return out;
@@ -48,10 +48,9 @@ std::vector<EffectVariant> variants_of(const sim::Scene& scene) {
     at_zero.push_back(effect);
   }
   if (all.empty())
-    throw base::Error(
-        "scene " + scene.name, "lists no effect with a coefficient above 0",
-        "give a scene with such [[effect]] tables, as data/scenes/splash.toml; what picture effects "
-        "take, vip-bench frame tells");
+    throw base::Error("scene " + scene.name, "lists no effect with a coefficient above 0",
+                      "give a scene with such an effect, for example data/scenes/splash.toml; the cost of "
+                      "picture effects is measured by vip-bench frame");
   std::vector<EffectVariant> out{{"none", with(scene, {})}};
   for (const sim::Effect& effect : all) {
     auto effects = with_needs(all, effect);

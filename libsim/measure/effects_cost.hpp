@@ -17,8 +17,9 @@ struct EffectVariant {
 };
 /// The effect and, before it, the scene's effects that it needs.
 std::vector<sim::Effect> with_needs(const std::vector<sim::Effect>& all, const sim::Effect& effect);
-/// The scene without effects first, each effect alone, then all of them (unless one needs all others), and
-/// all at 0. base::Error if the scene lists none with a coefficient above 0.
+/// The scene without effects, with each effect and those that it needs, with all effects (unless one needs
+/// all others), and with the coefficients of all effects at 0, in this order. base::Error if the scene lists
+/// none with a coefficient above 0.
 std::vector<EffectVariant> variants_of(const sim::Scene& scene);
 
 /// Measurements of one variant. Means are over frames.
@@ -27,9 +28,10 @@ struct EffectCost {
   double particles = 0;
   double ms_frame = 0;
   double launches = 0;  ///< per frame
-  /// Of all particle columns, and of saliency, temporal acceleration, nozzles, outlets and foam.
+  /// Bytes of all particle columns and of the data of saliency, temporal acceleration, nozzles, outlets,
+  /// foam.
   double column_bytes = 0;
-  /// Device memory above that in use before this fluid was made; NaN on the CPU.
+  /// Bytes of device memory beyond those in use before this fluid was made; NaN on the CPU.
   double device_bytes = std::numeric_limits<double>::quiet_NaN();
   bool same_state = false;  ///< all particles equal those of the scene without effects, bit for bit
 };

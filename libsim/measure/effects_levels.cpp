@@ -135,7 +135,7 @@ void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool
     if (pass.effect == running.kind) running.ms_passes.back() += pass.ms;
 }
 
-/// Compares with the pictures of the effect at all levels.
+/// Sets the picture differences of `running` from `reference`, the run with the effect at all levels.
 void compare(Running& running, const Running& reference) {
   const double pixels_per_degree = std::numbers::pi / 180 / sim::pixel_rays(running.eye->view()).scale_y;
   const double count = static_cast<double>(running.pictures.size());

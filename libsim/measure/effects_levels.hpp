@@ -11,9 +11,9 @@
 
 namespace measure {
 
-/// One effect with those it needs, limited to levels up to a coarsest one.
+/// A scene with one effect and those it needs, which act only on water up to a coarsest level.
 struct LevelVariant {
-  std::string effect;  ///< its word
+  std::string effect;  ///< the effect's word in scene files
   std::string levels;  ///< "none", "0 to 3", "0 to 2", ..., "0", or "0 to 3, start moved"
   sim::EffectKind kind{};
   sim::Scene scene;
@@ -30,7 +30,7 @@ struct LevelCost {
   double particles = 0;  ///< mean over frames
   double ms_frame = 0;   ///< median
   double ms_passes = 0;  ///< median of the effect's own passes
-  /// Over all pictures; PSNR is infinite if they are equal.
+  /// Differences over all pictures; PSNR is infinite if the pictures are equal.
   double psnr_db = 0, ssim = 0, flip_percent = 0;
 };
 
@@ -40,13 +40,13 @@ struct LevelRuns {
   base::PictureSize size;
 };
 
-/// All variants start from one settled state, look at the scene's gaze point, step in turn with each pass
-/// timed, and are drawn at four instants, the last of which is the last frame. base::Error for a method with
-/// one level.
+/// All variants start from one settled state, with the gaze on the scene's gaze point. They step in turn,
+/// with each pass timed, and are drawn at four equally spaced frames up to the last one. base::Error for a
+/// method with one level.
 std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, const LevelRuns& runs);
 
-/// One row per variant, each effect's rows together: the added time is relative to the first row, the saved
-/// time is a share of the effect's own passes in the second row.
+/// One row per variant, grouped by effect. The added time is relative to the group's first row, without the
+/// effect; the saved time is a share of the effect's own passes in the group's second row, at all levels.
 figures::TextTable to_table(const EffectsRun& run, const std::vector<LevelCost>& costs);
 /// One bar per variant: ms of the effect's own passes.
 std::string to_svg(const EffectsRun& run, const std::vector<LevelCost>& costs);

@@ -17,14 +17,14 @@ namespace {
 
 constexpr double periphery_deg = 20;
 
-/// One simulation with its own camera, frame by frame.
+/// The run of one method, drawn by a camera of its own in each frame, and the sums of its metrics.
 class Reel {
  public:
   Reel(const sim::CellScene& scene, const Table1Options& options, const sim::SimulationOptions& choice)
       : method_(choice.method),
         fluid_(sim::make_simulation(scene.scene, choice)),
         eye_(scene.scene, options.size) {
-    // Saliency sees the settled water before the first frame, as in a live run.
+    // Draws the settled water, because saliency uses this picture in the first frame, as in a live run.
     eye_.draw(*fluid_);
   }
 
@@ -76,7 +76,8 @@ class Film {
     for (const auto& scores : block.methods) {
       auto choice = choose_(scores.method);
       const auto& method = sim::traits_of(scores.method);
-      // A coarser method fills and settles by itself; the others start from HiRes' particles.
+      // A method with coarser particles fills and settles its own water; the others start from HiRes'
+      // particles.
       if (method.start_level > 0) {
         if (start > 1)
           choice.start = perturbed(sim::make_simulation(scene.scene, choice)->read_state(), start);

@@ -1,5 +1,5 @@
 #pragma once
-/// Growth of one fluid's time with its number of particles, as numbers, a table and a picture.
+/// Growth of a fluid's computing time with its number of particles, as numbers, a table and a picture.
 
 #include <limits>
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace measure {
 
-/// One size.
+/// Measurements at one n_*.
 struct GrowthRow {
   std::string n_star;
   double particles = 0;        ///< mean over frames
   double substeps_mean = 0;    ///< per frame
   double ms_substep_mean = 0;  ///< ms of all frames over substeps of all frames
-  double ms_substep_p99 = 0;   ///< over frames, of a frame's ms per substep
+  double ms_substep_p99 = 0;   ///< 99th percentile over frames of a frame's ms per substep
   double ms_frame_mean = 0;
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
-  /// Simulation::particle_bytes over the final number of particles: the particles' columns and the data of
+  /// Simulation::particle_bytes / final number of particles: the particles' columns and the data of
   /// saliency, temporal acceleration, nozzles and outlets, at their capacity. Excludes neighbour lists, cells
   /// and the pressure's grids.
   double column_bytes = 0;
-  /// Device memory after the run, above that in use before the fluid was made, over the same number of
-  /// particles; NaN on the CPU.
+  /// Bytes of device memory after the run, beyond those in use before the fluid was made, per particle; NaN
+  /// on the CPU.
   double device_bytes = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -36,7 +36,7 @@ struct Growth {
 /// base::Error unless two rows have different numbers of particles.
 Growth growth_of(const std::vector<GrowthRow>& rows);
 
-/// "exponent 1.020, standard error 0.031, over 4 sizes"
+/// The growth as text, such as "exponent 1.020, standard error 0.031, over 4 sizes".
 std::string in_words(const Growth& growth, std::size_t sizes);
 
 /// Labels of the run, for the table's rows and the picture's title.

@@ -9,25 +9,28 @@ namespace measure {
 
 namespace {
 
-constexpr double vec4 = 16, number = 4, byte = 1;  // float and int alike
-constexpr double entry = number;                   // of a neighbour list
+constexpr double vec4 = 16, number = 4, byte = 1;  // bytes; number: a float or an int
+constexpr double entry = number;                   // bytes per entry of a neighbour list
 
-/// Compared with the functors in libsim; < is read, > is written.
+/// Bytes that each pass must move, counted from its functor in libsim. Above a row, < marks the columns that
+/// the pass reads and > those that it writes.
 constexpr std::array table{
-    // < predicted, count of its list, entries; > lambda, density. The positions of neighbours are in the same
-    // column.
+    // < predicted, count of its list, entries; > lambda, density. Neighbours' positions are in predicted too.
     PassBytes{"density", vec4 + number + 2 * number, entry, true},
-    // < predicted, lambda, count, entries; > the next positions. Momentum would also read those.
+    // < predicted, lambda, count, entries; > the next positions. With momentum the
+    // pass also reads the old values of the next positions.
     PassBytes{"displacement", vec4 + number + number + vec4, entry, true},
     // < predicted; > count, entries.
     PassBytes{"list neighbours", vec4 + number, entry, true},
-    // < position, velocity, density, count, entries; > the next velocity. Levels also read kicks and ease.
+    // < position, velocity, density, count, entries; > the next velocity. With levels the pass
+    // also reads the columns PredictedNext and Ease.
     PassBytes{"xsph", 2 * vec4 + number + number + vec4, entry, true},
-    // < age, count, entries; > ease. Positions are read only near fresh particles.
+    // < age, count, entries; > ease. The pass reads positions only near particles that a split or merge made.
     PassBytes{"ease", byte + number + number, entry, true},
     // < position, velocity; > position, velocity, predicted.
     PassBytes{"predict", 5 * vec4, 0, false},
-    // < position, predicted, velocity; > position, velocity. Levels also write kicks.
+    // < position, predicted, velocity; > position, velocity. With levels the pass also
+    // writes PredictedNext.
     PassBytes{"velocity", 5 * vec4, 0, false},
     // < predicted, density.
     PassBytes{"gather cells", vec4 + number, 0, false},
@@ -35,11 +38,12 @@ constexpr std::array table{
     PassBytes{"shift", 2 * vec4, 0, true},
     // < predicted; > cell, arrival.
     PassBytes{"count cells", vec4 + 2 * number, 0, false},
-    // < cell, arrival; > particle at that place.
+    // < cell, arrival; > index of the particle in each slot.
     PassBytes{"place by cell", 3 * number, 0, false},
-    // < particle at that place, cell, id; > order.
+    // < index of the particle in each slot, cell, id; > order.
     PassBytes{"order within cells", 4 * number, 0, false},
-    // < order; < and > position, predicted, velocity, id, level. Levels have more columns.
+    // < order; < and > position, predicted, velocity, id, level. With levels there are more
+    // columns.
     PassBytes{"reorder", number + 2 * (3 * vec4 + number + byte), 0, false},
 };
 

@@ -12,13 +12,13 @@
 
 namespace measure {
 
-/// A lower bound for one pass: each input read once, each output written once, for any method. Excludes data
-/// that only some methods or particles use, cells and grids, so that a launch moves less from memory only if
-/// a cache still holds the data.
+/// A lower bound for one pass: each input read once, each output written once, for any method. Excludes
+/// cells, grids, and data that only some methods or particles use. A launch can move fewer bytes from memory
+/// only if a cache still holds data.
 struct PassBytes {
   const char* label;
-  double a_particle;
-  double a_neighbour;  ///< per entry of a neighbour list
+  double a_particle;   ///< bytes per particle
+  double a_neighbour;  ///< bytes per entry of a neighbour list
   bool solved_only;    ///< covers only the particles that temporal acceleration solves
 };
 std::span<const PassBytes> pass_bytes();
@@ -27,7 +27,7 @@ std::span<const PassBytes> pass_bytes();
 struct PassWater {
   double particles = 0;
   double solved_share = 1;
-  double listed = 0;  ///< neighbours per list; 0: unknown, and so are the bytes of passes that read lists
+  double listed = 0;  ///< neighbours per list; 0: unknown, which makes the bytes of passes with lists unknown
 };
 
 /// Bytes of one launch; none if the table has no such pass.
@@ -36,17 +36,17 @@ std::optional<double> least_bytes(const std::string& label, const PassWater& wat
 struct PassFloor {
   double bytes_a_frame = 0;
   double ms_a_frame = 0;  ///< at the given bandwidth
-  double times = 0;       ///< measured time over ms_a_frame
+  double times = 0;       ///< measured time / ms_a_frame
 };
-/// gb_s: bytes read plus written, 1e9 per second; above 0.
+/// gb_s: bandwidth of the memory, reads plus writes, 1e9 bytes per second; above 0.
 std::optional<PassFloor> floor_of(const std::string& label, double launches_a_frame, double ms_a_frame,
                                   const PassWater& water, double gb_s);
 
-/// Sums the launches of several parts of a run, so that measurements between them are left out.
+/// Sums the launches of several parts of a run; launches for measurements between the parts are left out.
 class LaunchSums {
  public:
   void add(const std::vector<sim::LaunchTime>& stretch);
-  /// Longest first.
+  /// The sums, that with the longest time first.
   std::vector<sim::LaunchTime> all() const { return sim::longest_first(passes_); }
 
  private:

@@ -52,7 +52,7 @@ Mask salient_mask(const sim::GBuffer& picture, std::span<const int> ids, std::sp
   const auto width = static_cast<std::size_t>(picture.width);
   const auto height = static_cast<std::size_t>(picture.height);
   Mask out(width * height, 0);
-  constexpr float nothing = -1;  // F is never negative
+  constexpr float nothing = -1;  // marks pixels without fluid; F is never negative
   std::vector<float> values(out.size(), nothing);
   std::vector<float> ranked;
   for (std::size_t y = 0; y < height; ++y) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Pixels that a metric of Table 1 uses. Masks have one byte per pixel, 1 or 0, row 0 at the top.
+/// Masks of the pixels that a metric of Table 1 compares. Masks have one byte per pixel, 1 or 0, row 0 at the
+/// top.
 
 #include <cstdint>
 #include <span>
@@ -17,12 +18,12 @@ inline constexpr std::size_t least_mask_pixels = 1000;
 
 std::size_t pixels_of(const Mask& mask);
 
-/// Pixels whose ray is within the angle of the gaze, both from the view's eye.
+/// Pixels whose ray lies within `half_angle_deg` of the gaze, as seen from the view's eye.
 Mask fovea_mask(const sim::View& view, const sim::Gaze& gaze, double half_angle_deg);
 
 /// The most salient fifth of the fluid's pixels, without those of `without`. A pixel's value is the F of the
-/// particle in front, by_id[ids[front]]; s saturates at 1 above its range, so only F can rank the particles.
-/// Non-finite values are not salient; ties with the last pixel of the fifth are included.
+/// particle in front, by_id[ids[front]], and not its s, because many particles have s = 1. Non-finite values
+/// are not salient; ties with the last pixel of the fifth are included.
 Mask salient_mask(const sim::GBuffer& picture, std::span<const int> ids, std::span<const float> by_id,
                   const Mask& without);
 

@@ -18,13 +18,13 @@ class Onlooker {
 
   const sim::View& view() const { return view_; }
   const sim::Camera& camera() const { return camera_; }
-  /// Call it before another run; see FluidPicture::begin.
+  /// Forgets the last picture; call it before another run (see FluidPicture::begin).
   void begin(const sim::GBuffer* seen) { picture_.begin(seen); }
   /// Passes the gaze and the last picture to a method that uses them.
   void look(sim::Simulation& fluid, const sim::Vec3d& gaze_m) {
     picture_.look(fluid, view_, sim::gaze_at(camera_, gaze_m));
   }
-  /// Calls look(), advances by a frame, and draws if asked to or if the method uses pictures.
+  /// Calls look(), advances by a frame, and draws if `wanted` or if the method uses pictures.
   void step(sim::Simulation& fluid, const sim::Vec3d& gaze_m, bool wanted);
   void draw(sim::Simulation& fluid) { picture_.draw(fluid, view_, target_.framebuffer()); }
 
@@ -32,7 +32,7 @@ class Onlooker {
   sim::Image image() const { return target_.read(); }
   sim::Picture picture() const { return sim::without_alpha(image()); }
   sim::GBuffer gbuffer() const { return picture_.renderer().read_gbuffer(); }
-  /// Mask of fluid pixels: 1, else 0; row 0 is the top.
+  /// Mask of the fluid's pixels (1; others 0) in the last picture; row 0 is the top.
   std::vector<std::uint8_t> fluid_mask() const;
   /// The last picture with the water painted by level. `finest_spacing_m` is 2 r_*.
   sim::Image painted_by_level(sim::Simulation& fluid, double finest_spacing_m);

@@ -19,11 +19,11 @@ constexpr const char* head =
     "program,solver,particles,dt_s,iterations,backend,threads,ms_a_step,density_error_percent,source";
 constexpr std::size_t columns = 10;
 
-/// Reads the cells of one line; stops with the name of the first wrong one.
+/// Reads the cells of one line; base::Error with the column's name at the first wrong cell.
 class Cells {
  public:
   Cells(std::string place, const std::string& line)
-      : place_(std::move(place)), cells_(base::split(line + ",")) {  // an empty last cell counts
+      : place_(std::move(place)), cells_(base::split(line + ",")) {  // the comma preserves an empty last cell
     if (cells_.size() != columns)
       fail("has " + std::to_string(cells_.size()) + " cells where " + std::to_string(columns) + " belong");
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Times of other programs at one setting, and ours at the same setting.
+/// Step times of other fluid programs at one setting, and ViP-Lab's times at the same setting.
 
 #include <filesystem>
 #include <optional>
@@ -26,12 +26,12 @@ struct PeerRow {
 /// base::Error at file:line for a malformed row, and for a file without rows.
 std::vector<PeerRow> read_peers(const std::filesystem::path& path);
 
-/// Our run at the peers' setting.
+/// ViP-Lab's run at the setting of the other programs.
 struct OurRow {
   PeerRow as_peer;  ///< ms_a_step is the mean; source is the machine
   double ms_p95 = 0, neighbours = 0, substeps = 0;
 };
-/// From the result of run_frames(). machine: empty if unknown.
+/// Makes the row from the result of run_frames(). machine: empty if unknown.
 OurRow our_row(const base::Json& result, double dt_s, int iterations, const std::string& machine);
 
 /// The peers' rows, then ours.

@@ -1,6 +1,6 @@
 #pragma once
-/// Renders the fluid of a benchmark and times it separately from the solver, and the renderer's passes over
-/// many pictures.
+/// Renders the fluid of a benchmark. Times the rendering separately from the solver, and each of the
+/// renderer's passes over many pictures.
 
 #include <memory>
 #include <span>

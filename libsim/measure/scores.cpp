@@ -24,7 +24,7 @@ std::vector<double> values_of(const Series& series) {
 struct Summary {
   stats::MeanInterval interval;  ///< over groups
   std::size_t finite = 0, equal = 0, skipped = 0;
-  double pixels = 0;  ///< of the cells that were not skipped
+  double pixels = 0;  ///< mean mask size of the cells that were not skipped, px
 };
 
 Summary summary_of(const Series& series) {
@@ -56,7 +56,8 @@ constexpr Pair pairs[] = {{Method::Ours, Method::FovFluid},
                           {Method::OursTsp, Method::Ours},
                           {Method::Ours, Method::LoRes}};
 
-/// Largest allowed mean difference below zero; NaN if no order is claimed.
+/// How far the mean of `better` may lie below that of `worse` in the metric; NaN if the paper claims no
+/// order.
 double allowed_loss(const Pair& pair, Metric metric) {
   if (pair.better == Method::OursTsp) return unknown;
   switch (metric) {

@@ -57,7 +57,7 @@ const char* reach_name(Reach reach) {
   return "";
 }
 
-/// "0.0167 to 0.0334 (x 2.0)"
+/// A cell's usual number, limit and margin, such as "0.0167 to 0.0334 (x 2.0)".
 std::string in_markdown(const MapCell& cell) {
   if (cell.reach == Reach::UsualFails) return "**fails at " + figures::shortest(cell.usual) + "**";
   return figures::shortest(cell.usual) + " to " + figures::shortest(cell.limit) +
@@ -71,7 +71,7 @@ const MapCell* find(const StabilityMap& map, const std::string& id, const std::s
   return found == map.cells.end() ? nullptr : &*found;
 }
 
-/// Circumstances and effects.
+/// The circumstances of the measurement and the effects of the water, as text.
 std::string measured_on(const StabilityMap& map) {
   std::string out = map.circumstances;
   for (const std::string& effect : map.effects) out += "; effect " + effect;
@@ -123,7 +123,7 @@ std::string to_markdown(const StabilityMap& map) {
       for (const Knob knob : all_knobs) {
         const MapCell* cell = find(map, id, method, knob);
         row.push_back(cell ? in_markdown(*cell) : "");
-        // A failure at the usual numbers is listed once.
+        // A failure at the case's usual numbers concerns all three knobs but is listed once.
         if (!cell || (cell->reach == Reach::UsualFails && !failed.empty())) continue;
         failed += (failed.empty() ? "" : "; ") + (cell->failed.empty() ? "nothing" : cell->failed);
       }
@@ -145,7 +145,7 @@ constexpr double left_px = 52, top_px = 88, cell_px = 66, row_px = 24, gap_px = 
 
 /// Shades of one blue, darker with a larger margin; their lightness differs enough for any colour vision.
 struct Shade {
-  double from;  ///< margin
+  double from;  ///< smallest margin of this shade
   const char* fill;
   const char* ink;
   const char* words;

@@ -9,14 +9,14 @@
 
 namespace measure {
 
-// How far a number can be changed before something fails, by bisection.
+// Search by bisection: how far can a number change before something fails?
 
 /// Runs with the changed number; returns what failed, empty if nothing did.
 template <class T>
 using Trial = std::function<std::string(T)>;
 
 enum class Reach {
-  Found,      ///< between what passed and what failed
+  Found,      ///< the limit is between a value that passed and one that failed
   AllPass,    ///< even the farthest value tried passes
   UsualFails  ///< the usual value itself fails
 };

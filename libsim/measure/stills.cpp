@@ -157,7 +157,7 @@ class Stills {
     return out;
   }
 
-  /// One start per repeat.
+  /// Merges the particles of each repeat's state to their target levels `wishes`.
   std::vector<State> coarsened(const std::vector<State>& states,
                                const std::vector<std::uint8_t>& wishes) const {
     std::vector<State> out(states.size());
@@ -199,8 +199,8 @@ class Stills {
     return out;
   }
 
-  /// Notes the quality of a method's start. Only the first repeat is noted, because the others differ by an
-  /// ulp.
+  /// Records the quality of a method's start. Called for the first repeat only, because the other repeats
+  /// differ from it by an ulp.
   void note_start(sim::Simulation& fluid, Method method, sim::Preset preset) {
     auto& starts = result_.starts;
     auto found = std::find_if(starts.begin(), starts.end(), [&](const auto& start) {

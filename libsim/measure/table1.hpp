@@ -22,16 +22,16 @@ struct Table1Options : TableOptions {
   int checkpoints = 0;       ///< number of the scene's checkpoints to use; 0 = all
   int gazes = 3;             ///< gaze points per checkpoint
   int repeats = 5;           ///< perturbed starts per gaze point
-  int frames_after = 5;      ///< from a checkpoint to the compared picture
+  int frames_after = 5;      ///< frames from a checkpoint to the compared picture
   int cumul_frames = 200;    ///< length of the film; 0 = no film
-  int film_starts = 1;       ///< starts of the film, an ulp apart
-  int projections = 50;      ///< largest number of projections of a start
+  int film_starts = 1;       ///< number of starts of the film, which differ by an ulp
+  int projections = 50;      ///< most constraint projections that relax a start
   bool unperturbed = false;  ///< starts are not perturbed: HiRes must then equal itself
   base::PictureSize size{1280, 720};
   std::string pictures;                          ///< folder for side-by-side pictures; empty = none
   std::string checkpoints_to, checkpoints_from;  ///< folders for checkpoint_file.hpp; empty = none
   std::string cells;                             ///< file for cell_scores.hpp; empty = none
-  std::string paired_with;                       ///< file of that kind from another run; empty = none
+  std::string paired_with;                       ///< file for cell_scores.hpp from another run; empty = none
 };
 
 /// Options that all runs of a method share.
@@ -50,11 +50,11 @@ inline sim::SimulationOptions run_options(const Table1Options& options, const si
 
 // Checkpoints from a run of HiRes, or from the files of an earlier run.
 
-/// Frames of the scene's checkpoints that the options ask for.
+/// Frames of the scene's checkpoints that the options select.
 std::vector<int> checkpoint_frames(const sim::CellScene& scene, const Table1Options& options);
 
-/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error unless all are
-/// there.
+/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error if one is
+/// missing.
 std::vector<std::string> stored_digests(const sim::CellScene& scene, const CellSize& size,
                                         const Table1Options& options);
 
@@ -65,12 +65,12 @@ std::vector<Checkpoint> take_checkpoints(const sim::CellScene& scene, const Cell
 
 // Still cells: from one state of HiRes to each method's picture a few frames later.
 
-/// Quality of a method's starts after projection.
+/// Quality of a method's starts after the projections that relax them.
 struct StartQuality {
   sim::MethodKind method{};
   sim::Preset preset{};
   sim::RelaxedStart worst;     ///< largest number of projections, largest compression
-  double particles_share = 0;  ///< mean of n / (8 n_*)
+  double particles_share = 0;  ///< mean of number of particles / (8 n_*)
   int starts = 0;
 };
 
@@ -89,9 +89,9 @@ std::size_t still_runs(const sim::CellScene& scene, const Table1Options& options
 /// The protocol: HiRes runs from its settled state. At each checkpoint every method starts from that state,
 /// coarsened to the method's targets and projected, looks at one gaze point and at the checkpoint's picture,
 /// and is compared `frames_after` frames later with HiRes from the same checkpoint. Repeats perturb the state
-/// by an ulp (checkpoint.hpp) and reseed the choice of active particles; HiRes from perturbed states gives
-/// the floor set by chaos. Masks come from the HiRes picture and its saliency with tuned readings, the same
-/// for all methods. Needs a current context; calls `done` after each run.
+/// by an ulp (checkpoint.hpp) and reseed the choice of active particles; HiRes from perturbed states shows
+/// the differences that chaos alone causes. Masks come from the HiRes picture and its saliency with tuned
+/// readings, the same for all methods. Needs a current context; calls `done` after each run.
 StillResult run_stills(const sim::CellScene& scene, const CellSize& size, const Table1Options& options,
                        const std::vector<sim::Preset>& presets, const std::function<void()>& done,
                        SheetWriter& sheets);

@@ -59,7 +59,7 @@ std::string in_words(const base::Json& books) {
     const auto count = [&](const char* key) { return foam[key].get<std::uint64_t>(); };
     out += fmt::format(
         "  foam         {} made, {:.4g} m3: {} in the air, {} on the water, {} in it; {} dissolved, "
-        "{} found no room, {} left\n",
+        "{} dropped because the pool was full, {} left\n",
         count("emitted"), foam["emitted_m3"].get<double>(), count("spray"), count("foam"), count("bubbles"),
         count("dissolved"), count("dropped"), count("left"));
   }

@@ -15,7 +15,7 @@ namespace measure {
 /// progress line.
 std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::SimulationOptions options);
 
-/// Processor and cores; the operating system does not affect the numbers.
+/// Processor and number of cores. Leaves out the operating system, which does not affect the numbers.
 std::string processor();
 
 /// Density error averaged over states spread over the run, so that no single calm or wild moment decides.
@@ -47,7 +47,7 @@ inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& rea
 /// Substeps over all frames.
 struct Substeps {
   int taken = 0, most = 0;
-  int bound = 0;  ///< frames whose fastest particle asked for more substeps than allowed
+  int bound = 0;  ///< frames whose fastest particle required more substeps than the limit
   void add(sim::SubstepCount count) {
     taken += count.taken;
     most = std::max(most, count.taken);
@@ -56,7 +56,7 @@ struct Substeps {
   double mean(int frames) const { return static_cast<double>(taken) / frames; }
 };
 
-// The totals that a scene's effects keep over a run.
+// Totals of a scene's effects over a run.
 
 /// {"foam": {...}, "heat": {...}} for the listed effects with a coefficient above 0; an empty object without
 /// any. Foam: numbers of diffuse particles, and the volume of all particles emitted, m3. Heat: kelvin above

@@ -16,7 +16,8 @@ inline constexpr int most_levels = 4;
 /// Source of the level that a particle should have.
 enum class TargetSource {
   None,     ///< all particles keep one level
-  Gaze,     ///< finest in the fovea, coarsest outside, a band between (FovFluid-like, after [42])
+  Gaze,     ///< finest in the fovea, coarsest in the periphery, other levels between (like FovFluid, [42] in
+            ///< ViP-Fluid)
   Saliency  ///< Eq. 1-9
 };
 
@@ -28,7 +29,7 @@ struct MethodTraits {
   bool temporal = false;  ///< temporal acceleration (Alg. 3)
   int start_level = 0;    ///< level of all particles at frame 0
 
-  /// Particles split and merge.
+  /// True if particles split and merge.
   bool adaptive() const { return target != TargetSource::None; }
 };
 
@@ -36,18 +37,19 @@ struct MethodTraits {
 const std::array<MethodTraits, 5>& all_methods();
 const MethodTraits& traits_of(MethodKind method);
 
-/// "LoRes", "HiRes", "FovFluid", "Ours", "Ours-TSp" (any case); others are a base::Error naming the known
-/// ones.
+/// "LoRes", "HiRes", "FovFluid", "Ours", "Ours-TSp" (any case); any other name is a base::Error that lists
+/// the known names.
 MethodKind parse_method(std::string_view name);
 std::string method_name(MethodKind method);
 /// "LoRes, HiRes, FovFluid, Ours or Ours-TSp", for help texts and errors.
 std::string method_names();
 
-/// "16k" = 16,384; "4096" = 4,096. The paper's n_*: number of particles if all are coarsest. 64 .. 4M, else
-/// base::Error.
+/// Parses n_*, the number of particles if all have the coarsest level: "16k" = 16,384; "4096" = 4,096.
+/// base::Error outside 64 .. 4M (4 x 2^20).
 std::int64_t parse_n_star(std::string_view text);
 
-/// Particles at frame 0: 8 n_* of level 0, n_* of level 3. LoRes and HiRes keep this number in all frames.
+/// Number of particles at frame 0: 8 n_* for a method that starts at level 0, n_* for one that starts at
+/// level 3. LoRes and HiRes have this number in all frames.
 std::int64_t particle_count(MethodKind method, std::int64_t n_star);
 
 }  // namespace sim

@@ -10,7 +10,7 @@ namespace sim {
 
 enum class Preset { Paper, Tuned };
 
-/// "paper" or "tuned" (any case); others are a base::Error.
+/// "paper" or "tuned" (any case); any other name is a base::Error.
 Preset parse_preset(std::string_view name);
 std::string preset_name(Preset preset);
 
@@ -18,18 +18,20 @@ std::string preset_name(Preset preset);
 /// deg), like letter acuity (Strasburger et al. 2011). Steep: the same with 0.85 deg, from the slope of the
 /// minimum angle of resolution in Guenter et al. 2012. Smoothstep: to 0 at 30 deg.
 enum class AcuityFalloff { Hyperbolic, Steep, Smoothstep };
-/// Eq. 6: reach of the gradients. OneSupport: the solver's neighbours. Smoothed: the same on values averaged
-/// over the support, with averaged results, which reaches as far as two supports. TwoSupports: 2 h_i, as
-/// printed; eight times the neighbours.
+/// Eq. 6: distance over which gradients are measured. OneSupport: the support h_i, so the solver's
+/// neighbours. Smoothed: h_i, but both the values and the gradients are averaged over the support, so that
+/// the result depends on water up to two supports away. TwoSupports: 2 h_i as printed, with eight times as
+/// many neighbours.
 enum class GradientReach { OneSupport, Smoothed, TwoSupports };
-/// Eq. 7: min(e^(d/2), 5), which distinguishes depths up to 3.2 m, or the printed max.
+/// Eq. 7: weight of a particle under water of thickness d in m. Min: min(e^(d/2), 5), which distinguishes
+/// thicknesses up to 3.2 m. Max: max(e^(d/2), 5), as printed.
 enum class ThicknessWeight { Min, Max };
-/// Eq. 9: between the 1st and the 98th percentile by mass with a moving average, or between the minimum and
-/// the maximum.
+/// Eq. 9: the range of F that maps to s = 0 .. 1. Percentile: from the 1st to the 98th percentile by mass,
+/// averaged over recent frames. MinMax: from the minimum to the maximum.
 enum class Normalisation { Percentile, MinMax };
 
-/// Every switch. Units and readings: the equations they name. Without gravity, a hundredth of d_* per frame
-/// stands for the speed sqrt(g d_*) in Eq. 6, 13 and 14.
+/// All switches; each comment names the paper's equation. d_* is the diameter of the finest particles.
+/// Without gravity, 0.01 d_* per frame replaces the speed sqrt(g d_*) in Eq. 6, 13 and 14.
 struct Readings {
   // Eq. 1-9: saliency
   double alpha = 2.0 / 3;  ///< Eq. 1: weight of the temporal feature
@@ -45,82 +47,95 @@ struct Readings {
   /// Eq. 6: smoothing factor per frame of the temporal feature; 1 = no smoothing. In still water 0.3 makes a
   /// third fewer splits than 1, and 0.1 less than half as many.
   double temporal_follow = 0.2;
-  /// Minimum number of frames between measurements of the temporal feature and the range of Eq. 9; smoothing
-  /// then takes as many steps. Acuity and manifold are measured in every turn of the levels. >= 1
+  /// Minimum number of frames between two measurements of the temporal feature and of the range of Eq. 9. The
+  /// smoothing then takes one step for each frame that passed. Acuity and manifold are measured in every turn
+  /// of the levels. >= 1
   int temporal_period_frames = 2;
-  /// Eq. 6: differences times h_i, dimensionless; false leaves 1/m.
+  /// Eq. 6: gradients are multiplied by h_i, which makes them dimensionless; false: they stay in 1/m.
   bool dimensionless = true;
-  /// Eq. 6: epsilon_v as a share of sqrt(g d_*), epsilon_rho as a share of rho_0; without this floor the
-  /// jitter of still water is salient. Splits and merges stir it at 0.2 to 0.3 sqrt(g d_*): the rank
-  /// correlation of Smoothed with TwoSupports in still water is 0.86 at 0.1, 0.92 at 0.25, 0.96 at 1.
+  /// Eq. 6: speed_floor is epsilon_v as a share of sqrt(g d_*), density_floor is epsilon_rho as a share of
+  /// rho_0. Without these floors the jitter of still water, which splits and merges set to 0.2 to 0.3 sqrt(g
+  /// d_*), is salient. In still water the rank correlation of Smoothed with TwoSupports is 0.86 at a
+  /// speed_floor of 0.1, 0.92 at 0.25 and 0.96 at 1.
   double speed_floor = 1;
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
-  /// Speed below which water counts as at rest, as a share of sqrt(g d_*); 0 = no water does.
+  /// Speed below which water counts as at rest, as a share of sqrt(g d_*); 0 = no water counts as at rest.
   double calm_speed = 0.65;
-  /// Eq. 6: in water at rest only the excess over this value counts. Splits and merges stir it, and would
-  /// otherwise cause further ones. Levels use this; masks and figures do not.
+  /// Eq. 6: in water at rest only the part of the temporal feature above this value counts. Otherwise the
+  /// motion that splits and merges cause would trigger further splits. Levels use this floor; masks and
+  /// figures do not.
   double calm_floor = 0.3;
-  double saliency_floor = 0.1;  ///< minimum F that counts as s = 1, however calm the rest is
+  double saliency_floor = 0.1;  ///< minimum of the F that maps to s = 1, even if F is smaller everywhere
   /// Duration for which a lost gaze stays at its last position, before it follows the view's axis; a blink
   /// lasts 0.1 to 0.4 s.
   double gaze_hold_s = 0.5;
 
   // Algorithms 1 and 2: levels
-  /// Period in frames of the turns of saliency, splits and merges. >= 1
+  /// Number of frames from one turn, the update of saliency, splits and merges, to the next. >= 1
   int levels_period_frames = 4;
-  /// Further turns take place at once, and in each of the next saccade_frames frames, if a gaze has turned by
-  /// more than this since the last turn: the new fixation is refined as soon as possible.
+  /// Angle of a gaze movement since the last turn above which the coming frame and the next saccade_frames
+  /// frames are turns too, so that the new fixation is refined as soon as possible.
   double saccade_deg = 2;
   int saccade_frames = 5;
   /// Limit target levels of neighbours to a difference of one.
   bool graded_targets = true;
   /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for every split.
   double split_offset[3] = {0.794, 1.09, 0.866};
-  /// Maximum share of the particles that splits in a turn, and no two within one spacing; 1 = no throttle.
+  /// Maximum share of the particles that split in a turn. Below 1, no two particles within one spacing of
+  /// each other split in the same turn either. 1 = no limit.
   double split_share = 0.05;
-  /// Partners of a merge must have the same target level; false: both only need a coarser one.
+  /// Two particles merge only if their target levels are equal; false: both targets only need to be coarser
+  /// than the particles.
   bool merge_same_target = false;
-  /// Maximum distance of members from the merged particle's centre, in its radii.
+  /// Maximum distance of the two particles of a merge from the merged particle's centre, in radii of the
+  /// merged particle.
   double merge_reach = 1;
   /// Minimum distance of a merged particle from others of its level or coarser, as a share of the sum of
   /// radii.
   double merge_overlap = 0.8;
-  /// A merge may not leave a neighbour two levels finer.
+  /// Refuse merges after which a neighbour would be two levels finer than the merged particle.
   bool merge_keeps_steps = true;
-  /// A particle becomes coarser only if it is this far, in levels, beyond the border that Eq. 9 gives for s:
-  /// particles near a border neither split nor merge. [0, 1)
+  /// A particle becomes coarser only if N (1 - s) of Eq. 9 exceeds the next coarser level by this much, in
+  /// levels. So a particle whose s varies about the border of two levels does not split and merge in turn.
+  /// [0, 1)
   double merge_dead_band = 0.7;
-  /// Share of the differences between neighbours' velocity changes that is removed per substep near fresh
-  /// particles in water at rest, whose overlap would otherwise release energy. [0, 1]; 0 = no filter.
+  /// Filter near particles that just split or merged, strongest in water at rest: removes this share of the
+  /// differences between neighbours' velocity changes per substep. Otherwise the overlap of the new particles
+  /// would become kinetic energy. [0, 1]; 0 = no filter.
   double kick_filter = 0.9;
-  /// Additional viscosity of water at rest, as a multiple of its own: damps the irregularities left by splits
-  /// and merges. >= 0
+  /// Additional viscosity of water at rest, as a multiple of the fluid's viscosity: damps the irregularities
+  /// left by splits and merges. >= 0
   double calm_viscosity = 20;
 
   // Algorithm 3: temporal acceleration
-  /// Eq. 14: dV/dl divided by |V| + epsilon, dimensionless; false leaves m/s.
+  /// Eq. 14: the velocity difference between levels, dV/dl, is divided by |V| + epsilon, which makes it
+  /// dimensionless; false: it stays in m/s.
   bool dimensionless_levels = true;
-  /// Consecutive frames that a particle may be inactive; 0 = no limit.
+  /// Maximum number of consecutive frames in which a particle is inactive (not solved); 0 = no limit.
   int longest_rest_frames = 1;
-  /// Consecutive frames that it is then solved at least. With 2 the centre of mass of a dam of 32,768
-  /// particles stays within 2 % of the full solve's for 10 s at beta 0.3 (82 % of the particles solved, four
-  /// seeds: 1.3 to 1.9 %); with 1 it does so with some seeds only (76 %; 2.0 to 2.3 %). At most 14 together
-  /// with the rest.
+  /// Minimum number of consecutive frames in which a particle is solved after longest_rest_frames inactive
+  /// frames. The centre of mass of a dam of 32,768 particles at beta 0.3 was compared with a full solve for
+  /// 10 s and four seeds. With 2 it deviated by 1.3 to 1.9 % (82 % of the particles solved), with 1 by 2.0 to
+  /// 2.3 % (76 % solved). longest_rest_frames + least_work_frames <= 14.
   int least_work_frames = 2;
-  /// Inactive particles add the mean velocity change of their cell's solved ones; false: take the mean
-  /// velocity.
+  /// Inactive particles add the mean velocity change of the solved particles in their cell; false: they take
+  /// the mean velocity.
   bool inherit_change = true;
-  /// Gravity and the coarse pressure move inactive particles in each substep, and they inherit only the
-  /// projections' further change; false: they do not move within the frame. Needs inherit_change.
+  /// Gravity and the coarse pressure act on inactive particles in each substep, and these particles inherit
+  /// only the remaining velocity change; false: their velocity is constant within the frame. Needs
+  /// inherit_change.
   bool inactive_pressed = true;
-  /// Edge of the cells for inherited changes, in d_*; the paper's cells for V and E have 10.
+  /// Edge of the cells for inherited changes, in d_*; the paper's cells for V and E have an edge of 10 d_*.
   double inherit_cell_spacings = 5;
-  /// Per frame, this share times (1 - beta)^2 of their velocity is replaced by the mean velocity.
+  /// Share of an inactive particle's velocity, times (1 - beta)^2, that the mean velocity of its cell
+  /// replaces in each frame.
   double inactive_damping = 0.25;
-  /// Inactive particles count in lambda's denominator as if they could move; false: with no inverse mass.
+  /// Inactive particles count in lambda's denominator as if they could move; false: as if their mass were
+  /// infinite.
   bool inactive_yield = true;
-  /// Spray, particles at walls, fast ones and those that just split or merged are never inactive.
+  /// Spray, fast particles, particles at walls and particles that just split or merged are solved in every
+  /// frame.
   bool keep_fragile_active = true;
 };
 

@@ -9,11 +9,12 @@
 namespace sim {
 
 // Numbers with a measured default (docs/decisions.md), one row each: NUMBER(type, member, option of programs
-// without "--", default, least, most, meaning with its unit). A row makes the member of SolverNumbers, that
-// of SolverParameters which stages read, the option, and a part of the keys of settled states and of saved
-// runs. relaxation: one number for all levels, epsilon_i = relaxation / (m_i d_i^2). tensile: s_ij = -tensile
-// m_i m_j d^2 (W / W(0.2 h))^4; 0 removes the term from the kernel. momentum: not used in a substep's first
-// projection. coarse_cycles: 0 omits the pass. coarse_edge: before the cells are fitted between the walls.
+// without "--", default, least, most, meaning with its unit). A row defines a member of SolverNumbers, a
+// member of SolverParameters, which stages read, an option of programs, and a part of the keys of settled
+// states and saved runs. relaxation: one number for all levels, epsilon_i = relaxation / (m_i d_i^2), with
+// the particle diameter d_i. tensile: s_ij = -tensile m_i m_j d^2 (W / W(0.2 h))^4; 0 removes the term from
+// the kernel. momentum: not used in a substep's first projection. coarse_cycles: 0 omits the coarse pressure.
+// coarse_edge: wanted edge; the cells are then adjusted so that a whole number fits between the walls.
 #define SIM_SOLVER_NUMBERS(NUMBER)                                                                   \
   NUMBER(float, relaxation, "relaxation", 0.01f, 0, 100, "Constraint relaxation")                    \
   NUMBER(float, tensile, "tensile", 0, 0, 100, "s_corr strength")                                    \
@@ -24,8 +25,8 @@ namespace sim {
   NUMBER(int, coarse_cycles, "coarse-cycles", 2, 0, 16, "V-cycles of the coarse pressure; 0 = none") \
   NUMBER(float, coarse_edge, "coarse-edge", 2, 0.5, 8, "Edge of the coarse pressure's cells, in h")
 
-/// What a program asks for. The numbers before the table's follow the scene and the speed of the water; those
-/// of the table are the measured default if negative.
+/// Numbers of the solver that a program sets. Members without a value, as initialised here, follow from the
+/// scene and the speed of the water. Members of SIM_SOLVER_NUMBERS then have the measured default.
 struct SolverNumbers {
   static constexpr int most_iterations = 64;
   int iterations = 0;          ///< constraint projections per substep; 0 = the scene's
@@ -33,23 +34,23 @@ struct SolverNumbers {
   int most_substeps = 0;       ///< limit per frame if substeps is 0; 0 = 32, or the scene's minimum if larger
   double frame_dt_s = 0;       ///< 0 = the scene's
   double viscosity_m2_s = -1;  ///< negative = the scene's
-  double courant = -1;         ///< likewise
+  double courant = -1;         ///< longest move of a particle per substep, in h; negative = the scene's
 #define SIM_WISH(Type, member, ...) std::conditional_t<std::is_same_v<Type, int>, int, double> member = -1;
   SIM_SOLVER_NUMBERS(SIM_WISH)
 #undef SIM_WISH
 };
 
-/// Describes one of SolverNumbers.
+/// Describes one member of SolverNumbers.
 struct SolverNumber {
-  const char* name;    ///< of the option of programs, without "--"
+  const char* name;    ///< name of the programs' option, without "--"
   const char* help;    ///< meaning, unit and default
   double least, most;  ///< allowed values
   std::variant<int SolverNumbers::*, double SolverNumbers::*> value;
 };
-/// All of SolverNumbers, once each. Options of programs, keys of settled states and of saved runs come from
-/// this list.
+/// Descriptions of all members of SolverNumbers. Programs derive their options from this list, and the keys
+/// of settled states and saved runs contain its numbers.
 std::span<const SolverNumber> solver_numbers();
-/// " iterations=4 ...", exact: equal texts mean equal numbers.
+/// All numbers as text, " iterations=4 ...", without rounding: equal texts mean equal numbers.
 std::string in_words(const SolverNumbers& numbers);
 
 }  // namespace sim

@@ -1,6 +1,6 @@
 #pragma once
-/// Neighbour candidates of the particles of one cell, gathered once for all of them; used to build lists on
-/// the CPU.
+/// Neighbour candidates of the particles of one cell, gathered once for all of these particles; used to build
+/// lists on the CPU.
 
 #ifndef SIM_CUDA
 
@@ -11,7 +11,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// 1 << k as a table: not every processor has per-lane variable shifts.
+/// Table of 1 << k, because not every processor has per-lane variable shifts.
 struct BitRow {
   std::uint32_t of[32];
   constexpr BitRow() : of{} {
@@ -20,8 +20,8 @@ struct BitRow {
 };
 inline constexpr BitRow bit_row{};
 
-/// The particles of a window of one grid, one row per coordinate, so that distances are computed in SIMD
-/// lanes.
+/// The particles of a search window of one grid, with one array per coordinate, so that distances are
+/// computed in SIMD lanes.
 class Candidates {
  public:
   /// Gathers the particles that can be near `self`, in ascending order. Reuses the last result for the same
@@ -62,7 +62,7 @@ class Candidates {
     rows_ = static_cast<int>(rows);
   }
 
-  /// Calls hear(j) for all particles closer than sqrt(square) to `at`; square in m2.
+  /// Calls visit(j) for all particles closer than sqrt(square) to `at`; square in m2.
   template <class Visit>
   void each_near(Vec4 at, float square, Visit visit) const {
     for (int first = 0; first < rows_; first += at_once) {

@@ -7,8 +7,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Key fields from the lowest bits: x 22 bits, z 22, y 18, level 2. Cells within +-2^21 (x, z) and +-2^17 (y)
-/// of the origin.
+/// Coordinates of a cell. Fields of its key from the lowest bits: x 22 bits, z 22, y 18, level 2. Range:
+/// +-2^21 cells (x, z) and +-2^17 cells (y) from the origin.
 struct CellCoordinates {
   int level, x, y, z;
 };

@@ -9,8 +9,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Counts the particles of each cell, in the entry after the cell's, and stores each particle's arrival
-/// number.
+/// Counts the particles of each cell (in counts[cell + 1]), and stores for each particle how many particles
+/// of its cell were counted before it.
 struct CountCells {
   const Vec4* predicted;
   const std::uint8_t* level;  ///< nullptr: one level
@@ -36,7 +36,8 @@ struct MarkPresent {
   }
 };
 
-/// Particles of a block can meet the levels in it and in the adjacent blocks.
+/// Finds the levels that particles of a block can have as neighbours: those in the block and in the adjacent
+/// blocks.
 struct Meet {
   const int* present;
   LevelCells blocks;
@@ -75,7 +76,8 @@ struct OrderWithinCells {
   const int* id;
   int* order;
 
-  /// In crowded cells (all in one cell is a test case) pairwise counting would be quadratic.
+  /// Cells with more particles use heap sort, because pairwise counting is quadratic. A test puts all
+  /// particles into one cell.
   static constexpr int crowd = 64;
 
   SIM_FN bool before(int a, int b) const { return id[a] < id[b] || (id[a] == id[b] && a < b); }
@@ -117,7 +119,8 @@ struct OrderWithinCells {
   }
 };
 
-/// Cells of `edge`, and along x of `edge_x`, over the domain, plus the outermost cells.
+/// Grid over the domain with cells of `edge` along y and z, and `edge_x` along x; plus the outermost cells on
+/// each side.
 LevelCells cells_of(Vec3 size, double edge, double edge_x, float support) {
   const auto count = [](float length, double of_one) {
     const double inside = std::ceil(std::max(static_cast<double>(length), 0.0) / of_one);
@@ -134,7 +137,8 @@ LevelCells cells_of(Vec3 size, double edge, double edge_x, float support) {
           .first = 0};
 }
 
-/// Water splashes above the rim; higher particles share the uppermost cells.
+/// Height of the grid, in heights of the domain, because water splashes above the rim. Higher particles share
+/// the uppermost cells.
 constexpr float headroom = 1.5f;
 
 }  // namespace
@@ -146,8 +150,9 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
   const std::int64_t most = std::max(always, most_per_particle * capacity);
   for (int l = 0; l < shape_.levels; ++l) {
     if (!(shape_.level[l].support > 0))
-      throw base::Error("grid", "level " + std::to_string(l) + " has no support radius",
-                        "give the state its supports first");
+      throw base::Error("grid of the neighbour search",
+                        "level " + std::to_string(l) + " has no support radius",
+                        "set the support radius of every level before the neighbour search");
   }
   const CellsPerReach cells = shape_.levels > 1 ? of_levels : of_one_level;
   const double edge_x = static_cast<double>(margin) / cells.along_x;
@@ -166,7 +171,7 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
     }
     if (sum > static_cast<double>(most)) continue;
     const float widest = shape_.level[shape_.levels - 1].support;
-    // Larger than rounding errors; see CellTable::window.
+    // The margins exceed rounding errors; see CellTable::window.
     const double block = wider * 1.001 * static_cast<double>(margin * widest) +
                          1e-5 * static_cast<double>(size.x + size.y + size.z);
     shape_.blocks = cells_of(size, block, block, widest);
@@ -187,7 +192,7 @@ void Grid::find_met(Particles& particles) {
 void Grid::sort(Particles& particles, bool by_level) {
   const Reads<Column::Predicted, Column::Level, Column::Id> p(particles);
   const int n = particles.size();
-  // Allocate once for all later sizes.
+  // Reserve the capacity at once, so that later sizes need no allocation.
   const auto room = static_cast<std::size_t>(particles.capacity());
   for (auto* column : {&cell_of_, &placed_, &order_}) {
     column->reserve(room);
@@ -195,7 +200,7 @@ void Grid::sort(Particles& particles, bool by_level) {
   }
   begin_.resize(static_cast<std::size_t>(size()) + 1);
   begin_.zero();
-  // The arrival numbers are no longer needed when the order is written.
+  // order_ also stores the arrival numbers, which are no longer needed when the order is written.
   int* const arrival = order_.data();
   for_each("count cells", n,
            CountCells{p.predicted(), by_level ? p.level() : nullptr, shape_, begin_.data(), cell_of_.data(),

@@ -1,7 +1,7 @@
 #pragma once
-/// Cells over the tank for the neighbour search: one grid per mass level, all in one table that holds the
-/// first particle of each cell. The outermost cells of a grid hold everything beyond them, so that far
-/// positions cost no memory and no pair is lost.
+/// Cells over the tank for the neighbour search: one grid per mass level, all in one table with the index of
+/// each cell's first particle. The outermost cells of a grid also contain all particles beyond them, so that
+/// far positions cost no memory and no pair is lost.
 
 #include "libsim/particles/cells.hpp"
 #include "libsim/particles/particles.hpp"
@@ -15,12 +15,12 @@ struct IndexRange {
 
 /// The grid of one level. Cells lie in lines along x; lines are ordered along z, then along y.
 struct LevelCells {
-  float support;    ///< h of its particles, m
-  float edge;       ///< along y and z, m
-  float inverse;    ///< 1 / edge
-  float inverse_x;  ///< the same along x, where cells may be shorter
+  float support;    ///< support radius h of the level's particles, m
+  float edge;       ///< edge of the cells along y and z, m
+  float inverse;    ///< 1 / edge, 1/m
+  float inverse_x;  ///< 1 / edge along x, where cells may be shorter, 1/m
   int nx, ny, nz;
-  int first;  ///< index of its first cell in the table
+  int first;  ///< index of the grid's first cell in the table
 
   SIM_FN int size() const { return nx * ny * nz; }
   /// The cell of a position relative to the low corner, as an index within this grid.
@@ -32,7 +32,8 @@ struct LevelCells {
   SIM_FN float nominal(float x, int count) const {
     return at_most(at_least(x, -edge), static_cast<float>(count - 1) * edge);
   }
-  /// Upper bound on the distance of x, a nominal position, from the slab of a cell along y or z.
+  /// Distance of x, a nominal position, from a cell's slab along y or z, m: never more than the distance from
+  /// a particle of this cell.
   SIM_FN float gap(float x, int cell) const {
     const float low = static_cast<float>(cell - 1) * edge - x;
     return at_least(at_least(low, -(low + edge)), 0.0f);
@@ -42,25 +43,25 @@ struct LevelCells {
 /// The table in the form that kernels use.
 struct CellTable {
   LevelCells level[LevelSupports::most];
-  int levels;        ///< in use
-  Vec3 low;          ///< corner of the domain
+  int levels;        ///< number of levels in use
+  Vec3 low;          ///< low corner of the domain
   const int* begin;  ///< index of each cell's first particle; one more entry with the number of particles
-  /// Blocks as wide as the reach of any pair, and a bit mask of the levels that particles of a block can
-  /// meet: most of the water has one or two. nullptr if unknown (Grid::finds_met).
+  /// Blocks as wide as the longest search radius. met: per block, a bit mask of the levels that its particles
+  /// can have as neighbours; most blocks have one or two. nullptr if unknown (Grid::finds_met).
   LevelCells blocks;
   const std::uint8_t* met;
 
   SIM_FN int cell(int l, Vec4 p) const { return level[l].first + level[l].of(xyz(p) - low); }
-  /// True if a particle can have neighbours of this level.
+  /// True if a particle at p can have neighbours of level l.
   SIM_FN bool meets(Vec4 p, int l) const {
     if (met) return met[blocks.of(xyz(p) - low)] >> l & 1;
     return begin[level[l].first] < begin[level[l].first + level[l].size()];
   }
 
   /// The search window of a particle in the grid of one level: lines of cells from (first_y, first_z) to
-  /// (last_y, last_z). `at`: relative to the low corner.
+  /// (last_y, last_z).
   struct Window {
-    Vec3 at;  ///< y and z are nominal
+    Vec3 at;  ///< relative to the low corner; y and z are nominal
     float reach;
     int first_y, last_y, first_z, last_z;
   };
@@ -77,7 +78,7 @@ struct CellTable {
             grid.along(at.z - reach, grid.nz),
             grid.along(at.z + reach, grid.nz)};
   }
-  /// The particles of one line that can be within the reach.
+  /// The particles of one line of cells that can be within the search radius.
   SIM_FN IndexRange line(const LevelCells& grid, const Window& look, int y, int z) const {
     const float dy = grid.gap(look.at.y, y);
     const float dz = grid.gap(look.at.z, z);
@@ -112,7 +113,7 @@ class Grid {
   /// Sorts particles of one support by the cell of their predicted positions and permutes their columns. The
   /// result does not depend on the previous order if ids are unique.
   void build(Particles& particles, float margin, const Domain& domain, float support);
-  /// The same for mixed levels with the given supports.
+  /// Sorts particles of mixed levels with the given supports by level, cell and id.
   void build(Particles& particles, float margin, const Domain& domain, const LevelSupports& supports);
 
   CellTable cells() const {
@@ -121,13 +122,13 @@ class Grid {
     out.met = finds_met && shape_.levels > 1 ? met_.data() : nullptr;
     return out;
   }
-  /// Cells that hold particles, read back from the device (a synchronisation; for tests).
+  /// Number of cells that contain particles, read back from the device (a synchronisation; for tests).
   int count_cells() const;
   /// Number of cells in the table.
   int size() const;
 
-  /// Cells along the reach of a pair, margin x h: with finer cells fewer particles beyond the reach are
-  /// tested, but there are more lines of cells. `across`: along y and z.
+  /// Number of cells per search radius, margin x h. Finer cells exclude more particles beyond the radius, but
+  /// there are more lines of cells. `across`: along y and z.
   struct CellsPerReach {
     double along_x, across;
   };
@@ -144,8 +145,8 @@ class Grid {
   static constexpr CellsPerReach of_levels{1, 1};
   static constexpr bool finds_met = true;
 #endif
-  /// Upper bound on the cells per particle of capacity, and a minimum table size; if the domain needs more,
-  /// the cells are widened.
+  /// A table has at most max(always, most_per_particle x capacity) cells. If the domain needs more, the cells
+  /// are widened.
   static constexpr std::int64_t most_per_particle = 4;
   static constexpr std::int64_t always = 1 << 16;
 

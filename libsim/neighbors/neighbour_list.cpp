@@ -31,26 +31,28 @@ struct ListNeighbours {
   std::uint64_t build;  ///< unique per build
 
 #ifdef SIM_CUDA
-  /// As measured on an H200. With several levels a particle reads more lines, so sharing them pays up to more
-  /// particles.
+  /// Threads per particle, as measured on an H200. With several levels a particle reads more lines of cells,
+  /// so sharing them is faster up to larger n.
   int lanes(int n) const { return n < 20'000 ? 8 : n < (cells.levels > 1 ? 300'000 : 110'000) ? 4 : 1; }
 
-  /// Bit mask of the near ones among up to 32 particles from `begin` on.
+  /// Bit mask of the near particles among up to 32 from index `begin` on.
   struct Found {
     int begin;
     unsigned near_ones;
   };
-  /// Number of entries that a lane collects before the lanes agree on positions in the list.
+  /// Number of masks that a lane collects before the lanes agree on positions in the list.
   static constexpr int most_noted = 8;
 
-  /// Position of a lane: its next line, the number of lines left, and the rest of the previous line.
+  /// State of a lane's search: its next line of cells, the number of lines left, and the rest of the previous
+  /// line.
   struct Way {
     int y, z, lines;
     IndexRange run;
     SIM_FN bool left() const { return lines > 0 || run.begin < run.end; }
   };
 
-  /// Each lane processes its share of a grid's lines, one after another.
+  /// Finds the neighbours of particle i and returns their number. Each lane searches its share of a grid's
+  /// lines, one after another.
   template <class Team>
   SIM_FN int look(int slot, int i, Vec4 self, Team team) const {
     int found = 0;
@@ -116,7 +118,7 @@ struct ListNeighbours {
 #endif
   }
 
-  /// Bit mask of the near ones among the run's next 32, excluding i; several loads at once.
+  /// Bit mask of the near particles among the run's next 32, without i; several loads run at once.
   SIM_FN unsigned near_ones(int i, Vec4 self, float square, IndexRange run) const {
     constexpr int at_once = 8;
     constexpr float far = 1e30f;
@@ -142,7 +144,8 @@ struct ListNeighbours {
     return own < 32 ? out & ~(1u << own) : out;
   }
 #else
-  /// Uses the candidates shared by the particles of one cell.
+  /// Finds the neighbours of particle i and returns their number, from candidates shared by the particles of
+  /// one cell.
   template <class Team>
   int look(int slot, int i, Vec4 self, Team) const {
     thread_local Candidates shared[LevelSupports::most];
@@ -182,7 +185,7 @@ struct ListNeighbours {
     int i;
     Vec4 self;
     int* next;
-    const int* end;  ///< of the reserved space
+    const int* end;  ///< end of the reserved space
     SIM_FN void operator()(int from, int to) {
       for (int j = from; j < to; ++j) {
         if (j != i && next < end && task.near(self, task.predicted[j])) *next++ = j;
@@ -190,7 +193,8 @@ struct ListNeighbours {
     }
   };
 
-  /// Loops over the cells again for a list that exceeds its own space; this is rare, and one lane suffices.
+  /// Searches again for a list that exceeds its own space, and writes it to the store. This is rare; one lane
+  /// suffices.
   SIM_FN void put_in_store(int slot, int i, Vec4 self, int found) const {
     atomic_max(&need->longest, found);
     const std::uint64_t first = atomic_take(&need->stored, static_cast<std::uint64_t>(found));
@@ -203,7 +207,7 @@ struct ListNeighbours {
     int* const begin = store + first;
     Put put{*this, i, self, begin, begin + found};
     cells.around(self, margin, [&put](int from, int to) { put(from, to); });
-    // A pair exactly at the margin may have been rounded differently when it was counted.
+    // Rounding may count a pair exactly at the margin and not store it, or the reverse.
     const int put_there = static_cast<int>(put.next - begin);
     count[slot] = put_there;
     if (put_there > list.room()) {
@@ -288,7 +292,7 @@ void NeighbourList::put_back(const std::vector<int>& counts, const std::vector<i
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const auto length = static_cast<std::size_t>(std::max(counts[i], 0));
     if (length > entries.size() - from)
-      throw base::Error("saved state", "holds lists of neighbours that end early", "save the state again");
+      throw base::Error("saved state", "contains neighbour lists that end early", "save the state again");
     const int slot = static_cast<int>(i);
     const bool stored = counts[i] > view().room();
     if (stored) placed[view().place(slot, 0)] = static_cast<int>(store.size());
@@ -301,7 +305,8 @@ void NeighbourList::put_back(const std::vector<int>& counts, const std::vector<i
     }
   }
   if (store.size() > store_.size())
-    throw base::Error("saved state", "holds more neighbours than their store", "save the state again");
+    throw base::Error("saved state", "contains more neighbours than it has space for",
+                      "save the state again");
   count_.from_host(counts);
   entry_.from_host(placed);
   if (!store.empty()) copy_from_host(store_.data(), store.data(), store.size() * sizeof(int));

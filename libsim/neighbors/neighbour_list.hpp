@@ -1,6 +1,6 @@
 #pragma once
-/// One neighbour list per substep, with a margin, read by all passes of the substep; iterations never search
-/// the grid.
+/// One neighbour list per particle and substep, with a margin, read by all passes of the substep; iterations
+/// never search the grid.
 
 #include "libsim/neighbors/grid.hpp"
 #include "libsim/particles/selection.hpp"
@@ -25,9 +25,9 @@ struct NeighbourRun {
   SIM_FN int operator[](int k) const { return first[k * stride]; }
 };
 
-/// The list in the form that kernels use. A list longer than its own space is stored completely in a common
-/// store; its first entry is the index there. i is a slot of the reading pass (particles/selection.hpp): the
-/// particle itself if all particles are solved.
+/// The lists in the form that kernels use. A list longer than its own space is stored completely in a common
+/// store; its first entry is then its index in the store. i is a slot of the reading pass
+/// (particles/selection.hpp): the particle itself if all particles are solved.
 struct Neighbours {
   const int* count;
   const int* entry;
@@ -56,8 +56,8 @@ struct Neighbours {
   SIM_FN int operator()(int i, int k) const { return run(i)[k]; }
 };
 
-/// The list of particle i if lists belong to slots that were chosen in the last substep; slot_of is null if
-/// slots are particles. For the few passes at a frame's start.
+/// Neighbour lists by particle, for the few passes at a frame's start. slot_of: the slot of each particle in
+/// the last substep, to which lists belong; nullptr if slots are particles.
 struct ParticleNeighbours {
   Neighbours list;
   const int* slot_of;
@@ -71,16 +71,17 @@ using PredictedView = Reads<Column::Predicted>;
 
 class NeighbourList {
  public:
-  /// Search radius as a multiple of the pair's support radius, so that particles may move within a substep.
+  /// Search radius as a multiple of the pair's support radius, so that lists remain complete while particles
+  /// move within a substep.
   static constexpr float margin = 1.1f;
 
   /// Lists every j != i within margin x (h_i + h_j) / 2 of particle i, in the grid's order. Lists beyond the
   /// capacity go to the store; neighbours that do not fit there either are dropped and reported to the
   /// witness.
   void build(PredictedView particles, const Grid& grid, Witness witness);
-  /// The same for the active particles only, one list per slot.
+  /// Lists the neighbours of the active particles only, one list per slot.
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
-  /// The same with lists for the slots of unsolved particles too.
+  /// Lists the neighbours of active and unsolved particles, one list per slot.
   void build(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness);
   /// Replaces the lists by the given ones, each within most_capacity; for tests.
   void assign(const std::vector<std::vector<int>>& lists);
@@ -88,29 +89,29 @@ class NeighbourList {
   std::vector<std::vector<int>> lists() const;
   Neighbours view() const { return {count_.data(), entry_.data(), store_.data(), capacity_}; }
 
-  /// The space that long lists requested.
+  /// The space in the store that long lists requested.
   struct Need {
-    int longest;           ///< since the lists last grew
+    int longest;           ///< longest such list since grow() last added space, in entries
     std::uint64_t stored;  ///< store entries requested by the last build
   };
-  /// Reads the need back and allocates space: the store gets what was requested, and lists get a quarter more
-  /// space, up to `most_capacity` entries, if much was requested. True if the lists grew.
+  /// Reads the need back and allocates space: the store grows to twice the request if this did not fit, and
+  /// lists get a quarter more space, up to `most_capacity` entries, if much was stored. True if either grew.
   bool grow();
-  /// The same with a need that the caller has read.
+  /// grow() with a need that the caller has read.
   bool grow(Need met);
-  /// In the back end's memory; nullptr before the first build.
+  /// The need in the back end's memory; nullptr before the first build.
   const Need* need() const { return need_.data(); }
   static constexpr int most_capacity = 512;
   int capacity() const { return capacity_; }
-  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp): the lists' capacity and, if still
-  /// valid, the lists themselves. Unused space is left out.
+  /// Saves or restores the state that lasts beyond a frame (libsim/solver/state_archive.hpp): the lists'
+  /// capacity and, if still valid, the lists themselves. Unused space is not saved.
   template <class Archive>
   void keep(Archive& archive, bool with_lists) {
     std::uint64_t store = store_.size();
     archive(capacity_, store, need_);
     if constexpr (Archive::reads) {
       if (capacity_ < 2 || capacity_ > most_capacity || store > most_store)
-        Archive::fail("holds lists of neighbours of no length");
+        Archive::fail("contains neighbour lists of an impossible length");
       store_.resize(static_cast<std::size_t>(store));
     }
     if (!with_lists) return;
@@ -123,20 +124,21 @@ class NeighbourList {
   }
 
  private:
-  /// For water of one size: a particle has 40 neighbours within the margin, and at most 55 in SingleDam.
+  /// Entries per list for particles of one level: a particle has 40 neighbours within the margin, and at most
+  /// 55 in SingleDam.
   static constexpr int usual_capacity = 56;
-  /// A coarse particle among the finest has 113 neighbours within the support and some 150 within the margin.
-  /// The longest list of the three scenes had 108 (Ours, n_* = 32k).
+  /// Entries per list for mixed levels. A coarse particle among the finest has 113 neighbours within the
+  /// support and some 150 within the margin. The longest list of the three scenes had 108 (Ours, n_* = 32k).
 #ifdef SIM_CUDA
   static constexpr int mixed_capacity = 128;
 #else
-  // Each pass walks all rows: unused space in a row delays the prefetch of the next row.
+  // Each pass reads all lists in order: unused space in a list delays the prefetch of the next list.
   static constexpr int mixed_capacity = 72;
 #endif
-  /// The store may hold one entry per this many lists before all lists get more space: reading a few long
-  /// lists from it costs nothing measurable, but more space enlarges every list.
+  /// Lists get more space once the store has more than one entry per this many lists. Reading a few long
+  /// lists from the store costs nothing measurable, but more space enlarges every list.
   static constexpr std::size_t most_stored = 4;
-  /// A thousand particles in one place, 4 MB.
+  /// Smallest store: 4 MB, enough for the lists of a thousand particles at one position.
   static constexpr std::size_t least_store = 1 << 20;
   static constexpr std::size_t most_store = 1 << 26;
 

@@ -7,18 +7,18 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Acceleration of all water and free bodies.
+/// Gravity: the acceleration of all water and free bodies.
 struct Fall {
   float strength = 9.81f;  ///< m/s2; 0 without gravity
-  Vec3 up{0, 1, 0};        ///< unit vector against it, with +0 where it has no part; +y without gravity
+  Vec3 up{0, 1, 0};        ///< unit vector against gravity; its zeros are +0, never -0; +y without gravity
 
   Fall() = default;
-  /// Along -y.
+  /// Gravity of `down` m/s2 along -y.
   Fall(float down) : strength(down) {}
   Fall(float size, Vec3 against) : strength(size), up(against) {}
-  /// What holds water up: minus the acceleration, m/s2.
+  /// Minus the acceleration of gravity, m/s2.
   SIM_FN Vec3 lift() const { return strength * up; }
-  /// The axis nearest to `up`, with its sign.
+  /// Unit vector along the coordinate axis nearest to `up`, with its sign.
   Vec3 axis() const {
     const Vec3 size{std::abs(up.x), std::abs(up.y), std::abs(up.z)};
     if (size.y >= size.x && size.y >= size.z) return {0, std::copysign(1.0f, up.y), 0};
@@ -27,19 +27,19 @@ struct Fall {
   }
 };
 
-/// Degree to which a particle is at rest, by its speed: 1 without motion, 0 from `speed` on.
+/// Degree to which a particle is at rest, from its speed: 1 at speed 0, falling to 0 at a limit speed.
 struct Calm {
-  float inverse_square = 0;  ///< 1 / speed^2, s2/m2; 0 = nothing rests
-  float most = 0;            ///< value without motion: 1, or 0 if nothing rests
+  float inverse_square = 0;  ///< 1 / limit speed^2, s2/m2; 0 = no particle is at rest
+  float most = 0;            ///< value at speed 0: 1, or 0 if no particle is at rest
 
-  // Branch-free for vectorised loops.
+  // Without branches, so that loops vectorise.
   SIM_FN float operator()(float vx, float vy, float vz) const {
     return at_least(most - inverse_square * (vx * vx + vy * vy + vz * vz), 0.0f);
   }
 };
 
-/// Rest below `share` of sqrt(g d_*), with g in m/s2 and the finest spacing d_* in m. Without gravity nothing
-/// rests.
+/// Calm with the limit speed share x sqrt(g d_*): g in m/s2, finest spacing d_* in m. Without gravity no
+/// particle is at rest.
 inline Calm calm_below(double share, double gravity, double finest_spacing) {
   const double square = share * share * gravity * finest_spacing;
   if (!(square > 0)) return {};

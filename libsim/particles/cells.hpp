@@ -5,7 +5,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Cubic cells of one edge length from a low corner.
+/// Position of a grid of cubic cells: its low corner and the cells' edge, m.
 struct CellFrame {
   Vec3 low{};
   float edge = 1;
@@ -16,16 +16,17 @@ struct Domain {
   Vec3 low{}, high{};
 };
 
-/// An open part of a block's side, in cells of the finest grid: `axis` 0, 1, 2 = x, y, z, at its low or high
-/// end, from low to high along the other two axes, ascending.
+/// An open rectangle in a side of a CellBlock. The side is perpendicular to `axis` (0, 1, 2 = x, y, z), at
+/// the block's low or high end. The rectangle extends from `low` to `high` along the other two axes, in
+/// ascending order, in cells of the finest grid.
 struct OpenFace {
   int axis;
   bool at_high;
   float low[2], high[2];
 };
 
-/// Cells of one grid, x fastest. Its sides and bottom are walls except for open faces; its top is air or a
-/// lid.
+/// Numbers of cells of one grid; in indices x varies fastest. For the coarse pressure its sides and bottom
+/// are walls except for open faces, and its top is air or a lid.
 struct CellBlock {
   int nx = 0, ny = 0, nz = 0;
 

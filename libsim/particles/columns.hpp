@@ -21,43 +21,48 @@ enum class Life {
   Scratch  ///< within a substep
 };
 
-/// Rule for a column's values when a split or a merge makes particles. The last four need no other code:
-/// splits, merges and nozzles apply them, and their columns start at 0 unless a pass writes them.
+/// Rule for a column's values when a split or a merge makes particles. MassMean, Sum, Max and Reset need no
+/// other code: splits, merges and nozzles apply them, and their columns start at 0.
 enum class Descent {
   None,      ///< no values: the column is scratch
-  Own,       ///< set by the passes that split, merge and pour
+  Own,       ///< set by the passes that split, merge and add particles
   Copy,      ///< children copy the parent's; a merged particle keeps its own
-  MassMean,  ///< children copy the parent's; a merged particle gets the mean by mass: m times it is conserved
-  Sum,       ///< children share the parent's by mass; a merged particle gets the sum: it is conserved
-  Max,       ///< children copy the parent's; a merged particle gets the larger
-  Reset      ///< 0
+  MassMean,  ///< children copy the parent's; a merged particle gets the mean by mass: mass x value is
+             ///< conserved
+  Sum,  ///< children share the parent's value by mass; a merged particle gets the sum: the total is conserved
+  Max,  ///< children copy the parent's; a merged particle gets the larger value
+  Reset  ///< the new particle gets 0
 };
 
-// The table, one row each: COLUMN(enumerator, member, value type, lifetime, rule for splits and merges), in
-// the order in which schedules list them. LIST is the neighbour list (neighbors/neighbour_list.hpp), which
-// passes declare like a column.
+// The table of columns. Each row is COLUMN(enumerator, member, value type, lifetime, rule for splits and
+// merges), in the order in which schedules list them. LIST is the neighbour list
+// (neighbors/neighbour_list.hpp), which passes declare like a column.
 //
 //   Position        x, y, z in m and the support radius h in m (h = 2 d = 4 r; mass = rho_0 d^3)
 //   Velocity        m/s, w unused
 //   Id              unique, never changes
 //   Level           mass level; mass = 2^level m_*
-//   Predicted       position at the end of the substep as far as it is solved, and h
-//   PredictedNext   output of a projection, then swapped with Predicted; the substep's kicks; of effects
+//   Predicted       present estimate of the position at the substep's end, m, and h
+//   PredictedNext   output of a projection, then swapped with Predicted; later in the substep the velocity
+//                   change by the projections, and scratch of effects
 //   VelocityNext    output of a velocity filter, then swapped with Velocity; later scratch of effects
-//   Lambda          change of the density constraint's multiplier in this projection, kg m2
+//   Lambda          change of the density constraint's multiplier in the present projection, kg m2
 //   Density         rho / rho_0, walls included
 //   Target          level that the particle should have
 //   History         targets of the last four frames, two bits each, the newest lowest
 //   Saliency        s in [0, 1], ViP-Fluid 3.2.3
 //   Unrest          f_T gamma_t of ViP-Fluid Eq. 6, smoothed over frames
 //   SaliencyParts   f_a, f_m, f_T and F, from which s follows
-//   Waiting         consecutive frames in which the particle was ready to merge
-//   Normal          of the surface, inwards, dimensionless; scratch of the effects (libsim/scene/effects.hpp)
-//   Ease            share of its constraint that a particle near a fresh one enforces, (0, 1]
+//   Waiting         number of consecutive frames in which the particle was ready to merge
+//   Normal          scratch of the effects (libsim/scene/effects.hpp): normal of the water's surface,
+//                   dimensionless, or another vector
+//   Ease            share (0, 1] of the density constraint that a particle enforces; below 1 near particles
+//                   that a split or a merge has just made
 //   Age             frames since a split or a merge made the particle, at most 255
 //   Active          1 = solved in this frame, 2 = solved but not in means (activation/activation.hpp),
 //                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
-//   Rest            how long the particle was not solved, and flags (activation/activation.hpp)
+//   Rest            number of frames in which the particle was not solved, and flags (see
+//                   activation/activation.hpp)
 //   StartCell       cell of the velocity grid in which the particle started the frame
 //   Temperature     kelvin above the reference of the effect heat
 //   TemperatureNext output of conduction, then swapped with Temperature
@@ -98,7 +103,7 @@ enum class Column : unsigned {
 
 const char* column_name(Column column);
 
-/// A set of columns, constexpr where a stage declares it.
+/// A set of columns; constexpr, because stages declare their columns at compile time.
 struct ColumnSet {
   std::uint32_t bits = 0;
 
@@ -106,7 +111,7 @@ struct ColumnSet {
   constexpr bool holds(ColumnSet other) const { return (other.bits & ~bits) == 0; }
   constexpr bool meets(ColumnSet other) const { return (other.bits & bits) != 0; }
   constexpr bool empty() const { return bits == 0; }
-  /// The first in the table's order; the set must not be empty.
+  /// The set's first column in the table's order; the set must not be empty.
   constexpr Column first() const { return static_cast<Column>(std::countr_zero(bits)); }
 
   friend constexpr ColumnSet operator|(ColumnSet a, ColumnSet b) { return {a.bits | b.bits}; }
@@ -122,7 +127,7 @@ constexpr ColumnSet columns(Columns... which) {
 }
 constexpr ColumnSet all_columns() { return {(std::uint32_t{1} << static_cast<unsigned>(Column::count)) - 1}; }
 
-// What splits and merges make of columns whose rule needs no other code, for kernels.
+// Functions for kernels that split and merge columns whose rule is by_rule().
 
 /// True for the rules that kernels carry out alike for every column: mean by mass, sum, maximum, reset.
 constexpr bool by_rule(Descent rule) {
@@ -144,7 +149,8 @@ constexpr bool may_descend(Life life, Descent rule) {
 SIM_COLUMNS(SIM_CHECK, SIM_NOTHING)
 #undef SIM_CHECK
 
-/// The number of Kept columns of a type, and the number of its columns whose rule is by_rule().
+/// kept_count: the number of Kept columns of type T. ruled_count: the number of columns of type T whose rule
+/// is by_rule().
 template <class T>
 constexpr int kept_count() {
   int sum = 0;
@@ -162,7 +168,8 @@ constexpr int ruled_count() {
   return sum;
 }
 
-/// All columns whose rule is by_rule(). They start at 0, so that passes may read them before any writes them.
+/// All columns whose rule is by_rule(). They start at 0, so that passes may read them before any pass writes
+/// them.
 constexpr ColumnSet ruled_columns() {
   ColumnSet out;
 #define SIM_ADD(Name, member, Type, life, rule) \
@@ -173,7 +180,7 @@ constexpr ColumnSet ruled_columns() {
   return out;
 }
 
-/// The allocated columns of one type whose rule is by_rule(), and what splits and merges make of them.
+/// The allocated columns of type T whose rule is by_rule(), with functions that apply the rules.
 template <class T>
 struct RuledColumns {
   T* values[ruled_count<T>()];
@@ -188,7 +195,7 @@ struct RuledColumns {
         if (rule[k] == Descent::Sum) values[k][i] /= static_cast<float>(children);
     }
   }
-  /// Merges two particles of equal mass into `kept`.
+  /// Merges the particles `kept` and `left`, of equal mass; the results are in `kept`.
   SIM_FN void join(int kept, int left) const {
     for (int k = 0; k < count; ++k) {
       T* v = values[k];
@@ -211,7 +218,8 @@ struct RuledColumns {
   }
 
  private:
-  /// Value of a particle of value a that takes up an equal mass, the part `share` of a particle of value b.
+  /// Value after a particle of value a has taken up an equal mass of a particle of value b; `share`: this
+  /// mass as a share of the second particle's mass.
   SIM_FN static T met(Descent rule, T a, T b, float share) {
     if (rule == Descent::Reset) return 0;
     if (rule == Descent::Max) return a > b ? a : b;

@@ -5,19 +5,20 @@
 
 namespace sim::SIM_BACKEND {
 
-/// A contact of a body with another or with a wall.
+/// A contact of a body with another body or with a wall.
 struct Contact {
   Vec3 at;
-  Vec3 normal;  ///< from the other towards the body
+  Vec3 normal;  ///< from the other body or the wall towards the body
   float gap;    ///< distance between the surfaces, m; negative: penetration depth
-  float ahead;  ///< smallest gap until the substep's end without contact forces
+  float ahead;  ///< smallest gap until the substep's end without contact forces, m
 };
 
-/// The points at which a body can touch others. Of a shape: the corners of its inner box and the nearest
-/// point of each of that box's edges, as balls of the body's radius. Of a mesh: its contacts.
+/// The points of a body that are tested for contacts. Of a sphere, capsule or box: the corners of its inner
+/// box and the nearest point of each edge of this box, as balls of the body's radius. Of a mesh:
+/// MeshGrid::contacts.
 struct Feelers {
   const Body& body;
-  const MeshGrid* mesh;  ///< nullptr: not a mesh
+  const MeshGrid* mesh;  ///< nullptr: the body is not a mesh
 
   static constexpr int most_of_shapes = 20;
 
@@ -31,15 +32,15 @@ struct Feelers {
   /// Distance of the farthest point of the body from its centre, m.
   SIM_FN float reach() const { return length(body.half) + body.radius; }
 
-  /// In the body's axes.
+  /// Position of corner k in the body's axes, m.
   SIM_FN Vec3 corner(int k) const {
     if (mesh) return mesh->contacts[k];
     const Vec3 h = body.half;
     if (!is_box()) return {0, k ? h.y : -h.y, 0};
     return {k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z};
   }
-  /// A point on an edge, s = -1 .. 1 from end to end, of the box whose half sides are `share` times the
-  /// body's.
+  /// A point on an edge of the box whose half sides are `share` times the body's; s = -1 .. 1 from end to
+  /// end.
   SIM_FN Vec3 on_edge(int edge, float s, Vec3 share) const {
     const Vec3 h = scaled(body.half, share);
     if (!is_box()) return {0, s * h.y, 0};
@@ -51,9 +52,10 @@ struct Feelers {
   }
   SIM_FN Vec3 in_world(Vec3 own) const { return body.centre + turned(body.turn, own); }
 
-  /// Contact of feeler k with another body, without `ahead`. Near an edge of the other, the nearest point to
-  /// a corner changes with the last bit. So the distance is taken from a point slightly deeper in the body,
-  /// for which the other is a plane, and the gap is the corner's distance from that plane.
+  /// Contact of this body's point k with the body `other`, without `ahead`. Near an edge of `other`, rounding
+  /// changes which part of its surface is nearest to the point. Therefore `other` is replaced by the plane
+  /// that is nearest to a place slightly deeper in this body; the gap is the point's distance from this
+  /// plane.
   SIM_FN Contact meets(int k, const Solids& solids, int other) const {
     Vec3 own, deeper;
     if (k < corners()) {
@@ -70,7 +72,7 @@ struct Feelers {
     const float gap = near.distance + dot(near.normal, at - from) - body.radius;
     return {at - body.radius * near.normal, near.normal, gap, 0};
   }
-  /// The same for a corner and a wall.
+  /// Contact of corner k with a wall, without `ahead`.
   SIM_FN Contact meets(int k, const Walls& walls, int wall) const {
     const Vec3 at = in_world(corner(k));
     const Vec3 normal = walls.planes[wall].normal;
@@ -78,7 +80,7 @@ struct Feelers {
   }
 
  private:
-  /// Factors that shrink a box's half sides by a twentieth of the shortest.
+  /// Factors that shrink each half side of a box by a twentieth of the shortest; 1 for other shapes.
   SIM_FN Vec3 inset() const {
     if (!is_box()) return {1, 1, 1};
     const Vec3 h = body.half;
@@ -86,11 +88,12 @@ struct Feelers {
     return {1 - way / h.x, 1 - way / h.y, 1 - way / h.z};
   }
   SIM_FN static Vec3 scaled(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-  /// Golden-section search: along a straight line the distance from a convex body has one minimum.
+  /// Parameter s of the edge's point nearest to the body `other`, by golden-section search: along a straight
+  /// line the distance from a convex body has one minimum.
   SIM_FN float nearest_on_edge(int edge, const Solids& solids, int other) const {
     const Vec3 share = inset();
     constexpr float golden = 0.618034f;
-    constexpr int halvings = 16;  ///< down to 1/2200 of the edge
+    constexpr int halvings = 16;  ///< steps; they shrink the interval to 1/2200 of the edge
     float low = -1, high = 1;
     float a = high - golden * (high - low), b = low + golden * (high - low);
     float at_a = solids.distance(other, in_world(on_edge(edge, a, share)));
@@ -117,8 +120,9 @@ struct Feelers {
 /// Maximum number of contacts per pair of bodies, or per body and wall.
 inline constexpr int most_contacts = 4;
 
-/// Selects from n contacts those that hold two bodies apart: first the one that will be deepest, then
-/// repeatedly the one farthest from all picked, among those with `ahead` below `pad`. Returns their number.
+/// Selects contacts that together hold two bodies apart, from n contacts. Only contacts with `ahead` below
+/// `pad` (m) count. The first is the one with the smallest `ahead`; each further one is the farthest from all
+/// selected ones. Returns their number, at most most_contacts.
 template <class Contacts>
 SIM_FN int pick_contacts(const Contacts& all, int n, float pad, Contact* picked) {
   int count = 0;

@@ -1,8 +1,8 @@
 #pragma once
-/// Solves the pushes that keep bodies apart, all at once: sweeps of projected Gauss-Seidel find the active
-/// contacts, and conjugate gradients their magnitudes (Silcowitz, Niebe and Erleben 2010, Projected
-/// Gauss-Seidel subspace minimization). With sweeps alone, a heavy body on a light one needs about as many
-/// sweeps as the ratio of their masses.
+/// Computes the pushes (contact impulses) that keep bodies apart, for all contacts together: sweeps of
+/// projected Gauss-Seidel find the active contacts, and conjugate gradients their magnitudes (Silcowitz,
+/// Niebe and Erleben 2010, Projected Gauss-Seidel subspace minimization). With sweeps alone, a heavy body on
+/// a light one needs about as many sweeps as the ratio of their masses.
 
 #include "libsim/exec/vec.hpp"
 
@@ -15,18 +15,18 @@ struct BodyRate {
   float ease;     ///< 1 / mass, 1/m_*; 0: immovable
 };
 
-/// One direction of a contact, along which two bodies push each other.
+/// One equation of a contact: a direction along which its two bodies push each other.
 struct ContactRow {
-  int first, second;        ///< bodies; second < 0: a wall
-  Vec3 way;                 ///< unit vector, towards the first
+  int first, second;        ///< indices of the bodies; second < 0: a wall
+  Vec3 way;                 ///< unit vector, towards the first body
   Vec3 lever, other_lever;  ///< cross product arm x way for the first and the second
-  Vec3 turn, other_turn;    ///< change of their spins per unit push
+  Vec3 turn, other_turn;    ///< change of the bodies' spins per unit push
   float ease;               ///< separation speed per unit push, 1/m_*
-  float wanted;             ///< minimum separation speed; for friction the sliding speed, 0
+  float wanted;             ///< minimum separation speed, m/s; for friction the sliding speed, 0
   float push;               ///< current push, m_* m/s
-  bool open;                ///< neither zero nor at its bound
+  bool open;                ///< true if the push lies strictly between its bounds
   float most;  ///< upper bound of the push, m_* m/s; for friction it follows from the normal's push
-  // For conjugate gradients: missing speed, direction of pushes, speed that the direction gives.
+  // For conjugate gradients: missing speed (residual), search direction, speed change per step along it.
   float left, step, along;
 };
 
@@ -35,30 +35,31 @@ struct ContactProgress {
   float swept;  ///< largest change of a speed in a sweep, m/s
 };
 
-/// Contacts of `width` rows each: the normal, and with friction two sliding directions. Steps run one after
-/// another; one thread runs the sweeps, and sums have a fixed order.
+/// All contacts of the bodies. Each contact has `width` rows: the normal, and with friction two sliding
+/// directions. Steps run one after another; one thread runs the sweeps, and sums have a fixed order.
 struct ContactRows {
   ContactRow* rows;
   const float* friction;  ///< coefficient of each contact; nullptr: no friction
   BodyRate* bodies;
-  BodyRate* along;  ///< one per body: its velocity change along the current direction
+  BodyRate* along;  ///< per body: its velocity change per step along the search direction
   ContactProgress* at;
-  const int* touches;      ///< by body: twice the contact's index, plus 1 if the body is its second
-  const int* touch_begin;  ///< first index of each body, and the end
+  const int* touches;  ///< contacts of each body in turn: twice the contact's index, plus 1 if the body is
+                       ///< its second
+  const int* touch_begin;  ///< index of each body's first entry in touches, and the number of entries
   int body_count;
   int contacts, width;
 
   static constexpr int most_rounds = 8, last_rounds = 4, most_steps = 32;
-  static constexpr float still = 1e-5f;  ///< smaller speed changes end the iteration, m/s
+  static constexpr float still = 1e-5f;  ///< the iteration ends if a sweep changes all speeds by less, m/s
 
   SIM_FN float speed(const ContactRow& row) const { return speed(row, bodies); }
 
-  /// Afterwards the bodies' rates include the rows' pushes. If friction does not converge, its pushes stay
-  /// fixed, and the normals are solved again.
+  /// Computes all pushes and adds them to the bodies' velocities. If friction does not converge, its pushes
+  /// stay fixed, and the normals are solved again.
   template <class Threads>
   SIM_FN void solve(Threads threads) const {
     if (settles(threads, most_rounds) || !friction) return;
-    threads.each(0, Step<&ContactRows::sweep>{*this});  // all threads have read the last sweep's result
+    threads.each(0, Step<&ContactRows::sweep>{*this});  // barrier: all have read the last sweep's result
     ContactRows normals = *this;
     normals.friction = nullptr;
     normals.settles(threads, last_rounds);
@@ -74,7 +75,7 @@ struct ContactRows {
   template <class Threads>
   SIM_FN bool settles(Threads threads, int rounds) const {
     for (int round = 1; round <= rounds; ++round) {
-      // The last step is a sweep: it prevents pulling pushes, and limits friction to its cone.
+      // The last step is always a sweep: it makes normal pushes >= 0 and limits friction to its cone.
       threads.each(1, Step<&ContactRows::sweep>{*this});
       if (at->swept <= still) return true;
       if (round < rounds) descend(threads);
@@ -110,14 +111,15 @@ struct ContactRows {
     }
     at->swept = most;
   }
-  /// The change of push that brings a row to its wanted speed.
+  /// The change of a row's push that gives the row its wanted speed.
   SIM_FN float missing(const ContactRow& row) const { return (row.wanted - speed(row)) / row.ease; }
   SIM_FN void change(ContactRow& row, float push, float& most) const {
     most = at_least(fabsf(push - row.push) * row.ease, most);
     give(row, push - row.push);
     row.push = push;
   }
-  /// Coulomb's law: sliding contacts are braked by `bound`, sticking contacts by the push that holds them.
+  /// Coulomb's law: a sliding contact gets the friction push `bound`, a sticking contact the smaller push
+  /// that stops its sliding.
   SIM_FN void rub(ContactRow* row, float bound, float& most) const {
     const float u = row[0].push + missing(row[0]);
     const float v = row[1].push + missing(row[1]);
@@ -155,24 +157,25 @@ struct ContactRows {
       worth = next;
     }
   }
-  /// Squared residual of the open rows, divided by their ease.
+  /// Squared residual of an open row, divided by its ease; 0 for closed rows.
   struct Worth {
     const ContactRow* rows;
     SIM_FN float operator()(int r) const {
       return rows[r].open ? rows[r].left * rows[r].left / rows[r].ease : 0.0f;
     }
   };
-  /// Minus the missing speed of an open row, m/s.
+  /// Minus the magnitude of an open row's missing speed, m/s; 0 for closed rows.
   struct Missed {
     const ContactRow* rows;
     SIM_FN float operator()(int r) const { return rows[r].open ? -fabsf(rows[r].left) : 0.0f; }
   };
-  /// Curvature along the direction.
+  /// A row's part of the curvature along the search direction.
   struct Steep {
     const ContactRow* rows;
     SIM_FN float operator()(int r) const { return rows[r].step * rows[r].along; }
   };
-  /// The next direction: the residual, plus the share of the last direction that makes them conjugate.
+  /// Sets the next search direction: residual / ease, plus `share` of the last direction, so that both are
+  /// conjugate.
   struct Aim {
     ContactRow* rows;
     float share;
@@ -181,7 +184,7 @@ struct ContactRows {
       row.step = row.open ? row.left / row.ease + share * row.step : 0.0f;
     }
   };
-  /// Step length along the direction at which a row reaches its bound.
+  /// Step length along the search direction at which a row reaches its bound.
   struct ToBound {
     const ContactRows& here;
     SIM_FN float operator()(int r) const {
@@ -190,7 +193,7 @@ struct ContactRows {
       return at_least((here.bound_of(r, row.step < 0) - row.push) / row.step, 0.0f);
     }
   };
-  /// Steps along the direction, to its minimum or to the first bound.
+  /// Moves the pushes by `way` along the search direction; the row `shut` is set to its bound and closed.
   struct Go {
     const ContactRows& here;
     float way;
@@ -234,7 +237,8 @@ struct ContactRows {
     along[b] = out;
   }
   SIM_FN void look(int r) const { rows[r].along = speed(rows[r], along); }
-  /// Bounds of a row's push: a normal never pulls, and friction uses the bound set by the last sweep.
+  /// Lower or upper bound of a row's push: a normal never pulls, and friction uses the bound set by the last
+  /// sweep.
   SIM_FN float bound_of(int r, bool low) const {
     if (!low) return rows[r].most;
     return r % width == 0 ? 0.0f : -rows[r].most;

@@ -11,11 +11,11 @@ const char* in_words(Trouble cause) {
     case Trouble::FarOutside:
       return "was far outside the tank";
     case Trouble::TooFast:
-      return "is faster than water gets and was braked";
+      return "was faster than the speed limit and was slowed";
     case Trouble::NeighboursDropped:
-      return "has more neighbours than find room";
+      return "has more neighbours than its list can store";
     case Trouble::Coincident:
-      return "is at the same place as another";
+      return "has the same position as another particle";
     case Trouble::TooDense:
       return "is denser than 1.5 rho_0";
   }

@@ -9,24 +9,24 @@ namespace sim::SIM_BACKEND {
 /// Dynamic state of a body; its position is in Body.
 struct FreeBody {
   float mass;     ///< m_*; 0: the body is not free
-  float volume;   ///< in volumes of m_*
-  Vec3 inertia;   ///< about its own axes, m_* m2
+  float volume;   ///< in units of the volume m_* / rho_0
+  Vec3 inertia;   ///< about the body's own axes, m_* m2
   Vec3 momentum;  ///< m_* m/s
   Vec3 spin;      ///< angular momentum about the centre, m_* m2/s
-  /// From the water, applied in the next substep: m_* m/s2 and m_* m2/s2.
+  /// Force and torque from the water, applied in the next substep: m_* m/s2 and m_* m2/s2.
   Vec3 force, torque;
-  Vec3 force_left, torque_left;  ///< not yet applied
+  Vec3 force_left, torque_left;  ///< force and torque that are not yet applied
   Vec3 by_walls;                 ///< momentum received from walls in this frame, m_* m/s
-  BodySum counted;               ///< part of this frame's sums already applied by earlier substeps
-  BodySum counted_of_effects;    ///< the same for the sums of effects
+  BodySum counted;               ///< part of this frame's sums of pushes that earlier substeps have applied
+  BodySum counted_of_effects;    ///< the same for the pushes of effects
 };
 
-/// Velocity of the centre, m/s, and angular velocity, rad/s.
+/// A body's motion: velocity of the centre, m/s, and angular velocity, rad/s.
 struct BodyTurn {
   Vec3 along, round;
 };
 /// A body in a system of equations for velocities (libsim/solver/effects/sticking.hpp). For a body that is
-/// not free, the turns hold momentum, m_* m/s, and its moment.
+/// not free, each BodyTurn contains momentum, m_* m/s, and its moment, m_* m2/s, instead.
 struct BodyRow {
   BodyTurn gained, residual, direction, bent;
   Momentum push, moment;  ///< received from particles in one pass, in the unit of BodyRows
@@ -51,7 +51,7 @@ SIM_FN Vec3 spin_of(const FreeBody& free, Vec4 turn, Vec3 momentum) {
   return turned(turn, {own.x / free.inertia.x, own.y / free.inertia.y, own.z / free.inertia.z});
 }
 
-/// The inverse: angular momentum for an angular velocity.
+/// Angular momentum for an angular velocity at this attitude, m_* m2/s; inverse of spin_of().
 SIM_FN Vec3 momentum_of(const FreeBody& free, Vec4 turn, Vec3 spin) {
   const Vec3 own = turned(turned_back(turn), spin);
   return turned(turn, {own.x * free.inertia.x, own.y * free.inertia.y, own.z * free.inertia.z});
@@ -68,7 +68,7 @@ SIM_FN void turn_on(Body& body, const FreeBody& free, float dt) {
 /// corners of the body's inner box, each a ball of its radius, or a mesh's contacts; contacts are inelastic
 /// and frictionless. Outlets let no body through.
 struct WallContact {
-  static constexpr int sweeps = 8;  ///< over all contacts, until those of one body agree
+  static constexpr int sweeps = 8;  ///< at most; a sweep that stops no contact point is the last
   const Walls& walls;
   const Body& body;
   FreeBody& free;
@@ -91,7 +91,7 @@ struct WallContact {
       if (!met) return;
     }
   }
-  /// Lets the contact point come at most to the wall within dt. True if it had to be stopped.
+  /// Stops the contact point so that it does not pass the wall within dt. True if a push was necessary.
   SIM_FN bool stop(Vec3 normal, float away, Vec3 arm) const {
     const float gap = away + dot(normal, arm) - body.radius;
     const Vec3 lever = cross(arm, normal);
@@ -106,7 +106,7 @@ struct WallContact {
     free.spin += push * lever;
     return true;
   }
-  /// Displacement that moves the body back inside the walls.
+  /// Displacement that moves a body from beyond the walls back inside, m.
   SIM_FN Vec3 way_back() const {
     Vec3 out{0, 0, 0};
     for (int k = 0; k < walls.count; ++k) {

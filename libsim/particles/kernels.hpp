@@ -22,15 +22,15 @@ struct Kernel {
   float h, h2, poly6, spiky;
 
   SIM_FN explicit Kernel(float support_radius) : Kernel(support_radius, 1 / support_radius) {}
-  /// The same from h and 1 / h. All powers come from the one quotient: computing three quotients per pair
-  /// would cost as much as the rest of the pair.
+  /// From h and 1 / h. All powers come from this one quotient, because three quotients per pair would take as
+  /// long as the rest of the pair's work.
   SIM_FN Kernel(float support_radius, float inverse) : h(support_radius), h2(h * h) {
     const float inverse3 = inverse * inverse * inverse;
     spiky = 45 / (pi * lattice_density) * (inverse3 * inverse3);
     poly6 = 315 / (64 * pi * lattice_density) * (inverse3 * inverse3 * inverse3);
   }
 
-  /// W in 1/m3, r2 = r r.
+  /// W(r) in 1/m3; r2 = r^2 in m2.
   SIM_FN float density(float r2) const {
     const float t = at_least(h2 - r2, 0.0f);
     return poly6 * t * t * t;
@@ -42,7 +42,8 @@ struct Kernel {
   }
 };
 
-/// The kernel of a pair: the same for all pairs (one level), or from both supports (mixed levels).
+/// The kernel of a pair of particles: from one support if all particles have the same level, otherwise from
+/// the mean of both supports.
 template <bool OneLevel>
 struct PairKernel;
 
@@ -66,7 +67,7 @@ struct PairKernel<false> {
   SIM_FN float mass_ratio(float h_other) const { return h_other * h_other * h_other * inverse_cube; }
 };
 
-/// m = rho_0 d^3 with d = h / 2.
+/// Mass of a particle of support h: rho_0 d^3 with spacing d = h / 2.
 SIM_FN float mass_of(float h, float rest_density) { return rest_density * 0.125f * h * h * h; }
 
 /// A unit vector for two coincident particles; swapping them flips its sign.
@@ -82,8 +83,8 @@ SIM_FN Vec3 parting_direction(int id_i, int id_j) {
   return {sign * across * cosf(angle), sign * y, sign * across * sinf(angle)};
 }
 
-/// For loops over neighbours: SIMD lanes on the CPU. The body must be one call; constructing structs in it
-/// prevents vectorisation.
+/// Before a loop over neighbours: runs it in SIMD lanes on the CPU and sums the named variables. The loop
+/// body must be one call; constructing structs in it prevents vectorisation.
 #ifdef SIM_CUDA
 #define SIM_LANES(...)
 #else

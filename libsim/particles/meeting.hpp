@@ -8,44 +8,47 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Two bodies, or one body and a wall.
+/// The two sides of a contact: two bodies, or one body and a wall.
 struct Partners {
   int first, second;  ///< second < 0: the wall ~second
 };
 
-/// A contact among those that are solved.
+/// A contact that is solved, and its two sides.
 struct ListedContact {
   Contact contact;
   Partners between;
 };
 
-/// Moves free bodies to the end of the substep. Contacts are inelastic, with Coulomb friction. They are found
-/// at the bodies' positions at its beginning, and stop surfaces at each other. A deeper penetration is
-/// corrected in position only. Contacts with walls are solved last.
+/// Moves free bodies to their positions at the substep's end. Contacts are inelastic, with Coulomb friction;
+/// they are detected at the bodies' positions at the substep's start. Pushes stop surfaces at each other;
+/// penetration is corrected in position only. Contacts with walls are solved last.
 struct Meeting {
-  Body* bodies;  ///< bodies that are not free: at the substep's end
+  Body* bodies;  ///< bodies that are not free are already at their positions of the substep's end
   FreeBody* free;
   const MeshGrid* meshes;  ///< as in Solids
-  const float* friction;   ///< of each body
-  Vec3* by_others;         ///< momentum that each body received from others in this frame, m_* m/s
+  const float* friction;   ///< friction coefficient of each body
+  Vec3* by_others;         ///< momentum that each body received from other bodies in this frame, m_* m/s
   Walls walls;
   BodyDrive drive;
   float spacing;  ///< of the finest particles, m
   int count;
-  int feelers;  ///< the largest number on one body
-  bool rough;   ///< true if one body has friction
+  int feelers;  ///< largest number of points (Feelers) of one body
+  bool rough;   ///< true if at least one body has friction
 
-  /// Remaining depth, and maximum correction per substep, as shares of the spacing.
+  /// slop: penetration that remains uncorrected; fastest_mend: maximum correction per substep. Both are
+  /// shares of the finest spacing.
   static constexpr float slop = 1e-3f, fastest_mend = 0.1f;
-  /// Share of the excess depth that a substep corrects.
+  /// Share of the penetration beyond slop that a substep corrects.
   static constexpr float mended = 0.5f;
-  /// Extra search distance for contacts beyond the closing speeds, as a share of the smaller body.
+  /// Search distance for contacts in addition to the closing distance, as a share of the smaller body's
+  /// reach.
   static constexpr float wide = 0.02f;
 
   SIM_FN int width() const { return rough ? 3 : 1; }
   SIM_FN int pairs() const { return count * (count - 1) / 2; }
   SIM_FN int groups() const { return pairs() + count * walls.count; }
-  /// Pairs come first, then each body's walls.
+  /// The two sides of the contacts of one group. Groups of two bodies come first, then those of each body
+  /// with each wall.
   SIM_FN Partners partners(int group) const {
     if (group >= pairs()) {
       const int k = group - pairs();
@@ -59,21 +62,21 @@ struct Meeting {
   struct Room {
     std::size_t bytes = 0;
     Body* start;      ///< bodies at the beginning of the substep
-    BodyRate* rates;  ///< their velocities before contacts
+    BodyRate* rates;  ///< the bodies' velocities, at first without contacts
     BodyRate* along;  ///< as in ContactRows
-    float* speeds;    ///< of the fastest point of each body, m/s
-    int* found;       ///< number of contacts per group; for pairs first a flag: contact possible
+    float* speeds;    ///< speed of the fastest point of each body, m/s
+    int* found;       ///< number of contacts per group; for two bodies first a flag: contact possible
     Contact* felt;    ///< candidate contacts of both bodies of each pair
-    Contact* picked;  ///< most_contacts per group
+    Contact* picked;  ///< selected contacts, up to most_contacts per group
     ListedContact* list;
     int* listed;                 ///< number of listed contacts
     int *touches, *touch_begin;  ///< as in ContactRows
     ContactProgress* progress;
-    int* deep;        ///< true if a contact is deeper than the allowed rest
-    float* friction;  ///< of the listed contacts
+    int* deep;        ///< 1 if some penetration exceeds slop
+    float* friction;  ///< coefficient of each listed contact
     ContactRow* rows;
   };
-  /// The parts of the scratch memory; with nullptr only its size.
+  /// Divides the scratch memory into its parts; with nullptr it computes only the size.
   SIM_FN Room parts_of(unsigned char* room) const {
     const auto n = static_cast<std::size_t>(count);
     const auto most = static_cast<std::size_t>(groups() * most_contacts);
@@ -137,20 +140,20 @@ struct Meeting {
       for (int b = 0; b < m.count; ++b) out = at_least(room.speeds[b], out);
       return out;
     }
-    /// Upper bound of the push between two bodies. In a wedge pushes grow as 1 / (2 sin) of its half angle:
-    /// the bound suffices for a wedge of 2 degrees. It limits other bodies' pushes on a pinned body, and
-    /// walls are solved last.
+    /// Upper bound of the push between two bodies, m_* m/s. In a wedge of half angle a pushes grow as 1 / (2
+    /// sin a); the bound suffices down to 2 degrees. Pushes from walls have no bound and are solved last, so
+    /// that a body pinned between bodies and a wall stays in the tank.
     SIM_FN float most_push(float speed) const {
       float mass = 0;
       for (int b = 0; b < m.count; ++b) mass += m.free[b].mass;
       return 16 * mass * speed;
     }
 
-    /// Largest gap that is considered, m.
+    /// Contacts count only if Contact::ahead is below this, m.
     SIM_FN float pad(Partners pair) const {
       float size = feelers_of(pair.first).reach();
       if (pair.second >= 0) size = at_most(feelers_of(pair.second).reach(), size);
-      // A struck body may hit others.
+      // The second term is for bodies that are struck in this substep and then hit others.
       return wide * size + 0.25f * m.drive.dt * fastest();
     }
     SIM_FN void screen(int group) const {
@@ -167,11 +170,11 @@ struct Meeting {
       return mesh_of(m.meshes, b) || room.start[b].distance(centre) <= reach;
     }
 
-    /// Separating contacts are treated as staying, because other bodies may stop them.
+    /// Sets `ahead`. Separating contacts keep their gap, because other bodies may stop the separation.
     SIM_FN void look_ahead(Contact& it, Vec3 speed) const {
       it.ahead = it.gap + m.drive.dt * at_most(dot(it.normal, speed), 0.0f);
     }
-    /// Tests one feeler of one body of a pair.
+    /// Tests one point (Feelers) of one body of a pair for contact with the other body.
     SIM_FN void feel(int k) const {
       const int group = k / (2 * m.feelers);
       if (!room.found[group]) return;
@@ -187,7 +190,7 @@ struct Meeting {
       look_ahead(out, velocity_at(self, out.at) - velocity_at(other, out.at));
       if (back) out.normal = -1.0f * out.normal;
     }
-    /// True if the feelers of `self` are redundant: for a ball the test of its centre suffices.
+    /// True if the points of `self` need no test: if one body is a ball, testing its centre suffices.
     SIM_FN bool spares(int other, int self, bool back) const {
       return is_ball(self) && is_ball(other) ? back : is_ball(other);
     }
@@ -267,7 +270,8 @@ struct Meeting {
         out.ease += arm(out.second, it.contact.at, way, normal, out.other_lever, out.other_turn);
       return out;
     }
-    /// A push towards the centre gives a sphere exactly zero torque.
+    /// Speed at `at` along `way` per unit push, 1/m_*; sets the lever and the spin change. A normal push on a
+    /// sphere gives exactly zero torque.
     SIM_FN float arm(int b, Vec3 at, Vec3 way, bool normal, Vec3& lever, Vec3& turn) const {
       lever = turn = {0, 0, 0};
       if (normal && is_ball(b)) return room.rates[b].ease;
@@ -316,7 +320,8 @@ struct Meeting {
       m.free[b].momentum += push;
       m.free[b].spin += moment;
     }
-    /// From here on rates only describe the position correction; they add no momentum.
+    /// Prepares the correction of penetration: sets each row's wanted speed. The bodies' rates then describe
+    /// only this correction of position; they add no momentum.
     SIM_FN void want_apart() const {
       const float dt = m.drive.dt;
       float most = 0;

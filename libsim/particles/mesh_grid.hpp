@@ -5,7 +5,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Distance and normal of a body's surface from a point.
+/// Distance of a point from a body's surface, and the surface's normal there.
 struct NearSurface {
   float distance;  ///< signed, m
   Vec3 normal;     ///< outwards
@@ -18,12 +18,13 @@ struct MeshGrid {
   const float* values;   ///< m, x fastest; nullptr: the body is not a mesh
   const Vec3* contacts;  ///< surface points that can touch walls, in the body's axes
   int contact_count;
-  /// 1 for each own axis about which pressure can turn the body, 0 if it is round about that axis.
+  /// Per axis of the body: 1 if pressure can turn the body about this axis, 0 if the body is rotationally
+  /// symmetric.
   Vec3 turns;
 
-  /// Between nodes the distance is trilinear, and the normal is its gradient. Beyond the grid both come from
-  /// the surface point found at the nearest grid point. Not inlined, so that scenes without meshes carry no
-  /// more of it than the call.
+  /// Distance and normal of the mesh at p, in the body's axes. Between nodes the distance is trilinear, and
+  /// the normal is its gradient. Beyond the grid both refer to the surface point found from the nearest point
+  /// of the grid. Not inlined, so that kernels contain only the call in scenes without meshes.
   SIM_FN_APART NearSurface near(Vec3 p) const {
     const Vec3 most{static_cast<float>(nx - 1), static_cast<float>(ny - 1), static_cast<float>(nz - 1)};
     const Vec3 cells = (1 / step) * (p - low);
@@ -39,14 +40,14 @@ struct MeshGrid {
     const float* up = at + nx;
     const float* back = at + static_cast<long long>(nx) * ny;
     const float* both = back + nx;
-    // Slopes along x of the cell's four edges, and the distances there.
+    // Slopes along the cell's four edges in x, and the distances on these edges at u.
     const float s0 = at[1] - at[0], s1 = up[1] - up[0], s2 = back[1] - back[0], s3 = both[1] - both[0];
     const float d0 = at[0] + u * s0, d1 = up[0] + u * s1, d2 = back[0] + u * s2, d3 = both[0] + u * s3;
     const float front = d0 + v * (d1 - d0), behind = d2 + v * (d3 - d2);
     const Vec3 slope{(1 - w) * (s0 + v * (s1 - s0)) + w * (s2 + v * (s3 - s2)),
                      (1 - w) * (d1 - d0) + w * (d3 - d2), behind - front};
     const float steep = length(slope);
-    // Gradients can cancel in the middle of a body.
+    // In the middle of a body the gradient can be zero.
     const Vec3 normal = steep > 1e-6f * step ? (1 / steep) * slope : Vec3{0, 1, 0};
     const float distance = front + w * (behind - front);
     if (within.x == cells.x && within.y == cells.y && within.z == cells.z) return {distance, normal};

@@ -7,7 +7,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Mass in m_* times a vector, in units of 2^-Bits.
+/// Sum of mass (in m_*) times a vector, in units of 2^-Bits.
 template <int Bits>
 struct MassSum {
   std::uint64_t x, y, z;
@@ -41,16 +41,16 @@ struct MassSum {
     return unit * static_cast<float>(static_cast<std::int64_t>(sum));
   }
   SIM_FN static std::uint64_t fixed(float value) {
-    // Limit for one particle, which leaves room for the sum of many.
+    // Limit for one particle, so that more than 100 particles at this limit do not overflow the sum.
     constexpr auto most = static_cast<float>(1ull << (56 - Bits));
     return static_cast<std::uint64_t>(
         static_cast<std::int64_t>(rintf(at_most(at_least(value, -most), most) / unit)));
   }
 };
 
-/// Of velocities, m/s.
+/// Sum of mass times velocity, in m_* m/s.
 using Momentum = MassSum<24>;
-/// For displacements within a substep, m.
+/// Sum of mass times displacement within a substep, in m_* m.
 using MassWay = MassSum<36>;
 
 /// Mass of a particle of support h in m_*.

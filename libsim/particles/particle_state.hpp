@@ -17,7 +17,7 @@ struct ParticleState {
   float vx_m_s = 0, vy_m_s = 0, vz_m_s = 0;
 };
 
-/// A value per particle, for pictures.
+/// Quantity of a particle that pictures show as colours.
 enum class ParticleField {
   Speed,         ///< m/s
   DensityError,  ///< rho / rho_0 - 1 in the last projection, walls included

@@ -9,7 +9,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// The columns of one type that a method has in addition.
+/// The Kept columns of one type, with source and destination of a reordering.
 template <class T>
 struct Extras {
   static constexpr int most = 8;
@@ -184,7 +184,7 @@ void Particles::reorder(const Array<int>& order) {
   const auto ints = kept_columns<int>();
   const auto parts = kept_columns<SaliencyParts>();
   auto& c = columns_;
-  // Columns that no pass reads after a sort serve as its destination.
+  // Scratch columns that no pass reads after a sort serve as its destination.
   auto& predicted_to = has(Column::PredictedNext) ? c.predicted_next : spare_b_;
   auto& velocity_to = has(Column::VelocityNext) ? c.velocity_next : spare_c_;
   for_each("reorder", n,

@@ -13,7 +13,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Guard counters, one per rule (programs get them as sim::GuardCounts).
+/// Counters of the cases in which a guard corrected a particle (programs get them as sim::GuardCounts).
 struct Guards {
   std::uint64_t speed_limited;
   std::uint64_t coincident_pairs;
@@ -21,15 +21,15 @@ struct Guards {
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
-  Momentum braked;      ///< momentum removed by the speed limit and the quarantine
-  std::uint64_t first;  ///< the first trouble that Witness noted, as a TroubleKey; 0 = none
+  Momentum braked;      ///< momentum removed by the speed limit and from particles that are not finite
+  std::uint64_t first;  ///< TroubleKey of the first trouble that Witness noted; 0 = none
 };
 
-/// Encodes time within a frame, cause and particle: earlier keys are larger, so that atomic_max keeps the
-/// first, whatever the order of the threads.
+/// A 64-bit number for the time within a frame, the cause and the particle of a trouble. Earlier troubles
+/// have larger keys: atomic_max finds the first, whatever the order of the threads.
 struct TroubleKey {
   static constexpr std::uint64_t all = ~std::uint64_t{0};
-  /// `half`: index of half a substep within the frame, 0 .. 2^24 - 1.
+  /// `half`: number of half substeps since the frame's start, 0 .. 2^24 - 1.
   SIM_FN static std::uint64_t of(int half, Trouble cause, int id) {
     return all - (static_cast<std::uint64_t>(half) << 40 | static_cast<std::uint64_t>(cause) << 32 |
                   static_cast<std::uint32_t>(id));
@@ -38,11 +38,11 @@ struct TroubleKey {
   SIM_FN static int id(std::uint64_t key) { return static_cast<int>(static_cast<std::uint32_t>(all - key)); }
 };
 
-/// Records particles in trouble for a pass.
+/// Records particles in trouble from within a pass.
 struct Witness {
   Guards* guards;
   const int* id;
-  int half;  ///< see TroubleKey
+  int half;  ///< number of half substeps since the frame's start, see TroubleKey::of
   SIM_FN void note(Trouble cause, int i) const {
     atomic_max(&guards->first, TroubleKey::of(half, cause, id[i]));
   }
@@ -55,7 +55,7 @@ struct LevelSupports {
 };
 LevelSupports level_supports(double finest_support);
 
-/// The memory of every column: n values if allocated, otherwise none.
+/// The arrays of all columns: n values if the column is allocated, otherwise none.
 struct ColumnArrays {
 #define SIM_MEMBER(Name, member, Type, ...) Array<Type> member;
 #define SIM_NOTHING(...)
@@ -63,33 +63,33 @@ struct ColumnArrays {
 #undef SIM_MEMBER
 };
 
-/// n particles in the grid's order.
+/// n particles in the order of the neighbour search's cells.
 class Particles {
  public:
-  /// Gives each column of the set room for `capacity` particles (at least n), n of them in use, and frees the
+  /// Allocates each column of the set for `capacity` particles (at least n), n of them in use, and frees the
   /// other columns.
   void allocate(ColumnSet set, int n, int capacity = 0);
-  /// Allocates missing columns of the set with the same capacity, set to 0 if they descend by a rule, and
+  /// Allocates missing columns of the set with the same capacity, set to 0 if their rule is by_rule(), and
   /// frees columns outside the set. Columns that stay keep their values.
   void change_columns(ColumnSet set);
   int size() const { return n_; }
   int capacity() const { return capacity_; }
   bool has(Column column) const { return set_.has(column); }
-  /// Sets the number in use, at most the capacity. Remaining particles keep their values.
+  /// Sets the number of particles in use, at most the capacity. Remaining particles keep their values.
   void resize(int n);
-  /// Bytes held by all columns.
+  /// Memory of all columns and of the buffers for reordering, bytes.
   std::size_t bytes() const;
 
-  /// Gathers the columns that last beyond a substep: new[i] = old[order[i]] for i < order.size(), which
-  /// becomes the number of particles. A source may occur more than once (a split) or never (a merge).
+  /// Reorders the columns that last beyond a substep: new[i] = old[order[i]]. order.size() becomes the number
+  /// of particles. A source may occur more than once (a split) or never (a merge).
   void reorder(const Array<int>& order);
 
   /// The columns that splits and merges compute by rule.
   Descents descents();
-  /// Sets them to 0 for the start of a run.
+  /// Sets the columns of descents() to 0 for the start of a run.
   void begin_descents();
 
-  /// Every column, for starts, read-outs and tests. Passes go through a ColumnView.
+  /// Every column, for initialisation, read-outs and tests; passes use a ColumnView instead.
   ColumnArrays& all() { return columns_; }
   const ColumnArrays& all() const { return columns_; }
 
@@ -105,7 +105,7 @@ class Particles {
   int capacity_ = 0;
   ColumnSet set_;
   ColumnArrays columns_;
-  // Destination buffers of the permutation, swapped with the columns.
+  // Destination buffers of reorder(), swapped with the columns.
   Array<Vec4> spare_a_, spare_b_, spare_c_;
   Array<int> spare_id_;
   Array<std::uint8_t> spare_level_;
@@ -115,10 +115,10 @@ class Particles {
   std::vector<Array<SaliencyParts>> spare_parts_;
 };
 
-/// Access to the columns that a pass declares, and no others: each is a function that returns its values,
-/// const unless declared as written. Using an undeclared column, or writing a column that is only read, does
-/// not compile. IfThere names columns that the pass reads, and WritesIfThere columns that it writes, only in
-/// runs where another pass needs them; otherwise they are nullptr. A view converts to one that declares less.
+/// Access to exactly the columns that a pass declares. Each column is a function that returns a pointer to
+/// its values, const unless the pass declares it as written. Undeclared access does not compile. IfThere:
+/// columns that the pass reads if another pass needs them, otherwise nullptr; WritesIfThere: the same for
+/// columns that it writes. A view converts to a view that declares less.
 template <ColumnSet Reads, ColumnSet Writes, ColumnSet IfThere = ColumnSet{},
           ColumnSet WritesIfThere = ColumnSet{}>
 class ColumnView {
@@ -129,10 +129,10 @@ class ColumnView {
   static constexpr ColumnSet may_write = Writes | WritesIfThere;
 
   explicit ColumnView(Particles& particles) : particles_(&particles) {}
-  /// For particles that must not be changed.
+  /// A view of constant particles; it must not declare written columns.
   explicit ColumnView(const Particles& particles) requires(may_write.empty())
       : particles_(const_cast<Particles*>(&particles)) {}
-  /// From a view that declares at least as much.
+  /// Converts a view that declares at least the same columns.
   template <ColumnSet R, ColumnSet W, ColumnSet I, ColumnSet WI>
   requires((R | W).holds(Reads) && W.holds(Writes) && (R | W | I | WI).holds(may_read) &&
            (W | WI).holds(may_write)) ColumnView(const ColumnView<R, W, I, WI>& wider)
@@ -150,7 +150,7 @@ class ColumnView {
   SIM_COLUMNS(SIM_ACCESS, SIM_NOTHING)
 #undef SIM_ACCESS
 
-  /// Copies the second column's values to the first column.
+  /// Copies the values of column From to column To.
   template <Column To, Column From>
   void copy() const requires(may_write.has(To) && may_read.has(From)) {
     const auto& from = array<From>();
@@ -189,9 +189,9 @@ class ColumnView {
 template <Column... C>
 using Reads = ColumnView<columns(C...), ColumnSet{}>;
 
-/// Lists in `ids` the unused ids below the capacity, in ascending order; ids beyond the capacity are ignored.
-/// `gone`: flags of particles that no longer count; nullptr: none. `flags` and `sums` are scratch memory; all
-/// three get one value per id of the capacity.
+/// Lists in `ids` the unused ids below the capacity, in ascending order; ids of particles beyond the capacity
+/// are ignored. `gone`: flags of particles whose ids count as unused; nullptr: none. `flags` and `sums` are
+/// scratch memory. The three arrays are resized to the capacity.
 void list_free_ids(Reads<Column::Id> particles, const std::uint8_t* gone, Scanner& scanner, Array<int>& flags,
                    Array<int>& sums, Array<int>& ids);
 

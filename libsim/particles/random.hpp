@@ -15,9 +15,9 @@ SIM_FN std::uint32_t mixed(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-/// 32 random bits from two numbers,
+/// 32 random bits from two numbers.
 SIM_FN std::uint32_t random_bits(std::uint32_t a, std::uint32_t b) { return mixed(a * 0x9e3779b9u + b); }
-/// and from three.
+/// 32 random bits from three numbers.
 SIM_FN std::uint32_t random_bits(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   return mixed(random_bits(a, b) + c * 0x85ebca6bu);
 }
@@ -25,7 +25,7 @@ SIM_FN std::uint32_t random_bits(std::uint32_t a, std::uint32_t b, std::uint32_t
 /// Uniform in [0, 1) from random bits.
 SIM_FN float uniform_of(std::uint32_t bits) { return static_cast<float>(bits >> 8) * (1.0f / 16777216.0f); }
 
-/// Uniform in [0, 1) from a particle, a frame and a seed.
+/// Uniform random number in [0, 1) for a particle id, a frame and a seed.
 SIM_FN float activation_draw(std::uint32_t id, std::uint32_t frame, std::uint32_t seed) {
   const std::uint32_t words[3] = {seed, frame, id};
   std::uint32_t x = 0;

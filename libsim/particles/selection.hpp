@@ -1,6 +1,7 @@
 #pragma once
 /// Selects the particles that a pass solves, before the launch: all, or the active ones of temporal
-/// acceleration (ViP-Fluid, Algorithm 3). A pass runs over slots 0 .. n-1 and looks up the particle of each.
+/// acceleration (ViP-Fluid, Algorithm 3). A pass runs over slots 0 .. n-1; the selection gives the particle
+/// of each slot.
 
 #include <cstdint>
 
@@ -8,17 +9,17 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Slot = particle. Everything here is optimised away.
+/// Selects all particles: the slot is the particle's index. The compiler removes all of these functions.
 struct AllParticles {
   static constexpr bool everyone = true;
-  /// The k-th slot that a pass must process, -1 = none.
+  /// The k-th slot that a pass must process; -1 = none.
   SIM_FN int slot(int k) const { return k; }
   SIM_FN int operator()(int slot) const { return slot; }
   SIM_FN float moves(int) const { return 1; }
 };
 
-/// The first slots hold the active particles in the grid's order, the last ones the others as ~particle, a
-/// negative number: whole warps are either active or idle.
+/// Slots contain first the active particles in the grid's order, then the others as ~particle, a negative
+/// number. So whole warps are either active or idle.
 struct ActiveParticles {
   static constexpr bool everyone = false;
   const int* slots;
@@ -32,7 +33,8 @@ struct ActiveParticles {
   SIM_FN float falls(int i) const { return others_pressed || active[i] ? 1.0f : 0.0f; }
 };
 
-/// Active and resting particles, in the order of the slots, for a pass whose results outlive the solve.
+/// Active and unsolved particles, in the order of the slots, for a pass whose results are used after the
+/// solve.
 struct EverySlot {
   static constexpr bool everyone = true;
   const int* slots;

@@ -1,6 +1,6 @@
 #pragma once
-/// Rigid bodies as obstacles for particles - distance, normal, and the share of a kernel inside the body -
-/// and walls and bodies together: the boundaries in scenes with obstacles.
+/// Rigid bodies as obstacles for particles: distance, normal, and the share of a kernel inside the body.
+/// Solids combines walls and bodies into the boundary of scenes with obstacles.
 
 #include "libsim/particles/mesh_grid.hpp"
 #include "libsim/particles/momentum.hpp"
@@ -19,13 +19,14 @@ SIM_FN Vec3 turned(Vec4 q, Vec3 v) {
 }
 SIM_FN Vec4 turned_back(Vec4 q) { return {-q.x, -q.y, -q.z, q.w}; }
 
-/// Share of a ball of radius 1 with poly6's weights inside a sphere of radius r, and its slope with spiky's
-/// weights; both are exact. q: distance of the ball's centre from the sphere's surface, 0 .. 1. For large r
-/// they approach the half-space of libsim/particles/walls.hpp.
+/// Share of a particle's kernel (poly6, radius 1) that lies inside a sphere of radius r, and its slope for
+/// the spiky kernel; both are exact. q: distance of the particle from the sphere's surface, 0 .. 1. For large
+/// r both approach the values of a half-space (libsim/particles/walls.hpp).
 struct SphereShare {
   float q, r;
 
-  /// The share of a shell of radius z inside is (1 - (z^2 + a^2 - r^2) / (2 z a)) / 2, a = q + r.
+  /// Share inside the sphere, integrated over shells around the particle. Of a shell of radius z the share (1
+  /// - (z^2 + a^2 - r^2) / (2 z a)) / 2 is inside, a = q + r.
   SIM_FN float inside() const {
     const float a = q + r;
     const float far = at_most(q + 2 * r, 1.0f);
@@ -33,7 +34,7 @@ struct SphereShare {
     const float even = third(far) - third(q) + q * (2 * r + q) * (first(far) - first(q));
     return 315.0f / 32 * odd - 315.0f / 64 * even / a;
   }
-  /// -d inside / dq with spiky's weights.
+  /// Minus the derivative of the share with respect to q, for the spiky kernel.
   SIM_FN float slope() const {
     const float a = q + r;
     const float far = at_most(q + 2 * r, 1.0f);
@@ -67,8 +68,8 @@ struct SphereShare {
 };
 
 /// A sphere, a capsule along its own y axis, or a box: all points within `radius` of a box with half sides
-/// `half`. A box has radius 0; the others have half sides only along y. Or a mesh inside a box of half sides
-/// `half`, with distances from a MeshGrid.
+/// `half`. A box has radius 0; spheres and capsules have half sides 0 along x and z. A mesh lies inside a box
+/// of half sides `half`; its distances come from a MeshGrid.
 struct Body {
   Vec3 half;
   float radius;
@@ -78,7 +79,7 @@ struct Body {
   Vec3 spin;      ///< rad/s
 
   using Near = NearSurface;
-  /// In the body's own axes.
+  /// Distance and normal of the surface at p, in the body's own axes.
   SIM_FN Near near_here(Vec3 p) const {
     const Vec3 beyond{fabsf(p.x) - half.x, fabsf(p.y) - half.y, fabsf(p.z) - half.z};
     const Vec3 sign{p.x < 0 ? -1.0f : 1.0f, p.y < 0 ? -1.0f : 1.0f, p.z < 0 ? -1.0f : 1.0f};
@@ -97,8 +98,8 @@ struct Body {
   SIM_FN float distance(Vec3 x) const { return near_here(to_body(x)).distance; }
   SIM_FN Vec3 velocity_at(Vec3 x) const { return velocity + cross(spin, x - centre); }
 
-  /// Share of the kernel of a particle at x inside the body, and its gradient (1/m) with the spiky kernel's
-  /// slope; a particle inside counts as on the surface.
+  /// Share of a particle's kernel that lies inside the body, and its gradient (1/m) with the spiky kernel's
+  /// slope; a particle inside the body counts as on the surface.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     gradient = {0, 0, 0};
     const Vec3 p = to_body(x);
@@ -111,8 +112,8 @@ struct Body {
   }
 
  private:
-  /// For round surfaces, as a sphere of the same mean curvature: the side of a cylinder has half the
-  /// curvature of its ends.
+  /// missing() of a sphere or a capsule, from a sphere of the same mean curvature: the side of a capsule has
+  /// half the mean curvature of its ends.
   SIM_FN float missing_round(Vec3 p, Near at, float h, Vec3& gradient) const {
     const float past_end = (fabsf(p.y) - half.y) / h;
     const float end = half.y > 0 ? at_most(at_least(0.5f + past_end, 0.0f), 1.0f) : 1.0f;
@@ -120,8 +121,8 @@ struct Body {
     gradient = -(share.slope() / h) * at.normal;
     return share.inside();
   }
-  /// For a box, as the product of the shares along its three axes: exact for planes, and a quarter or an
-  /// eighth at an edge or a corner.
+  /// missing() of a box: the product of the shares along its three axes. Exact for planes; at most a quarter
+  /// at an edge and an eighth at a corner.
   SIM_FN float missing_box(Vec3 p, Near at, float h, Vec3& gradient) const {
     if (at.distance < 0) p += -at.distance * at.normal;
     float sx, sy, sz;
@@ -137,7 +138,8 @@ struct Body {
     slope = (p < 0 ? -1 : 1) * (slope_of(high) - slope_of(low)) / h;
     return beyond(low) - beyond(high);
   }
-  /// Share beyond a plane at the signed distance q, and minus its slope.
+  /// Share of a kernel beyond a plane at the signed distance q, in support radii; slope_of() is minus its
+  /// slope.
   SIM_FN static float beyond(float q) {
     const float inside = Walls::behind(at_most(fabsf(q), 1.0f));
     return q < 0 ? 1 - inside : inside;
@@ -147,27 +149,28 @@ struct Body {
 
 inline constexpr int most_bodies = 16;
 
-/// Sum of what a body gave the water: mass in m_* times displacement in m, and its moment about the body's
+/// Sum of a body's pushes on the water: mass in m_* times displacement in m, and the moment about the body's
 /// centre in m_* m2.
 struct BodySum {
   MassWay push, moment;
 };
 
-/// A part of a body's surface that is measured: a box in the body's own axes, infinite beyond each end of the
-/// body that it reaches.
+/// A part of a body's surface on which pushes are measured: the part inside a box in the body's own axes. A
+/// side of the box at or beyond the body's end counts as infinitely far away.
 struct BodyPatch {
   int body;
   Vec3 low, high;
 
-  /// Share inside of a square of this side about a place of the surface, in the body's own axes.
+  /// Share of a square that lies inside the patch. The square has the edge `side` and the normal `normal`;
+  /// its centre is the surface point `at`, in the body's own axes.
   SIM_FN float share(Vec3 at, Vec3 normal, float side) const {
     return along(at.x, normal.x, side, low.x, high.x) * along(at.y, normal.y, side, low.y, high.y) *
            along(at.z, normal.z, side, low.z, high.z);
   }
 
  private:
-  /// Share of the square's projection on one axis that lies between low and high. `normal`: the part of the
-  /// square's normal along that axis; at 1 the square is seen from its edge, as a line of 1e-3 sides.
+  /// Share of the square's projection on one axis that lies between low and high. `normal`: the component of
+  /// the square's normal along that axis; at 1 the projection is a point and counts as 1e-3 sides long.
   SIM_FN static float along(float at, float normal, float side, float low, float high) {
     const float flat = sqrtf(at_least(1 - normal * normal, 0.0f));
     return share_within(at, 0.5f * side * at_least(flat, 1e-3f), low, high);
@@ -175,16 +178,18 @@ struct BodyPatch {
 };
 struct PatchSum {
   BodySum given;
-  std::uint64_t wet;  ///< squares of the particles within their support, d_*^2 / CellWater::fixed_point
+  std::uint64_t wet;  ///< area d^2 of the particles within their support of the patch, in d_*^2 /
+                      ///< CellWater::fixed_point
 };
-/// All patches of a scene; none in most.
+/// All patches of a scene; most scenes have none.
 struct BodyPatches {
   const BodyPatch* patches;
   PatchSum* sums;
   int count;
-  const MeshGrid* meshes;  ///< as in Solids
+  const MeshGrid* meshes;  ///< of all bodies; nullptr: no body is a mesh
 
-  /// Calls hear(sum, share) for each patch that has a share of a square of this side beside `x`.
+  /// Projects a square of edge `side` at x onto the body. Calls hear(sum, share) for each patch that contains
+  /// a share of the square.
   template <class Hear>
   SIM_FN void at(const Body& its, int body, Vec3 x, float side, Hear hear) const {
     const Vec3 p = its.to_body(x);
@@ -198,22 +203,22 @@ struct BodyPatches {
   }
 };
 
-/// Records in kernels what bodies give the water.
+/// Records the pushes of bodies on the water, for kernels.
 struct BodyListener {
   BodySum* sums;
   const Body* bodies;
   float finest_support;
-  float times;  ///< as in WallRecord
+  float times;  ///< weight of a push, including its repeats in later momentum steps
   BodyPatches patches;
 
-  /// Adds `push`, in m_* m, that a particle gets at a position.
+  /// Adds the push (m_* m) of a body on a particle; it acts at the position `at`.
   SIM_FN void add(int body, Vec4 particle, Vec3 at, Vec3 push) const {
     BodySum sum{};
     add_to(sum, body, at, push);
     add_at_once(body, sum);
     if (patches.count > 0) add_to_patches(body, xyz(particle), 0.5f * particle.w, at, push);
   }
-  /// The same for the patches alone; `side` is that of the particle's square.
+  /// Adds a push only to the body's patches; `side`: edge of the particle's square, m.
   SIM_FN void add_to_patches(int body, Vec3 beside, float side, Vec3 at, Vec3 push) const {
     patches.at(bodies[body], body, beside, side, [&](PatchSum& patch, float share) {
       BodySum sum{};
@@ -222,7 +227,7 @@ struct BodyListener {
       patch.given.moment.add_at_once(sum.moment);
     });
   }
-  /// The same, added to a local sum.
+  /// Adds a push to a local sum.
   SIM_FN void add_to(BodySum& sum, int body, Vec3 at, Vec3 push) const {
     sum.push.add(times, push);
     sum.moment.add(times, cross(at - bodies[body].centre, push));
@@ -233,12 +238,12 @@ struct BodyListener {
   }
 };
 
-/// The functions of Walls, for walls and bodies together.
+/// Walls and bodies together, with the functions of Walls.
 struct Solids {
   Walls walls;
   const Body* bodies;
   int count;
-  float dt;                          ///< duration of the bodies' move to their positions, s
+  float dt;                          ///< time in which the bodies moved to their present positions, s
   const MeshGrid* meshes = nullptr;  ///< of all bodies; nullptr: no body is a mesh
 
   SIM_FN Body::Near near(int body, Vec3 x) const {
@@ -262,7 +267,7 @@ struct Solids {
     return Walls::behind(q);
   }
 
-  /// 1 - prod (1 - share) over walls and bodies.
+  /// Share of the kernel inside walls and bodies, 1 - prod (1 - share), and its gradient, 1/m.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     float present = 1 - walls.missing(x, h, gradient);
     for (int b = 0; b < count; ++b) {
@@ -273,7 +278,7 @@ struct Solids {
     }
     return 1 - present;
   }
-  /// The part of the gradient above that comes from one body.
+  /// The part of missing()'s gradient that comes from one body, 1/m.
   SIM_FN Vec3 missing_gradient(int body, Vec3 x, float h) const {
     Vec3 own;
     Vec3 other;
@@ -311,9 +316,9 @@ struct Solids {
   SIM_FN float nearest(Vec3 x) const { return at_most(nearest_body(x), walls.nearest(x)); }
   SIM_FN bool holds(Vec3 x, float gap = 0) const { return walls.holds(x, gap) && nearest_body(x) >= gap; }
 
-  /// Like Walls::hold_back. A body measures the distance at the start as if the particle had moved with it.
-  /// If a body touches a wall, the way out of the body may lead into the wall: a particle without another way
-  /// out stays where it was.
+  /// Like Walls::hold_back, for walls and bodies. The distance from a moving body before the move is measured
+  /// as if the particle had moved with the body. Where a body touches a wall, both corrections can contradict
+  /// each other: a particle that would end inside a body stays at its old position.
   template <class Record = NoRecord>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Record record = {}) const {
     const Vec3 from = x;
@@ -333,7 +338,8 @@ struct Solids {
     return true;
   }
 
-  /// Like Walls::project; walls are applied last, unless that would push a particle from outside into a body.
+  /// Like Walls::project, for bodies and then walls. A particle that came from outside and would end inside a
+  /// body returns to `from`.
   template <class Record = NoRecord>
   SIM_FN bool project(Vec3& x, Vec3 from, float gap, Record record = {}) const {
     bool moved = false;
@@ -360,7 +366,7 @@ struct Solids {
   }
 };
 
-/// The walls of a boundary.
+/// The walls of a boundary without its bodies.
 SIM_FN const Walls& tank(const Walls& walls) { return walls; }
 SIM_FN const Walls& tank(const Solids& solids) { return solids.walls; }
 

@@ -5,18 +5,18 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Share of an interval about `at` that lies between low and high.
+/// Share of the interval at - half .. at + half that lies between low and high.
 SIM_FN float share_within(float at, float half, float low, float high) {
   return fmaxf(fminf(at + half, high) - fmaxf(at - half, low), 0.0f) / (2 * half);
 }
 
-/// Half-space dot(normal, x) >= offset that holds the fluid.
+/// Half-space dot(normal, x) >= offset that contains the fluid.
 struct Plane {
   Vec3 normal;
   float offset;
 };
 
-/// A hole in a plane: a box around it, infinite across the plane.
+/// A hole in a plane of Walls, given by the box low .. high around it; the box is infinite across the plane.
 struct Opening {
   int plane;
   Vec3 low, high;
@@ -26,14 +26,14 @@ struct Opening {
   }
 };
 
-/// Listener that ignores corrections by walls and bodies.
+/// Record that ignores corrections by walls and bodies.
 struct NoRecord {
   SIM_FN void operator()(int, float) const {}
   SIM_FN void body(int, Vec3, Vec3) const {}
 };
 
-/// Walls of a tank as signed distances. In front of an opening its plane does not act. Water reaches the far
-/// side of a plane only through its openings: such water no longer meets that plane.
+/// Walls of a tank as planes with signed distances. In front of an opening its plane does not act. Water
+/// reaches the far side of a plane only through its openings; the plane does not act on such water either.
 struct Walls {
   static constexpr int most = 8;
   static constexpr int most_openings = 4;
@@ -110,7 +110,7 @@ struct Walls {
     return 30 * u4 * (0.25f - 0.2f * u);
   }
 
-  /// The part of the gradient above that comes from wall k, along its normal: <= 0.
+  /// The part of missing()'s gradient that comes from wall k, along its normal, 1/m: <= 0.
   SIM_FN float missing_slope(int k, Vec3 x, float h) const {
     float out = -slope_at(k, x, h) / h;
     for (int other = 0; other < count; ++other) {
@@ -139,9 +139,9 @@ struct Walls {
     return true;
   }
 
-  /// Moves x, which is inside the walls, towards `to`, but at most a share of its distance to each wall
-  /// (minus `gap`): particles of equal speed keep their order, whereas a clamp would put layers on one plane.
-  /// True if a wall held x back; calls heard(wall, distance in m) for each such wall.
+  /// Moves x, which is inside the walls, to `to`, but keeps at least the share kept_distance of its distance
+  /// to each wall (minus `gap`). So particles of equal speed keep their order, whereas a clamp would put
+  /// layers on one plane. True if a wall held x back; calls record(wall, distance in m) for each such wall.
   template <class Record = NoRecord>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Record record = {}) const {
     bool held = false;
@@ -159,8 +159,8 @@ struct Walls {
   }
   static constexpr float kept_distance = 0.25f;
 
-  /// Moves x, which came from `from`, to at least `gap` inside every wall; true if it was moved. heard: as
-  /// above.
+  /// Moves x, which came from `from`, to at least `gap` inside every wall; true if it was moved. Calls
+  /// record(wall, distance in m) for each wall that moved it.
   template <class Record = NoRecord>
   SIM_FN bool project(Vec3& x, Vec3 from, float gap, Record record = {}) const {
     bool moved = false;

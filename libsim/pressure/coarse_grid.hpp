@@ -11,8 +11,9 @@ struct CellSum {
   std::uint64_t volume, excess;
 };
 
-/// The coarse pressure's cells. A whole number fits between the walls: in the equation a wall is at its
-/// cell's end, and a thin layer of water in a cell cut by a wall would weigh as much as a full cell.
+/// Position and size of the coarse pressure's cells. A whole number of cells fits between the walls, because
+/// the equation assumes each wall at a face of a cell. In a cell cut by a wall, a thin layer of water would
+/// weigh as much as a full cell.
 struct PressureFrame {
   Vec3 low{};
   Vec3 edge{1, 1, 1};
@@ -25,19 +26,20 @@ struct PressureFrame {
   SIM_FN Vec3 in_metres(Vec3 cells) const {
     return low + Vec3{edge.x * cells.x, edge.y * cells.y, edge.z * cells.z};
   }
-  /// Volume divided by the vertical edge, the unit of the sources C V and the conductances of faces.
+  /// Floor area of a cell, m2: its volume divided by its vertical edge. The sources C V and the conductances
+  /// of faces are both divided by this edge.
   SIM_FN float floor_area() const { return edge.x * edge.z; }
-  /// Area divided by distance for the faces across x, y and z.
+  /// Conductance of the faces across x, y and z: area divided by distance and by the vertical edge.
   Vec3 conductance() const { return {edge.z / edge.x, floor_area() / (edge.y * edge.y), edge.x / edge.z}; }
 };
 
-/// What the coarse pressure did to the water in total, and the walls' share of it: mass in m_* times
-/// displacement.
+/// The displacement of all particles by the coarse pressure, and the displacement that the push of walls and
+/// obstacles alone would cause. Both are sums of mass in m_* times displacement in m.
 struct PushBalance {
   MassWay pushed, walls;
-  std::uint64_t mass;  ///< of the particles that were pushed, in m_*
+  std::uint64_t mass;  ///< mass of the particles that were pushed, in m_*
 
-  /// Displacement of each pushed particle that makes the two equal.
+  /// Displacement, m, to add to each pushed particle, so that `pushed` becomes equal to `walls`.
   SIM_FN Vec3 correction() const {
     if (mass == 0) return {0, 0, 0};
     return (1 / static_cast<float>(mass)) * (walls - pushed).value();
@@ -56,8 +58,8 @@ SIM_FN bool body_has(const Solids& solids, const PressureFrame& frame, const Gri
   return grid.block.holds(x, y, z) && solids.walls.holds(middle_of(frame, x, y, z));
 }
 
-/// Calls hear(wall, inward normal, area in m2) with the closed area of each face of a cell that lies on a
-/// wall, in the order of Walls.
+/// Calls visit(wall, inward normal, area in m2) for each face of a cell that lies on a wall. `wall` is the
+/// index in Walls; the area excludes openings.
 template <class Boundary, class Visit>
 SIM_FN void for_wall_faces(const PressureFrame& frame, const GridView& grid, const Boundary& boundary,
                            int cell, Visit visit) {
@@ -86,8 +88,9 @@ struct CellWater {
   float unit_volume;  ///< volume unit of the sums, m3
 
   static constexpr float fixed_point = 1 << 20;
-  /// A cell whose particles are on average below the rest density by more than this share contains a surface:
-  /// q = 0 there. If only the sign of q decided, the set of such cells would oscillate between cycles.
+  /// A cell whose particles are on average below the rest density by more than this share contains a surface,
+  /// and so q = 0 in it. If only the sign of q decided, the set of surface cells would oscillate between
+  /// cycles.
   static constexpr float surface_deficit = 0.05f;
 
   SIM_FN static float mean_excess(const CellSum& sum) {
@@ -96,27 +99,28 @@ struct CellWater {
   SIM_FN static bool is_water(const CellSum& sum) {
     return sum.volume > 0 && mean_excess(sum) > -surface_deficit;
   }
-  /// Share of the cell filled by particles of this volume.
+  /// Share of the cell that particles of this volume, in the sums' fixed point, fill; at most 1.
   SIM_FN float filled(std::uint64_t volume) const {
     const float cell = frame.edge.x * frame.edge.y * frame.edge.z;
     return at_most(static_cast<float>(volume) / fixed_point * unit_volume / cell, 1.0f);
   }
 };
 
-/// Height of the water beside a body within a cell, along Waterline::up: 0 dry, 1 below the surface.
+/// Water level beside a body within a cell, as a share of the cell's height along Waterline::up: 0 = dry, 1 =
+/// all water.
 struct LevelBeside {
-  float mean;  ///< over the sides that have a value
+  float mean;  ///< mean over the sides of the body where a position outside bodies was found
   float most;
 };
 
-/// Water level beside bodies, from the cells. Searches across `up` from a cell inside bodies to the water
-/// outside, on four sides.
+/// Water level beside bodies, measured in the coarse pressure's cells. From a cell inside a body it searches
+/// perpendicular to `up`, in four directions, for the water outside.
 struct Waterline {
   CellWater water;
   CellBlock block;
   Solids solids;
   const CellSum* sums;
-  const std::uint64_t* volume;  ///< of all particles, including resting ones
+  const std::uint64_t* volume;  ///< volume of all particles in each cell, including unsolved particles
   Vec3 up;                      ///< the axis nearest to the direction against gravity, with its sign
 
   SIM_FN LevelBeside beside(int x, int y, int z) const {
@@ -142,8 +146,8 @@ struct Waterline {
     }
     return {sides > 0 ? sum / static_cast<float>(sides) : 0, most};
   }
-  /// The first position along `way` whose cell is usually free of bodies; if the gap is narrower, the last
-  /// one before a wall.
+  /// The first position in the direction `way` whose cell is usually free of bodies. If a wall comes first,
+  /// the last position before the wall.
   SIM_FN Vec3 outside(Vec3 from, Vec3 way) const {
     const float clear = 0.75f * fabsf(dot(side(), water.frame.edge));
     Vec3 x = from;
@@ -156,7 +160,8 @@ struct Waterline {
     }
     return x;
   }
-  /// The farthest position from x towards `beyond` inside the walls, to an eighth.
+  /// The farthest position inside the walls on the line from x to `beyond`, in steps of an eighth of the
+  /// line.
   SIM_FN Vec3 before_wall(Vec3 x, Vec3 beyond) const {
     for (int part = 7; part > 0; --part) {
       const Vec3 place = x + (static_cast<float>(part) / 8) * (beyond - x);
@@ -181,7 +186,7 @@ struct Waterline {
   SIM_FN float pitch() const { return fabsf(dot(up, water.frame.edge)); }
 
  private:
-  /// An axis across `up`.
+  /// An axis perpendicular to `up`.
   SIM_FN Vec3 side() const { return {up.y, up.z, up.x}; }
   static constexpr int most_steps = 16;
 };
@@ -189,7 +194,7 @@ struct Waterline {
 struct CoarseGrid {
   PressureFrame frame;
   Array<CellSum> sums;
-  Array<std::uint64_t> volume;  ///< of all particles in a cell, as in CellSum; only with obstacles
+  Array<std::uint64_t> volume;  ///< of all particles in each cell, in the unit of CellSum; with obstacles
   Array<PushBalance> balance;
   Multigrid multigrid;
 
@@ -201,8 +206,8 @@ struct CoarseGrid {
   static constexpr double most_cells = 1 << 24;
 
  private:
-  int opened_ = 0;      ///< number of openings passed to the multigrid
-  Vec3 opened_edge_{};  ///< cell edge at that time
+  int opened_ = 0;      ///< number of openings last passed to the multigrid
+  Vec3 opened_edge_{};  ///< cell edge when they were passed
 };
 
 }  // namespace sim::SIM_BACKEND

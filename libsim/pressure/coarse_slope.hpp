@@ -5,14 +5,14 @@
 
 namespace sim::SIM_BACKEND {
 
-/// -grad q, interpolated from the faces that touch fluid, like the velocity of a MAC grid. In front of an
-/// opening the outside is air, however small the open part of the cell's face is.
+/// -grad q, interpolated from the faces that touch fluid, like the velocity of a MAC grid. At a position in
+/// front of an opening the outside counts as air, even if only a small part of the cell's face is open.
 struct CoarseSlope {
   PressureFrame frame;
   GridView grid;
   Walls walls;
 
-  /// At a position in metres.
+  /// -grad q at the position x, m: the displacement by the coarse pressure, m.
   SIM_FN Vec3 down(Vec3 x) const {
     const Vec3 at = frame.in_cells(x);
     return {along<1, 0, 0>(at, x) / frame.edge.x, along<0, 1, 0>(at, x) / frame.edge.y,
@@ -20,7 +20,8 @@ struct CoarseSlope {
   }
 
  private:
-  /// One component, edge times -dq/dx, of the field on the faces across (X, Y, Z).
+  /// The component along the axis (X, Y, Z), times the cell's edge, interpolated from the faces across this
+  /// axis.
   template <int X, int Y, int Z>
   SIM_FN float along(Vec3 at, Vec3 metres) const {
     // Face (x, y, z) lies between cell (x, y, z) - (X, Y, Z) and cell (x, y, z).

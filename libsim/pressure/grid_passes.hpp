@@ -1,6 +1,6 @@
 #pragma once
-/// The passes of a V-cycle, one functor each, called per cell. cell(place, index) does the work if the
-/// position is known.
+/// The passes of a V-cycle, one functor each. operator()(index) processes one cell. cell(place, index) does
+/// the same for a cell whose position is already known.
 
 #include "libsim/pressure/multigrid.hpp"
 
@@ -15,9 +15,10 @@ SIM_FN Place place_of(const CellBlock& block, int i) {
   return {i - row * block.nx, row - z * block.ny, z};
 }
 
-/// A coarser cell is fluid if no child is air and one is fluid: its surface is then within half a cell of the
-/// true one, on either side. Counting every cell with some fluid as fluid lets a grid overshoot until the
-/// cycles diverge.
+/// Sets the kind of a coarser cell from its eight children: air if one is air, otherwise fluid if one is
+/// fluid, otherwise solid. The coarser grid's water surface is then at most half a cell from the true
+/// surface. If every cell with some fluid counted as fluid, the corrections would overshoot and the cycles
+/// diverge.
 struct Coarsen {
   GridView fine, coarse;
   SIM_FN void operator()(int i) const {
@@ -34,8 +35,8 @@ struct Coarsen {
   }
 };
 
-/// Conductances of a cell's faces across x, y, z: area over distance, in finest cells, times the finest
-/// conductances.
+/// Conductances of a cell's faces across x, y, z: area over distance, both measured in finest cells, times
+/// the conductances of a finest cell.
 SIM_FN Vec3 conductances(const GridView& grid, Place p) {
   if (grid.scale == 1) return grid.conductance;
   const float x = grid.extent(p.x, grid.finest.nx);
@@ -45,7 +46,7 @@ SIM_FN Vec3 conductances(const GridView& grid, Place p) {
   return {y * z * over.x, x * z * over.y, x * y * over.z};
 }
 
-/// Computes the diagonal of a fluid cell's equation, for all sweeps of a solve.
+/// Computes the diagonal of each fluid cell's equation once; all sweeps of a solve use it.
 struct Weigh {
   GridView grid;
   SIM_FN void operator()(int i) const {
@@ -67,14 +68,15 @@ struct Weigh {
     }
     grid.diagonal[i] = sum;
   }
-  /// Openness towards the neighbour cell at this position.
+  /// Relative conductance of the face towards the neighbour cell at this position: 1 towards fluid or air, 0
+  /// towards a closed wall.
   SIM_FN float opening(int x, int y, int z) const {
     if (grid.kind_at(x, y, z) != CellKind::Solid) return 1;
     return grid.open_count > 0 ? grid.openness(x, y, z) : 0;
   }
 };
 
-/// The sum of conductance x q around cell i at position p.
+/// The sum of conductance times q over the six neighbours of cell i at position p.
 SIM_FN float around(const GridView& grid, Place p, int i) {
   const CellBlock& block = grid.block;
   const Vec3 over = conductances(grid, p);
@@ -90,8 +92,8 @@ SIM_FN float around(const GridView& grid, Place p, int i) {
   return sum;
 }
 
-/// Gauss-Seidel on the cells of one colour; with push_only (the finest grid) q stays >= 0. Index: every
-/// second cell of a row, starting with the first.
+/// A Gauss-Seidel sweep over the cells of one colour of a checkerboard. push_only keeps q >= 0; it is set on
+/// the finest grid. The index counts pairs of adjacent cells in a row, of which one has the colour.
 struct Smooth {
   GridView grid;
   int colour;
@@ -111,8 +113,8 @@ struct Smooth {
   }
 };
 
-/// Source of the coarser grid: the sum of the finer residuals. A cell at q = 0 whose residual is negative
-/// contributes nothing.
+/// Computes the source of a coarser cell: the sum of the residuals of its fluid children. With push_only, a
+/// child with q = 0 and a negative residual contributes nothing.
 struct Restrict {
   GridView fine, coarse;
   bool push_only;
@@ -132,8 +134,8 @@ struct Restrict {
   }
 };
 
-/// Adds the coarser grid's correction, trilinear between cell centres, mirrored at walls and falling to zero
-/// outside open faces.
+/// Adds the coarser grid's correction to the finer q. The correction is interpolated trilinearly between cell
+/// centres, mirrored at walls, and 0 outside open faces.
 struct Prolong {
   GridView fine, coarse;
   bool push_only;

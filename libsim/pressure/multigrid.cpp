@@ -10,7 +10,7 @@ namespace {
 /// The coarsest grid has at most this many cells along its longest side.
 constexpr int coarsest_side = 2;
 
-// V-cycles over grids that are small enough for one block, in its shared memory.
+// Small grids: one thread block processes them in its shared memory.
 
 constexpr int coarsest_sweeps = 4;
 /// A grid of at most this many cells is processed by one warp.
@@ -21,12 +21,12 @@ struct CellPlace {
   std::uint16_t x, y, z;
 };
 
-/// List of the few fluid cells of one grid, so that passes skip the others. Cells of the first colour are at
-/// the front, those of the second at the back.
+/// List of the fluid cells of one grid, so that passes skip all other cells. Cells of the checkerboard's
+/// first colour are listed from the front, cells of its second colour from the back.
 struct FluidCells {
   CellBlock block;
   CellPlace* place;
-  int* count;  ///< per colour
+  int* count;  ///< number of listed cells per colour
 
   SIM_FN int size() const { return count[0] + count[1]; }
   SIM_FN int nth(int colour, int k) const { return colour == 0 ? k : block.size() - 1 - k; }
@@ -37,7 +37,7 @@ struct FluidCells {
   }
 };
 
-/// Calls f.cell for the fluid cells of one colour, or of both.
+/// Calls f.cell for the fluid cells of one colour (OfColour) or of both colours (OfBoth).
 template <class F>
 struct OfColour {
   FluidCells cells;
@@ -55,7 +55,7 @@ struct OfBoth {
   }
 };
 
-/// Lists a grid's fluid cells, in any order, with q = 0 everywhere.
+/// Lists a grid's fluid cells, in any order, and sets q = 0 in all cells.
 struct ListFluid {
   GridView grid;
   FluidCells to;
@@ -77,7 +77,7 @@ struct Load {
     to.source[i] = from.source[i];
   }
 };
-/// Copies q of the first small grid back.
+/// Copies q of the first small grid back to global memory.
 struct Store {
   GridView from, to;
   SIM_FN void operator()(int i) const { to.q[i] = from.q[i]; }
@@ -95,11 +95,11 @@ struct SmallGrids {
     CellBlock block;
     int scale, begin;  ///< edge in finest cells; index of its first cell
   };
-  GridView outside;  ///< the first grid in global memory
+  GridView outside;  ///< the first small grid, in global memory
   Grid grid[most];
   int count;
-  int cells;  ///< of all grids
-  int few;    ///< index of the first grid for one warp, at most the last grid
+  int cells;  ///< number of cells of all small grids
+  int few;    ///< index of the first grid that one warp processes; at most the index of the last grid
   int cycles;
 
   static constexpr std::size_t cell_bytes = 3 * sizeof(float) + sizeof(CellPlace) + sizeof(CellKind);

@@ -22,7 +22,7 @@ struct GridView {
   float* diagonal;  ///< of a fluid cell's equation: the sum of its conductances
   const OpenFace* open;
   int open_count;
-  CellKind top;  ///< what lies above the block: air, or a lid
+  CellKind top;  ///< kind of the cells above the block: Air, or Solid with a lid
 
   SIM_FN CellKind kind_at(int x, int y, int z) const {
     if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
@@ -33,8 +33,8 @@ struct GridView {
     const int left = finest_cells - cell * scale;
     return static_cast<float>(left < scale ? left : scale);
   }
-  /// Conductance of the face between the block and this outside cell, relative to an inner face. The water
-  /// outside has q = 0 at one finest cell beyond the last cell's centre, on every grid.
+  /// Conductance of the face between the block and this outside cell, relative to an inner face. Outside an
+  /// open face q = 0, at half a finest cell beyond the face, on every grid.
   SIM_FN float openness(int x, int y, int z) const {
     float share = 0;
     for (int o = 0; o < open_count; ++o) share += share_of(open[o], x, y, z);
@@ -42,7 +42,7 @@ struct GridView {
     const auto way = static_cast<float>(scale);
     return quotient(way, 0.5f * (way - 1) + reciprocal(fminf(share, 1.0f)));
   }
-  /// Share of that face that the open face covers.
+  /// Share of the face between the block and the outside cell (x, y, z) that the opening `face` covers.
   SIM_FN float share_of(const OpenFace& face, int x, int y, int z) const {
     const int across = face.axis == 0 ? x : face.axis == 1 ? y : z;
     const int cells = face.axis == 0 ? block.nx : face.axis == 1 ? block.ny : block.nz;
@@ -53,7 +53,7 @@ struct GridView {
         face.axis == 2 ? covered(face, 1, y, block.ny, finest.ny) : covered(face, 1, z, block.nz, finest.nz);
     return first * second;
   }
-  /// Share of the cell's extent that the open face covers along one of its two axes.
+  /// Share of a cell's extent that the opening `face` covers along one of its two axes; `along`: 0 or 1.
   SIM_FN float covered(const OpenFace& face, int along, int cell, int cells, int finest_cells) const {
     if (cell < 0 || cell >= cells) return 0;
     const auto low = static_cast<float>(cell * scale);
@@ -61,7 +61,7 @@ struct GridView {
     const float both = fminf(face.high[along], low + wide) - fmaxf(face.low[along], low);
     return quotient(fmaxf(both, 0.0f), wide);
   }
-  /// 0 in air, in walls and outside.
+  /// q of a cell; 0 in air, in walls and outside the block.
   SIM_FN float q_at(int x, int y, int z) const {
     return block.holds(x, y, z) ? q[block.index(x, y, z)] : 0.0f;
   }
@@ -81,7 +81,8 @@ class Multigrid {
   void solve(int cycles);
 
  private:
-  /// Grids below the first small one live in scratch memory and have no arrays.
+  /// One grid. Grids that are coarser than the first small grid exist in scratch memory only: their arrays
+  /// are empty.
   struct Level {
     CellBlock block;
     Array<CellKind> kind;
@@ -89,7 +90,7 @@ class Multigrid {
   };
 
   GridView view(std::size_t level);
-  /// The first of the grids that one block solves together.
+  /// Index of the finest grid that one thread block solves together with all coarser grids.
   std::size_t first_small() const;
 
   void cycle(std::size_t level);

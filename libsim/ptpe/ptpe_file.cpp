@@ -14,14 +14,14 @@
 namespace sim {
 
 namespace {
-/// Always with a point or exponent, so that TOML reads a float.
+/// Shortest exact text of a number; always with a point or exponent, so that TOML reads a float.
 std::string exact(double value) {
   if (!std::isfinite(value)) throw std::invalid_argument("a PTPE file holds finite numbers only");
   const std::string out = base::shortest(value);
   return out.find_first_of(".e") == std::string::npos ? out + ".0" : out;
 }
 
-/// yyyy-mm-ddThh:mm:ssZ.
+/// True if the text has the form yyyy-mm-ddThh:mm:ssZ.
 bool is_utc(const std::string& text) {
   constexpr std::string_view form = "dddd-dd-ddTdd:dd:ddZ";
   if (text.size() != form.size()) return false;
@@ -31,18 +31,18 @@ bool is_utc(const std::string& text) {
   return true;
 }
 
-/// The interval of an estimate; it must contain the estimate.
+/// Reads the interval of an estimate; the interval must contain the estimate.
 std::array<double, 2> interval(const base::TomlTable& table, const char* key, const char* of,
                                double estimate) {
   const auto ends = table.numbers(key, 2);
-  if (ends[0] > ends[1]) table.fail(key, "runs downwards", "write [low, high]");
+  if (ends[0] > ends[1]) table.fail(key, "has its low end above its high end", "write [low, high]");
   if (estimate < ends[0] || estimate > ends[1])
     table.fail(of, std::string("lies outside its own interval, ") + key,
                "fit again: one of the two was changed");
   return {ends[0], ends[1]};
 }
 
-/// Reads the lists of a format 2 file; each has one entry per delta.
+/// Reads the band's lists of a file of format 2; each list has one entry per delta.
 std::vector<PtpeBandPoint> band_of(const base::TomlTable& table, const stats::PtpeModel& model) {
   constexpr base::Range rate{1e-6, 1e9};
   const auto deltas = table.numbers("band_delta_fps", 0, {0, 1e4});
@@ -56,7 +56,7 @@ std::vector<PtpeBandPoint> band_of(const base::TomlTable& table, const stats::Pt
       table.fail_at("band_delta_fps", i, "is not above the one before it", "write them ascending");
     const double mu = model.a * std::exp(model.b * deltas[i]);
     if (!(lows[i] <= mu && mu <= highs[i]))
-      table.fail_at("band_low95_fps", i, "and band_high95_fps there do not hold a exp(b delta)",
+      table.fail_at("band_low95_fps", i, "and band_high95_fps at this delta do not enclose a exp(b delta)",
                     "fit again: one of them was changed");
     const bool in_reach = std::find(away.begin(), away.end(), deltas[i]) == away.end();
     out.push_back({deltas[i], {lows[i], highs[i]}, in_reach});
@@ -87,7 +87,7 @@ std::string describe(const PtpeFile& file) {
   std::string out = fmt::format("a = {:.4f} frames/s, b = {:.5f} s/frame (level {:.3g}, {} mean, ",
                                 file.model.a, file.model.b, file.level, mean_name(file.model.mean));
   if (!file.band.empty())
-    out += fmt::format("mu open by up to +-{:.0f} % at delta {:g} to {:g}, ", 100 * widest(file),
+    out += fmt::format("mu uncertain by up to +-{:.0f} % at delta {:g} to {:g}, ", 100 * widest(file),
                        file.band.front().delta, file.band.back().delta);
   out += fmt::format("{} participants", file.n_participants);
   if (file.n_simulated > 0) out += fmt::format(", {} of them SIMULATED", file.n_simulated);

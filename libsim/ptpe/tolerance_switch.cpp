@@ -35,10 +35,12 @@ ToleranceSwitch::ToleranceSwitch(const stats::PtpeModel& model, std::optional<do
                                  std::optional<FrameRate> fixed_rate)
     : model_(model), fixed_(fixed_tau || fixed_rate), rate_(fixed_rate) {
   if (fixed_tau && fixed_rate)
-    throw base::Error("tau", "is given, and the frame rate that it follows from too", "give one of them");
+    throw base::Error("tau", "is given together with the frame rate from which it is computed",
+                      "give one of them");
   if (fixed_rate) fixed_tau = stats::ptpe_tolerance(model, fixed_rate->mean, fixed_rate->sd);
   if (!fixed_tau) return;
-  if (!std::isfinite(*fixed_tau)) throw base::Error("tau", "is not finite", "give frames per second");
+  if (!std::isfinite(*fixed_tau))
+    throw base::Error("tau", "is not finite", "give a number, in frames per second");
   set(*fixed_tau);
 }
 

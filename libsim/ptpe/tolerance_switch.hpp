@@ -12,8 +12,8 @@
 
 namespace sim {
 
-/// "live" returns none (tau from the measured frame times), "fixed:X" returns X in frames/s; others are a
-/// base::Error.
+/// Reads an option's text: "live" gives none (tau from the measured frame times), "fixed:X" gives X in
+/// frames/s; others are a base::Error.
 std::optional<double> parse_tau(std::string_view text);
 
 /// Mean and standard deviation of a frame rate, frames/s.
@@ -22,12 +22,12 @@ struct FrameRate {
   bool operator==(const FrameRate&) const = default;
 };
 
-/// "MEAN,SD" in frames/s, such as "16.9,3.2"; others are a base::Error.
+/// Reads "MEAN,SD" in frames/s, such as "16.9,3.2"; others are a base::Error.
 FrameRate parse_frame_rate(std::string_view text);
 
-/// tau over the last 30 frames, with two thresholds so that noise does not switch back and forth: on below 0,
-/// off above +1 frames/s. A given tau (tests, benches), or the tau of a given frame rate (a study's
-/// schedule), replaces the measured one, with the same thresholds.
+/// Switches temporal acceleration by tau over the last 30 frames: on below 0, off above +1 frames/s. Two
+/// thresholds are used so that noise does not switch back and forth. A given tau (tests, benches), or the tau
+/// of a given frame rate (a study's schedule), replaces the measured tau, with the same thresholds.
 class ToleranceSwitch {
  public:
   static constexpr std::size_t window_frames = 30;
@@ -44,7 +44,7 @@ class ToleranceSwitch {
 
   /// tau = mu - a exp(b delta), frames/s; none before the first frame time is known.
   std::optional<double> tau() const { return tau_; }
-  /// mu and delta behind tau; none if tau was given, or is unknown.
+  /// mu and delta from which tau was computed; none if tau was given, or is unknown.
   std::optional<FrameRate> rate() const { return rate_; }
   bool on() const { return on_; }
   /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability that a
@@ -53,7 +53,7 @@ class ToleranceSwitch {
   /// True if beta is 1 in every frame, whatever the frame times.
   bool stays_off() const { return fixed_ && beta() >= 1; }
   std::uint64_t left_out() const { return left_out_; }
-  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
+  /// Saves or restores the state that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     std::vector<double> known(window_.intervals_s().begin(), window_.intervals_s().end());

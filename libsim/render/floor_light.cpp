@@ -10,14 +10,17 @@ namespace sim {
 
 namespace {
 
-constexpr float height_steps = 16777216;  // of 24 bits, up to four times the tank
-// Maximum sideways shift of light between entering the water and the floor, divided by the water's depth: for
-// the sun of shaders/light.glsl flat water refracts it by 0.14 and 0.18, waves by less.
+constexpr float height_steps = 16777216;  // 24 bits, for heights up to four times the tank's
+// Largest shift of refracted light on the floor, along x or z, divided by the water's depth: towards the sun
+// and away from it. The shift is measured from where the ray would land without water. With the sun of
+// shaders/light.glsl, flat water shifts light by 0.14 along x and 0.18 along z towards the sun; the rest
+// allows for waves.
 constexpr float aside_with_the_sun = 0.3F, aside_against_it = 0.1F;
-constexpr float caustic_units = 65536;  // of shaders/caustic_units.glsl
-constexpr int border_cells = 8;         // additional cells, for the smoothing
-constexpr float smoothing_r = 2;  // hides the particle lattice; waves 11 radii long keep half their height
-constexpr int surface_cell_in_cells = 3;  // ratio of its edge to that of a floor cell
+constexpr float caustic_units = 65536;  // as in shaders/caustic_units.glsl
+constexpr int border_cells = 8;         // additional surface cells per side, for the smoothing
+constexpr float smoothing_r =
+    2;  // standard deviation, particle radii; waves 11 radii long keep half their height
+constexpr int surface_cell_in_cells = 3;  // edge of a surface cell / edge of a floor cell
 
 std::int64_t size_of(int x, int z) { return std::int64_t{x} * z; }
 
@@ -30,7 +33,7 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   const float longest = std::max(tank(0), tank(2));
   const float edge = longest / static_cast<float>(options.floor_cells);
   const float surface_edge = edge * surface_cell_in_cells;
-  // Water is seldom deeper than wide, and higher particles are in the air.
+  // Upper bound of the water's depth: pools are seldom deeper than wide, and higher particles are in the air.
   const float deepest = std::min(tank(1), longest);
   const auto cells = [](float length, float of) { return static_cast<std::int32_t>(std::ceil(length / of)); };
   const int before = cells(aside_with_the_sun * deepest, surface_edge) + border_cells;

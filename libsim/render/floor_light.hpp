@@ -54,9 +54,9 @@ class FloorLight {
   GlBuffer maps_;                         // the Block
   GlBuffer top_, thickness_;              // surface of the particles
   GlBuffer image_top_, image_thickness_;  // surface of their mirror images beyond the walls
-  GlBuffer surface_a_, surface_b_;        // both surfaces as one, smoothed along x; along x and z
+  GlBuffer surface_a_, surface_b_;        // both surfaces joined; a: smoothed along x, b: also along z
   GlBuffer shadow_, caustic_;             // floor maps of the effects that the scene lists
-  unsigned sunlight_ = 0;                 // texture of both floor maps
+  unsigned sunlight_ = 0;                 // texture of the combined floor maps
 };
 
 }  // namespace sim

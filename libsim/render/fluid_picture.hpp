@@ -39,7 +39,7 @@ class FluidPicture {
   void look(Simulation& fluid, const View& view, const Gaze& gaze, double visual_scale = 1);
   FluidRenderer& renderer() { return renderer_; }
   const FluidRenderer& renderer() const { return renderer_; }
-  /// True if the last particles were copied through the host.
+  /// True if the last take() copied the particles through the host.
   bool uploaded() const { return uploaded_; }
 
  private:
@@ -49,13 +49,13 @@ class FluidPicture {
   ParticleBuffer buffer_, foam_;
   GBuffer seen_;
   const GBuffer* before_ = nullptr;
-  int taken_frame_ = 0;             ///< frame of the simulation that was taken last
-  std::optional<int> drawn_frame_;  ///< frame that was drawn last; none before the first draw
+  int taken_frame_ = 0;             ///< simulation frame of the last take()
+  std::optional<int> drawn_frame_;  ///< simulation frame of the last picture; none before the first draw
   std::vector<RenderParticle> particles_;
   bool uploaded_ = false;
 };
 
-/// "device", "host" or "none".
+/// Name of the way for records: "device", "host" or "none".
 std::string picture_way_name(PictureWay way);
 /// "picture of frame 41 by way of device", or "no picture".
 std::string in_words(const SeenReport& seen);

@@ -44,13 +44,13 @@ void check_options(const RenderOptions& o) {
   const auto positive = [](float value) { return std::isfinite(value) && value > 0; };
   check(positive(o.radius_scale), "radius_scale must be positive", "use about 1.5");
   check(positive(o.filter_sigma_r) && positive(o.filter_delta_r) && positive(o.filter_mu_r),
-        "the filter's sigma, delta and mu must be positive", "use about 1.1, 4 and 1");
-  check(o.filter_max_px >= 1 && o.filter_max_taps >= 1, "the filter needs at least one sample and one px",
-        "use about 256 px and 12 samples");
+        "filter_sigma_r, filter_delta_r and filter_mu_r must be positive", "use about 1.1, 4 and 1");
+  check(o.filter_max_px >= 1 && o.filter_max_taps >= 1,
+        "filter_max_px and filter_max_taps must be at least 1", "use about 256 px and 12 samples");
   check(o.filter_rounds >= 1 && o.filter_rounds <= 8, "filter_rounds must be 1 to 8", "use 2");
   check(o.thickness_step == 1 || o.thickness_step == 2 || o.thickness_step == 4,
         "thickness_step must be 1, 2 or 4", "use 2");
-  check(positive(o.thickness_unit_m) && positive(o.packing), "thickness unit and packing must be positive",
+  check(positive(o.thickness_unit_m) && positive(o.packing), "thickness_unit_m and packing must be positive",
         "use 1/65536 m and pi/6");
   check(o.thread_px >= 0 && o.group_px >= std::max(o.thread_px, 1),
         "footprint limits must be 0 <= thread_px <= group_px", "use 0 and 128");
@@ -183,7 +183,8 @@ std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
 FloorMap FluidRenderer::read_floor() const {
   const State& s = *state_;
   if (!s.floor_light || s.views_drawn == 0)
-    throw base::Error("light on the floor", "there is none", "list a picture effect and draw first");
+    throw base::Error("light on the floor", "nothing was drawn, or the scene lists no picture effect",
+                      "list a picture effect and draw first");
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   return s.floor_light->read();
 }

@@ -25,9 +25,9 @@ class ParticleBuffer {
   /// Replaces the contents; grows the buffer if needed.
   void upload(std::span<const RenderParticle> particles);
 
-  /// For writers on the device (CUDA interop): allocates `capacity` particles; then gl() may be registered.
-  /// It stays the same until reserve() or upload() needs more than capacity(). The old contents are lost if
-  /// it grows.
+  /// Allocates `capacity` particles for a writer on the device (CUDA interop), which may then register gl().
+  /// gl() stays the same until reserve() or upload() needs more than capacity(). If the buffer grows, its
+  /// contents are lost.
   void reserve(std::int64_t capacity);
   /// Sets the number of particles that a writer on the device has stored, at most capacity() (base::Error).
   void set_count(std::int64_t count);
@@ -43,7 +43,7 @@ class ParticleBuffer {
   std::int64_t capacity_ = 0;
 };
 
-/// Options. Lengths are in units of a particle's own radius r if a name ends in _r.
+/// Options of the renderer. Numbers whose names end in _r are in units of the particle's own radius r.
 struct RenderOptions {
   /// Splatted radius / particle radius. Touching spheres (1) show the next layer through the gaps between
   /// them.
@@ -55,16 +55,16 @@ struct RenderOptions {
   /// like one that is sqrt(n) times as wide.
   float filter_sigma_r = 1.1F;
   /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five
-  /// layers of water and smears droplets over the background, so the default is two layers. Obliquely seen
-  /// water has a larger depth range; pairs of samples follow it (shaders/narrow_range.glsl).
+  /// layers of water and smears droplets over the background, so the default is two layers. A surface seen
+  /// at a slant spans more depth; pairs of samples extend the range there (shaders/narrow_range.glsl).
   float filter_delta_r = 4;
   float filter_mu_r = 1;  ///< samples farther behind count as this far behind
-  /// Number of passes through both directions (Truong and Yuksel iterate too). One round leaves streaks: the
-  /// last direction spreads the values at a crest along its column.
+  /// Number of rounds, each along x and then y (Truong and Yuksel iterate too). One round leaves streaks,
+  /// because its last pass spreads the values at a crest along the column.
   int filter_rounds = 2;
   /// The filter reaches 3 sigma, but at most this many px; pixels with a truncated filter are counted.
   int filter_max_px = 256;
-  /// Samples per side and direction; a wider filter uses strided samples.
+  /// Largest number of samples per side and direction; a wider filter uses strided samples.
   int filter_max_taps = 12;
   /// Thickness at every pixel (1), every second (2) or every fourth (4) in each direction.
   int thickness_step = 2;
@@ -78,11 +78,13 @@ struct RenderOptions {
   /// Footprints up to this many px per side are splatted by one invocation; 0: 16 on a GPU, 64 on software
   /// GL.
   int thread_px = 0;
-  /// Larger ones up to this many px are splatted by a team of 8 x 4, still larger ones by many work groups.
+  /// Larger footprints up to this many px per side are splatted by a team of 8 x 4 invocations, still larger
+  /// footprints by many work groups.
   int group_px = 128;
-  /// Cells of the floor light maps along the longer side, with picture effects; 64 to 2048.
+  /// Cells of the floor map along the tank's longer side, for picture effects; 64 to 2048.
   int floor_cells = 512;
-  bool time_passes = false;  ///< enables FluidRenderer::times(); costs waits on software GL
+  bool time_passes =
+      false;  ///< enables FluidRenderer::times(); slower on software GL, which waits after each pass
 };
 
 /// Event counts of the last draw, over all its views. Every dropped particle is counted.
@@ -139,9 +141,10 @@ class FluidRenderer {
   FluidRenderer(const FluidRenderer&) = delete;
   FluidRenderer& operator=(const FluidRenderer&) = delete;
 
-  /// Draws the scene's obstacles at their positions at this time since frame 0; initially at their start.
+  /// Places the scene's obstacles where they are `time_s` seconds after frame 0. Without a call they are
+  /// drawn at their start.
   void place_obstacles(double time_s);
-  /// The same with these poses, in the scene's order: Simulation::read_obstacles.
+  /// Places the obstacles at these poses, in the scene's order (from Simulation::read_obstacles).
   void place_obstacles(const std::vector<BodyMotion>& motions);
 
   /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
@@ -157,11 +160,12 @@ class FluidRenderer {
 
   /// Saliency's inputs from a view of the last draw, in GL buffers. base::Error if that view was not drawn.
   GlPicture picture(std::size_t view = 0) const;
-  /// The same on the host, stored in `out`, whose other arrays are emptied; waits for the device.
+  /// Copies saliency's inputs from a view of the last draw to `out` on the host, and empties its other
+  /// arrays; waits for the device.
   void read_picture(GBuffer& out, std::size_t view = 0) const;
   /// The G-buffer of a view of the last draw; waits for the device. base::Error if that view was not drawn.
   GBuffer read_gbuffer(std::size_t view = 0) const;
-  /// Only its depth (GBuffer::depth).
+  /// Only GBuffer::depth of a view of the last draw.
   std::vector<float> read_depth(std::size_t view = 0) const;
   /// The light on the floor of the last draw, over all its views; waits for the device. base::Error if the
   /// scene lists no picture effect, or nothing was drawn.

@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// Needs a current context. While off, calls cost nothing.
+/// Times the passes of a draw. Needs a current context. If off, calls cost nothing.
 class PassTimer {
  public:
   explicit PassTimer(bool on);
@@ -18,7 +18,7 @@ class PassTimer {
 
   /// Starts a draw and discards the last one.
   void start();
-  /// The pass since the last mark (or start) was `pass`. Times of repeated names are added.
+  /// Ends a pass that began at the last mark() or start(), and names it. Times of equal names are added.
   void mark(const char* pass);
   std::vector<PassTime> times() const;
 

@@ -14,8 +14,8 @@ namespace sim {
 
 namespace {
 
-constexpr int block_px = 16;        // of occlusion.glsl
-constexpr GLuint tile_groups = 64;  // a multiple of 8
+constexpr int block_px = 16;        // as in occlusion.glsl
+constexpr GLuint tile_groups = 64;  // per very large footprint; a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.
 struct ViewBlock {
@@ -50,13 +50,13 @@ GlProgram compute_program(const char* file, const char* defines) {
 }
 
 namespace {
-/// The defines that the scene needs in the passes that show it.
+/// #define lines for the composite and the foam pass: those of the scene's foam and obstacles.
 std::string defines_of(const Scene& scene) {
   return std::string(coefficients_of(scene.effects)[EffectKind::Foam] > 0 ? "#define FOAM\n" : "") +
          obstacle_defines(scene);
 }
 
-/// The grids of meshes for shaders/obstacle_meshes.glsl; empty without meshes.
+/// Distance grids of the meshes in the layout of shaders/obstacle_meshes.glsl; empty without meshes.
 std::vector<std::uint32_t> grids_of(const std::vector<Obstacle>& obstacles) {
   std::vector<std::uint32_t> out;
   if (!any_mesh(obstacles)) return out;
@@ -185,7 +185,8 @@ void FluidRenderer::State::bind_splat(const ViewTargets& t) const {
                 t.wide_list.name(), t.touched.name(), t.blocks.name()});
 }
 
-/// Runs a program on the wide footprints of the last round, or of both.
+/// Runs a program on the particles with large footprints that the last round listed; if all_items is 1, on
+/// those of both rounds.
 void FluidRenderer::State::dispatch_wide(const GlProgram& program, int all_items) {
   wide_dispatch.use();
   glUniform1ui(wide_dispatch.uniform("tile_groups"), tile_groups);
@@ -216,7 +217,8 @@ void FluidRenderer::State::splat_round(int second_round) {
   glUniform1i(splat.uniform("second_round"), second_round);
   each_view([&](const ViewTargets& t) {
     bind_splat(t);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, t.filter_a.name());  // of the last picture
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2,
+                     t.filter_a.name());  // filtered nearness of the last picture
     dispatch_particles(count_);
   });
   timer.mark("splat small");
@@ -349,7 +351,8 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   particles_ = from.gl_name() ? from.gl_name() : no_particles.name();
   count_ = from.count();
   views_drawn = views.size();
-  // The passes of the last draw wrote these buffers; the fills of a resize are not shader accesses.
+  // Shaders of the last draw wrote these buffers. The barrier orders those writes before the fills of
+  // resize(), which are no shader accesses.
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   for (std::size_t i = 0; i < views.size(); ++i) {
     targets[i].resize(views[i], options.thickness_step, foam);

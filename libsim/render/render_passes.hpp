@@ -21,7 +21,7 @@ inline constexpr std::size_t most_views = 2;
 /// A program with one compute shader.
 GlProgram compute_program(const char* file, const char* defines = "");
 
-/// Binds the buffers to shader storage 0, 1, ...; 0 binds none.
+/// Binds the buffers, given by GL name, to shader storage 0, 1, ...; the name 0 leaves a binding empty.
 void bind_storage(std::initializer_list<unsigned> buffers);
 
 /// Starts one invocation per pixel, in groups of 16 x 8, or per particle, in groups of 64.
@@ -59,7 +59,7 @@ struct FluidRenderer::State {
   GlBuffer counters, no_particles, values;
   std::vector<Obstacle> obstacles;  // of the scene
   GlBuffer poses;                   // of the obstacles; only if there are any
-  GlBuffer grids;                   // of the meshes among them
+  GlBuffer grids;                   // distance grids of the obstacles that are meshes
   PictureTarget picture;
   GLuint vertex_array = 0;
   std::array<ViewTargets, most_views> targets;
@@ -76,8 +76,8 @@ struct FluidRenderer::State {
                   const ParticleBuffer* foam_from);
 
  private:
-  /// Runs a pass: `dispatch` for one view after another with its ViewBlock bound, then the barrier. The
-  /// device may process both views at once.
+  /// Runs a pass: calls `dispatch` for each view with the view's ViewBlock bound, then sets one memory
+  /// barrier. The device may process both views at once.
   template <class Dispatch>
   void each_view(Dispatch dispatch, unsigned more_barriers = 0);
   void bind_splat(const ViewTargets& t) const;
@@ -90,7 +90,7 @@ struct FluidRenderer::State {
   void smooth_depth();
   void smooth_thickness();
   void splat_foam(const ParticleBuffer& from);
-  void tell_obstacles(const GlProgram& program) const;  ///< for a program in use
+  void tell_obstacles(const GlProgram& program) const;  ///< sets the number of obstacles of a program in use
   void bind_obstacles() const;
   void light_floor();
   void shade(std::span<const View> views, unsigned framebuffer);

@@ -8,7 +8,7 @@ namespace sim {
 
 namespace {
 
-constexpr std::int64_t list_header_words = 12;  // of wide_list.glsl
+constexpr std::int64_t list_header_words = 12;  // before items[] in wide_list.glsl
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void ViewTargets::resize(const View& new_view, int thickness_step, bool with_foa
     foam.fill(0);
   }
   wet.reserve(4 * std::int64_t{(width + 15) / 16} * ((height + 7) / 8));
-  wet.fill(1);  // the old contents are invalid for this size
+  wet.fill(1);  // all tiles count as wet, so that the next draw clears them
 }
 
 void ViewTargets::follow(std::int64_t count) {
@@ -70,7 +70,7 @@ GBuffer ViewTargets::read_gbuffer(const RenderOptions& options) const {
     buffer.read(out.data(), static_cast<std::int64_t>(4 * count));
   };
   fetch(filter_a, g.filtered_depth, pixels());
-  for (float& nearness : g.filtered_depth) nearness = 1 / nearness;  // no water: infinity
+  for (float& nearness : g.filtered_depth) nearness = 1 / nearness;  // infinity without water
   fetch(front, g.front, pixels());
   std::vector<float> with_radii;
   std::vector<std::uint32_t> cells;
@@ -123,7 +123,7 @@ void PictureTarget::begin(unsigned framebuffer, std::span<const View> views) {
       own_ = std::make_unique<Offscreen>(width, height);
     texture = own_->texture();
   }
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // after earlier draws and reads
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // orders the stores after earlier draws and reads
   glBindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
 }
 

@@ -33,10 +33,10 @@ struct ViewTargets {
   GlBuffer foam;                      ///< two words per pixel, see foam.glsl; empty between pictures
 
   void resize(const View& new_view, int thickness_step, bool with_foam);
-  /// Allocates for `count` particles.
+  /// Allocates the buffers with an entry per particle for `count` particles.
   void follow(std::int64_t count);
 
-  // See FluidRenderer; a barrier must separate the passes and these.
+  // As in FluidRenderer. A memory barrier must come between the passes and these reads.
   void read_depth(std::vector<float>& out) const;
   void read_picture(const RenderOptions& options, GBuffer& out) const;
   GBuffer read_gbuffer(const RenderOptions& options) const;
@@ -44,11 +44,12 @@ struct ViewTargets {
  private:
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 
-  std::int64_t room_ = -1;  // in particles
+  std::int64_t room_ = -1;  // number of particles for which the buffers are allocated
 };
 
-/// Image unit 0 as access to a framebuffer: its own texture if that is RGBA8, otherwise an internal picture,
-/// which is copied. Pixels keep their coordinates. Needs a current context at every call and when destroyed.
+/// Lets compute shaders store a framebuffer's pixels through image unit 0. Binds the framebuffer's texture if
+/// that is RGBA8; otherwise an internal picture, which end() copies. Pixels keep their coordinates. Needs a
+/// current context at every call and when destroyed.
 class PictureTarget {
  public:
   /// Pixels stored between begin() and end() reach the views' viewports in the framebuffer.

@@ -7,11 +7,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Velocity and density in one value.
+/// Velocity and density of particle i as one vector (vx, vy, vz, rho / rho_0).
 SIM_FN Vec4 quantities(const GradientFields& f, int i) { return with_w(xyz(f.velocity[i]), f.density[i]); }
 
-/// Rest volume m_j / rho_0 = d^3 with d = h / 2, divided by the density with a lower bound: even an isolated
-/// particle has a fifth of the rest density.
+/// Volume m_j / rho_j of a particle: d^3 with the spacing d = h / 2, divided by `density` = rho_j / rho_0.
+/// The lower bound 0.1 has no effect on valid densities: an isolated particle has a fifth of the rest
+/// density.
 SIM_FN float volume(float h, float density) { return 0.125f * h * h * h / at_least(density, 0.1f); }
 
 /// Gradients of velocity and density: (d/dx, d/dy, d/dz) of (vx, vy, vz, rho).
@@ -25,7 +26,8 @@ struct Gradients {
     axis[a] = {axis[a].x + weight * step.x, axis[a].y + weight * step.y, axis[a].z + weight * step.z,
                axis[a].w + weight * step.w};
   }
-  /// sum_j (m_j / rho_j) (q_j - q_i) grad W for one j, with the solver's spiky gradient. `own` = q_i.
+  /// Adds one neighbour's term (m_j / rho_j) (q_j - q_i) grad W, with the solver's spiky gradient. `own` =
+  /// q_i, `other` = q_j.
   SIM_FN void add_pair(const GradientFields& f, int i, int j, float support, Vec4 own, Vec4 other) {
     const Vec4 place = f.position[j];
     const Vec3 offset = xyz(f.position[i]) - xyz(place);
@@ -41,7 +43,7 @@ struct Gradients {
   SIM_FN void sum_over(Team team) {
     for (Vec4& a : axis) a = {team.sum(a.x), team.sum(a.y), team.sum(a.z), team.sum(a.w)};
   }
-  /// f_T gamma_t, Eq. 6.
+  /// f_T gamma_t of Eq. 6 from these gradients.
   SIM_FN float feature(const GradientFields& f, int i) const {
     float by_velocity = 0;
     float by_density = 0;
@@ -171,7 +173,7 @@ struct WideKeys {
   }
 };
 
-/// Loops over the rows of cells that a sphere of radius 2 h_i touches.
+/// The feature from all neighbours within 2 h_i. Loops over the rows of cells that this sphere touches.
 struct WithinTwoH {
   GradientFields fields;
   const std::uint64_t* keys;

@@ -20,8 +20,8 @@ struct GradientFields {
 
 class TemporalGradients {
  public:
-  /// Writes f_T gamma_t of n particles. TwoSupports sorts a copy and needs no lists; the particles' order
-  /// does not change.
+  /// Writes f_T gamma_t of n particles. GradientReach::TwoSupports sorts indices of the particles by cell and
+  /// needs no neighbour lists; the particles' own order does not change.
   void run(GradientReach reach, const GradientFields& fields, const ParticleNeighbours& neighbours, int n,
            float finest_support);
   std::size_t bytes() const {

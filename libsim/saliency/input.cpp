@@ -27,22 +27,26 @@ void check(const EyeLook& look) {
                       "give each eye a rigid view and a perspective");
   }
   if (!(look.visual_scale > 0) || !std::isfinite(look.visual_scale))
-    throw base::Error("look", "the picture fills no angle of the eye's view", "give a visual scale above 0");
+    throw base::Error("look", "the visual scale of an eye is not a positive number",
+                      "give a visual scale above 0");
   const auto check_camera = [](const View& view) {
     if (!finite(view.view) || view.projection[0] == 0 || view.projection[5] == 0)
-      throw base::Error("look", "the camera of the G-buffer is not a perspective", "");
+      throw base::Error("look", "the camera of the G-buffer is not a perspective",
+                        "draw the picture with a perspective");
   };
   if (look.shared) {
     const std::size_t pixels = pixels_of(*look.shared);
     if (pixels == 0 || look.shared->depth.bytes < 4 * pixels || look.shared->normal.bytes < 16 * pixels)
-      throw base::Error("look", "the GL buffers of a picture are smaller than its pixels", "");
+      throw base::Error("look", "the GL buffers of a picture are smaller than its pixels",
+                        "give buffers of width x height px");
     check_camera(look.shared->view);
   }
   if (!look.seen || look.seen->width == 0) return;
   const GBuffer& g = *look.seen;
   const std::size_t pixels = pixels_of(g);
   if (g.depth.size() != pixels || g.normal.size() != 3 * pixels) {
-    throw base::Error("look", "the depth or the normals of the G-buffer are not whole", "");
+    throw base::Error("look", "the depth or normal array of the G-buffer does not fit its size in px",
+                      "fill both arrays for width x height px");
   }
   check_camera(g.view);
 }
@@ -90,8 +94,8 @@ void SaliencyInput::OneEye::take(const GBuffer& seen) {
   picture = {depth.data(), normal.data(), 3, seen.width, seen.height, seen.radius_scale};
 }
 
-/// A copy, so that GL may draw the next picture while this one is in use. The buffers stay mapped until
-/// give_back(): unmapping here would cost two more switches between GL and the back end.
+/// Copies the picture, so that GL may draw the next one while this one is in use. The buffers stay mapped
+/// until give_back(): unmapping here would cost two more switches between GL and the back end.
 void SaliencyInput::OneEye::take(const GlPicture& shared) {
   depth.resize(pixels_of(shared));
   normal.resize(4 * pixels_of(shared));
@@ -111,7 +115,7 @@ bool SaliencyInput::look(const Looks& looks, bool pictures) {
     const GlPicture* shared = looks.eyes[k].shared;
     if (shared && !eyes_[k].sharing.accept({shared->depth, shared->normal})) return false;
   }
-  // Map all before the copies: GL waits only once.
+  // All buffers are mapped before the first copy, so that GL waits only once.
   for (std::size_t k = 0; k < looks.eyes.size() && pictures; ++k)
     if (looks.eyes[k].shared) eyes_[k].sharing.map();
   count_ = static_cast<int>(looks.eyes.size());

@@ -1,5 +1,6 @@
 #pragma once
-/// The eyes between frames: their last G-buffers in the back end's memory, and the handling of lost gazes.
+/// State of the eyes between frames: their last G-buffers in the back end's memory, and their gazes, which
+/// may get lost.
 
 #include <array>
 #include <cstdint>
@@ -23,24 +24,25 @@ class SaliencyInput {
   /// false, and changes nothing, if a picture is in GL buffers that cannot be shared. base::Error: no eye or
   /// more than two, a camera that is not finite, a G-buffer with incomplete arrays.
   bool look(const Looks& looks, bool pictures = true);
-  /// Degrees by which a gaze has turned since mark_gazes(), for these looks or the last ones: the larger of
-  /// two eyes. A shift of the eye adds the angle of the shift at one metre. Without a gaze the view's axis is
-  /// used. A gaze that gets lost has not turned; before the first mark the result is 180.
+  /// Degrees by which the gaze has turned since mark_gazes(), for `looks` or those of the last look(); the
+  /// larger value of two eyes. A shift of the eye by s m adds atan(s). A gaze that was valid at the mark and
+  /// is lost now has turned by 0; one that was lost at the mark too is replaced by the view's axis. Before
+  /// the first mark the result is 180.
   double turned_deg(const Looks& looks) const;
   double turned_deg() const;
-  /// Marks the present gazes, except a gaze lost less than hold_s ago: it keeps its last mark.
+  /// Stores the present gazes for turned_deg(). A gaze that got lost at most hold_s ago keeps its old mark.
   void mark_gazes(double hold_s);
   /// Unmaps the GL buffers of the pictures that look() mapped. Required before GL draws.
   void give_back();
-  /// Sets the eye for programs that never call look().
+  /// Sets one eye with this camera, without gaze and picture, for programs that never call look().
   void look_by_default(const View& view);
 
-  /// The eyes for the coming frame of dt_s. A lost gaze stays at its last position for hold_s and then
-  /// follows the view's axis.
+  /// The eyes for the coming frame of dt_s. A lost gaze keeps its last direction for hold_s and then follows
+  /// the view's axis.
   Eyes next_frame(double dt_s, double hold_s);
-  /// Eye-frames without a valid gaze.
+  /// Number of frames without a valid gaze, summed over the eyes.
   std::uint64_t gaze_lost() const { return gaze_lost_; }
-  /// How the pictures of the last look() arrived.
+  /// How the pictures of the last look() with pictures were passed.
   SeenReport seen() const { return seen_; }
   /// Bytes used by the pictures.
   std::size_t bytes() const;
@@ -78,7 +80,7 @@ class SaliencyInput {
             static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
         if (depth.size() != pixels ||
             normal.size() != static_cast<std::size_t>(picture.normal_stride) * pixels)
-          Archive::fail("holds a picture that is not whole");
+          Archive::fail("holds a picture with arrays that do not fit its size in px");
         picture.depth = depth.data();
         picture.normal = normal.data();
       }

@@ -27,9 +27,9 @@ struct EyeLook {
   /// The same picture in the renderer's buffers, for a back end on GL's device; takes precedence over `seen`.
   const GlPicture* shared = nullptr;
   int seen_frame = -1;  ///< simulation frame that the picture shows; -1: unknown
-  /// Scale at which the eye sees the picture: tan of half the angle that it fills of the eye's view, divided
-  /// by tan of half the camera's angle, > 0. A distant screen shows a wide camera's picture small. 1: the
-  /// camera's angles are the eye's, or unknown.
+  /// Scale at which the eye sees the picture, > 0: tan of half the angle between the picture's edges at the
+  /// eye, divided by tan of half the camera's field of view. It is below 1 if a distant screen shows the
+  /// picture of a wide-angle camera. 1: the two angles are equal, or the angle at the eye is unknown.
   double visual_scale = 1;
 };
 

@@ -10,14 +10,14 @@ namespace {
 using Selection = SaliencyNormaliser::Selection;
 constexpr int bits_a_round = 11;
 constexpr int bins = 1 << bits_a_round;
-constexpr int rounds = 3;    // of 31 bits
-constexpr int trim_low = 1;  // %
-constexpr int trim_high = 2;
+constexpr int rounds = 3;     // three rounds cover the 31 bits of a non-negative float
+constexpr int trim_low = 1;   // % of the values below the lower bound
+constexpr int trim_high = 2;  // % of the values above the upper bound
 
 SIM_FN std::uint32_t bits_of(float value) {
   std::uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
-  return bits & 0x7fffffffu;  // -0 is 0
+  return bits & 0x7fffffffu;  // without the sign: -0 becomes 0
 }
 SIM_FN float value_of(std::uint32_t bits) {
   float value;
@@ -25,7 +25,8 @@ SIM_FN float value_of(std::uint32_t bits) {
   return value;
 }
 
-/// Counts the next bits of the values whose higher bits equal those of each bound.
+/// For each of the two bounds, a histogram of the next 11 bits of all values whose higher bits are the
+/// bound's.
 struct CountBits {
   const float* values;
   const std::uint8_t* level;
@@ -42,7 +43,8 @@ struct CountBits {
   }
 };
 
-/// The bin that contains the wanted rank narrows the search; it is in one run of each bound's bins.
+/// Finds, for each bound, the bin that contains the wanted rank, and appends the bin's bits to the bound.
+/// Each call searches one run of bins.
 struct Narrow {
   BinCounts counts;
   const Selection* selection;
@@ -84,7 +86,7 @@ struct FollowRange {
   }
 };
 
-/// The end of a round, and of the search.
+/// Ends a round of the search; after the last round, moves the range to the bounds that were found.
 struct SelectBins {
   const Selection* selection;
   Selection* next;

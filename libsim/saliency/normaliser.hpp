@@ -1,6 +1,6 @@
 #pragma once
-/// From F to s in [0, 1] (paper 3.2.3 does not define how): the bounds of F and how they are smoothed over
-/// frames.
+/// Normalisation of F to s in [0, 1]: bounds of F, smoothed over frames. Paper 3.2.3 does not define the
+/// normalisation.
 
 #include <cstdint>
 
@@ -24,9 +24,9 @@ class SaliencyNormaliser {
   static constexpr double follow = 0.1;
   /// Updates the range from values[0 .. n-1]; non-finite values are ignored. Percentile: the bounds move
   /// towards the 1st and 98th percentile by `share` (the first frame sets them); value i counts 2^level[i]
-  /// times, so that it weighs by mass and does not depend on the resolution. MinMax: the frame's own bounds.
-  /// The upper bound is never below `floor`: if nothing is salient, no particle gets s = 1. Nothing is read
-  /// back.
+  /// times, so that values weigh by mass and the bounds do not depend on the levels. MinMax: the frame's own
+  /// bounds. The upper bound is never below `floor`: if nothing is salient, no particle gets s = 1. The host
+  /// reads nothing back.
   void update(const Array<float>& values, const std::uint8_t* level, int n, Normalisation reading,
               float share = static_cast<float>(follow), float floor = 0);
   /// In the back end's memory; valid after the first update.

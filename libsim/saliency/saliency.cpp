@@ -105,28 +105,29 @@ GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, fl
           speed_epsilon,  p.dimensionless};
 }
 
-/// In water at rest only the excess over `floor` counts; for faster water the floor fades out, so that no
-/// level depends on one threshold speed. The floor does not apply to swirl, which has its own. Unknown values
-/// start with the frame's value, so that a NaN does not persist.
+/// Smooths the temporal feature over frames. In water at rest only the excess over `floor` counts; the floor
+/// falls to 0 as the speed rises, so that no level depends on one threshold speed. The floor does not apply
+/// to swirl, because SwirlSeen::from is its floor. A smoothed value that is not finite is replaced by this
+/// frame's value, so that a NaN does not persist.
 struct FollowUnrest {
   const float* now;
   float* unrest;
   const Vec4* velocity;
   SwirlSeen swirl;
-  Calm fading;  ///< above 0.5 for speeds that count as at rest
+  Calm fading;  ///< degree of rest; the floor applies in full from 0.5 on
   float share, floor;
   SIM_FN void operator()(int i) const {
     const float before = unrest[i];
     const Vec4 v = velocity[i];
     const float rest = floor * fminf(2 * fading(v.x, v.y, v.z), 1.0f);
-    // A NaN passes, so that it is detected.
+    // A NaN is not < rest and passes, so that it is detected.
     float wish = now[i] < rest ? 0 : now[i] - rest;
     if (swirl.rate) wish += swirl.adds(i);
     unrest[i] = std::isfinite(before) ? before + share * (wish - before) : wish;
   }
 };
 
-/// The share of one step that replaces `steps` steps of `share` each, at least one.
+/// The share of one step that replaces `steps` steps of `share` each; steps below 1 count as 1.
 float in_one_step(double share, int steps) {
   return static_cast<float>(1 - std::pow(1 - share, std::max(steps, 1)));
 }

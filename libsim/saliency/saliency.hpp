@@ -23,7 +23,8 @@ struct FeatureNumbers {
 };
 FeatureNumbers feature_numbers(const Readings& readings);
 
-/// All features of one particle for one eye; `temporal` is f_T gamma_t. r = h / 4.
+/// All features of one particle for one eye; `temporal` is f_T gamma_t. The particle's radius is
+/// r = h / 4.
 SIM_FN SaliencyParts evaluate(const FeatureNumbers& numbers, const Eye& eye, Vec4 particle, float temporal) {
   const Vec3 x = xyz(particle);
   const float r = 0.25f * particle.w;
@@ -48,7 +49,7 @@ void combine_features(const FeatureNumbers& numbers, const Eyes& eyes, const Vec
                       const float* temporal, float* combined, SaliencyParts* parts, int n);
 
 /// s and the target level from F. Particles whose F is not finite have s = 0 and are counted. If the range is
-/// invalid, the finite particles keep s and target.
+/// not usable, particles with a finite F keep s and target.
 void saliency_to_levels(const float* combined, const SaliencyRange* range, int levels, float* saliency,
                         std::uint8_t* target, Guards* guards, int n);
 
@@ -57,7 +58,7 @@ void saliency_to_levels(const float* combined, const SaliencyRange* range, int l
 void gaze_to_levels(const Acuity& acuity, const Eyes& eyes, const Vec4* position, float band, int levels,
                     float* saliency, std::uint8_t* target, Guards* guards, int n);
 
-/// Persistent state. Allocates no memory until used.
+/// State of saliency between frames. Allocates no memory until used.
 struct SaliencyState {
   Readings readings;
   int levels = most_levels;  ///< N
@@ -70,7 +71,7 @@ struct SaliencyState {
 
   /// Sets the eyes for the coming frame of dt_s seconds.
   void look_around(double dt_s) { eyes = input.next_frame(dt_s, readings.gaze_hold_s); }
-  /// The same, and decides whether this frame updates levels.
+  /// Calls look_around(), and decides whether this frame updates levels.
   void begin_frame(LevelTurns& turns, double dt_s);
   /// True if the coming evaluation measures the temporal feature.
   bool due() const { return frames_since == 0 || frames_since >= readings.temporal_period_frames; }
@@ -80,7 +81,7 @@ struct SaliencyState {
 };
 
 /// Contribution of the water's rotation to saliency: a particle's share is 0 up to the rate `from`, 1/s, and
-/// reaches 1 at twice that. Not in the paper: its temporal feature has no such term.
+/// reaches 1 at twice this rate. Not in the paper: its temporal feature has no such term.
 struct SwirlSeen {
   const float* rate = nullptr;  ///< 1/s; nullptr: not used
   float from = 0;
@@ -100,7 +101,7 @@ struct SaliencyFluid {
   ParticleNeighbours neighbours{};
   int n = 0;
   float finest_support = 0;  ///< h_*, m
-  float gravity = 0;         ///< m/s2; without gravity, what stands for it (FluidState::gravity_of_rest)
+  float gravity = 0;         ///< m/s2; without gravity a substitute (FluidState::gravity_of_rest)
   /// f_T gamma_t smoothed over frames, NaN if unknown; nullptr: use only this frame's.
   float* unrest = nullptr;
   SwirlSeen swirl{};  ///< added to `unrest`
@@ -110,9 +111,10 @@ struct SaliencyFluid {
   Guards* guards = nullptr;
 };
 
-/// Eq. 1-9. Without `unrest` in `fluid` the temporal feature is always measured.
+/// s and target levels by Eq. 1-9. Without `unrest` in `fluid` the temporal feature is always measured.
 void evaluate_saliency(SaliencyState& state, const SaliencyFluid& fluid);
-/// Gaze only (FovFluid-like), from positions: the band is one support radius of the coarsest level wide.
+/// s and target levels from the gaze alone (FovFluid-like); the transition band is as wide as the support
+/// radius of the coarsest level.
 void evaluate_gaze(SaliencyState& state, const SaliencyFluid& fluid);
 
 }  // namespace sim::SIM_BACKEND

@@ -9,12 +9,12 @@
 
 namespace sim::SIM_BACKEND {
 
-/// The G-buffer of libsim/view/gbuffer.hpp in the back end's memory, with any owner: SaliencyInput uploads a
-/// host buffer; a renderer on the same device may pass its own.
+/// Pointers to a G-buffer (libsim/view/gbuffer.hpp) in the back end's memory. SaliencyInput owns the arrays:
+/// copies of a host G-buffer or of the renderer's GL buffers.
 struct GBufferView {
   const float* depth = nullptr;   ///< not smoothed, m; +infinity without fluid. nullptr: no picture
   const float* normal = nullptr;  ///< filtered, eye space; 0 without fluid
-  int normal_stride = 3;          ///< floats per pixel: 3 from the host, 4 in the renderer's buffer
+  int normal_stride = 3;          ///< floats per pixel: 3 from the host, 4 from the renderer's buffer
   int width = 0, height = 0;
   float radius_scale = 1;
 
@@ -40,7 +40,7 @@ struct EyeSpace {
 /// One eye in the form that kernels use.
 struct Eye {
   Vec3 viewpoint{};  ///< p_v, m
-  Vec3 gaze{};       ///< from visual(), of any length
+  Vec3 gaze{};       ///< direction of the gaze after visual(), of any length
   EyeSpace now{};    ///< camera of the coming frame
   EyeSpace then{};   ///< camera of the picture
   PixelRays rays{};  ///< of the picture's camera
@@ -48,8 +48,8 @@ struct Eye {
   Vec3 axis{0, 0, -1};     ///< the camera's line of sight, a unit vector
   float visual_scale = 1;  ///< EyeLook::visual_scale
 
-  /// Scales the part of a direction perpendicular to the axis, as the eye sees it in the picture. The result
-  /// has any length; unchanged if visual_scale is 1.
+  /// Direction in which the eye sees a direction u of the picture: the part of u perpendicular to the axis is
+  /// scaled by visual_scale. The result has any length.
   SIM_FN Vec3 visual(Vec3 u) const { return visual_scale * u + ((1 - visual_scale) * dot(u, axis)) * axis; }
 };
 
@@ -102,8 +102,8 @@ struct Acuity {
   }
 };
 
-/// Eq. 9 with the floor and the clamp that the printed version lost; the caller handles s outside [0, 1] or
-/// NaN.
+/// Level of Eq. 9, with the floor function and the clamp that the printed equation lacks. The caller handles
+/// s outside [0, 1] or NaN.
 SIM_FN int level_of_saliency(float s, int levels) {
   const int level = static_cast<int>(floorf(static_cast<float>(levels) * (1 - s)));
   return level < 0 ? 0 : level < levels ? level : levels - 1;

@@ -48,7 +48,8 @@ const Effect* find(const std::vector<Effect>& effects, EffectKind kind) {
   return found == effects.end() ? nullptr : &*found;
 }
 
-/// True if the effect that this one needs is listed, or it needs none.
+/// True if the effect needs no other effect, has the coefficient 0, or the list has the effect that it needs
+/// with a coefficient above 0.
 bool stands(const std::vector<Effect>& effects, const Effect& effect) {
   const EffectKind needs = traits_of(effect.kind).needs;
   if (needs == no_effect || effect.coefficient == 0) return true;
@@ -60,7 +61,8 @@ std::string needs_text(const Effect& effect) {
   return std::string("needs ") + traits_of(traits_of(effect.kind).needs).word + ", which is missing";
 }
 std::string needs_mend(const Effect& effect) {
-  return std::string("list ") + traits_of(traits_of(effect.kind).needs).word + " too, or leave it out";
+  return std::string("list ") + traits_of(traits_of(effect.kind).needs).word + " too, or leave out " +
+         traits_of(effect.kind).word;
 }
 
 double natural_time(const Effect& effect, double d) {
@@ -161,7 +163,7 @@ std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
   std::vector<Effect> out = kept;
   for (const auto& table : tables) {
     const auto named = effect_named(table.choice("kind", known));
-    if (!named) continue;  // a picture effect
+    if (!named) continue;  // read_picture_effects() reads it
     const EffectKind kind = *named;
     if (!has_effects()) table.fail("kind", without_effects, build_them);
     if (find(out, kind)) table.fail("kind", "is listed twice", "keep one of the two");

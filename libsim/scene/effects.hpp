@@ -15,11 +15,11 @@ class TomlTable;
 namespace sim {
 
 inline constexpr double rest_density_kg_m3 = 1000;
-/// In the unit of each effect.
+/// Largest coefficient of an effect, in the effect's unit.
 inline constexpr double largest_coefficient = 1e6;
 
-/// Unit of an effect's coefficient c. It determines the natural time T of the explicit step, with the rest
-/// density rho_0 and the finest spacing d.
+/// Unit of an effect's coefficient c. With the rest density rho_0 and the finest spacing d, the unit
+/// determines the natural time T, in which the longest stable step of the effect is given.
 enum class EffectUnit {
   NewtonPerMetre,         ///< T = sqrt(rho_0 d^3 / c)
   PerSecond,              ///< T = 1 / c
@@ -98,7 +98,7 @@ enum class EffectOption {
       count
 };
 inline constexpr std::size_t option_count = static_cast<std::size_t>(EffectOption::count);
-/// One value per row; values of other effects have no meaning.
+/// One value per row of the options. An Effect uses the values of its own options only.
 using EffectOptions = std::array<double, option_count>;
 inline constexpr EffectOptions usual_options{
 #define SIM_VALUE(Name, effect, key, usual, ...) usual,
@@ -106,7 +106,7 @@ inline constexpr EffectOptions usual_options{
 #undef SIM_VALUE
 };
 
-/// One row of the options.
+/// One option: the effect that it belongs to, its key, default and range.
 struct OptionTraits {
   EffectKind of;
   const char* key;
@@ -129,7 +129,7 @@ struct EffectTraits {
 };
 const EffectTraits& traits_of(EffectKind kind);
 
-/// An effect as listed by a scene. SI units, as the key says.
+/// An effect as listed by a scene. The coefficient and the options have the SI units that end their keys.
 struct Effect {
   EffectKind kind{};
   double coefficient = 0;  ///< >= 0; 0 drops the effect
@@ -151,9 +151,10 @@ struct EffectCoefficients {
 };
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 
-/// True if the effect leaves out all water of this level and coarser.
+/// True if the effect acts on no water of finest_level or coarser: its coarsest_level is finer. `among` holds
+/// the options.
 bool is_idle(const Effect& effect, const std::vector<Effect>& among, int finest_level);
-/// The effects that are not idle, in water of this level and coarser.
+/// The effects that are not idle in water of finest_level and coarser.
 std::vector<Effect> acting_effects(const std::vector<Effect>& effects, int finest_level);
 
 /// Reads the tables [[effect]] of a scene file of format 2, except picture effects (picture_effects.hpp).
@@ -167,7 +168,7 @@ std::optional<EffectKind> effect_named(const std::string& word);
 std::string format_effects(const std::vector<Effect>& effects);
 /// "foam emission_per_s = 0.3 lifetime_s = 4 ...; air_drag ...", for records and people; empty: no effects.
 std::string effects_in_words(const std::vector<Effect>& effects);
-/// The same checks for a scene without a file; base::Error names the effect.
+/// The checks of read_effects() for a scene that was not read from a file; base::Error names the effect.
 void check_effects(const std::vector<Effect>& effects);
 
 /// The longest substep for which every effect is stable, and the effect that limits it.

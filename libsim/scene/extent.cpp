@@ -56,7 +56,7 @@ namespace {
 constexpr double always_allowed_cells = 1 << 20;
 constexpr double cells_per_particle = 16;
 constexpr int most_substeps = 1000;
-constexpr int most_looks = 1024;  ///< along a side of the tank
+constexpr int most_looks = 1024;  ///< largest tank side / spacing for which undersides are measured
 
 void check_water(const Scene& scene, const std::string& place, const Resolution& resolution) {
   const bool several = scene.water.size() > 1;
@@ -92,7 +92,8 @@ void check_substeps(const Scene& scene, const std::string& place, std::int64_t n
       "lower it, raise frames_per_s, or use a smaller n_* (--n-star, or n_star in a protocol)");
 }
 
-/// Height at which the upright line through (x, z) meets the obstacle from below; none if it misses it.
+/// Height at which the vertical line through (x, z) meets the obstacle from below; none if the line misses
+/// the obstacle.
 std::optional<double> height_below(const Obstacle& o, const Pose& pose, double x, double z, double exact_m) {
   double y = 0;
   for (int step = 0; step < 256 && y < 2 * farthest_m; ++step) {
@@ -103,14 +104,14 @@ std::optional<double> height_below(const Obstacle& o, const Pose& pose, double x
   return {};
 }
 
-/// The underside of an obstacle that closes the tank: its heights at n x n places between a rim along the
-/// walls.
+/// The underside of an obstacle that closes the tank: its heights at n x n points of the floor. The outermost
+/// points lie one spacing inside the walls.
 class Underside {
  public:
   Underside(const Scene& scene, double spacing, int n)
       : n_(n), rim_(0.999 * spacing), sides_{scene.tank_size_m[0], scene.tank_size_m[2]} {}
 
-  /// False if an upright line passes the obstacle.
+  /// Measures the heights; false if the vertical line through one of the points misses the obstacle.
   bool measure(const Obstacle& o, const Pose& pose) {
     heights_.clear();
     for (int k = 0; k < n_ * n_; ++k) {
@@ -121,7 +122,8 @@ class Underside {
     }
     return true;
   }
-  /// True if a level layer of the obstacle, `above_m` over the underside's highest place, is solid.
+  /// True if the obstacle is solid at all points, in the plane `above_m` over the highest point of the
+  /// underside.
   bool solid(const Obstacle& o, const Pose& pose, double above_m) const {
     const double y = highest_m() + above_m;
     for (int k = 0; k < n_ * n_; ++k) {
@@ -153,8 +155,8 @@ class Underside {
   std::vector<double> heights_;
 };
 
-/// The underside at the start; none if water passes. A convex obstacle closes the tank if it does in the four
-/// corners; in a mesh every hole of the spacing is looked for.
+/// The underside of an obstacle at its start; none if water can pass the obstacle. A convex obstacle closes
+/// the tank if it covers the four corners. A mesh is tested for holes at points one spacing apart.
 std::optional<Underside> closing(const Obstacle& o, const Scene& scene, double spacing) {
   const auto [shortest, longest] = std::minmax(scene.tank_size_m[0], scene.tank_size_m[2]);
   if (shortest < 3 * spacing || longest > most_looks * spacing) return {};

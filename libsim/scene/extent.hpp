@@ -9,16 +9,16 @@
 
 namespace sim {
 
-/// base::Error that names an obstacle whose swing leaves the water no room. Such an obstacle closes the tank:
-/// all its gaps to the walls are narrower than the finest spacing, and a mesh has no hole. At the lowest
-/// point of its swing, the water that was below it at the start would be deeper than the space below it by
-/// more than that spacing. A scene with a nozzle is accepted, because nozzles take water from the floor. So
-/// is one with an outlet below the obstacle.
+/// base::Error that names an obstacle whose swing leaves too little space for the water below it. Such an
+/// obstacle closes the tank: all its gaps to the walls are narrower than the finest spacing, and a mesh has
+/// no hole. At the lowest point of its swing, the water that was below it at the start would be deeper than
+/// the space below it by more than that spacing. A scene with a nozzle is accepted, because nozzles take
+/// water from the floor. A scene with an outlet below the obstacle is accepted too.
 void check_ways(const Scene& scene, std::int64_t n_star);
 
-/// check_ways, and base::Error that names the key if the water is thinner than a particle, a frame takes more
-/// than 1000 substeps, or the tank is so much larger than its water that the cells of the coarse pressure, of
-/// `cell_edge_m`, would outnumber particles sixteen times (a million are always allowed).
+/// Calls check_ways(). base::Error that names the key if the water is thinner than a particle, a frame takes
+/// more than 1000 substeps, or the tank is so much larger than its water that the cells of the coarse
+/// pressure, of `cell_edge_m`, would outnumber particles sixteen times (a million are always allowed).
 void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, double cell_edge_m);
 
 /// Memory that programs can use without swapping, in bytes; none if the system does not report it.

@@ -32,14 +32,14 @@ Scene acting_scene(Scene scene, int finest_level) {
   return scene;
 }
 
-// The particles at the start are the finest of the run.
+// No particle of a run is finer than those at the start.
 Scene acting_scene(Scene scene, MethodKind method) {
   return acting_scene(std::move(scene), traits_of(method).start_level);
 }
 
 namespace {
 
-/// Particles of each block: its share of all, by largest remainders.
+/// Number of particles of each block: its share of `all` by volume, rounded by largest remainders.
 std::vector<std::int64_t> counts_of(const std::vector<WaterBlock>& water, std::int64_t all) {
   double volume = 0;
   for (const WaterBlock& block : water) volume += volume_m3(block);
@@ -89,7 +89,7 @@ std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::in
 
 int substeps_of(const Scene& scene, std::int64_t n_star) {
   const double radius = resolution_of(scene, MethodKind::HiRes, n_star).finest_spacing_m / 2;
-  // The rule is given in round numbers; without the margin 1/60 s would round one case up.
+  // The tolerance keeps the rounding of 1/60 s from adding a substep to a quotient that is a whole number.
   const double steps = scene.v_ref_m_s * scene.frame_dt_s / (0.5 * 4 * radius);
   return std::max(scene.min_substeps, static_cast<int>(std::ceil(steps - 1e-9)));
 }

@@ -8,11 +8,11 @@
 
 namespace sim {
 
-/// Of all blocks, with what obstacles displace.
+/// Volume of all blocks of water, including the parts that obstacles displace.
 double water_volume_m3(const Scene& scene);
 double volume_m3(const WaterBlock& block);
 
-/// Why a gate round several blocks is refused, and the mend.
+/// Error text for a gate in a scene with several blocks of water, and the mend.
 inline constexpr const char* gate_of_several = "encloses one block of water, and there are several";
 inline constexpr const char* no_gate = "write gate = false";
 
@@ -24,27 +24,29 @@ struct Resolution {
 };
 Resolution resolution_of(const Scene& scene, MethodKind method, std::int64_t n_star);
 
-/// The scene without the effects that are idle in water of this level and coarser: what is simulated.
+/// The scene without the effects that are idle in water of finest_level and coarser. The solver simulates
+/// this scene.
 Scene acting_scene(Scene scene, int finest_level);
-/// The same for water that the method fills in: what is drawn.
+/// The scene without the effects that are idle in the method's water. The renderer draws this scene.
 Scene acting_scene(Scene scene, MethodKind method);
 
 /// Exactly particle_count(method, n_star) points, minus those inside obstacles, block by block. Each block
-/// has its share of the volume, rounded by largest remainders. In a block, layers from its floor up, the last
-/// layer partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx / nx)(Lz / nz)).
+/// has its share of the points by volume, rounded by largest remainders. A block is filled in layers from its
+/// floor up, the last of them partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx /
+/// nx)(Lz / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
 
 /// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.
 int substeps_of(const Scene& scene, std::int64_t n_star);
 
 /// Kinematic viscosity, m2/s, the same for all methods, levels and time steps: the scene's value or, if
-/// absent, 0.05 h sqrt(g h) with the support h of particles of level 3. With less, the solver's jitter stirs
-/// water at rest; it goes to zero with h.
+/// absent, 0.05 h sqrt(g h) with the support h of particles of level 3. With less viscosity, the solver's
+/// jitter stirs water at rest. The default goes to zero with h.
 double viscosity_of(const Scene& scene, std::int64_t n_star);
 
 /// Dimensionless numbers of a scene. They use the shortest side of all blocks of water as the length L,
-/// time.v_ref_m_s as the speed v, the viscosities of the water and of the effect, gravity and tension. 0
-/// without motion or gravity; otherwise infinite if the divisor is absent.
+/// time.v_ref_m_s as the speed v, the viscosities of the water and of the effect, gravity and tension. A
+/// number is 0 if its numerator is 0, and otherwise infinite if its divisor is 0.
 struct Scales {
   double length_m = 0, speed_m_s = 0;
   double viscosity_m2_s = 0;  ///< nu, of the water and of the effect

@@ -11,10 +11,11 @@ namespace sim {
 inline constexpr int gaze_jump_frames = 2;
 
 /// The point of the last key at or before `frame`, reached within gaze_jump_frames from the previous point;
-/// before the first key, its point. Without keys, the view's target.
+/// before the first key, the first key's point. Without keys, the view's target.
 Vec3d gaze_point(const Scene& scene, int frame);
 
-/// The scene's own frame number, used by its keys, at the time of a run's frame.
+/// Number of the scene's frame at the time of frame `frame` of a run whose frames last frame_dt_s. The
+/// scene's keys count the scene's frames.
 int scene_frame(const Scene& scene, std::int64_t frame, double frame_dt_s);
 
 }  // namespace sim

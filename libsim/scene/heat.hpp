@@ -23,13 +23,14 @@ TemperatureRange temperatures_of(const Scene& scene);
 /// Largest difference between temperatures that the water may have, K: those of boxes, nozzles and walls, and
 /// the reference unless one box holds all water and every nozzle has a temperature.
 double widest_difference_k(const Scene& scene);
-/// Largest expansion times kelvin that a scene file may name: half of the water's weight. Boussinesq's
-/// buoyancy leaves out that lighter water has less mass and more volume; at 1 warm water weighs nothing.
+/// Largest product of expansion_per_k and the widest temperature difference, K, that a scene file may have:
+/// the buoyancy is then half of the weight. Boussinesq's buoyancy neglects that lighter water has less mass
+/// and more volume; at a product of 1 warm water would weigh nothing.
 inline constexpr double most_expansion = 0.5;
 
-/// Temperature of water from a nozzle without one, K: the reference.
+/// The reference temperature of the effect heat, K; water from a nozzle without a temperature has it.
 double reference_temperature(const Scene& scene);
-/// True if the scene lists the effect.
+/// True if the scene lists the effect heat.
 bool lists_heat(const Scene& scene);
 
 }  // namespace sim

@@ -33,7 +33,7 @@ Matrix principal_axes(Matrix& a) {
       q = column;
     }
     if (std::abs(a[p][q]) <= least) break;
-    // The smaller of the two angles.
+    // Two rotation angles set a[p][q] to 0; this is the smaller one.
     const double gap = a[q][q] - a[p][p];
     const double angle = gap == 0 ? std::numbers::pi / 4 : 0.5 * std::atan(2 * a[p][q] / gap);
     const double c = std::cos(angle), s = std::sin(angle);
@@ -69,7 +69,7 @@ std::array<double, 4> quaternion_of(const Matrix& m) {
   return out;
 }
 
-/// A surface about its centre of mass, along its principal axes.
+/// A surface in coordinates with the origin in its centre of mass, along its principal axes.
 struct Settled {
   Triangles mesh;
   double volume_m3;
@@ -89,9 +89,10 @@ Settled settled(const Triangles& mesh) {
   return out;
 }
 
-/// For a settled surface. Sums over the midpoints of edges are exact, because the integrand is quadratic.
+/// Computes Mesh::round_about() of a settled() surface. The integrals over a triangle are sums over the
+/// midpoints of its edges, which is exact because the integrands are quadratic.
 std::array<bool, 3> round_about(const Triangles& mesh) {
-  constexpr double most = 0.01;  ///< a long prism of 19 sides is round
+  constexpr double most = 0.01;  ///< a long prism of 19 sides counts as round
   Vector turning{}, from_axis{};
   for (const auto& face : mesh.faces) {
     const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(face[k % 3])]; };
@@ -219,7 +220,7 @@ const DistanceGrid& Mesh::grid() const {
 std::vector<Vector> Mesh::contacts_m() const {
   std::vector<Vector> ways{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (int k = 0; k < spread; ++k) {
-    // A spiral of equal steps in height over the sphere (Vogel's).
+    // Directions on Vogel's spiral over the sphere, at equal steps in height.
     const double y = 1 - (2 * k + 1.0) / spread, round = std::sqrt(1 - y * y), turn = 2.399963229728653 * k;
     ways.push_back({round * std::cos(turn), y, round * std::sin(turn)});
   }

@@ -35,8 +35,8 @@ inline constexpr std::size_t most_grid_nodes = 1 << 21;
 /// if those are principal.
 class Mesh {
  public:
-  /// spacing_m: of the grid, which must not have more than most_grid_nodes; 0: a 48th of the longest side, or
-  /// a quarter of the shortest.
+  /// spacing_m: that of the grid, which must not have more than most_grid_nodes nodes; 0: the smaller of a
+  /// 48th of the longest side and a quarter of the shortest.
   Mesh(const Triangles& mesh, double spacing_m);
 
   const std::vector<std::array<double, 3>>& places_m() const { return mesh_.places; }
@@ -44,8 +44,8 @@ class Mesh {
   const std::array<double, 3>& inertia_m2() const { return inertia_m2_; }
   /// Unit quaternion x, y, z, w from the body's axes to the file's.
   const std::array<double, 4>& turn() const { return turn_; }
-  /// True for each own axis about which the body is round, except for facets: (r x n)_k^2 over the surface is
-  /// at most 1 % of the squared distance from the axis.
+  /// True for each of the body's axes k about which it is round, apart from facets: over the surface, the
+  /// mean of (r x n)_k^2 is at most 1 % of the mean squared distance from the axis.
   const std::array<bool, 3>& round_about() const { return round_about_; }
   /// Bounding box along the body's axes.
   const std::array<double, 3>& low_m() const { return low_m_; }
@@ -61,7 +61,7 @@ class Mesh {
   std::vector<std::array<double, 3>> contacts_m() const;
   /// Twice the depth of the deepest node of grid(), m.
   double thickness_m() const;
-  /// SHA-256 of all inputs.
+  /// SHA-256 of the triangles and the given spacing.
   const std::string& sha256() const { return sha256_; }
 
  private:

@@ -13,7 +13,7 @@
 namespace sim {
 
 /// Reads the keys `file` or `obj`, `scale` and `spacing_m` of an obstacle. Errors are base::Error at the key,
-/// or at file:line. size: allowed range of the mesh's sides, m. beside: the folder to which `file` is
+/// or at file:line. size_m: allowed range of the mesh's sides, m. beside: the folder to which `file` is
 /// relative; without one, a `file` is an error.
 std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range size_m,
                                       const std::optional<std::filesystem::path>& beside);

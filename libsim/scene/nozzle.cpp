@@ -8,7 +8,7 @@ namespace sim {
 
 namespace {
 
-/// Length of the jet that an open nozzle has poured before a frame.
+/// Speed times the time for which the nozzle was open before `frame`: the length of its jet, m.
 double length_before(const Nozzle& nozzle, std::int64_t frame, double frame_dt_s) {
   const std::int64_t cycle = nozzle.on_frames + nozzle.off_frames;
   const std::int64_t open =
@@ -16,7 +16,7 @@ double length_before(const Nozzle& nozzle, std::int64_t frame, double frame_dt_s
   return static_cast<double>(open) * frame_dt_s * nozzle.speed_m_s;
 }
 
-/// Layers k = 0, 1, ... with (k + 1/2) pitch < length.
+/// Number of layers k = 0, 1, ... with (k + 1/2) pitch < length.
 std::int64_t layers_within(double length, double pitch) {
   return static_cast<std::int64_t>(std::max(0.0, std::ceil(length / pitch - 0.5)));
 }

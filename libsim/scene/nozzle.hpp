@@ -16,8 +16,9 @@ struct Nozzle {
   double temperature_k = 0;            ///< of the water; 0 = the reference of the effect heat
 };
 
-/// A layer of the jet: a Vogel disc of `sites` particles, each of volume spacing^3. The distance between
-/// layers is `pitch_m` = spacing^3 sites / A, so that the flow A u is the same at every spacing.
+/// A layer of the jet: `sites` particles on a Vogel spiral over the mouth, each of volume spacing^3. The
+/// distance between layers is `pitch_m` = spacing^3 sites / A, with the area A of the mouth. The flow A u at
+/// the speed u is therefore the same at every spacing.
 struct JetLayer {
   int sites = 0;
   double pitch_m = 0;
@@ -33,15 +34,15 @@ struct Poured {
 /// run from a checkpoint pours like the original run.
 Poured poured_before(const Nozzle& nozzle, double spacing_m, int frame, double frame_dt_s);
 
-/// Layers that are due within one frame.
+/// The layers that pass the mouth within one frame.
 struct LayersDue {
   int count = 0;
   double first_time_s = 0;  ///< from the frame's start until the first passes the mouth
   double interval_s = 0;    ///< between layers
 };
 
-/// The next layer passes the mouth when the nozzle has been open for (length + pitch / 2) / speed; pulses
-/// share one count. Frames are counted from 0; `frame_dt_s` > 0.
+/// The next layer passes the mouth when the nozzle has been open for (before.length_m + pitch / 2) / speed in
+/// all pulses together. Frames are counted from 0; `frame_dt_s` > 0.
 LayersDue layers_due(const Nozzle& nozzle, double spacing_m, const Poured& before, int frame,
                      double frame_dt_s);
 

@@ -16,7 +16,7 @@ constexpr double farthest = 1e6;
 /// Minimum area of a triangle divided by the square of its longest edge.
 constexpr double flattest = 1e-9;
 
-/// The words of a line, before a comment.
+/// The words of a line, without its comment.
 std::vector<std::string_view> words_of(std::string_view line) {
   line = line.substr(0, line.find('#'));
   std::vector<std::string_view> out;

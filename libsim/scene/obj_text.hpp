@@ -16,8 +16,8 @@ struct Triangles {
   std::vector<std::array<int, 3>> faces;
 };
 
-/// Number of triangles that fit a scene's 1 MiB of text (most_scene_bytes) if coordinates have few digits;
-/// with seven digits fewer fit.
+/// Largest number of triangles of a mesh. A scene's 1 MiB of text (most_scene_bytes) has space for this
+/// number if coordinates have few digits, and for fewer triangles if they have seven digits.
 inline constexpr std::size_t most_triangles = 1 << 15;
 
 /// Throws an error for a line of the text; line 0: the whole text.
@@ -26,8 +26,8 @@ using ObjFailure = std::function<void(int line, const std::string& problem, cons
 /// Reads lines `v x y z` and `f a b c ...`; f may name texture and normal after a slash, and count vertices
 /// back from the last one by negative numbers. Polygons become fans. Other lines are skipped, and vertices
 /// that no face uses are dropped. Failures: a malformed number, an unknown vertex, a face without area, no
-/// face, too many, an edge that is not shared by two faces in opposite directions, a surface that faces
-/// inwards.
+/// face, more than most_triangles, an edge that is not shared by two faces in opposite directions, a surface
+/// that faces inwards.
 Triangles read_obj(std::string_view text, const ObjFailure& fail);
 
 /// The same surface as compact text: only vertices and triangles, one per line.

@@ -130,7 +130,7 @@ Obstacle read_obstacle(const base::TomlTable& table, const Vector& room_m, const
   return out;
 }
 
-/// Checks the last obstacle against the earlier ones.
+/// base::Error if the last obstacle overlaps an earlier one at the start and one of the two is free.
 void check_apart(const base::TomlTable& table, const std::vector<Obstacle>& obstacles) {
   const Obstacle& last = obstacles.back();
   for (std::size_t k = 0; k + 1 < obstacles.size(); ++k) {

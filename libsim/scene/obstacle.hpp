@@ -19,7 +19,7 @@ class Mesh;  // libsim/scene/mesh.hpp
 
 enum class ObstacleShape { Sphere, Box, Capsule, Mesh };
 
-/// For free obstacles: lighter ones jump.
+/// Lowest density of a free obstacle; lighter ones would leap too high out of the water.
 inline constexpr double lightest_free_kg_m3 = 50;
 
 /// Motion of an obstacle once the water has settled.
@@ -40,14 +40,15 @@ struct Pose {
 /// Pose and motion of a body.
 struct BodyMotion {
   Pose pose;
-  // 0 unless the body is free:
+  // The following vectors are 0 unless the body is free, except for others_n_s.
   std::array<double, 3> velocity_m_s{};  ///< of its centre
   std::array<double, 3> spin_rad_s{};
-  /// Push from the water that the body has not followed yet. Light bodies follow with a delay, because the
-  /// water that moves along shares it.
+  /// Impulse from the water that is not yet applied to the body. A light body receives it with a delay,
+  /// because the water that moves along with the body takes a share.
   std::array<double, 3> owed_n_s{};
-  std::array<double, 3> walls_n_s{};  ///< received from walls in the last frame
-  /// Received from other obstacles in the last frame, also by one that is not free; the sum over all is 0.
+  std::array<double, 3> walls_n_s{};  ///< impulse received from walls in the last frame
+  /// Impulse received from other obstacles in the last frame. Obstacles that are not free receive it too, so
+  /// that the sum over all obstacles is 0.
   std::array<double, 3> others_n_s{};
 };
 
@@ -66,7 +67,7 @@ struct Obstacle {
   std::array<double, 3> way_m{};        ///< from the middle of a swing to its far end
   double period_s = 0;                  ///< of a swing, which begins in the middle, towards the far end
   double density_kg_m3 = 0;             ///< of a free body, uniform
-  double friction = 0;  ///< Coulomb's coefficient of its surface against free bodies, or of a free body's
+  double friction = 0;  ///< Coulomb's coefficient of the surface, for contacts that involve a free body
 };
 
 inline constexpr std::size_t most_obstacles = 16;
@@ -74,7 +75,7 @@ const char* shape_name(ObstacleShape shape);
 
 /// Pose of the obstacle at this time since frame 0, s; for a free one, its start.
 Pose pose_at(const Obstacle& obstacle, double time_s);
-/// The same for all obstacles, at rest.
+/// pose_at() of all obstacles, with velocities of 0.
 std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, double time_s);
 /// World position of a point in the body's axes.
 std::array<double, 3> in_world(const Pose& pose, const std::array<double, 3>& own_m);
@@ -91,7 +92,7 @@ double volume_m3(const Obstacle& obstacle);
 /// Moments of inertia about the obstacle's own axes divided by its mass, for uniform density, m2.
 std::array<double, 3> inertia_m2(const Obstacle& obstacle);
 bool any_free(const std::vector<Obstacle>& obstacles);
-/// True if a free obstacle may meet another, or has friction.
+/// True if contacts must be computed: one obstacle is free, and there are several or one has friction.
 bool any_meet(const std::vector<Obstacle>& obstacles);
 bool any_mesh(const std::vector<Obstacle>& obstacles);
 /// Thickness, m: a box's shortest side, the diameter of a sphere or capsule, twice a mesh's greatest depth.

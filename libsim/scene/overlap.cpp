@@ -19,7 +19,8 @@ double depth(const Obstacle& one, const Vector& own, const Obstacle& other) {
   return one.radius_m - signed_distance(other, other.start, in_world(one.start, own));
 }
 
-/// Along a straight line the distance from a convex body has one minimum.
+/// Greatest depth of an edge of `one` in `other`, by ternary search: along a straight line the distance from
+/// a convex body has only one minimum.
 double depth_of_edge(const Obstacle& one, const Vector& begin, const Vector& end, const Obstacle& other) {
   const auto at = [&](double s) {
     Vector own{};

@@ -9,7 +9,8 @@ namespace sim {
 /// and at the vertices of meshes, so that overlaps between distant vertices of a mesh may be missed.
 double overlap_m(const Obstacle& one, const Obstacle& other);
 
-/// Smaller overlaps are touching or rounding of the file's numbers, and not errors.
+/// Overlaps up to this depth, m, are no errors: they come from contact or from rounding of the file's
+/// numbers.
 inline constexpr double least_overlap_m = 1e-5;
 
 }  // namespace sim

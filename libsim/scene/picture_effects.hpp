@@ -13,7 +13,7 @@ class TomlTable;
 namespace sim {
 
 // The registry, one row each: EFFECT(enumerator, word in the scene file, source). A row's pass is
-// shaders/WORD.comp, which computes the remaining light on the room's floor.
+// shaders/WORD.comp, which computes how the effect changes the sunlight on the floor.
 #define SIM_PICTURE_EFFECTS(EFFECT)                                                           \
   EFFECT(Shadows, shadows, "Beer-Lambert along sunlight that flat water refracts; obstacles") \
   EFFECT(Caustics, caustics, "sunlight refracted by the water's surface (Snell), area by area")
@@ -36,10 +36,10 @@ const PictureEffectTraits& traits_of(PictureEffectKind kind);
 /// A picture effect as listed by a scene.
 struct PictureEffect {
   PictureEffectKind kind{};
-  double strength = 1;  ///< 0 to 1, the share of the source's strength; 0 drops the effect
+  double strength = 1;  ///< 0 to 1, share of the effect's full strength; 0 drops the effect
 };
 
-/// 0 if the effect is not listed.
+/// Strength of the effect; 0 if it is not listed.
 float strength_of(const std::vector<PictureEffect>& effects, PictureEffectKind kind);
 
 std::vector<std::string> picture_effect_words();
@@ -47,7 +47,8 @@ std::vector<std::string> picture_effect_words();
 /// Reads the picture effects among the tables [[effect]] of a scene file. Errors are base::Error at
 /// file:line:column: listed twice, out of range.
 std::vector<PictureEffect> read_picture_effects(const std::vector<base::TomlTable>& tables);
-/// The same checks for a scene without a file; base::Error names the effect.
+/// The checks of read_picture_effects() for a scene that was not read from a file; base::Error names the
+/// effect.
 void check_picture_effects(const std::vector<PictureEffect>& effects);
 
 }  // namespace sim

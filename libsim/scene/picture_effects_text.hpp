@@ -10,7 +10,7 @@ namespace sim {
 
 /// Writes tables that read_picture_effects() reads back as the same effects; omits dropped effects.
 std::string format_picture_effects(const std::vector<PictureEffect>& effects);
-/// The same in the form "shadows strength = 1; caustics strength = 0.5".
+/// The effects in one line, in the form "shadows strength = 1; caustics strength = 0.5".
 std::string picture_effects_in_words(const std::vector<PictureEffect>& effects);
 
 }  // namespace sim

@@ -16,7 +16,7 @@ namespace {
 using base::KeyReference;
 using base::where_needed;
 
-// From tank.origin_m on, wherever that is.
+// Range of a position, relative to tank.origin_m.
 constexpr const char* anywhere = "[-10000, 10000] from `tank.origin_m`";
 constexpr const char* least_corner = "corner with the smallest x, y and z";
 constexpr const char* largest_corner = "opposite corner, at least 0.001 m further along each axis";

@@ -1,5 +1,5 @@
 #pragma once
-/// Reference of all keys of a scene file. A test compares it with the keys that the readers ask for.
+/// Reference of all keys of a scene file. A test compares it with the keys that the readers read.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// The keys of [[effect]] stand in a table for each kind: "effect.foam".
+/// All keys, table by table. Each kind of [[effect]] has a table of its own, such as "effect.foam".
 const std::vector<base::KeyReference>& scene_reference();
 
 /// The reference as a page of Markdown: docs/scenes.md.

@@ -27,7 +27,7 @@ Vec3d vector(const base::TomlTable& table, const char* key, base::Range range) {
   return {v[0], v[1], v[2]};
 }
 
-/// A number along -y, or a vector.
+/// Reads gravity: a number acts along -y, a list is a vector.
 Gravity read_gravity(const base::TomlTable& root) {
   constexpr const char* key = "gravity_m_s2";
   if (!root.is_list(key)) return {root.number(key, {0, strongest_m_s2})};
@@ -119,7 +119,7 @@ int settle_frames(const base::TomlTable& table, double frame_dt_s) {
   if (!in_frames && !in_seconds)
     table.fail("", "has neither settle_s nor settle_frames", "give one of the two; settle_s = 0.0 is none");
   if (in_frames) return static_cast<int>(table.integer("settle_frames", {0, most_settle_frames}));
-  // 0.7 s at 60 frames/s are 42 frames, however the quotient is rounded.
+  // The tolerance covers rounding of the quotient: 0.7 s at 60 frames/s are 42 frames.
   const double frames = std::ceil(table.number("settle_s", {0, most_settle_frames}) / frame_dt_s - 1e-9);
   if (frames > most_settle_frames)
     table.fail("settle_s", "makes " + base::shortest(frames) + " frames of settling",
@@ -141,7 +141,8 @@ WaterBlock read_block(const base::TomlTable& table, const Scene& scene) {
   return out;
 }
 
-/// Along the axis along which the blocks overlap least; blocks that touch do not overlap.
+/// base::Error if the last block overlaps an earlier one. The mend moves a block along the axis of the
+/// smallest overlap. Blocks that touch do not overlap.
 void check_block_apart(const base::TomlTable& table, const std::vector<WaterBlock>& water) {
   const WaterBlock& last = water.back();
   for (std::size_t b = 0; b + 1 < water.size(); ++b) {
@@ -185,7 +186,8 @@ void read_water(const base::TomlTable& table, Scene& scene) {
   if (table.has("viscosity_m2_s")) scene.viscosity_m2_s = table.number("viscosity_m2_s", {0, 1e3});
 }
 
-/// The mouth must be within the walls, below the drawn rim and above the floor.
+/// base::Error unless the nozzle's mouth is within the walls, above the floor, below the walls' top and any
+/// lid, and outside obstacles.
 void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene& scene) {
   for (const std::size_t k : {0u, 2u}) {
     const double at = nozzle.position_m[k];
@@ -208,11 +210,11 @@ void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene
                "lower it by " + base::shortest(std::ceil(1e4 * beyond) / 1e4) + " m");
 }
 
-/// Only with the effect heat: without it no particle has a temperature.
+/// Reads temperature_k. base::Error in a scene without the effect heat, whose particles have no temperature.
 double temperature(const base::TomlTable& table, const Scene& scene) {
   const double out = table.number("temperature_k", {1, hottest_k});
   if (!lists_heat(scene))
-    table.fail("temperature_k", "needs the effect heat, of which there is none",
+    table.fail("temperature_k", "needs the effect heat, which the scene does not list",
                "list heat as an [[effect]], or leave the temperature out");
   return out;
 }
@@ -260,7 +262,9 @@ void read_warm(const base::TomlTable& root, Scene& scene) {
   }
 }
 
-/// The mean temperature lies between the lowest and the highest, so that this bounds every lift.
+/// base::Error if expansion times the widest temperature difference exceeds most_expansion. The mean
+/// temperature lies between the lowest and the highest, so that this product bounds the buoyancy of all
+/// water.
 void check_expansion(const base::TomlTable& root, const Scene& scene) {
   if (!lists_heat(scene)) return;
   const auto& options = coefficients_of(scene.effects).options;
@@ -292,7 +296,7 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
 Vec3d Gravity::up() const {
   const double all = size();
   if (!(all > 0)) return {0, 1, 0};
-  // Not -a / all: a component of 0 stays +0.
+  // 0 - a and not -a, so that a component of 0 gives +0.
   return {0 - along[0] / all, 0 - along[1] / all, 0 - along[2] / all};
 }
 
@@ -307,7 +311,7 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
   const std::int64_t format = root.integer("format");
   if (format < 1 || format > newest_format) {
     root.fail("format", "is not a format that this program reads (1 or 2)",
-              "use a program of the file's version");
+              "use the version of ViP-Lab for which the file was written");
   }
   Scene scene;
   scene.name = root.string("name");
@@ -366,7 +370,7 @@ Scene read_scene(const std::filesystem::path& path) {
   const auto found = base::find_input(path);
   const std::string text = base::read_file(found, most_scene_bytes);
   Scene out = parse_scene(text, found.string(), found.parent_path());
-  // A changed mesh file makes a different scene.
+  // The hash covers the mesh files, because a changed mesh makes a different scene.
   out.sha256 = base::sha256_hex(with_meshes(text, found));
   return out;
 }

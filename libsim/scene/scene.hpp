@@ -26,11 +26,11 @@ using Vec3d = std::array<double, 3>;
 struct Gravity {
   Vec3d along{0, -9.81, 0};
   Gravity() = default;
-  /// A number: along -y.
+  /// Gravity of this size along -y.
   Gravity(double down) : along{0, -down, 0} {}
   Gravity(double x, double y, double z) : along{x, y, z} {}
   double size() const { return std::hypot(along[0], along[1], along[2]); }
-  /// The unit vector against it; +y without gravity.
+  /// Unit vector opposite to gravity; +y without gravity.
   Vec3d up() const;
 };
 
@@ -65,8 +65,8 @@ std::array<double, 3> inward_normal(Wall wall);
 /// The two axes along which a wall extends, ascending: 0 = x, 1 = y, 2 = z.
 std::array<std::size_t, 2> axes_of(Wall wall);
 
-/// A rectangle in which a wall is open. Water that passes the wall's plane in it leaves the simulation at the
-/// end of that frame. Outlets are closed while the water settles.
+/// A rectangle in which a wall is open. Water that passes the wall's plane in the rectangle leaves the
+/// simulation at the end of that frame. Outlets are closed while the water settles.
 struct Outlet {
   Wall wall = Wall::Floor;
   std::array<double, 2> min_m{}, max_m{};  ///< corners along axes_of(wall); each side at least 1 mm
@@ -99,7 +99,7 @@ struct Scene {
   double frame_dt_s = 1.0 / 60;
   /// Reference speed for the number of substeps (substeps_of in libsim/scene/fill.hpp).
   double v_ref_m_s = 0;
-  /// True: walls enclose the water block until it has settled; only for a single one.
+  /// True: walls enclose the water until it has settled; only in scenes with a single block of water.
   bool gate = false;
   int settle_frames = 0;
   int solver_iterations = 4;
@@ -125,16 +125,18 @@ struct Scene {
   Vec3d room_m() const;
 };
 
-/// How far the layers that a nozzle pours in a frame would begin beyond the lid, m; 0 or less: they do not.
+/// Height above the lid at which a nozzle's water of one frame would begin, m; 0 or less if it begins below
+/// the lid. A frame's water begins above the mouth by the distance that it moves in the frame.
 double beyond_lid_m(const Scene& scene, const Nozzle& nozzle, double frame_dt_s);
-inline constexpr const char* nozzle_at_lid = "lets the water of a frame begin above the tank's lid";
+inline constexpr const char* nozzle_at_lid =
+    "is so close to the lid that the water of a frame would begin above it";
 
-/// Formats 1 and 2, which has [[effect]] and [[obstacle]]. Errors are base::Error at file:line:column:
-/// unknown key, wrong type, out of range, water, nozzle or outlet outside the tank, effects that are
-/// incompatible. beside: the folder to which mesh files are relative, if the text has one.
+/// Reads a scene of format 1 or of format 2, which adds [[effect]] and [[obstacle]]. Errors are base::Error
+/// at file:line:column: unknown key, wrong type, out of range, water, nozzle or outlet outside the tank,
+/// effects that are incompatible. beside: the folder to which mesh files are relative, if the text has one.
 Scene parse_scene(std::string_view text, const std::string& name,
                   const std::optional<std::filesystem::path>& beside = {});
-/// The same without sha256.
+/// Reads a scene from a parsed file; Scene::sha256 stays empty.
 Scene read_scene_table(const base::TomlTable& root, const std::optional<std::filesystem::path>& beside = {});
 Scene read_scene(const std::filesystem::path& path);
 /// The file's text in self-contained form, including the triangles of its meshes. Scene::sha256 is its hash.

@@ -26,9 +26,9 @@ class SurfaceTree {
   };
   struct Triangle {
     std::array<Vector, 3> corners;
-    Vector face;                 ///< unit normal
-    std::array<Vector, 3> edge;  ///< pseudonormals from corner k to k + 1
-    std::array<Vector, 3> corner;
+    Vector face;                   ///< unit normal
+    std::array<Vector, 3> edge;    ///< pseudonormals of the edges from corner k to k + 1
+    std::array<Vector, 3> corner;  ///< pseudonormals of the corners
   };
   int build(int first, int count);
   std::vector<Triangle> triangles_;

@@ -8,7 +8,7 @@ namespace sim {
 
 using Vector = std::array<double, 3>;
 
-/// m; the largest coordinate of a scene: large enough for any room, small enough for floats to resolve 1 mm.
+/// Largest coordinate of a scene, m: floats resolve 1 mm up to this distance.
 constexpr double farthest_m = 1e4;
 
 inline Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }

@@ -37,7 +37,7 @@ std::string in_words(const GuardCounts& met) {
       part_of(met.speed_limited, "particle-substep", "particle-substeps", "braked by the limit on speed") +
       part_of(met.coincident_pairs, "pair", "pairs", "of particles in one place") +
       part_of(met.not_finite, "particle", "particles", "not finite or far outside the tank") +
-      part_of(met.neighbours_dropped, "neighbour", "neighbours", "without room in a list") +
+      part_of(met.neighbours_dropped, "neighbour", "neighbours", "left out because a list was full") +
       part_of(met.saliency_not_finite, "saliency", "saliencies", "not finite");
   return parts.empty() ? "" : "guards stepped in: " + parts.substr(2);
 }

@@ -11,14 +11,15 @@ namespace sim {
 /// run, or if a figure of the report is not finite now.
 void check_finite(Simulation& fluid, const std::string& place);
 
-/// Field by field.
+/// Sum of two counts, field by field.
 GuardCounts sum(const GuardCounts& a, const GuardCounts& b);
-/// The guards that stepped in, with their counts; empty if none did. Pushes of walls and obstacles, nozzles
-/// that waited and lost gazes are normal and left out.
+/// Text with the guards that stepped in and their counts; empty if none did. Pushes of walls and obstacles,
+/// waiting nozzles and lost gazes are normal and left out.
 std::string in_words(const GuardCounts& met);
-/// Prints both as one line on standard error, after `place`; prints nothing if both are empty.
+/// Prints the guards that stepped in and the first divergence in one line on standard error, after `place`;
+/// prints nothing without either.
 void print_guards(const std::string& place, const GuardCounts& met, const std::optional<Divergence>& first);
-/// The same for a whole run.
+/// Prints the guards and the first divergence of a simulation's whole run.
 void print_guards(const std::string& place, Simulation& fluid);
 
 }  // namespace sim

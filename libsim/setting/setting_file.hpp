@@ -16,10 +16,10 @@ struct SettingFile {
   struct Measured {
     std::string machine, program, scene_sha256;
     std::string picture;   ///< size of the picture drawn in each frame; "none" = only the solver was timed
-    double seconds = 0;    ///< of content
+    double seconds = 0;    ///< seconds of fluid time per run
     double budget_ms = 0;  ///< limit that 95 % of the frames had to meet
-    double ms_mean = 0;    ///< of a whole frame, over fresh starts
-    double ms_p95 = 0;     ///< 95th percentile of the same
+    double ms_mean = 0;    ///< mean time of a whole frame, over fresh starts
+    double ms_p95 = 0;     ///< 95th percentile of the time of a whole frame
     std::string error;     ///< the error that was minimised: "centre_pct"
     double error_pct = 0;  ///< mean over all starts, against the sweep's reference
     double error_low_pct = 0, error_high_pct = 0;  ///< smallest and largest over the starts
@@ -33,7 +33,8 @@ struct SettingFile {
 
 /// One line: the setting, its milliseconds, its error and the machine.
 std::string describe(const SettingFile& file);
-/// A note that the figures are of another scene file; empty if they are of this one.
+/// A note that the setting was measured on another scene file; empty if it was measured on the file with this
+/// SHA-256.
 std::string other_scene(const SettingFile& file, const std::string& scene_sha256);
 
 /// Errors (base::Error at file:line:column): unknown key, wrong type or range, newer format.

@@ -14,7 +14,7 @@ namespace sim {
 
 enum class SolverKnob {
   Size,          ///< n_*
-  Rate,          ///< frames of content a second
+  Rate,          ///< frames per second of fluid time
   Iterations,    ///< projections per substep
   Substeps,      ///< per frame; 0 = as many as the fastest particle needs
   CoarseCycles,  ///< V-cycles of the coarse pressure
@@ -26,7 +26,7 @@ enum class SolverKnob {
 };
 inline constexpr std::size_t solver_knob_count = 10;
 
-/// Properties of a knob. A sweep tries the values one at a time around the default.
+/// Properties of a knob. A sweep tries the values of one knob at a time, with the others at their defaults.
 struct SolverKnobTraits {
   SolverKnob knob{};
   const char* column = "";     ///< name in files, with its unit
@@ -51,7 +51,7 @@ struct SolverSetting {
   bool operator==(const SolverSetting&) const = default;
 };
 
-/// All knobs at the programs' defaults.
+/// The programs' defaults for all knobs except Size, which is n_star.
 SolverSetting usual_setting(const std::string& scene, MethodKind method, std::int64_t n_star);
 /// True if the knob has an effect with the method.
 bool turns(SolverKnob knob, MethodKind method);

@@ -8,13 +8,14 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Each lane reads particles at a fixed stride, so that adjacent lanes of a warp read adjacent memory. A
-/// team's lanes are summed first, because all teams add to the same sums.
+/// Computes Extremes over all particles. Each lane reads particles at a fixed stride, so that adjacent lanes
+/// of a warp read adjacent memory. A team first sums over its lanes, because all teams add to the same
+/// totals.
 struct Gather {
   const Vec4* velocity;
   const float* density;
   const std::uint8_t* level;
-  const std::uint8_t* active;  ///< nullptr if all were solved
+  const std::uint8_t* active;  ///< flags of the solved particles; nullptr if all were solved
   const int* id;
   int n, teams;
   int half;  ///< index of the frame's end, see TroubleKey
@@ -62,7 +63,7 @@ struct Gather {
   }
 };
 
-/// A free body counts like a particle of its speed.
+/// Includes the speeds of free bodies in the largest speed.
 struct FastestBody {
   const FreeBody* free;
   Extremes* out;
@@ -72,12 +73,13 @@ struct FastestBody {
   }
 };
 
-/// Index `level` counts one level as the distance between its two borders, found by bisection; index 0 also
-/// copies the other values.
+/// Fills FrameTally. Particles are sorted by level, so the number of particles of one level is the distance
+/// between its two borders, found by bisection. The call for level 0 also copies the other values.
 struct Tally {
   const Guards* guards;
   const NeighbourList::Need* lists;
-  /// Last inclusive sum of the solved particles, before some left; nullptr if all were solved.
+  /// Number of solved particles, counted before particles left through outlets: the last of their prefix
+  /// sums. nullptr if all were solved.
   const int* active;
   const std::uint8_t* level_of;
   int n;
@@ -94,7 +96,7 @@ struct Tally {
     out->active = active ? *active : n;
   }
 
-  /// The first particle of this level or a coarser one.
+  /// Index of the first particle of this level or a coarser one.
   SIM_FN int first_of(int level) const {
     if (level == 0) return 0;
     if (level == LevelSupports::most) return n;
@@ -111,7 +113,8 @@ struct Tally {
   }
 };
 
-/// Costs a read-back: only for the first frame of a run that has trouble.
+/// Position of the particle with this id, m; none if it is not finite or the id is unknown. Costs a
+/// read-back, so it is called only in the first frame of a run that has trouble.
 std::optional<Vec3d> place_of(const Particles& particles, int id) {
   const std::vector<int> ids = particles.all().id.to_host();
   const auto found = std::find(ids.begin(), ids.end(), id);

@@ -9,10 +9,10 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Reductions over the particles.
+/// Sums and maxima over the particles.
 struct Extremes {
-  int fastest_bits;  ///< bit pattern of the largest speed as a float, m/s: orders like the float for values
-                     ///< >= 0
+  int fastest_bits;  ///< bit pattern of the largest speed as a float, m/s; patterns of floats >= 0 have the
+                     ///< order of the floats
   std::uint64_t excess;    ///< max(rho / rho_0 - 1, 0) of the solved particles in the last projection, times
                            ///< mass; in excess_unit
   std::uint64_t mass;      ///< mass of the solved particles, in m_*
@@ -28,13 +28,13 @@ struct Extremes {
   float fastest() const { return std::bit_cast<float>(fastest_bits); }
 };
 
-/// The data copied to the host.
+/// The numbers that are copied to the host once per frame.
 struct FrameTally {
-  Guards guards;              ///< since the run began
-  NeighbourList::Need lists;  ///< of the last substep
+  Guards guards;              ///< guard counts since the run began
+  NeighbourList::Need lists;  ///< list sizes needed in the last substep
   int active;                 ///< particles solved in the frame
   Extremes extremes;
-  int by_level[LevelSupports::most];  ///< particle counts
+  int by_level[LevelSupports::most];  ///< number of particles of each level
 };
 
 /// Guard counts since the run began.
@@ -44,14 +44,14 @@ class AccountKeeper {
  public:
   /// Starts the account with the particles before the first frame; their levels lie in finest .. coarsest.
   void begin(const std::vector<ParticleState>& start, int finest_level, int coarsest_level);
-  /// Call after run_frame, which leaves the particles in the grid's order: level by level. `went_by`: the
-  /// report of temporal acceleration, in which the number of active particles is filled in; none if the
-  /// method has none. `frame`: Simulation::frame() after this frame.
+  /// Reads the account of the frame that run_frame just computed; particles must still be sorted by level, as
+  /// run_frame leaves them. `went_by`: report of temporal acceleration, to which take() adds the number of
+  /// active particles; none for other methods. `frame`: Simulation::frame() after this frame.
   FrameTally take(const FluidState& state, std::optional<TemporalReport> went_by, int frame);
   const FrameAccount& account() const { return account_; }
   /// The first trouble that take() has found since begin(), if any.
   const std::optional<Divergence>& divergence() const { return divergence_; }
-  /// State that lasts beyond a frame (libsim/solver/state_archive.hpp).
+  /// Writes or reads the state that lasts beyond a frame (libsim/solver/state_archive.hpp).
   template <class Archive>
   void keep(Archive& archive) {
     archive(finest_level_, coarsest_level_, account_.particles_by_level, account_.temporal, account_.guards,
@@ -64,7 +64,7 @@ class AccountKeeper {
   /// Adds the frame's trouble counts, and records the first troubled particle of the run.
   void look_for_trouble(const FluidState& state, const FrameTally& tally, int frame);
 
-  GuardCounts met_;  ///< counts up to the last frame
+  GuardCounts met_;  ///< guard counts up to the last frame
   std::optional<Divergence> divergence_;
   Array<FrameTally> tally_;
   Array<Extremes> extremes_;

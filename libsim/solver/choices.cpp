@@ -14,7 +14,7 @@
 namespace sim::SIM_BACKEND {
 
 namespace {
-constexpr int most_computed = 1000;  ///< substeps per frame
+constexpr int most_computed = 1000;  ///< maximum number of substeps per frame
 }
 
 double frame_dt_of(const Scene& scene, const SimulationOptions& options) {
@@ -47,9 +47,10 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
   return out;
 }
 
-/// Shear, 1/s, below which a pool of one level resists by more than a quarter beyond its viscosity: 0.1 g h /
-/// nu, at half of its depth h. The lattice of its particles carries a stress that increases with the pressure
-/// (docs/results.md). 0 without the effect or gravity.
+/// Shear rate, 1/s, below which a pool of particles of one level resists more than a quarter more than its
+/// viscosity nu explains: 0.1 g z / nu at the depth z, here half of the pool's depth. Its particles form a
+/// lattice, which carries a stress that increases with the pressure (docs/results.md). 0 without the effect
+/// viscosity or without gravity.
 double least_shear(const Scene& scene) {
   const auto nu = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
   const Vec3d up = scene.gravity_m_s2.up();
@@ -104,7 +105,7 @@ int substeps_needed(const Scene& scene, const SimulationOptions& options) {
   problem << "needs substeps of at most " << longest.seconds << " s, that is " << steps << " a frame; ";
   if (options.substeps > 0) {
     problem << options.substeps << " were asked for";
-    mend << "take " << steps << " or more, or let the run choose";
+    mend << "set substeps to " << steps << " or more, or to 0 (the run then chooses)";
   } else {
     problem << "the solver computes at most " << most_computed;
     mend << "lower " << traits_of(longest.of).key
@@ -149,7 +150,7 @@ double start_speed(const Scene& scene, const std::vector<ParticleState>& start) 
 
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
   const Vec3d up = scene.gravity_m_s2.up();
-  // Of the tank's corner into which water falls.
+  // Height of the tank's lowest corner along gravity, m.
   double lowest = 0;
   for (std::size_t k = 0; k < 3; ++k) lowest += std::min(up[k] * scene.tank_size_m[k], 0.0);
   double height = 0;
@@ -175,8 +176,9 @@ double fall_speed(const Scene& scene, const std::vector<ParticleState>& start) {
 
 namespace {
 
-/// u a / d of the obstacle for which it is largest. Continuity under a plate of half width a: u a leaves
-/// through the gap. A narrower gap than d holds no particle.
+/// Largest u a / d of all obstacles, m/s: the speed of water that a plate of half width a, moving at the
+/// speed u, presses out of a gap of width d. By continuity the flow u a leaves through the gap. d is the
+/// finest spacing; a narrower gap contains no particle.
 double squeeze_speed(const Scene& scene, double finest_spacing_m) {
   double out = 0;
   for (const Obstacle& o : scene.obstacles) {
@@ -192,7 +194,7 @@ double squeeze_speed(const Scene& scene, double finest_spacing_m) {
 float most_speed(double fall_speed, const Scene& scene, const Resolution& resolution,
                  const SolverParameters& parameters) {
   const double d = resolution.finest_spacing_m;
-  // What settling leaves is rounding, not a speed that the water has.
+  // Settled water without gravity is at rest: its remaining speeds are rounding errors.
   const bool still = scene.gravity_m_s2.size() <= 0 && fall_speed * parameters.frame_s() < 1e-3 * d;
   if (still) return static_cast<float>(4 * d / static_cast<double>(parameters.dt));
   return static_cast<float>(3 * fall_speed + 3 * capillary_speed(scene.effects, d) + squeeze_speed(scene, d));
@@ -200,8 +202,9 @@ float most_speed(double fall_speed, const Scene& scene, const Resolution& resolu
 
 namespace {
 
-/// The usual step, the finest spacing d, stays outside the middle of what is 2 d thick. Thinner obstacles
-/// need shorter steps by this share.
+/// Factor by which thin obstacles shorten a particle's longest step, (0, 1]. The usual step, the finest
+/// spacing d, does not reach the middle of an obstacle that is 2 d thick. Thinner obstacles need shorter
+/// steps in proportion.
 double share_for_thin_obstacles(const Scene& scene, double finest_spacing_m) {
   double out = 1;
   for (const Obstacle& o : scene.obstacles) out = std::min(out, thickness_m(o) / (2 * finest_spacing_m));
@@ -255,7 +258,7 @@ Demand demand_of(const Scene& scene, const SimulationOptions& options, const Sol
   out.levels = method.adaptive() && levels.first < levels.second;
   out.forced_targets = out.levels && options.forced_targets;
   out.saliency_parts = options.saliency_parts;
-  // Activation weighs by saliency.
+  // Activation weights particles by saliency.
   const bool looks = !options.forced_targets && (out.levels || out.saliency_parts || out.activation);
   out.gaze_targets = looks && method.target == TargetSource::Gaze;
   out.saliency = looks && method.target == TargetSource::Saliency;
@@ -309,7 +312,7 @@ Opening opening_of(const Outlet& outlet) {
 Walls walls_of(const Scene& scene, bool settling) {
   Vec3d low{0, 0, 0};
   Vec3d high = scene.tank_size_m;
-  if (settling && scene.gate) {  // check_extent has refused several blocks
+  if (settling && scene.gate) {  // check_extent refuses a gate with several blocks
     const Fall fall(0, vector_of(scene.gravity_m_s2.up()));
     const std::array<float, 3> axis{fall.axis().x, fall.axis().y, fall.axis().z};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -319,7 +322,7 @@ Walls walls_of(const Scene& scene, bool settling) {
     }
   }
   const auto f = [](double value) { return static_cast<float>(value); };
-  // In the order of Wall.
+  // The planes are in the order of the enumeration Wall.
   Walls out{};
   out.planes[out.count++] = {{1, 0, 0}, f(low[0])};
   out.planes[out.count++] = {{-1, 0, 0}, f(-high[0])};

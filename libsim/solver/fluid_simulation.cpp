@@ -14,7 +14,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Mean compression that needs no pre-stabilisation. Moving water has 0.1 to 0.3 %.
+/// Maximum mean compression, max(rho / rho_0 - 1, 0), of water that needs no pre-stabilisation. Moving water
+/// has 0.1 to 0.3 %.
 constexpr double calm_compression = 0.005;
 
 class FluidSimulation final : public Simulation {
@@ -25,7 +26,8 @@ class FluidSimulation final : public Simulation {
         resolution_(resolution_of(scene, options.method, options.n_star)),
         tolerance_(options.temporal.model, options.temporal.fixed_tau, options.temporal.fixed_rate),
         frame_(options.start_frame),
-        // A start at frame 0 may be compressed; a start in the middle of a run continues as it was.
+        // A start at frame 0 may be compressed, and so begins with a pre-stabilisation; a start in the middle
+        // of a run does not.
         compression_(options.start_frame == 0 ? 1 : 0) {
     check_levels(options.levels);
     check_effects(scene.effects);
@@ -114,7 +116,7 @@ class FluidSimulation final : public Simulation {
 
   void force_targets(const TargetRegion& region) override {
     if (!options_.forced_targets) {
-      throw base::Error("forced targets", "were not asked for when the run was made",
+      throw base::Error("forced targets", "were not set when the run was made",
                         "set SimulationOptions::forced_targets");
     }
     state_.levels.forced = sphere_of(region);
@@ -125,7 +127,8 @@ class FluidSimulation final : public Simulation {
   }
 
   void change(const LiveNumbers& to) override {
-    if (!(to.alpha >= 0 && to.alpha <= 1)) throw base::Error("alpha", "is a weight", "use 0 to 1");
+    if (!(to.alpha >= 0 && to.alpha <= 1))
+      throw base::Error("alpha", "is not a weight from 0 to 1", "use 0 to 1");
     if (to.iterations < 1 || to.iterations > LiveNumbers::most_iterations) {
       throw base::Error("iterations", std::to_string(to.iterations) + " a substep are out of range",
                         "use 1 to " + std::to_string(LiveNumbers::most_iterations));
@@ -142,7 +145,7 @@ class FluidSimulation final : public Simulation {
     const SolverParameters numbers = solver_parameters(acting, options_);
     check_foam(state_, numbers.effects, scene, frame_dt());
     Schedule schedule = compile_schedule(demand_of(scene, options_, numbers, levels_));
-    // From here on only memory can fail.
+    // From here on only an allocation can fail.
     scene_ = std::move(scene);
     schedule_ = std::move(schedule);
     state_.parameters.effects = numbers.effects;
@@ -225,8 +228,8 @@ class FluidSimulation final : public Simulation {
   void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) override {
     SaliencyState observer = make_observer();
     if (!observer.input.look(looks)) {
-      throw base::Error("look", "a picture's GL buffers are out of this back end's reach",
-                        "read the G-buffer back");
+      throw base::Error("look", "a picture lies in GL buffers that this back end cannot read",
+                        "copy the picture to the host, and give the copy");
     }
     Array<float> s;
     Array<std::uint8_t> target;
@@ -298,7 +301,7 @@ class FluidSimulation final : public Simulation {
     return state_.one_level ? "level " + std::to_string(resolution_.level) : "mixed levels";
   }
 
-  /// Chooses what the possible levels of particles call for.
+  /// Sets the solver numbers and the schedule for particles of these levels, finest and coarsest.
   void begin_with(std::pair<int, int> levels) {
     levels_ = levels;
     state_.parameters = solver_parameters(acting_scene(scene_, levels.first), options_);
@@ -353,7 +356,7 @@ class FluidSimulation final : public Simulation {
     in(n, capacity, levels.first, levels.second);
     if (n < 0 || capacity < n || levels.first < 0 || levels.second < levels.first ||
         levels.second >= most_levels)
-      StateReader::fail("holds no particles");
+      StateReader::fail("has no valid number of particles or levels");
     begin_with(levels);
     lay_out(n, capacity);
     keep(in);
@@ -370,7 +373,7 @@ class FluidSimulation final : public Simulation {
   SimulationOptions options_;
   Resolution resolution_;
   RelaxedStart relaxed_;
-  double fall_speed_ = 0;  ///< of the start, m/s
+  double fall_speed_ = 0;  ///< fall_speed() of the start, m/s
   FluidState state_;
   Schedule schedule_;
   SubstepRule substeps_;
@@ -383,7 +386,7 @@ class FluidSimulation final : public Simulation {
   TwoFramesAgo<double> compression_;  ///< mean of max(rho / rho_0 - 1, 0)
   std::pair<int, int> levels_;        ///< finest and coarsest level that particles may have
   bool changes_levels_ = false;       ///< particles split and merge
-  bool looks_ = false;                ///< something reads saliency or the gaze
+  bool looks_ = false;                ///< a stage uses saliency or the gaze
   AccountKeeper keeper_;
 };
 

@@ -19,10 +19,10 @@ double frame_dt_of(const Scene& scene, const SimulationOptions& options);
 /// Minimum number of substeps per frame: from the scene or the options, and from its effects. base::Error if
 /// the options allow too few for an effect, or an effect needs too many.
 int substeps_needed(const Scene& scene, const SimulationOptions& options);
-/// The same for the scene's acting effects.
+/// substeps_needed for those effects of the scene that act on its water.
 int least_substeps(const Scene& scene, const SimulationOptions& options);
-/// Text that lists the effects, and the step and the scale-dependent numbers of those in `scene`, which act;
-/// empty without effects and obstacles.
+/// Text that lists the effects `listed`, then the longest substep and the scale-dependent numbers of the
+/// effects of `scene`, which must be those that act. Empty without effects and obstacles.
 std::string effects_in_words(const std::vector<Effect>& listed, const Scene& scene,
                              const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
@@ -32,7 +32,8 @@ SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& 
 /// the largest speed of the start and the nozzles, H their largest height, R their largest distance from the
 /// axis.
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
-/// g + Omega^2 R, m/s2: the largest acceleration of the start by these forces.
+/// g + Omega^2 R, m/s2: the largest acceleration of the start by gravity and the central force; R as in
+/// fall_speed.
 double start_acceleration(const Scene& scene, const std::vector<ParticleState>& start);
 /// Rule for the number of substeps; `fastest` in m/s is the largest speed of the start, the nozzles and the
 /// obstacles.
@@ -47,31 +48,34 @@ float most_speed(double fall_speed, const Scene& scene, const Resolution& resolu
                  const SolverParameters& parameters);
 /// Speed of the fastest of the start, the nozzles and the obstacles, m/s.
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
-/// The stages that the method needs while it runs, in water of these levels, finest and coarsest.
+/// What the schedule of a run needs, from scene, method and options. `levels`: finest and coarsest level of
+/// the water.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters,
                  std::pair<int, int> levels);
 /// base::Error for an N outside 1 .. 4.
 void check_levels(int levels);
-/// Room for particles: 8 n_*, the number if all water is at level 0, or the option's, if they split, and at
-/// least that of the start. base::Error if the start has too many to index.
+/// Maximum number of particles. If particles split: particle_capacity of the options, or 8 n_*, their number
+/// if all water is at level 0. Never less than the number `start` of particles at the start. base::Error if
+/// that number is too large for indices.
 int capacity_for(std::size_t start, const SimulationOptions& options, bool splits);
-/// base::Error for an unknown level.
+/// Converts the region for kernels. base::Error for an unknown level.
 TargetSphere sphere_of(const TargetRegion& region);
 /// The tank's floor, sides and lid with their outlets. While the water settles, outlets are shut, and if
 /// there is a gate the walls enclose the water block, except on the side against gravity.
 Walls walls_of(const Scene& scene, bool settling);
 
-/// Puts the scene's obstacles where they are at this time, without motion. `recorded`: their pushes on the
-/// water are recorded.
-/// base::Error if one is thinner than the spacing of particles of the coarsest level that the run may hold:
-/// water would pass through it.
+/// Sets up the scene's obstacles at their positions at `time_s`, without motion. `recorded`: record their
+/// pushes on the water. base::Error if an obstacle is thinner than the spacing of particles of
+/// `coarsest_level`: water would pass through it. base::Error for a free obstacle that is too light, or in a
+/// scene with a central force, or at time_s > 0.
 void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s, bool recorded);
 /// From now on records the push of each gauge's part of an obstacle on the water. base::Error if a gauge
 /// covers no part of its obstacle's surface.
 void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges);
-/// Adds what the obstacles gave the water in the frame.
+/// Adds the momentum that the obstacles gave the water in the last frame to `account`.
 void count_obstacles(const FluidState& state, MomentumAccount& account);
-/// The scene's obstacles at this time.
+/// Positions and velocities of the scene's obstacles at `time_s`, and what free obstacles received from walls
+/// and others.
 std::vector<BodyMotion> motions_of(const FluidState& state, double time_s);
 
 /// Density and neighbour counts at the present positions, measured on a copy: measuring does not change the
@@ -88,29 +92,29 @@ Measured measure(const FluidState& state);
 
 /// The scene's water at rest, at one level, ids from 0.
 std::vector<ParticleState> filled(const Scene& scene, const SimulationOptions& options, int level);
-/// base::Error for a start that the solver cannot hold: unknown levels and, if particles split and merge, ids
-/// that repeat or reach the capacity.
+/// base::Error for a start that the solver cannot store: unknown levels and, if particles split and merge,
+/// ids that repeat or reach the capacity.
 void check_start(const std::vector<ParticleState>& start, int capacity, bool adaptive);
-/// The finest and the coarsest level that particles may have in a run that does not resume: those of its
-/// start, of the nozzles, and of what splits and merges.
+/// The finest and the coarsest level that particles may have in a run that does not resume: the levels of its
+/// start, of water from nozzles, and of particles that split and merge.
 std::pair<int, int> levels_at_start(const Scene& scene, const SimulationOptions& options);
-/// Stores the particles of a start in columns with room for them, and counts their mass units.
+/// Copies the particles of a start into the allocated columns, and sums their mass in m_*.
 void put_in(FluidState& state, const std::vector<ParticleState>& start);
 /// Sets the temperatures at frame 0 from the scene's boxes, and an empty heat ledger; does nothing if no
 /// stage needs temperatures.
 void warm_up(FluidState& state, const Scene& scene);
 /// Sets positions and velocities of existing particles, by id. base::Error for an unknown id.
 void put_again(FluidState& state, const std::vector<ParticleState>& particles);
-/// The state of the scene's jets before `frame`.
+/// Sets up the scene's jets as they are before `frame`.
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);
 /// base::Error if foam particles are so small that a frame may emit more than an int can count.
 void check_foam(const FluidState& state, const EffectCoefficients& effects, const Scene& scene,
                 double frame_dt_s);
-/// The pool of the scene's foam, empty.
+/// Allocates the pool of the scene's foam, without particles.
 void begin_foam(FluidState& state, const Scene& scene);
-/// Updates effect state after the list of effects has changed: allocates these columns, and memory only for
-/// the listed effects. Remaining effects keep their values.
+/// Updates effect state after the list of effects has changed: allocates `columns`, and memory only for the
+/// listed effects. Remaining effects keep their values.
 void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns);
 /// Lets the water come to rest, at one level and behind the gate if there is one, in substeps of
 /// state.parameters; afterwards the walls are the tank's. base::Error if a particle became non-finite.
@@ -121,7 +125,8 @@ RelaxedStart relax_start(FluidState& state, int most);
 /// V^n and E^n of temporal acceleration from the present particles, as the previous frame would have left
 /// them. Call after relax_start: density decides what counts as spray.
 void start_velocity_grid(FluidState& state);
-/// Both, for a start in the middle of a run; guard counts of this phase are discarded.
+/// relax_start and, with temporal acceleration, start_velocity_grid, for a start in the middle of a run.
+/// Guard counts of this phase are discarded.
 RelaxedStart prepare_start(FluidState& state, int most);
 
 }  // namespace sim::SIM_BACKEND

@@ -20,9 +20,9 @@ void keep_activation(Archive& archive, Activation& a) {
   archive(a.columns_set, a.all_marked, a.grid, a.near, a.range, a.slots, a.slot_of);
 }
 
-/// Archives the particles in their order, each method's memory, and the neighbours with which the next frame
-/// begins. `state` already has its particle count, columns and walls. State that each frame rebuilds is left
-/// out.
+/// Writes or reads the particles in their order, the state that methods carry from frame to frame, and the
+/// neighbour lists with which the next frame begins. `state` already has its particle count, columns and
+/// walls. State that each frame computes anew is left out.
 template <class Archive>
 void keep_fluid(Archive& archive, FluidState& state) {
   archive(state.mass_units, state.drained, state.guards, state.parameters.iterations,
@@ -36,11 +36,11 @@ void keep_fluid(Archive& archive, FluidState& state) {
           state.saliency.frames_since);
   keep_activation(archive, state.activation);
   if (state.foam.capacity() > 0) archive(state.foam);
-  // Positions at the end of the last substep: a frame begins there.
+  // Bodies have their positions at the end of the last substep, from which the next frame starts.
   if (state.obstacles.exists()) archive(state.obstacles.bodies);
   if (state.obstacles.free.size() > 0) archive(state.obstacles.free);
   if (state.obstacles.meet()) archive(state.obstacles.by_others);
-  // Only methods with levels use neighbours before particles move.
+  // Only methods with levels use neighbour lists before particles move.
   const bool with_lists = state.lists_hold && state.particles.has(Column::Target);
   state.neighbours.keep(archive, with_lists);
   if constexpr (Archive::reads) state.lists_hold = with_lists;

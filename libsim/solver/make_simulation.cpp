@@ -27,7 +27,7 @@ std::unique_ptr<Simulation> make_on_backend(const Scene& scene, const Simulation
 }
 }  // namespace
 
-// Both back ends use the same rule.
+// Both back ends have the same minimum, so the CPU's function serves for both.
 int least_substeps(const Scene& scene, const SimulationOptions& options) {
   return cpu::least_substeps(scene, options);
 }

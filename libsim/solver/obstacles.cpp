@@ -43,7 +43,7 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
                                   mass_unit(state));
   const auto moment = [&](std::size_t k) { return static_cast<float>(mass * moments[k]); };
   out.inertia = {moment(0), moment(1), moment(2)};
-  // It starts at rest, with its weight supported.
+  // The body starts at rest, with a force that supports its weight.
   out.force = out.mass * state.parameters.gravity.lift();
   out.force_left = -1.0f * out.force;
   return out;
@@ -54,7 +54,8 @@ FreeBody free_of(const Obstacle& o, const FluidState& state) {
 void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s,
                      bool recorded) {
   auto& o = state.obstacles;
-  // Substeps are short enough for it (substep_rule). Supports are rounded to floats.
+  // Substeps are short enough that no particle passes through an obstacle of this thickness (substep_rule).
+  // The factor allows for supports that are rounded to floats.
   const double least = (1 - 1e-6) * static_cast<double>(state.supports.h[coarsest_level]) / 2;
   for (const Obstacle& obstacle : scene.obstacles) {
     if (thickness_m(obstacle) >= least) continue;
@@ -116,8 +117,8 @@ void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges) 
     for (std::size_t k = 0; k < 3; ++k) {
       const double end = half[k] + obstacle.radius_m, edge = 1e-6 * end;
       if (!(gauge.min_m[k] < gauge.max_m[k]) || gauge.min_m[k] > end || gauge.max_m[k] < -end)
-        throw base::Error(who, "holds no part of its obstacle",
-                          "give min_m < max_m about a part of the surface, in the obstacle's own axes");
+        throw base::Error(who, "covers no part of its obstacle",
+                          "give min_m < max_m that enclose a part of its surface, in the obstacle's axes");
       low[k] = gauge.min_m[k] <= edge - end ? -endless : static_cast<float>(gauge.min_m[k]);
       high[k] = gauge.max_m[k] >= end - edge ? endless : static_cast<float>(gauge.max_m[k]);
     }

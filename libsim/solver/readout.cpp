@@ -17,7 +17,8 @@ struct PackForDrawing {
   }
 };
 
-/// In the last quarter of a mean lifetime the radius shrinks with the remaining volume.
+/// Packs a foam particle for drawing. In the last quarter of a mean lifetime its volume decreases to 0 in
+/// proportion to the remaining time.
 struct PackFoam {
   const Vec4* place;
   float radius, fades_s;

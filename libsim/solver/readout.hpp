@@ -11,10 +11,10 @@ namespace sim::SIM_BACKEND {
 
 constexpr float radius_per_support = 0.25f;  ///< h = 4 r
 
-/// sim::ParticleField in the particles' order; without the column 0, or 1 for Active.
+/// The values of `field` in the particles' order. If the solver has no such column: 0, or 1 for Active.
 std::vector<float> field_of(const Particles& particles, ParticleField field);
 
-/// One entry per particle; `parts` may be empty.
+/// Fills `out` with one entry per particle. `parts` may be empty; the parts of saliency are then 0.
 void pack_saliency(const std::vector<float>& s, const std::vector<std::uint8_t>& target,
                    const std::vector<SaliencyParts>& parts, std::vector<ParticleSaliency>& out);
 
@@ -26,19 +26,20 @@ LevelEvents events_of(const LevelCounts& counts);
 /// The report of the state: all but frame, time, substeps, tau, splits and merges, and the start.
 FrameReport report_of(const FluidState& state);
 
-/// Ordered by id.
+/// The state of every particle, ordered by id.
 std::vector<ParticleState> states_of(const Particles& particles);
 
 /// Position and radius of each particle, in the present order.
 void render_particles_of(const Particles& particles, std::vector<RenderParticle>& out);
-/// The same in the back end's memory, one entry per particle.
+/// Writes position and radius of each particle to `out`, in the back end's memory.
 void pack_for_drawing(const Particles& particles, Vec4* out);
 
-/// All zero without foam.
+/// Counts of foam particles; all zero without foam.
 FoamReport report_of(const FoamPool& pool);
 /// Position and radius of each diffuse particle; it shrinks as it dissolves.
 void render_foam_of(const FluidState& state, std::vector<RenderParticle>& out);
-/// The same in the back end's memory, one entry per slot of the pool; unused slots have radius 0.
+/// Writes position and radius of each slot of the foam's pool to `out`, in the back end's memory; unused
+/// slots have radius 0.
 void pack_foam(const FluidState& state, Vec4* out);
 
 }  // namespace sim::SIM_BACKEND

@@ -11,14 +11,15 @@ namespace sim::SIM_BACKEND {
 
 struct Schedule {
   std::vector<Stage> frame_start, substep, iteration, substep_end, frame_end;
-  std::size_t passes = 0;   ///< of all phases together
-  ColumnSet columns;        ///< union of what the passes read and write
+  std::size_t passes = 0;   ///< number of passes in all phases
+  ColumnSet columns;        ///< all columns that the passes read or write
   std::string explanation;  ///< why each pass runs, and why each other known stage does not
 };
 
 /// Drops stages that are not required. The order changes only if two passes of one phase share a loop: the
-/// later one then runs with the earlier one, if nothing between them touches what it writes or writes what it
-/// reads. base::Error if a pass reads a column that no earlier pass has written; it names both.
+/// later one then runs with the earlier one, if no pass between them accesses a column that the later one
+/// writes, or writes a column that it reads. base::Error if a pass reads a column that no earlier pass has
+/// written; the error names the pass and the column.
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages(),
                           const std::vector<SharedLoop>& loops = shared_loops());
 

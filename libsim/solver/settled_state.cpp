@@ -22,13 +22,13 @@ constexpr std::size_t digest_size = 64;
 constexpr const char* solver_digest =
 #include "solver_digest.inc"
     ;
-// 4M particles of n_* x 8 at 32 bytes.
+// Largest file: the digest and 8 n_* particles of 32 bytes, with n_* = 4M.
 constexpr std::size_t most_bytes = std::size_t{32} * 8 * (4u << 20) + digest_size;
 constexpr std::chrono::hours forgotten_after{30 * 24};
 static_assert(std::is_trivially_copyable_v<ParticleState> && sizeof(ParticleState) == 32);
 
-/// A hash detects damage, but not a bad state: if numbers are not finite, or the particles are not those of a
-/// fill, the water is settled again.
+/// True if all numbers are finite and the particles are numbered as a fill numbers them; otherwise the water
+/// is settled again. The file's hash detects damage, but not a state that was bad when it was written.
 bool is_sound(const std::vector<ParticleState>& state) {
   int id = 0;
   return std::all_of(state.begin(), state.end(), [&](const ParticleState& p) {

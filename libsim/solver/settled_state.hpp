@@ -1,5 +1,5 @@
 #pragma once
-/// Cache of settled states: programs need not recompute the 120 frames of settling.
+/// Cache of settled states: programs need not compute the frames of settling again.
 
 #include <filesystem>
 #include <optional>
@@ -14,7 +14,7 @@ namespace sim {
 /// VIP_CACHE_DIR is empty.
 std::filesystem::path default_cache_folder();
 
-/// Names everything that a settled state depends on: scene file, effects (a study varies them within one
+/// Hash of everything that a settled state depends on: scene file, effects (a study varies them within one
 /// file), method, n_*, back end, step, solver numbers, and the bytes of the solver's libraries, so that a
 /// changed solver never reads an old state. Programs of one build share their states.
 std::string settled_key(const Scene& scene, const SimulationOptions& options);

@@ -11,12 +11,12 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Accepted mean compression of a start. The remainder becomes speed on the cells of the coarse pressure: at
-/// 1 % the surface of SingleDam at n_* = 32k had dents five frames later, and ejected lumps after fifteen.
+/// Accepted mean compression of a start. The coarse pressure turns remaining compression into speed: at 1 %
+/// the surface of SingleDam at n_* = 32k had dents five frames later, and ejected lumps after fifteen.
 constexpr double enough = 0.002;
 
-/// Weighted by mass: in a mean over particles many fine ones would outweigh coarse water that is still
-/// compressed.
+/// Compression of each particle, max(rho / rho_0 - 1, 0), weighted by mass. In an unweighted mean, many fine
+/// particles would outweigh coarse water that is still compressed.
 struct Excess {
   const float* density;
   const std::uint8_t* level;
@@ -85,7 +85,8 @@ std::pair<int, int> levels_at_start(const Scene& scene, const SimulationOptions&
     out = {least->level, most->level};
   }
   if (method.adaptive()) return {0, std::max(out.second, options.levels - 1)};
-  // Nozzles reuse particles of one level, and make those of mixed levels anew.
+  // If all particles have one level, nozzles reuse them. With mixed levels, nozzles create particles of the
+  // method's start level.
   if (scene.nozzles.empty() || out.first == out.second) return out;
   return {std::min(out.first, method.start_level), std::max(out.second, method.start_level)};
 }
@@ -143,7 +144,8 @@ void put_again(FluidState& state, const std::vector<ParticleState>& particles) {
   for (const auto& particle : particles) {
     const auto found = std::find(ids.begin(), ids.end(), particle.id);
     if (found == ids.end())
-      throw base::Error("particle " + std::to_string(particle.id), "is not there", "use ids of read_ids");
+      throw base::Error("particle " + std::to_string(particle.id), "does not exist",
+                        "use an id that read_ids returns");
     const auto i = static_cast<std::size_t>(found - ids.begin());
     position[i] = {particle.x_m, particle.y_m, particle.z_m, position[i].w};
     velocity[i] = {particle.vx_m_s, particle.vy_m_s, particle.vz_m_s, 0};
@@ -164,7 +166,8 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
       throw base::Error("scene " + scene.name + ", nozzle.position_m", nozzle_at_lid,
                         "take shorter frames, or lower the nozzle by " + base::shortest(beyond) + " m");
   for (Nozzle& nozzle : jets.nozzles) {
-    // A scene counts its own frames: a pulse lasts equally long in a run with another frame time.
+    // A scene gives pulses in frames of its frame time. They are converted, so that a pulse lasts equally
+    // long in a run with another frame time.
     const auto in_the_run = [&](int frames) {
       return static_cast<int>(std::lround(frames * scene.frame_dt_s / jets.frame_dt_s));
     };
@@ -182,8 +185,9 @@ void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& 
 
 namespace {
 
-/// Edge of the cells for foam's closing speeds: the scene's length, but at least 1.5 spacings of the coarsest
-/// particles that a method may have at this n_*, and at most the maximum number of cells.
+/// Edge, m, of the cells in which foam's closing speeds are measured: the effect's length, or by default a
+/// sixth of the cube root of the water's volume. At least 1.5 spacings of the coarsest particles that a
+/// method may have at this n_*, and large enough for the maximum number of cells.
 float foam_length(const FluidState& state, const EffectCoefficients& e, const Scene& scene) {
   const float asked = e[EffectOption::FoamLength];
   const float wish = std::max(asked > 0 ? asked : static_cast<float>(std::cbrt(water_volume_m3(scene)) / 6),
@@ -201,7 +205,7 @@ void lay_foam_cells(FluidState& state, const Scene& scene) {
 void check_foam(const FluidState& state, const EffectCoefficients& e, const Scene& scene, double frame_dt_s) {
   const double diameter = static_cast<double>(e[EffectOption::FoamDiameter]);
   const Vec3d& tank = scene.tank_size_m;
-  // Approach and crest may both have their full potential, in a tank full of water that is all surface.
+  // Upper bound: approach and crest both have their full potential, everywhere in a full tank.
   const auto crest = static_cast<double>(e[EffectOption::FoamCrestWeight] * foam_length(state, e, scene) /
                                          state.supports.h[0]);
   const double most = (1 + 2 * crest) * static_cast<double>(e[EffectKind::Foam]) * frame_dt_s * tank[0] *
@@ -260,7 +264,7 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
   if (const auto lost = state.guards.to_host()[0].not_finite; lost > 0) {
     throw base::Error("scene " + scene.name + ", settling",
                       std::to_string(lost) + " times a particle was not finite or far outside the tank",
-                      "use a longer or shorter time step, or other numbers of the solver");
+                      "use another time step, or the solver's default numbers");
   }
   // Other guard events while settling are not part of the run.
   state.guards.zero();
@@ -272,7 +276,7 @@ RelaxedStart relax_start(FluidState& state, int most) {
   if (p.size() == 0) return out;
   Array<float> excess(static_cast<std::size_t>(p.size()));
   Array<float> mass(static_cast<std::size_t>(p.size()));
-  state.iteration = 0;  // no momentum
+  state.iteration = 0;  // a first iteration takes no momentum step
   for (;; ++out.projections) {
     out.compression = mean_compression(state, p, excess, mass);
     if (out.compression < enough || out.projections == most) return out;

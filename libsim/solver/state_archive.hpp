@@ -57,7 +57,7 @@ class StateWriter {
   std::string out_;
 };
 
-/// Reads bytes whose checksum was verified. base::Error if they still do not fit.
+/// Reads bytes whose checksum was verified. base::Error if the bytes still do not fit the state.
 class StateReader {
  public:
   static constexpr bool reads = true;
@@ -115,7 +115,7 @@ class StateReader {
   std::string_view left_;
 };
 
-/// The allocated columns, n values each.
+/// Writes or reads the allocated columns, with one value per particle.
 template <class Archive>
 void keep_columns(Archive& archive, Particles& particles) {
   auto& columns = particles.all();

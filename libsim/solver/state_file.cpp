@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view magic = "ViP-Lab state\n";
 constexpr std::size_t digest_size = 64;
 constexpr std::size_t head_size = magic.size() + sizeof(std::int32_t) + 2 * digest_size;
-// 4M particles of n_* x 8 at 250 bytes.
+// Largest file: 8 n_* particles of 250 bytes, with n_* = 4M.
 constexpr std::size_t most_bytes = std::size_t{250} * 8 * (4u << 20);
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& problem,
@@ -37,7 +37,8 @@ void add(std::ostream& text, const Readings& r) {
        << ' ' << r.calm_floor << ' ' << r.calm_viscosity << '\n';
 }
 
-/// A scene without a file has no hash: so everything that shapes a run is included here too.
+/// Adds all values of a scene that influence a run, because a scene that was not read from a file has no
+/// hash.
 void add(std::ostream& text, const Scene& s) {
   text << s.sha256 << ' ' << s.gravity_m_s2.size() << ' ' << s.frame_dt_s << ' ' << s.v_ref_m_s << ' '
        << s.solver_iterations << ' ' << s.min_substeps << ' ' << s.courant << ' ' << s.viscosity_m2_s;

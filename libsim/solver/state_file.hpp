@@ -1,6 +1,6 @@
 #pragma once
-/// The file of a run's whole state (Simulation::save_state, SimulationOptions::resume_from): a magic, a
-/// format number, the run's key, and a body with its SHA-256.
+/// The file of a run's whole state (Simulation::save_state, SimulationOptions::resume_from): a fixed first
+/// line, a format number, the run's key, and a body with its SHA-256.
 
 #include <filesystem>
 #include <string>
@@ -13,15 +13,15 @@ namespace sim {
 /// Increase when the layout of the body or the contents of the key change.
 inline constexpr int state_file_format = 5;
 
-/// SHA-256 of everything that a state belongs to: scene, method, n_*, back end, levels, readings and numbers
-/// of the solver. Runs with equal keys continue identically from one state.
+/// SHA-256 of everything that determines a run: scene, method, n_*, back end, levels, readings and numbers of
+/// the solver. Runs with equal keys continue identically from one state.
 std::string run_key(const Scene& scene, const SimulationOptions& options);
 
 /// Writes a temporary file and renames it. base::Error on failure.
 void write_state_file(const std::filesystem::path& path, std::string_view key, std::string_view body);
 
-/// The body of a state with this `key`. base::Error at the path: missing, not a state file, another format,
-/// another run, damaged or truncated.
+/// The body of a state with this `key`. base::Error, with the path, if the file is missing, no state file, of
+/// another format or another run, damaged or truncated.
 std::string read_state_file(const std::filesystem::path& path, std::string_view key);
 
 }  // namespace sim

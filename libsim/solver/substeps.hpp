@@ -23,7 +23,7 @@ class TwoFramesAgo {
   T older_, newer_;
 };
 
-/// Inputs of the rule. SI units.
+/// Inputs of SubstepRule, in SI units.
 struct SubstepLimits {
   double frame_dt_s = 0;
   double support_m = 0;          ///< h of the finest particles that the method can hold
@@ -36,15 +36,16 @@ struct SubstepLimits {
   int most = 1;  ///< >= least
 };
 
-/// Follows the fastest particle: v dt <= courant h, with its speed two frames ago plus what the forces may
-/// have added since. Also a dt^2 <= push h, with a the acceleration by the forces.
+/// Chooses the number of substeps so that v dt <= courant h and a dt^2 <= push h. v is the speed of the
+/// fastest particle two frames ago, plus the speed that the forces may have added since; a is the
+/// acceleration by the forces.
 class SubstepRule {
  public:
   SubstepRule() = default;
   /// `fastest_m_s`: the speed assumed for the first two frames.
   SubstepRule(const SubstepLimits& limits, double fastest_m_s) : limits_(limits), fastest_(fastest_m_s) {}
 
-  /// Uses the limits of `other` from now on, with the speeds that this rule has seen.
+  /// Uses `least` and `most` of `other` from now on. Other limits and the measured speeds do not change.
   void take_bounds(const SubstepRule& other) {
     limits_.least = other.limits_.least;
     limits_.most = other.limits_.most;
@@ -58,7 +59,7 @@ class SubstepRule {
     const double by_push =
         limits_.frame_dt_s * std::sqrt(limits_.acceleration_m_s2 / (limits_.push * limits_.support_m));
     const double steps = by_way < by_push ? by_push : by_way;
-    // Also for non-finite speeds, which the guards repair.
+    // The bound also covers speeds that are not finite, which the guards repair.
     const double counted = steps < 1e6 ? std::ceil(steps - 1e-9) : 1e6;
     return std::max(limits_.least, static_cast<int>(counted));
   }

@@ -47,7 +47,9 @@ std::string gbuffer_bytes(const GBuffer& g, const std::string& place) {
   const auto pixels = static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height);
   for (const std::size_t size : {g.depth.size(), g.filtered_depth.size(), g.normal.size() / 3,
                                  g.thickness.size(), g.front.size(), g.radius.size()}) {
-    if (size != pixels || pixels == 0) throw base::Error(place, "the G-buffer's arrays are not whole", "");
+    if (size != pixels || pixels == 0)
+      throw base::Error(place, "an array of the G-buffer does not fit its size in px",
+                        "fill every array for width x height px");
   }
   const Viewport& v = g.view.viewport;
   const Header header{g.width,        g.height,    {v.x, v.y, v.width, v.height},

@@ -1,5 +1,6 @@
 #pragma once
-/// The camera's view of the fluid, per pixel, on the host. No GL: tests and the saliency can use stored ones.
+/// G-buffers: depth, normal, thickness and front particle of the fluid at each pixel of a camera, on the
+/// host. Independent of GL, so that tests and saliency can use stored G-buffers.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,8 +13,8 @@
 
 namespace sim {
 
-/// All arrays hold width * height values, row by row from the bottom (as in OpenGL). Depths are positive
-/// distances along the view direction in m, +infinity without fluid.
+/// Arrays hold width * height values (normal: three times as many), row by row from the bottom (as in
+/// OpenGL). Depths are positive distances along the view direction in m, +infinity without fluid.
 struct GBuffer {
   static constexpr std::uint32_t no_particle = 0xffffffffu;
 
@@ -29,7 +30,8 @@ struct GBuffer {
   /// 3 values per pixel: unit normal in eye space (x right, y up, z to the viewer); 0: no fluid. Noisy in
   /// foam.
   std::vector<float> normal;
-  /// Sum of the chords of all spheres along the pixel's ray, m, not smoothed; water is this / packing.
+  /// Sum of the chords of all spheres along the pixel's ray, m, not smoothed. The path length in water is
+  /// this sum / RenderOptions::packing.
   std::vector<float> thickness;
   std::vector<std::uint32_t> front;  ///< index of the front particle, or no_particle
   std::vector<float> radius;         ///< radius of the front particle, m; 0 without fluid
@@ -45,12 +47,12 @@ struct GlPicture {
   GlBufferRef normal;  ///< four floats per pixel: GBuffer::normal and GBuffer::radius
 };
 
-/// A versioned binary file, written by rename; reading checks magic, version, size and that every array is
-/// complete (base::Error).
+/// Writes and reads a versioned binary file. The file is replaced as a whole by a rename. Reading checks
+/// magic, version, size and that every array is complete (base::Error).
 void write_gbuffer(const std::filesystem::path& path, const GBuffer& gbuffer);
 GBuffer read_gbuffer(const std::filesystem::path& path);
 
-/// The same as part of another file; errors name that file.
+/// The bytes of a G-buffer file, for storage inside another file; errors name that file by `place`.
 std::string gbuffer_bytes(const GBuffer& gbuffer, const std::string& place);
 GBuffer gbuffer_of(std::string_view bytes, const std::string& place);
 

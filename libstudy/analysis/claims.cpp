@@ -13,7 +13,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// Questions that the design's trials ask.
+/// Questions asked in the stimulus blocks; a question asked in several steps appears several times.
 std::vector<Question> asked_questions(const Protocol& protocol) {
   std::vector<Question> out;
   for (const auto& block : protocol.blocks) {
@@ -33,7 +33,7 @@ bool asks_scale(const std::vector<Question>& asked, const std::string& id) {
                      [&](const Question& one) { return one.id == id && traits_of(one.kind).rated(); });
 }
 
-/// Why none of H1 to H6 applies to this protocol; empty if some may.
+/// The reason why none of H1 to H6 applies to the protocol; empty if some may apply.
 std::string why_none(const Protocol& protocol) {
   if (!protocol.design.effects.empty())
     return "effects are a factor, and H1 to H6 are about methods alone; what each level is worth is "
@@ -64,7 +64,7 @@ Shown shown_by(const Protocol& protocol) {
   return out;
 }
 
-/// H1 to H3.
+/// Claims H1 to H3, which compare ratings of methods shown one by one.
 stats::ShownClaims claims_of_ratings(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (protocol.design.pairs) return {{}, {{"H1 to H3", methods_in_pairs}}};
   if (const std::string missing = missing_items(asked_questions(protocol)); !missing.empty())
@@ -84,7 +84,7 @@ stats::ShownClaims claims_of_ratings(const Protocol& protocol, const stats::Anal
       shown.methods);
 }
 
-/// H4 to H6.
+/// Claims H4 to H6, which compare choices between pairs of methods.
 stats::ShownClaims claims_of_pairs(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (!protocol.design.pairs) return {{}, {{"H4 to H6", no_pairs}}};
   if (!asks_choice_of_pair(protocol)) return {{}, {{"H4 to H6", no_choice_of_pair}}};

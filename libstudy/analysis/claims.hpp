@@ -1,5 +1,5 @@
 #pragma once
-/// Which hypotheses the shipped analyses can test for a protocol, known before there are data.
+/// Finds the hypotheses that the built-in analyses can test for a protocol. No data are needed.
 
 #include <string>
 #include <vector>
@@ -18,23 +18,24 @@ inline constexpr const char* no_choice_of_pair =
 /// Items of the cybersickness score without unrealism.
 inline const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
 
-/// Returns H1 to H3 if the protocol shows methods one by one and asks for realism and cybersickness, and H4
-/// to H6 if it asks for a choice between pairs of methods. Hypotheses that need methods not shown are left
-/// out, with the reason.
+/// Returns H1 to H3 if the protocol shows methods one by one and asks for realism and cybersickness. Returns
+/// H4 to H6 if it asks for a choice between pairs of methods. A hypothesis about a method that the protocol
+/// does not show is listed in `left_out` with the reason, and so are all six if effects or frame rates vary.
 stats::ShownClaims hypotheses_of(const Protocol& protocol, const stats::AnalysisPlan& plan);
 
-/// True if the protocol rates methods one by one and asks for realism and for these items: the margin of the
-/// items' score then has an effect.
+/// True if participants rate several methods one by one, for realism and for each of `items`. Only then does
+/// the analysis plan's margin for the mean of the items have an effect.
 bool compares_scores(const Protocol& protocol, const std::vector<std::string>& items);
 
-/// Names the questions that H1 to H3 need and the trials do not ask; empty if none is missing.
+/// A sentence that names the questions needed for H1 to H3 but missing from `asked`; empty if none is
+/// missing.
 std::string missing_items(const std::vector<Question>& asked);
 
-/// True if the question rates sickness; such questions have their own analysis.
+/// True if the question belongs to the FMS or the SSQ. Sickness questions have their own analysis.
 bool is_sickness(const Question& question);
 
-/// Scale questions that the trials ask at several frame rates, without questions on sickness: each gets a
-/// curve.
+/// Scale questions, except those on sickness, asked in a study that varies the frame rate. A pilot fits one
+/// curve mu = a exp(b delta) to the answers to each question.
 std::vector<Question> curve_questions(const Protocol& protocol);
 
 }  // namespace study

@@ -32,7 +32,7 @@ Json json_interval(const std::optional<std::array<double, 2>>& interval) {
 }
 
 int interval_decimals(const std::array<double, 2>& interval, int decimals) {
-  constexpr int most = 8;  // smaller values are rounding
+  constexpr int most = 8;  // smaller ends are rounding errors of 0
   const auto looks_like_0 = [](double end, int digits) {
     return end != 0 && std::abs(end) <= 0.5 * std::pow(10.0, -digits);
   };
@@ -51,7 +51,7 @@ std::string with_names(const std::string& reason, const std::vector<std::string>
       return methods.at(static_cast<std::size_t>(std::stoi(found[1])) - first);
     });
   };
-  // Models count methods from 0, comparisons items from 1.
+  // In the reasons, methods are numbered from 0 and items from 1.
   return items.replaced(named(reason, column, 0),
                         [&](const base::Groups& found) { return named(found[1], item, 1); });
 }

@@ -20,18 +20,19 @@ Json json_interval(const std::array<double, 2>& interval);
 Json json_interval(const std::optional<std::array<double, 2>>& interval);
 /// Reads back the number that json_number() wrote; 0 for null.
 double number_of(const Json& json);
-/// In frames/s. No protocol has a higher rate (design.mean_fps), so an interval that ends beyond it has no
-/// upper bound.
+/// Highest frame rate that a protocol accepts in design.mean_fps, in frames/s. An interval of a frame rate
+/// that ends above it is shown with "no upper bound".
 inline constexpr double highest_rate = 1000;
-/// Decimals for printing both ends of an interval: `decimals`, or as many more as needed so that no nonzero
-/// end is printed as 0. A reader then sees if the interval covers 0.
+/// Number of decimals for printing both ends of an interval: at least `decimals`, and more where a nonzero
+/// end would be printed as 0. A reader can then see if the interval covers 0. Falls back to `decimals` if 8
+/// decimals are not enough.
 int interval_decimals(const std::array<double, 2>& interval, int decimals);
 /// {"refused": reason}.
 Json json_refused(const std::string& reason);
 /// Replaces the numbers of methods in a reason from stats ("method0, method2", "item 1", "items 1, 3") by
 /// their names.
 std::string with_names(const std::string& reason, const std::vector<std::string>& methods);
-/// "***", "**", "*" or ""; "" without p.
+/// Stars of significance for p: "***", "**", "*" or ""; "" if p is empty.
 std::string json_stars(const std::optional<double>& p);
 
 /// Index of `item` in `list`, from 0; the list's length if it is absent.

@@ -52,8 +52,9 @@ void read_exclusions(const base::TomlTable& table, stats::ExclusionRules& rules)
   rules.min_answered = table.number_or("min_answered", rules.min_answered, share);
 }
 
-/// A file that names protocols was frozen. If it lacks these keys, it was frozen before they existed and is
-/// analysed by the rules of that time.
+/// A plan file with the key `protocols` was written by a preregistration. If it lacks `decision` or
+/// `directional`, an older version of the program wrote it. Each missing key then has that version's rule:
+/// Holm for `decision`, one-sided tests in H2, H3 and H6 only for `directional`.
 void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   const bool frozen = root.has("protocols");
   if (frozen && !root.has("decision")) plan.decision = stats::DecisionRule::Holm;
@@ -115,7 +116,7 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
   return plan;
 }
 
-/// Empty if all rules have their defaults.
+/// The file's [pilot] table as text; empty if all of the pilot's rules have their defaults.
 std::string format_pilot(const stats::PilotRules& rules) {
   if (!rules.exclude_reverse_coders && !rules.model_drift && !rules.model_lapses) return "";
   return std::string("\n[pilot]\nreverse_coders = ") +
@@ -143,7 +144,7 @@ const char* timing_rule_name(stats::TimingRule rule) { return timing_names[stati
 stats::TimingRule timing_rule_of(const std::string& name) {
   const auto at = index_of_name(timing_names, name);
   if (at == timing_names.size())
-    throw base::Error("timing rule", "\"" + name + "\" is none", "use none, fail or degraded");
+    throw base::Error("timing rule", "\"" + name + "\" is no such rule", "use none, fail or degraded");
   return static_cast<stats::TimingRule>(at);
 }
 

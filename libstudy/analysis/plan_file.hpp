@@ -13,24 +13,27 @@ namespace study {
 /// A plan and its source.
 struct PlanInForce {
   stats::AnalysisPlan plan;
-  std::string source = "defaults";     ///< or the file's name
-  std::string sha256;                  ///< of the file; empty: no file
-  std::vector<std::string> protocols;  ///< SHA-256 of the protocols that it was preregistered for
+  std::string source = "defaults";     ///< name of the plan's file; "defaults" without a file
+  std::string sha256;                  ///< SHA-256 of the plan's file; empty without a file
+  std::vector<std::string> protocols;  ///< SHA-256 of each protocol for which the plan was preregistered
 };
 
-/// Reads TOML. Every key is optional and has its default, with one exception: a file that names protocols and
-/// lacks `decision` or `directional` was frozen before these keys existed, and follows the rules of that time
-/// (Holm). base::Error at file:line:column for an unknown key, a wrong type or a value out of range.
+/// Reads a plan from a TOML file. Only `format` is required; a missing key has its default. A preregistered
+/// file (one with the key `protocols`) has older defaults: `decision` is Holm, `directional` holds for H2, H3
+/// and H6, `more_than_one_trial` is "refuse". base::Error at file:line:column for an unknown key, a wrong
+/// type or a value out of range.
 PlanInForce read_plan(const std::filesystem::path& file);
 
-/// Converts to "none", "fail" or "degraded" and back; base::Error for another name.
+/// timing_rule_name() returns a rule's name: "none", "fail" or "degraded". timing_rule_of() returns the rule
+/// of a name, and throws base::Error for any other name.
 const char* timing_rule_name(stats::TimingRule rule);
 stats::TimingRule timing_rule_of(const std::string& name);
 
-/// Text of a plan file that read_plan() reads back as the same plan; every key is written out.
+/// Text of a plan file. read_plan() reads the same plan from it. The tables [pilot] and [levels] are written
+/// only if they differ from the defaults, all other keys always.
 std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::string>& protocols);
 
-/// "plan" of the results; `protocols`: SHA-256 of the study's protocols.
+/// The entry "plan" of the results. `protocols`: SHA-256 of the study's protocols.
 Json plan_json(const PlanInForce& plan, const std::vector<std::string>& protocols);
 
 }  // namespace study

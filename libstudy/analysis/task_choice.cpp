@@ -25,7 +25,7 @@ const char* what_it_shows(TaskKind task) {
 
 bool is_scale(const Question& question) { return traits_of(question.kind).rated() && !is_sickness(question); }
 
-/// True if the answer is one of two stimuli.
+/// True if the question is a choice with exactly two anchors, one for each stimulus of a pair.
 bool is_choice_of_two(const Question& question) {
   return traits_of(question.kind).labelled && question.anchors.size() == 2;
 }
@@ -36,13 +36,13 @@ bool asks(const TaskProtocol& protocol, bool (*wanted)(const Question&)) {
 
 std::string name_of(const TaskProtocol& protocol) { return protocol.name + " " + protocol.version; }
 
-/// "name 1.0 0123456789ab".
+/// Name, version and first 12 digits of the SHA-256: "name 1.0 0123456789ab".
 std::string hashed_name(const TaskProtocol& protocol) {
   return name_of(protocol) + " " + protocol.sha256.substr(0, 12);
 }
 
-/// True if `by` is the first digits of the SHA-256, the name, the name and version, or the form used in
-/// messages.
+/// True if `by` denotes the protocol: by the first digits of its SHA-256, by its name, by name and version,
+/// or by hashed_name(), which messages print.
 bool is_meant(const TaskProtocol& protocol, const std::string& by) {
   return protocol.sha256.starts_with(by) || by == protocol.name || by == name_of(protocol) ||
          by == hashed_name(protocol);
@@ -56,7 +56,8 @@ std::ptrdiff_t answered_sessions(const TaskProtocol& protocol) {
   return std::count_if(protocol.sessions.begin(), protocol.sessions.end(), has_answers);
 }
 
-/// For a design without any question the result is one empty question.
+/// Questions of the protocol that are analysed: the selected question, or if none is selected, all main
+/// questions. A protocol without questions gets one empty Question, so that it is still listed.
 std::vector<Question> main_questions(const TaskProtocol& protocol, const TaskSelection& selection) {
   std::vector<Question> out;
   for (const Question& question : protocol.questions) {
@@ -88,14 +89,15 @@ std::vector<std::string> questions_of(const std::vector<ChosenTask>& all) {
   return out;
 }
 
-/// Protocols that match the selection: first those with real answers, whose number is `real`.
+/// Protocols that match the selection. The first `real` of them have real answers, the others only test data
+/// or no answers.
 std::vector<const TaskProtocol*> protocols_for(const TaskStudy& study, const TaskSelection& selection,
                                                std::size_t& real) {
   std::vector<const TaskProtocol*> out;
   for (const TaskProtocol& protocol : study.protocols)
     if (is_asked_for(protocol, selection)) out.push_back(&protocol);
-  // The protocol with most answered sessions first, so that a version with a mistake comes after its
-  // corrected version.
+  // Protocols are sorted by their number of answered sessions, the largest first. A faulty version, used in
+  // few sessions, then comes after its corrected version.
   std::stable_sort(out.begin(), out.end(), [](const TaskProtocol* a, const TaskProtocol* b) {
     return answered_sessions(*a) > answered_sessions(*b);
   });

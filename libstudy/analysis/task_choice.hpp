@@ -1,6 +1,6 @@
 #pragma once
-/// Chooses which protocols of a database and which of their questions to analyse, and at which level of a
-/// scale.
+/// Chooses the protocols of a database and the questions that are analysed, and the score at which a pilot's
+/// curve is fitted.
 
 #include <optional>
 #include <string>
@@ -19,34 +19,34 @@ enum class TaskKind {
   Task2,  ///< pairs of methods, with a choice of one
   Own     ///< any other design: its answers are described, and no hypothesis is tested
 };
-/// "pilot", "task1", "task2", "own".
+/// Name in JSON and in options: "pilot", "task1", "task2", "own".
 const char* task_name(TaskKind task);
-/// For display: "Pilot", "Task 1", "Task 2", "Own design".
+/// Title for display: "Pilot", "Task 1", "Task 2", "Own design".
 const char* task_title(TaskKind task);
 TaskKind kind_of(const TaskProtocol& protocol);
 
 /// The selection made by a command's options.
 struct TaskSelection {
   TaskKind task = TaskKind::Task1;
-  std::string protocol;  ///< its name, with or without version, or leading digits of its SHA-256; empty: all
+  std::string protocol;  ///< the protocol's name, with or without version, or leading digits of its SHA-256;
+                         ///< empty: all protocols
   stats::AnalysisPlan plan;
-  std::string question = {};         ///< its id; empty: all
+  std::string question = {};         ///< the question's id; empty: all main questions
   std::optional<double> level = {};  ///< pilot: score at which the curve is fitted; empty: see level_of()
 };
 
-/// Score at which a pilot's curve is fitted: that of the selection, else of the plan, else of the protocol,
-/// whose default is the middle of the scale.
+/// Score at which a pilot's curve is fitted. It is given by the selection, else by the plan, else by the
+/// protocol; the default is the middle of the scale.
 double level_of(const TaskSelection& selection, const Question& question);
 
 bool has_answers(const TaskSession& session);
-/// True if an observer model answered it, on any page.
+/// True if an observer model answered any page of the session.
 bool is_simulated(const TaskSession& session);
 bool has_real_answers(const TaskProtocol& protocol);
 
-/// A protocol that is not analysed because it holds only test data while other protocols of its task hold
-/// real data.
+/// A protocol that is not analysed: it has no real answers, while another protocol of the same task has some.
 struct SetAside {
-  std::string name;  ///< "name 1.0, SHA-256 0123456789ab", since two may have one name and version
+  std::string name;  ///< "name 1.0, SHA-256 0123456789ab": two protocols may have the same name and version
   int sessions = 0;
 };
 
@@ -54,30 +54,35 @@ struct SetAside {
 struct ChosenTask {
   TaskProtocol protocol;
   std::vector<SetAside> set_aside;
-  /// Realism of Task 1, the choice of Task 2, a scale of the pilot, the first question of another design.
+  /// The analysed question: 'realism' in Task 1, the choice in Task 2, a scale in the pilot, in another
+  /// design the first or the selected question.
   Question question;
   bool first_of_protocol = true;  ///< true for the first question chosen from this protocol
 };
 
-/// True if the question gets an analysis of its own: the protocol asks it about its trials and its kind suits
-/// the task.
+/// True if the question has a separate analysis: in a pilot every scale except those on sickness, in Task 1
+/// the scale 'realism', in Task 2 every choice of two, in another design the protocol's first question.
 bool is_main_question(const TaskProtocol& protocol, const Question& question);
 
-/// All protocols that match the selection and have real answers, or if there are none, all that match; for
-/// each, every main question. Refused with the reason if nothing matches.
+/// One entry for each protocol that matches the selection and each of its main questions (or the selected
+/// question). Protocols without real answers are set aside if another match has some. Refused with the reason
+/// if nothing matches.
 stats::Result<std::vector<ChosenTask>> choose_tasks(const TaskStudy& study, const TaskSelection& selection);
 
-/// The only match. Refused with the reason if there are several, which are never pooled, or none.
+/// The protocol and question that match the selection. Refused with the reason if none or several match,
+/// since answers to several protocols or questions are never pooled.
 stats::Result<ChosenTask> choose_task(const TaskStudy& study, const TaskSelection& selection);
 
-/// Advice if choose_task() is refused, naming only existing choices; empty if it is not refused.
+/// Advice to the user if choose_task() is refused. It names only protocols and questions of the database.
+/// Empty if choose_task() is not refused.
 std::string mend_of_choice(const TaskStudy& study, const TaskSelection& selection);
 
-/// The reason why no analysis of any task was chosen; `mend` gets the advice. `protocol`: as given.
+/// The reason why the user's choice of protocol or question selects no analysis of any task. `mend` receives
+/// the advice. `protocol`: the user's text.
 stats::Refusal nothing_chosen(const TaskStudy& study, const std::string& protocol, std::string& mend);
 
-/// True if the level lies between the ends of the scale, as a curve requires. The reason and the advice are
-/// the same for every command.
+/// True if the level lies strictly between the ends of the question's scale; a curve can be fitted only
+/// there. outside_scale() gives the reason and mend_of_level() the advice for any other level.
 bool within_scale(double level, const Question& question);
 std::string outside_scale(double level, const Question& question);
 std::string mend_of_level(const Question& question);

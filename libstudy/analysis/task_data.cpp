@@ -15,7 +15,7 @@ namespace study {
 
 namespace {
 
-using Key = std::tuple<int, int, int>;  // participant, visit, position
+using Key = std::tuple<int, int, int>;  // participant, visit, position of the trial
 
 int index_in(const std::vector<std::string>& list, const std::string& item) {
   const auto found = std::find(list.begin(), list.end(), item);
@@ -24,7 +24,8 @@ int index_in(const std::vector<std::string>& list, const std::string& item) {
 
 Key key_of_report(const Report& report) { return {report.participant, report.visit, report.position}; }
 
-/// The session's trials without practice and repeats; periods are numbered from 0 within the visit.
+/// The session's trials without practice and repeats, as reports without answers. Periods are numbered from 0
+/// within the visit.
 std::vector<Report> planned_of(const TaskSession& session, const TaskData& data, int participant) {
   std::vector<Report> out;
   std::vector<int> blocks;
@@ -46,7 +47,7 @@ std::vector<Report> planned_of(const TaskSession& session, const TaskData& data,
   return out;
 }
 
-/// Numbers periods across visits: those of later visits follow those of earlier ones.
+/// Renumbers the periods so that the numbers of a later visit continue after those of the earlier visits.
 void count_over_visits(std::map<Key, Report>& planned) {
   std::set<std::pair<int, int>> periods;
   for (const auto& [key, report] : planned) periods.insert({report.visit, report.period});
@@ -55,7 +56,7 @@ void count_over_visits(std::map<Key, Report>& planned) {
         static_cast<int>(std::distance(periods.begin(), periods.find({report.visit, report.period})));
 }
 
-/// Sets the period of each report, and lists the planned trials without a report.
+/// Sets the period of each report. Adds the planned trials without a report to `unanswered`.
 void add_planned(TaskData& data) {
   std::map<Key, Report> planned;
   for (const auto& session : data.protocol.sessions) {
@@ -77,15 +78,15 @@ void add_planned(TaskData& data) {
 using study::TaskSession;
 using study::TaskTrial;
 
-/// "Ours n_star=16384 ... (setting SHA-256 ...)".
+/// The setting in words: "Ours n_star=16384 ... (setting SHA-256 ...)".
 std::string setting_words(const RunSetting& setting) {
   const auto file = sim::parse_setting_file(setting.text, "setting " + setting.sha256.substr(0, 12));
   const std::string words =
-      sim::to_text(file.setting);  // begins with the scene in which the setting was chosen
+      sim::to_text(file.setting);  // the first word is the scene in which the setting was chosen
   return words.substr(words.find(' ') + 1) + " (setting " + setting.sha256 + ")";
 }
 
-/// Smaller steps of a clock are normal corrections while it runs.
+/// In s. A clock that is set back by less than this is not doubted: such steps are normal corrections.
 constexpr std::int64_t small_step_s = 3600;
 
 std::optional<DoubtfulTime> doubt_about(const TaskSession& session) {
@@ -99,7 +100,7 @@ std::optional<DoubtfulTime> doubt_about(const TaskSession& session) {
                       impossible};
 }
 
-/// Fills a TaskData from the sessions that may be pooled.
+/// Fills a TaskData from the sessions of its protocol.
 class Collector {
  public:
   explicit Collector(TaskData& data) : data_(data) {}
@@ -113,7 +114,8 @@ class Collector {
   }
 
  private:
-  /// Leaves out test data if real data exist, and observer models if people exist.
+  /// Removes test data if real data exist, and sessions of observer models if a person answered. Then counts
+  /// the sessions by state and collects the times of first answers.
   void leave_out_sessions() {
     auto& sessions = data_.protocol.sessions;
     data_.test_data =
@@ -157,7 +159,7 @@ class Collector {
     if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
   }
 
-  /// True if an answer about the trial is analysed.
+  /// Counts the trial and stores its answers. Returns true if an answer about the trial is analysed.
   bool add_trial(const TaskSession& session, const TaskTrial& trial) {
     if (trial.kind == "practice") {
       ++data_.flow.practice;
@@ -176,8 +178,8 @@ class Collector {
     }
     ++data_.flow.trials_planned;
     if (record.answers == 0) return false;
-    // A participant who answered only a side question does not count as excluded, since there is nothing to
-    // analyse.
+    // In a pilot and in Task 2, a participant who answered only other questions than the analysed one is not
+    // in answered_ and so never counts as excluded.
     if (record.answer == record.answer || data_.task == TaskKind::Task1 || data_.task == TaskKind::Own)
       answered_.insert(session.participant);
     ++data_.flow.trials_answered;
@@ -285,8 +287,8 @@ class Collector {
   }
 
   TaskData& data_;
-  std::set<std::string> people_, answered_;  ///< codes of all participants, and of those with an answer to
-                                             ///< analyse
+  std::set<std::string> people_, answered_;  ///< codes of all participants, and of participants with an
+                                             ///< answer for the analysis before exclusions
 };
 
 }  // namespace

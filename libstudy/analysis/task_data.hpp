@@ -1,5 +1,6 @@
 #pragma once
-/// Collects the answers to analyse from the sessions of a database, and counts everything that is left out.
+/// Collects the answers for an analysis from the sessions of a database, and counts all sessions and trials
+/// that are left out.
 
 #include <array>
 #include <map>
@@ -14,102 +15,108 @@
 
 namespace study {
 
-/// Counts of the sessions and trials of one protocol, from start to analysis.
+/// Counts of one protocol's sessions, participants and trials, from the planned sessions to the analysed
+/// answers.
 struct TaskFlow {
-  std::map<std::string, int> by_state;  ///< sessions, by TaskSession::state
-  int started = 0;                      ///< all sessions except those only planned
-  int participants = 0;                 ///< participants of the sessions started
-  int no_answer = 0;      ///< participants without an answer to analyse, not counting practice and repeats
-  int withdrawn = 0;      ///< participants who withdrew, from any protocol of the database
-  int test_left_out = 0;  ///< sessions of test data, left out because real ones exist
+  std::map<std::string, int> by_state;  ///< number of sessions by TaskSession::state
+  int started = 0;                      ///< number of sessions in any state but "planned"
+  int participants = 0;                 ///< participants of the started sessions
+  int no_answer = 0;  ///< participants without an answer for the analysis even before exclusions; practice
+                      ///< and repeats do not count
+  int withdrawn = 0;  ///< participants who withdrew, counted over all protocols of the database
+  int test_left_out = 0;       ///< sessions of test data, left out because real data exist
   int simulated_left_out = 0;  ///< sessions of observer models, left out because sessions of people exist
-  int protocols_left_out = 0;  ///< sessions of protocols with only test data, left out because others hold
-                               ///< real data
+  int protocols_left_out = 0;  ///< sessions of the protocols in TaskData::set_aside
   int excluded_visits = 0;
-  int excluded_participants = 0;  ///< participants who answered a trial, all of whose answers are excluded
+  int excluded_participants = 0;  ///< participants who answered, but whose answers are all excluded
   int analysed = 0;               ///< participants with an analysed answer
   int trials_planned = 0, trials_answered = 0, trials_excluded = 0, trials_analysed = 0;
   int practice = 0, repeat = 0;
 };
 
-/// A showing that was played, except practice.
+/// A showing that was played, outside of practice.
 struct TimedShowing {
   TaskShowing shown;
-  bool analysed = false;  ///< its trial is analysed: answered, not excluded, not a repeat
+  bool analysed = false;  ///< true if the showing's trial is analysed: answered, not excluded and no repeat
 };
 
 /// An analysed trial with all of its answers.
 struct AnsweredTrial {
-  std::string participant;  ///< code
+  std::string participant;  ///< code of the participant
   StimulusSpec first;
   std::optional<StimulusSpec> second;
   FpsSetting first_nominal, second_nominal;
   std::vector<TaskAnswer> answers;
 };
 
-/// The first answer of a session whose clock contradicts the order in which its database was written.
+/// A session's first answer with a doubtful time: the time contradicts the order in which the rows of the
+/// database were written.
 struct DoubtfulTime {
   std::string participant, station;
-  std::string told_utc;        ///< time of the answer by the station's clock
-  std::string not_before_utc;  ///< as in TaskSession
-  bool impossible = false;  ///< the time is before ViP-Lab existed, so this clock was wrong, not the earlier
-                            ///< one
+  std::string told_utc;        ///< time of the answer in UTC, by the station's clock
+  std::string not_before_utc;  ///< earliest possible time of the answer; see TaskSession::not_before_utc
+  bool impossible = false;  ///< true if the answer's time is before ViP-Lab existed: the clock was then wrong
+                            ///< at this answer and not at the earlier rows
 };
 
-/// Task 1: the answers of one page.
+/// Task 1: the answers about one trial.
 struct Report {
   int participant = 0, visit = 1, position = 0;
   int scene = 0, n_star = 0, method = 0;
-  int period = 0;                         ///< as stats::periods_of(), numbered across visits
-  std::map<std::string, double> answers;  ///< by question; unanswered questions are absent
+  int period = 0;                         ///< stats::periods_of(), numbered from 0 over all visits
+  std::map<std::string, double> answers;  ///< score by question id; unanswered questions are absent
 };
 
-/// The answers of one task, or of the pilot, that are analysed. Indices refer to the lists here.
+/// The analysed answers of one protocol to one question. Indices of participants refer to `participants`;
+/// indices of scenes, n_* and methods refer to the lists in `protocol`.
 struct TaskData {
   TaskKind task = TaskKind::Task1;
-  TaskProtocol protocol;  ///< its sessions are the analysed ones
+  TaskProtocol protocol;  ///< its sessions are those left after removal of test data and observer models
   std::vector<SetAside> set_aside;
-  bool test_data = false;                 ///< test data are analysed, as there are no real data
-  std::vector<std::string> participants;  ///< codes
-  std::vector<std::string> scenes;        ///< short: "single_dam"
+  bool test_data = false;                 ///< true if test data are analysed, since there are no real data
+  std::vector<std::string> participants;  ///< codes of the participants with an analysed answer
+  std::vector<std::string> scenes;        ///< scenes of the protocol by scene_name(), such as "single_dam"
   std::vector<std::string> simulated;  ///< participants simulated by observer models, including excluded ones
-  std::vector<std::string> observers;  ///< the distinct models
+  std::vector<std::string> observers;  ///< the distinct observer models
   std::map<std::string, int> gaze, stations, displays, angles, settings, unblinded,
-      mixed_pictures;            ///< sessions
-  std::string first_answer_utc;  ///< of the analysed sessions without doubtful times; empty: none
+      mixed_pictures;            ///< number of analysed sessions by each value
+  std::string first_answer_utc;  ///< earliest first answer of the sessions without doubtful times, in UTC;
+                                 ///< empty: none
   std::vector<DoubtfulTime> doubtful_times;
   TaskFlow flow;
   std::vector<stats::Exclusion> exclusions;
   std::vector<TimedShowing> showings;
   std::vector<AnsweredTrial> answered;
-  std::vector<Report> reports;     ///< Task 1: answered pages
-  std::vector<Report> unanswered;  ///< Task 1: planned for these participants, but without an answer to
-                                   ///< analyse
-  std::vector<stats::PairChoice> choices;   ///< Task 2
-  std::vector<stats::PilotRating> ratings;  ///< pilot
-  Question question;                        ///< ChosenTask::question
-  /// Response times in s of the analysed answers, by question: from the page's showing to the last change.
+  std::vector<Report> reports;     ///< Task 1: analysed trials
+  std::vector<Report> unanswered;  ///< Task 1: trials planned for `participants` that have no analysed report
+  std::vector<stats::PairChoice> choices;   ///< Task 2: analysed choices
+  std::vector<stats::PilotRating> ratings;  ///< pilot: analysed ratings
+  Question question;                        ///< the analysed question
+  /// Response times of the analysed answers in s, by question id: from the display of the page to the last
+  /// change of the answer.
   std::map<std::string, std::vector<double>> response_times;
-  /// Repeated showings: answers of the original and of the repeat, by question (Task 2: 1 / 2).
+  /// Repeated trials: by question id, each pair of the answer to the original and the answer to the repeat.
+  /// For a choice an answer is 1 or 2, the chosen interval.
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 
-  /// Why hypotheses about adaptive methods against FovFluid cannot be tested; empty if they can.
+  /// The reason why H1 and H5, which compare adaptive methods with FovFluid, cannot be tested: gaze was not
+  /// tracked in every session. Empty if gaze was tracked in every session.
   std::string gaze_problem() const;
 };
 
-/// Collects the chosen protocol and question. The result may hold no answer.
+/// Collects the answers to the chosen protocol and question. The result may hold no answer.
 TaskData collect_task(const TaskStudy& study, const ChosenTask& chosen, const stats::ExclusionRules& rules);
-/// Collects the only protocol and question that match the selection. Refused with the reason if none or
-/// several match.
+/// Collects the answers to the protocol and question that match the selection. Refused with the reason if
+/// none or several match.
 stats::Result<TaskData> collect_task(const TaskStudy& study, const TaskSelection& selection);
 
-/// Why there is nothing to analyse; empty if there is something.
+/// The reason why no answer can be analysed; empty if some answer can.
 std::string nothing_counts(const TaskData& data);
 
-/// As collect_task(), but refused without an answer to analyse.
+/// Returns collect_task(), but is refused as well if no answer can be analysed.
 stats::Result<TaskData> select_task(const TaskStudy& study, const TaskSelection& selection);
 
-/// "data/scenes/single_dam.toml" -> "single_dam".
+/// Name of the scene's file without folder and extension: "data/scenes/single_dam.toml" -> "single_dam".
 std::string scene_name(const std::string& scene);
 
 }  // namespace study

@@ -18,8 +18,8 @@ stats::TrialTiming timing_of(const TaskShowing& shown) {
   return *shown.verdict == Verdict::Degraded ? stats::TrialTiming::Degraded : stats::TrialTiming::Fail;
 }
 
-/// Excludes a pilot's showings without recorded frames, since the pilot's predictor is the realised frame
-/// rate.
+/// Excludes answered trials of a pilot without recorded frames. Their realised frame rate, the pilot's
+/// predictor, is unknown.
 void exclude_unrecorded(std::vector<stats::Exclusion>& list, const TaskSession& session,
                         const Question& question) {
   for (const TaskTrial& trial : session.trials) {
@@ -60,7 +60,8 @@ stats::TrialRecord record_of(const TaskSession& session, const TaskTrial& trial,
   out.answer = answer_to(trial, question);
   out.answers = static_cast<int>(std::count_if(trial.answers.begin(), trial.answers.end(),
                                                [](const TaskAnswer& one) { return one.score.has_value(); }));
-  // A repeat without a known original refers to itself and so is compared with no trial.
+  // A repeat whose original is unknown gets its own position as original, so that no rule compares it with
+  // another trial.
   if (trial.kind == "repeat") out.repeats = trial.repeats.value_or(trial.position);
   return out;
 }

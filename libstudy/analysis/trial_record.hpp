@@ -1,19 +1,21 @@
 #pragma once
-/// Trials as the exclusion rules may see them: without method, scene or setting.
+/// Records of trials for the exclusion rules. They hold neither method, scene nor setting, so that no rule
+/// can depend on what was shown.
 
 #include "libstudy/store/read/task_answers.hpp"
 #include "stats/analysis/exclusions.hpp"
 
 namespace study {
 
-/// The answer to a question; for a choice 1 or 2, the interval. NaN if unanswered.
+/// Score of the trial's answer to the question. For a choice it is 1 or 2, the chosen interval. NaN if
+/// unanswered.
 double answer_to(const TaskTrial& trial, const Question& question);
 
-/// `question`: the main question.
+/// The trial's record. `question`: the analysed question.
 stats::TrialRecord record_of(const TaskSession& session, const TaskTrial& trial, const Question& question);
 
-/// Applies the rules to all trials except practice, and to answered catch pages, of the sessions with
-/// answers.
+/// Applies the rules to the trials (except practice) and the answered catch pages of all sessions with
+/// answers. In a pilot, also excludes trials without recorded frames.
 std::vector<stats::Exclusion> find_exclusions(const TaskProtocol& protocol, const Question& question,
                                               const stats::ExclusionRules& rules);
 

@@ -5,9 +5,9 @@
 namespace study {
 
 namespace {
-// A sleeper wakes some tens of microseconds late, on an idle virtual machine up to a few milliseconds,
-// because its halted processor must be scheduled again; so the last part of a wait spins. At 50 frames/s this
-// costs two fifths of one core.
+// Length of the last part of a wait, in which wait_until() spins instead of sleeping, ns. A sleeping thread
+// wakes some tens of microseconds late. On an idle virtual machine it wakes up to a few milliseconds late,
+// because the halted processor must be scheduled again. At 50 frames/s the spinning uses 40 % of one core.
 constexpr std::int64_t spin_ns = 8'000'000;
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The runner's clock: real, or virtual so that the same code runs without waiting.
+/// The clock by which a session runs: a real one, or a virtual one with which the same code never waits.
 
 #include <cstdint>
 
@@ -8,9 +8,10 @@ namespace study {
 class Clock {
  public:
   virtual ~Clock() = default;
-  /// Monotonic nanoseconds; CLOCK_MONOTONIC on the real clock.
+  /// The current time, ns; never decreases. The real clock reads CLOCK_MONOTONIC.
   virtual std::int64_t now_ns() const = 0;
-  /// Returns at deadline_ns or as soon after it as possible (sleeps, then spins); at once if it has passed.
+  /// Returns at deadline_ns or as soon after it as possible: sleeps first, then spins. Returns at once if
+  /// deadline_ns has passed.
   virtual void wait_until(std::int64_t deadline_ns) = 0;
 };
 
@@ -20,7 +21,7 @@ class RealClock final : public Clock {
   void wait_until(std::int64_t deadline_ns) override;
 };
 
-/// Starts at zero and jumps to each deadline.
+/// A clock that starts at 0 ns; wait_until() sets it to the deadline instead of waiting.
 class VirtualClock final : public Clock {
  public:
   std::int64_t now_ns() const override { return now_ns_; }

@@ -32,7 +32,7 @@ std::uint64_t random_key(std::string_view text) {
 
 std::uint64_t RandomStream::below(std::uint64_t bound) {
   const std::uint64_t reject =
-      (0 - bound) % bound;  // 2^64 mod bound: rejects draws that would favour small values
+      (0 - bound) % bound;  // 2^64 mod bound: rejecting smaller draws makes all remainders equally likely
   std::uint64_t draw = bits();
   while (draw < reject) draw = bits();
   return draw % bound;

@@ -1,5 +1,5 @@
 #pragma once
-/// Cache of a station's measured step times, so that they need not be measured before every session.
+/// Files that cache the step times measured on a station, so that a later session need not measure again.
 
 #include <filesystem>
 #include <optional>
@@ -9,11 +9,13 @@
 
 namespace study {
 
-/// Reads the times in `folder` under this key; none if missing, damaged or of another key.
+/// Reads the step times that keep_step_times() stored in `folder` under `key`. None if the file is missing or
+/// damaged, or contains another key.
 std::optional<StepTimes> read_step_times(const std::filesystem::path& folder, const std::string& key);
 
-/// Stores the times in one file per key, written by rename. An empty or unwritable folder is no error: the
-/// next session measures again.
+/// Stores the step times of `key` in a file of their own in `folder`, replaced atomically. Stores nothing if
+/// the folder name is empty or the folder cannot be written; this is no error, since the next session then
+/// measures again.
 void keep_step_times(const std::filesystem::path& folder, const std::string& key, const StepTimes& times);
 
 }  // namespace study

@@ -13,10 +13,10 @@ namespace study {
 
 namespace {
 
-/// Fraction of the refresh from which a method counts as reaching it.
+/// A cell reaches the display's refresh rate if its mean frame rate is at least this fraction of that rate.
 constexpr double at_refresh = 0.98;
 
-/// Least tau over windows of 30 frames, as in the solver.
+/// Smallest tau over all windows of up to 30 frame intervals, frames/s. The solver uses the same windows.
 double least_tau(const std::vector<double>& intervals_s) {
   stats::FpsWindow window;
   double least = HUGE_VAL;
@@ -40,7 +40,7 @@ void judge_rate(MeasuredCell& out, const Protocol& protocol, double alone) {
   }
 }
 
-/// Judges the rehearsed trial by the protocol's rules.
+/// Judges a rehearsed trial by the protocol's timing bounds and writes the result into `out`.
 void judge_showing(MeasuredCell& out, const Protocol& protocol, const PlayedTrial& played,
                    double refresh_hz) {
   if (out.too_slow) return;
@@ -61,13 +61,13 @@ MeasuredCell judge(const Protocol& protocol, const MeasuredStimulus& measured, i
   out.what = cell.stimulus;
   out.setting = cell.setting;
   out.showing_s = rehearsal.showing_s;
-  if (rehearsal.frame_s.empty()) return out;  // a trial of one frame
+  if (rehearsal.frame_s.empty()) return out;  // a trial of one frame has no frame intervals
   std::vector<double> shown_s, sorted = rehearsal.frame_s;
   for (const double s : rehearsal.frame_s)
     shown_s.push_back(refresh_hz > 0 ? std::max(s, 1 / refresh_hz) : s);
   out.fps = stats::fps_moments(shown_s);
   out.tau_min = least_tau(shown_s);
-  // Excludes unmeasured frames, whose mean time has no spread.
+  // Excludes frames that were not measured: all of them have the same mean time.
   if (rehearsal.measured > 0) sorted.resize(rehearsal.measured);
   std::sort(sorted.begin(), sorted.end());
   for (const double s : sorted) out.mean_ms += 1000 * s / static_cast<double>(sorted.size());
@@ -77,7 +77,8 @@ MeasuredCell judge(const Protocol& protocol, const MeasuredStimulus& measured, i
   return out;
 }
 
-/// Why the conditions collapse; empty if not. temporal: true for temporal acceleration, by cell.
+/// Why participants would compare equal stimuli (MeasuredReport::collapse); empty if they would not.
+/// temporal: by cell, true if the cell's method has temporal acceleration.
 std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<int, bool>& temporal,
                         double refresh_hz) {
   std::set<std::string> methods, levels;
@@ -89,7 +90,7 @@ std::string collapse_of(const std::vector<MeasuredCell>& cells, const std::map<i
     any_temporal = any_temporal || temporal.at(one.cell);
     accelerates = accelerates || (temporal.at(one.cell) && one.tau_min < 0);
   }
-  // Cells of one method with several levels of effects differ at any rate.
+  // Cells with one method but several levels of effects differ in their effects, whatever their frame rates.
   if (all_reach && !(methods.size() == 1 && levels.size() > 1))
     return fmt::format("every method reaches the {:g} Hz of the display", refresh_hz);
   if (any_temporal && !accelerates) return "tau of the accelerated methods never falls below zero";

@@ -1,5 +1,5 @@
 #pragma once
-/// Checks that this machine reaches a protocol's settings if methods run live.
+/// Checks from measured step times that this machine reaches a protocol's frame rates with live methods.
 
 #include <functional>
 #include <string>
@@ -11,47 +11,50 @@
 
 namespace study {
 
-/// The different stimuli of a protocol in the order of its cells.
+/// The distinct stimuli of a protocol, in the order of their first cells.
 std::vector<StimulusSpec> stimuli_of(const Protocol& protocol);
 
-/// The result for one cell.
+/// The result of judge_measured() for one cell of the design.
 struct MeasuredCell {
   int cell = 0;  ///< index into Design::cells
   StimulusSpec what;
   FpsSetting setting;
-  stats::FpsMoments fps;  ///< of its frames, with the display's refresh as the highest rate
-  double mean_ms = 0;     ///< mean time to compute and draw a frame without waiting
-  double p95_ms = 0;      ///< the same, 95th percentile
-  double tau_min = 0;     ///< least tau over 30 frames, frames/s (Eq. 11)
-  double showing_s = 0;   ///< expected duration of a showing
-  bool too_slow = false;  ///< its setting is not reached: a showing would fail
-  std::string words;      ///< the problem; empty: none
+  stats::FpsMoments fps;  ///< frame rate; each frame counts as at least one refresh period long
+  double mean_ms = 0;     ///< mean time to compute and draw a frame, without waiting
+  double p95_ms = 0;      ///< 95th percentile of the time to compute and draw a frame, without waiting
+  double tau_min = 0;     ///< smallest tau over windows of 30 frames, frames/s (Eq. 11)
+  double showing_s = 0;   ///< expected duration of a showing of the cell
+  bool too_slow = false;  ///< the machine does not reach the cell's setting: a showing would fail
+  std::string words;      ///< description of the problem; empty: none
 };
 
 struct MeasuredReport {
   std::vector<MeasuredCell> cells;  ///< in the order of the design
-  bool too_slow = false;            ///< at least one of them
-  std::string collapse;             ///< why `native` would compare equal stimuli; empty if not
+  bool too_slow = false;            ///< at least one cell is too slow
+  std::string collapse;             ///< why timing `native` would compare equal stimuli; empty if not
 };
 
-/// The schedule of a setting on the display, nanoseconds; empty if it has none.
+/// Returns the frame intervals of a setting on the display, ns; empty if the setting has no schedule there.
 using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 
-/// refresh_hz: of the display; 0: frames are shown when ready. Under a schedule, a cell is too slow if its
-/// mean time exceeds the mean interval or its rehearsal fails by the protocol's bounds (not checked without
-/// intervals); under TimingSource::Native, if its rate stays below fps_min. Under Native, the conditions
-/// collapse if the methods of every group all reach the refresh, or if no method with temporal acceleration
-/// ever has tau below zero.
+/// Rehearses and judges each measured cell. refresh_hz: rate of the display; 0: frames are shown when ready.
+///
+/// A cell with a wished frame rate is too slow if its mean frame time exceeds the mean interval. It is also
+/// too slow if its rehearsal fails the protocol's timing bounds; a cell without intervals skips this check.
+/// Under TimingSource::Native, a cell is too slow if its frame rate is below fps_min. Under Native,
+/// MeasuredReport::collapse is set if all cells reach the refresh rate, unless the cells have one method and
+/// differ in effects. It is also set if no method with temporal acceleration ever has a tau below zero.
 MeasuredReport judge_measured(const Protocol& protocol, const std::vector<MeasuredStimulus>& measured,
                               double refresh_hz, const IntervalsOf& intervals_of);
 
-/// "HiRes single_dam 32k".
+/// Method, scene and n_* of a stimulus as text: "HiRes single_dam 32k"; its effects follow, if any.
 std::string stimulus_name(const StimulusSpec& what);
-/// The report as text, one line per cell below a heading.
+/// The report as a table in text: a heading, then one line per cell.
 std::string measured_table(const MeasuredReport& report);
-/// Frame costs of each measured cell, for the record.
+/// The frame costs of each measured cell, to be stored with a session; omits cells without a mean time.
 std::vector<FrameCosts> frame_costs(const MeasuredReport& report);
-/// Duration of a showing of each cell of the design here, s; the planned one if a cell was not measured.
+/// Expected duration of a showing on this machine, s, for each cell of the design; the planned duration if
+/// the cell was not measured.
 std::vector<double> showing_times(const Protocol& protocol, const MeasuredReport& report);
 
 }  // namespace study

@@ -10,13 +10,14 @@
 
 namespace study {
 
-/// Longest measuring time without making the stimulus, s: its longest trial, at least 5 s.
+/// Longest time that measure() takes for a stimulus, s, without the time to make the stimulus: the longest
+/// trial of its cells, but at least 5 s.
 double longest_measuring_s(const Protocol& protocol, const MeasuredStimulus& what);
 
-/// Runs a trial of these cells from start_frame on: prepares and renders each step like a session. Ends at
-/// the last step of any cell, or after 5 s as soon as it is behind the schedule of every unfinished cell: the
-/// first steps of a fluid are the cheapest. refresh_hz: as content_steps(). `each` (may be empty) is called
-/// after every step.
+/// Measures the steps of a trial of these cells from start_frame on; prepares and renders each step as a
+/// session does. Ends after the last step of the longest trial. After 5 s, also ends as soon as it is behind
+/// the schedules of all unfinished cells; not earlier, because a fluid's first steps are the fastest.
+/// refresh_hz: as for content_steps(). `each` (may be empty) is called after every step.
 StepTimes measure(const Protocol& protocol, const std::vector<int>& cells, Stimulus& stimulus,
                   Display& display, Clock& clock, double refresh_hz, const std::function<void()>& each);
 

@@ -36,7 +36,8 @@ RefreshCheck check_refresh(const Protocol& protocol, double refresh_hz) {
   check.asked_hz = refresh_hz;
   check.refresh_hz = nominal_refresh(refresh_hz);
   for (const auto& [setting, cells] : checked_settings(protocol)) {
-    // The seed orders the holds; the report does not depend on it.
+    // The last argument is a seed. It affects only the order of the frame intervals, which the report
+    // ignores.
     check.verdicts.push_back(quantise(setting, protocol.pacing, check.refresh_hz, 0));
     const auto& verdict = check.verdicts.back();
     check.exact += verdict.feasibility == Feasibility::Exact;

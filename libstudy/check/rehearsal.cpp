@@ -10,9 +10,9 @@ namespace study {
 
 namespace {
 
-constexpr std::size_t last_steps = 30;  // their mean replaces steps that were not measured
+constexpr std::size_t last_steps = 30;  // the mean of the last 30 measured steps replaces unmeasured steps
 
-/// Time of each content step.
+/// Time that each content step takes, s: the measured one, or the mean of the last measured steps.
 class Costs {
  public:
   explicit Costs(const std::vector<double>& measured_s) : measured_s_(measured_s) {
@@ -32,7 +32,7 @@ class Costs {
   double later_s_ = 0;
 };
 
-/// Advances the clock by the measured times.
+/// A stimulus that computes nothing: preparing a step advances the virtual clock by the step's measured time.
 class MeasuredProcess final : public Stimulus {
  public:
   MeasuredProcess(const StepTimes& times, std::int64_t start_frame, double least_s, VirtualClock& clock)
@@ -57,8 +57,8 @@ class MeasuredProcess final : public Stimulus {
   }
   void draw(const Canvas&) override {}
 
-  std::vector<double> frame_s;  ///< of all frames but the first
-  std::size_t measured = 0;     ///< number of these that were measured
+  std::vector<double> frame_s;  ///< time of each frame but the first, s
+  std::size_t measured = 0;     ///< number of leading entries of frame_s whose steps were measured
 
  private:
   Costs compute_, draw_;

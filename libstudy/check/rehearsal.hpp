@@ -8,8 +8,8 @@
 
 namespace study {
 
-/// By content step after start_frame: seconds to compute and to draw it without waiting. The first step is
-/// made before a trial begins.
+/// Times to compute and to draw each content step without waiting, s. The index counts steps from start_frame
+/// on. Index 0 has times of 0 s, because that step is computed before a trial begins.
 struct StepTimes {
   std::vector<double> compute_s, draw_s;
 };
@@ -21,19 +21,21 @@ struct MeasuredStimulus {
   StepTimes times;
 };
 
-/// Number of content steps of a showing. refresh_hz: the bound without a schedule; 0: 60.
+/// Number of content steps in a showing. If frames have neither a schedule nor real-time content, it is the
+/// number of refreshes: at refresh_hz, or at 60 Hz if refresh_hz is 0.
 std::int64_t content_steps(const Protocol& protocol, const FpsSetting& setting, double refresh_hz);
 
 struct Rehearsal {
   PlayedTrial played;
-  std::vector<double> frame_s;  ///< time of each frame but the first
-  std::size_t measured = 0;     ///< number of leading entries whose steps were all measured
-  double showing_s = 0;         ///< from the first onset to the end
+  std::vector<double> frame_s;  ///< time to compute and draw each frame but the first, s
+  std::size_t measured = 0;     ///< number of leading entries of frame_s whose steps were all measured
+  double showing_s = 0;         ///< duration from the first frame's onset to the end of the showing
 };
 
-/// Plays a cell by study::play_trial(), or without a schedule by study::play_native() with no frame shorter
-/// than the refresh period (0: no bound). intervals_ns: of the schedule; empty: all equal. Steps that were
-/// not measured take the mean time of the last measured ones.
+/// Plays a trial of one setting on a virtual clock. A setting with a mean rate is played by play_trial() with
+/// `intervals_ns`, or with equal intervals if that list is empty. Another setting is played by play_native()
+/// with no frame shorter than the refresh period; refresh_hz 0: no bound. A step that was not measured takes
+/// the mean time of the last 30 measured steps.
 Rehearsal rehearse(const Protocol& protocol, const FpsSetting& setting, const StepTimes& times,
                    const std::vector<std::int64_t>& intervals_ns, double refresh_hz);
 

@@ -132,7 +132,9 @@ PlannedBalance check_balance(const Protocol& protocol) {
   out.planned = protocol.participants;
   out.sequences = sequence_count(protocol);
   std::map<std::vector<int>, int> met;
-  std::map<std::tuple<std::vector<int>, int, int>, int> difference;  // by pair of cells, ascending
+  // By groups and pair of cells, the lower index first: people who see this order minus people who see the
+  // opposite order.
+  std::map<std::tuple<std::vector<int>, int, int>, int> difference;
   const int slots = slot_count(protocol);
   const bool dealt = design.assignment == Assignment::Balanced;
   for (int slot = 0; dealt && slot < std::min(slots, out.planned); ++slot) {

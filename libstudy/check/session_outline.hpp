@@ -9,15 +9,15 @@
 
 namespace study {
 
-/// The pace of a participant, quick or slow; it affects only the printed durations.
+/// Assumed pace of a participant; it affects only the printed durations.
 struct Pace {
-  double answer_s = 0;     ///< for each question
-  double words_per_s = 0;  ///< for reading texts; 0: only their least time
-  double break_s = 0;      ///< in a break beyond its least time
+  double answer_s = 0;     ///< time to answer one question
+  double words_per_s = 0;  ///< reading speed; 0: a text takes only the block's minimum time
+  double break_s = 0;      ///< time spent in a break beyond the minimum time
 };
 inline constexpr Pace quick_pace{2, 0, 0}, slow_pace{6, 2, 60};
 
-/// Seconds of a session, or of a part of it.
+/// Duration of a session or of a part, s: least at quick_pace, most at slow_pace.
 struct Span {
   double least = 0, most = 0;
 };
@@ -32,28 +32,28 @@ struct SessionOutline {
   std::vector<BlockOutline> blocks;  ///< in the order of the protocol
   int units = 0, trials = 0;
   Span session_s;
-  double shown_s = 0;  ///< duration of the design's trials without answers
-  Span trials_s;       ///< the same with answers
+  double shown_s = 0;  ///< duration of the design's trials without the time for answers
+  Span trials_s;       ///< duration of the design's trials with the time for answers
 };
 
-/// The outline of slot 0; other slots show other cells, but equally many.
+/// The outline of a session with slot 0. Other slots show other cells but the same number of trials.
 SessionOutline outline_session(const Protocol& protocol);
 
-/// "10 trials: stimulus 30 s, ask 5, rest 30 s".
+/// One line about a block: "10 trials: stimulus 30 s, ask 5, rest 30 s".
 std::string describe_block(const Protocol& protocol, const BlockOutline& outline);
 
-/// PlannedBalance of the assignment for `planned` people.
+/// How evenly the assignment spreads the sequences of groups over the planned participants.
 struct PlannedBalance {
   int planned = 0;
-  int sequences = 1;                   ///< of groups; 1: nothing to balance
+  int sequences = 1;                   ///< number of group sequences; 1: nothing to balance
   int least = 0, most = 0;             ///< fewest and most people per sequence
-  int interval_difference = 0;         ///< largest difference between the two orders of a pair in a sequence
-  int even = 1;                        ///< a multiple of this many people is balanced
-  int even_below = 0, even_above = 0;  ///< the next such numbers; 0 if there is none below
+  int interval_difference = 0;         ///< in a sequence: largest |people with AB - people with BA| of a pair
+  int even = 1;                        ///< any multiple of this number of people is balanced
+  int even_below = 0, even_above = 0;  ///< the multiples of `even` around `planned`; 0: none below
 };
 PlannedBalance check_balance(const Protocol& protocol);
 
-/// The balance as one line of text.
+/// The planned balance as one line of text.
 std::string describe_balance(const Protocol& protocol, const PlannedBalance& balance);
 
 }  // namespace study

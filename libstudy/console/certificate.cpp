@@ -17,7 +17,8 @@ constexpr const char* plain = "\033[0m";
 
 using Rows = std::vector<CertificateRow>;
 
-/// The scene's file name without folder and extension, if unique among the rows, else its full path.
+/// The scene's file name without folder and extension; the full path if another scene of the rows has the
+/// same file name.
 std::string scene_of(const CertificateRow& row, const Rows& rows) {
   const auto stem = [](const std::string& scene) { return std::filesystem::path(scene).stem().string(); };
   const bool shared = std::any_of(rows.begin(), rows.end(), [&](const auto& other) {
@@ -26,10 +27,11 @@ std::string scene_of(const CertificateRow& row, const Rows& rows) {
   return shared ? row.what.scene : stem(row.what.scene);
 }
 
-/// Names of the stimuli: differing names as columns, common ones as words.
+/// Names of the stimuli: as table columns where the rows differ, as words of the heading where all rows
+/// agree.
 struct Shown {
   std::string head, shared;
-  std::vector<std::string> lines;  ///< the columns' text, one for each row
+  std::vector<std::string> lines;  ///< text of the columns, one string per row
 };
 
 Shown shown_in(const Rows& rows) {
@@ -54,7 +56,7 @@ Shown shown_in(const Rows& rows) {
   return out;
 }
 
-/// A row without a schedule has no nominal moments and no deviations from them.
+/// The numbers of one row. A row without a schedule shows "-" for nominal moments and deviations.
 std::string format_row(const CertificateRow& row) {
   const bool scheduled = row.nominal.mean > 0;
   const auto nominal = [&](double value, const char* form) {

@@ -8,10 +8,11 @@
 
 namespace study {
 
-/// One line per row: scene, n_*, method and effects if the rows differ in them (the heading names common
-/// ones), nominal ("-": as fast as the method ran), realised mu and delta in frames/s, late frames, verdicts,
-/// grade. A row with a failed trial ends in FAIL, one with a degraded trial in DEGRADED; with `coloured` (a
-/// terminal) such lines are red and yellow. `mean`: the kind of mean that the rows were read with.
+/// One line per row: nominal and realised mean mu and standard deviation delta of the frame rate (frames/s),
+/// late frames, verdicts, grade. "-" as nominal: frames were shown as fast as the method ran. Scene, n_*,
+/// method and effects are columns if the rows differ in them, else words of the heading. A row with a failed
+/// trial ends in FAIL, a row with a degraded trial in DEGRADED. `coloured` (for a terminal): these rows are
+/// red or yellow. `mean`: the kind of mean in the rows.
 std::string format_certificate(const std::vector<CertificateRow>& rows, FpsMean mean, bool coloured);
 
 }  // namespace study

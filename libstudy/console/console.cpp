@@ -19,7 +19,7 @@ constexpr std::size_t strip_length = 60;
 constexpr std::int64_t strip_ns = 500'000'000;
 constexpr std::size_t most_typed = 500;  // bytes
 
-/// Removes a partial UTF-8 character that the limit left at the end.
+/// Removes the incomplete UTF-8 character that the limit of most_typed bytes may leave at the end.
 std::string whole_letters(std::string words) {
   for (int i = 0; i < 3 && words.size() + 3 > most_typed && !base::is_plain_line(words); ++i)
     words.pop_back();
@@ -29,7 +29,7 @@ std::string whole_letters(std::string words) {
 }  // namespace
 
 char strip_sign(double shown_s, double scheduled_s) {
-  const double ratio = shown_s > 0 ? scheduled_s / shown_s : 0;  // of the frame rates
+  const double ratio = shown_s > 0 ? scheduled_s / shown_s : 0;  // realised frame rate / scheduled frame rate
   if (std::abs(ratio - 1) <= 0.02) return '.';
   if (std::abs(ratio - 1) > 0.2) return '!';
   return ratio > 1 ? '+' : '-';
@@ -118,7 +118,7 @@ void Console::done(const UnitDone& unit) {
     verdicts_ = unit.verdicts;
   }
   for (const TimingVerdict& verdict : unit.verdicts) say("  " + describe(verdict));
-  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // too late to cut the trial
+  if (std::exchange(repeat_, false)) show_at_the_end(*last_trial_);  // the trial is over: too late for a cut
 }
 
 Request Console::request() {
@@ -146,7 +146,8 @@ void Console::key(char byte) {
   if (deed) carry_out(*deed);
 }
 
-/// Does not hold mutex_ during the disk access, because frames wait for mutex_.
+/// Stores a change and confirms it. Does not lock mutex_ during the disk access, because shown() waits for
+/// mutex_ at each frame.
 void Console::carry_out(const Deed& deed) {
   try {
     deed.store();
@@ -226,7 +227,7 @@ void Console::enter() {
   if (asked == Asking::Exclude) return exclude(words);
   if (words != "yes") return say("(the session goes on)");
   ended_ = true;
-  say("ending the session: a rest first; let nobody go before they feel well");
+  say("ending the session: a rest first; the participant leaves only when well");
 }
 
 void Console::note(const std::string& words) {
@@ -238,7 +239,7 @@ void Console::note(const std::string& words) {
       [=, this] { say("noted: " + words); });
 }
 
-/// Sets the trial aside at once, so that it is shown again even if this program ends.
+/// Reopens the trial in the database at once: it is shown again even if this program ends before.
 void Console::repeat(const std::string& reason) {
   const std::int64_t session = session_->id;
   const OpenUnit trial = unit_ && unit_->trial && !unit_done_ ? *unit_ : *last_trial_;

@@ -16,9 +16,10 @@
 
 namespace study {
 
-/// Hides method, frame rate and all hints at them until they are revealed, which is logged. Two threads use
-/// it: the session's, and the one that reads keys. The latter commits the change that a key requests at once,
-/// even during a trial, and confirms it afterwards; on failure it says "NOT KEPT" and the session goes on.
+/// Hides method, frame rate and all hints at them until the experimenter reveals them; the database logs
+/// this. The session's thread and the key thread use it. The key thread stores a requested change in the
+/// database at once, even during a trial, and then confirms it. If storing fails, the console says "NOT KEPT"
+/// and the session goes on.
 class Console {
  public:
   /// Seconds since the participant's last key, button or movement of the mouse; none: not known.
@@ -30,36 +31,36 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Called on the session's thread: the begin of a session, then its hooks. request() returns each cut only
-  /// once.
+  /// Called on the session's thread: begin() at the start of a session, the others as its SessionHooks.
+  /// request() returns each cut only once.
   void begin(const OpenSession& session);
   void begins(const OpenUnit& unit);
   void shown(const FrameRecord& frame);
   void done(const UnitDone& unit);
   void ends(const Ending& ending);
   Request request();
-  /// The session pauses until key p: an alarm says why and what to do.
+  /// Pauses the session until key p; shows an alarm with the reason and the remedy.
   void trouble(const Trouble& trouble);
   /// Adds an alarm for the rest of this session, such as a problem of the station.
   void warn(const std::string& alarm);
-  /// True if trials were reopened that this session has already passed; resets the flag. If false, the
-  /// session is over and keys do nothing until the next one begins.
+  /// Returns true, once, if the experimenter reopened trials that the session had already shown. After false
+  /// the session is over, and keys do nothing until the next session begins.
   bool take_reopened();
 
   /// Called on the key thread: handles one typed byte.
   void key(char byte);
-  /// New lines to write since the last call.
+  /// Returns the messages since the last call, one per line.
   std::vector<std::string> take_lines();
-  /// The content of the screen without `said`; now_ns: of the steady clock.
+  /// The content of the screen without `said`. now_ns: time of the steady clock.
   ConsoleView view(std::int64_t now_ns) const;
 
  private:
   enum class Asking { Nothing, Note, Repeat, Exclude, End };
-  /// A change that a key requests.
+  /// A change of the database that a key requests.
   struct Deed {
     std::string what;
-    std::function<void()> store;  ///< commits it
-    std::function<void()> then;   ///< confirms it
+    std::function<void()> store;  ///< commits the change
+    std::function<void()> then;   ///< confirms the change
   };
 
   void read(char byte);
@@ -93,34 +94,34 @@ class Console {
   std::mutex acting_;         ///< held while a key is handled; locked before mutex_
   mutable std::mutex mutex_;  ///< guards all members below
   const OpenSession* session_ = nullptr;
-  std::optional<OpenUnit> unit_;  ///< under way
+  std::optional<OpenUnit> unit_;  ///< begun last
   bool unit_done_ = false;
-  std::optional<OpenUnit> last_trial_;  ///< finished
-  std::size_t done_ = 0;                ///< units of this session done in this run
+  std::optional<OpenUnit> last_trial_;  ///< finished last
+  std::size_t done_ = 0;                ///< number of units done since begin()
   bool paused_ = false, ended_ = false, repeat_ = false, revealed_ = false, reopened_ = false;
   Asking asking_ = Asking::Nothing;
   std::string prompt_, typed_;
   std::vector<std::string> lines_;
-  std::optional<Deed> deed_;  ///< carried out by the thread that set it
+  std::optional<Deed> deed_;  ///< change that the key thread has yet to carry out
   std::vector<std::string> warnings_;
   std::optional<Trouble> trouble_;  ///< the reason of the current pause
   std::optional<Ending> ending_;
-  std::vector<TimingVerdict> verdicts_;  ///< of last_trial_
-  std::int64_t page_since_ns_ = 0;       ///< steady clock: when the step began or its stimulus ended
+  std::vector<TimingVerdict> verdicts_;  ///< verdicts on last_trial_
+  std::int64_t page_since_ns_ = 0;       ///< steady clock: start of the step, or its last frame
 
   /// Timing of the current stimulus so far.
   struct Course {
     std::int64_t frames = 0, late = 0;
     std::int64_t first_scheduled_ns = 0, first_shown_ns = 0, last_scheduled_ns = 0, last_shown_ns = 0;
     double worst_late_ms = 0;
-    std::string strip;  ///< one sign per half second
+    std::string strip;  ///< one strip_sign() per half second
     std::int64_t strip_scheduled_ns = 0, strip_shown_ns = 0, strip_frames = 0;
   };
   Course course_;
 };
 
-/// '.' if the rate over some frames is within 2 % of the schedule's, '+' if faster, '-' if slower by up to 20
-/// %, '!' beyond.
+/// Compares the realised frame rate with the scheduled rate: '.' within 2 %, '+' up to 20 % faster, '-' up to
+/// 20 % slower, '!' beyond. Arguments: realised and scheduled duration of the same frames, s.
 char strip_sign(double shown_s, double scheduled_s);
 
 }  // namespace study

@@ -12,7 +12,7 @@ namespace {
 constexpr int bar_columns = 20;
 constexpr std::size_t most_alarms = 3, fixed_rows = 19;
 
-/// Columns of one character: two for those that terminals draw wide.
+/// Terminal columns of one UTF-8 character: 2 for wide ones (East Asian, emoji), else 1.
 int columns_of(std::string_view character) {
   if (character.size() < 3) return 1;
   char32_t code = static_cast<unsigned char>(character[0]) & (character.size() == 3 ? 0x0Fu : 0x07u);
@@ -35,7 +35,7 @@ int width_of(std::string_view text) {
   return width;
 }
 
-/// As much of the beginning as fits, with "..." if it is cut.
+/// The longest beginning of the text that fits into the columns; ends in "..." if text was cut off.
 std::string fitted(const std::string& text, int columns) {
   if (width_of(text) <= columns) return text;
   const int room = std::max(0, columns - 3);
@@ -51,7 +51,7 @@ std::string fitted(const std::string& text, int columns) {
   return (out + "...").substr(0, columns < 3 ? static_cast<std::size_t>(columns) : std::string::npos);
 }
 
-/// As much of the end as fits, so that the last typed characters are visible.
+/// The longest end of the text that fits into the columns: the last typed characters stay visible.
 std::string end_fitted(const std::string& text, int columns) {
   std::string_view rest = text;
   while (width_of(rest) > columns) rest.remove_prefix(std::max<std::size_t>(1, base::utf8_length(rest)));
@@ -111,11 +111,11 @@ std::vector<std::string> render_console(const ConsoleView& view, int columns, in
                     said = std::min(room, view.said.size());
   lines.insert(lines.end(), view.said.end() - static_cast<std::ptrdiff_t>(said), view.said.end());
   lines.resize(lines.size() + room - said);
-  lines.push_back("p pause, go on   r repeat the trial   x exclude the trial   n note");
-  lines.push_back("e end the session   m method and setting (logged)   ? what keys do");
+  lines.emplace_back("p pause, go on   r repeat the trial   x exclude the trial   n note");
+  lines.emplace_back("e end the session   m method and setting (logged)   ? what keys do");
   for (std::string& line : lines) line = fitted(line, columns);
   lines.push_back(end_fitted("> " + view.typed, columns));
-  // If the screen is too low, shows its top and the typed line.
+  // If the terminal has too few rows, keeps the top rows and the typed line.
   if (lines.size() > height) lines.erase(lines.begin() + rows - 1, lines.end() - 1);
   return lines;
 }

@@ -10,7 +10,7 @@
 
 namespace study {
 
-/// "14:03:05" in UTC.
+/// The current time in UTC, such as "14:03:05".
 inline std::string clock_time() { return base::utc_now().substr(11, 8); }
 
 inline std::int64_t steady_ns() {
@@ -19,7 +19,7 @@ inline std::int64_t steady_ns() {
       .count();
 }
 
-/// Free disk space beside a database, MB; negative: not known.
+/// Free space on the disk of the database's folder, MB; negative: not known.
 inline double free_mb(const std::filesystem::path& database) {
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::absolute(database).parent_path(), error);

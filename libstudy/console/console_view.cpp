@@ -1,4 +1,4 @@
-/// Console: texts and view of a session.
+/// The part of class Console that describes the session in words.
 #include <fmt/core.h>
 #include <algorithm>
 
@@ -12,15 +12,16 @@ namespace study {
 namespace {
 
 constexpr double little_disk_mb = 500;
-constexpr double long_s = 90;  // without any input on a page
+constexpr double long_s = 90;  // s on a page without input before an alarm
 constexpr std::int64_t looks_ns = 1'000'000'000;
 
 std::string short_time(double seconds) { return base::duration_words(std::max(0.0, seconds)); }
 
-/// What to do for a participant whose session ended before its last step.
+/// Advice to the experimenter about a participant whose session ended before its last step.
 std::string words_of(const Ending& ending) {
-  if (ending.how == EarlyEnd::Stopped) return "STOPPED: rest until well; let nobody go before";
-  if (ending.how == EarlyEnd::DroppedOut) return "LEFT: see to them; the answers given are kept";
+  if (ending.how == EarlyEnd::Stopped) return "STOPPED: a rest first; the participant leaves only when well";
+  if (ending.how == EarlyEnd::DroppedOut)
+    return "LEFT: see to the participant; the answers so far are stored";
   if (ending.how == EarlyEnd::Refused) return "DID NOT CONSENT: nothing more is asked; thank them";
   return "INELIGIBLE: nothing more is asked; thank them";
 }
@@ -66,7 +67,7 @@ std::string Console::describe_cells(const PlannedTrial& trial) const {
   return all;
 }
 
-/// While settings are hidden, shows only the relative deviation from the schedule.
+/// Verdict, relative deviation of the mean and late frames; frame rates only while settings are revealed.
 std::string Console::describe(const TimingVerdict& verdict) const {
   if (!(verdict.nominal.mean > 0))
     return verdict.cut ? "timing fail: " + verdict.reason : "timing: no schedule";
@@ -92,8 +93,8 @@ double Console::on_page_s(std::int64_t now_ns) const {
 std::string Console::describe_person(std::int64_t now_ns) const {
   if (ending_) return words_of(*ending_);
   if (trouble_ && session_ && !ended_) return "reads that the pictures cannot be shown; PAUSED, p goes on";
-  if (!session_) return "nobody: the session is over";
-  if (ended_) return "is led to the exit: a rest first; let nobody go before they feel well";
+  if (!session_) return "none: the session is over";
+  if (ended_) return "is led to the exit: a rest first; leaves only when well";
   const std::string next = paused_ ? "; PAUSE before the next step, p goes on" : "";
   if (!unit_) return paused_ ? "PAUSED; p goes on" : "waits for the first step";
   if (paused_ && unit_done_) return "PAUSED; p goes on";
@@ -133,7 +134,7 @@ std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) co
   const auto idle = idle_ ? idle_() : std::nullopt;
   if (session_ && unit_ && !unit_done_ && !looks(now_ns) && idle &&
       std::min(*idle, on_page_s(now_ns)) > long_s)
-    all.push_back("nothing was pressed for " + short_time(*idle) + "; see how they are");
+    all.push_back("nothing was pressed for " + short_time(*idle) + "; see how the participant is");
   all.insert(all.end(), warnings_.rbegin(), warnings_.rend());
   return all;
 }

@@ -19,7 +19,7 @@ struct NetworkKind {
   std::uint32_t number;
   const char* name;
 };
-// Sources: linux/magic.h and the kernel's file systems.
+// Numbers of statfs's f_type. Sources: linux/magic.h and the file systems of the Linux kernel.
 constexpr std::array network_kinds{NetworkKind{0x6969, "NFS"},
                                    NetworkKind{0x517B, "SMB"},
                                    NetworkKind{0xFF534D42, "SMB/CIFS"},
@@ -36,7 +36,8 @@ constexpr std::array network_kinds{NetworkKind{0x6969, "NFS"},
                                    NetworkKind{0xBACBACBC, "VMware shared folder"}};
 constexpr std::uint32_t fuse = 0x65735546;
 
-/// Names single types, because FUSE also serves local disks: NTFS and exFAT as "fuseblk".
+/// Mount types of network file systems through FUSE. FUSE alone proves nothing: it also serves local disks,
+/// such as NTFS and exFAT ("fuseblk").
 constexpr std::array network_mounts{"fuse.sshfs",
                                     "fuse.rclone",
                                     "fuse.glusterfs",
@@ -54,7 +55,7 @@ constexpr std::array network_mounts{"fuse.sshfs",
                                     "fuse.dropbox"};
 
 struct SyncFolder {
-  const char* begins;  ///< beginning of a folder's name; a space, " - " or "(" may follow
+  const char* begins;  ///< a folder's name, or its beginning before " ", "(" or "-"
   const char* service;
 };
 constexpr std::array sync_folders{SyncFolder{"Dropbox", "Dropbox"},
@@ -73,7 +74,7 @@ constexpr std::array sync_folders{SyncFolder{"Dropbox", "Dropbox"},
                                   SyncFolder{"MEGAsync", "MEGA"},
                                   SyncFolder{"Seafile", "Seafile"}};
 
-/// A file or folder that a service creates in the folder that it copies.
+/// A file or folder that a sync service creates in the folder that it copies.
 struct SyncMark {
   const char *name, *service;
 };
@@ -105,7 +106,8 @@ std::string network_name(const fs::path& folder, const PlaceProbe& probe) {
   return network ? mount : std::string();
 }
 
-/// The service that copies a folder or a parent, by name or mark; empty: none known.
+/// The sync service that copies a folder or one of its parents, recognised by a folder's name (sync_folders)
+/// or its content (sync_marks); empty: none known.
 std::string sync_service(fs::path folder, const PlaceProbe& probe) {
   for (; folder.has_relative_path(); folder = folder.parent_path()) {
     const std::string name = folder.filename().string();
@@ -117,7 +119,7 @@ std::string sync_service(fs::path folder, const PlaceProbe& probe) {
   return {};
 }
 
-/// The folder of the database, or its first existing parent.
+/// The folder of the database, or its nearest existing parent.
 fs::path standing_folder(const fs::path& database, const PlaceProbe& probe) {
   std::error_code ignored;
   fs::path real = fs::weakly_canonical(fs::absolute(database, ignored), ignored);
@@ -127,7 +129,7 @@ fs::path standing_folder(const fs::path& database, const PlaceProbe& probe) {
   return folder;
 }
 
-/// Decodes escapes of /proc/self/mountinfo: "\040" is a space.
+/// Decodes the octal escapes of /proc/self/mountinfo: "\040" is a space.
 std::string unescaped(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -141,7 +143,7 @@ std::string unescaped(const std::string& text) {
   return out;
 }
 
-/// Type of the mount with the longest path that contains the folder.
+/// File system type of the mount that contains the folder; of nested mounts, the innermost.
 std::string mount_kind_of(const fs::path& folder) {
   std::ifstream mounts("/proc/self/mountinfo");
   std::string found;

@@ -11,7 +11,7 @@
 
 namespace study {
 
-/// Queries to the system.
+/// Queries about file systems; tests replace them.
 struct PlaceProbe {
   /// File system type of a folder (statfs, f_type); none: not known.
   std::function<std::optional<std::uint32_t>(const std::filesystem::path&)> file_system;
@@ -22,11 +22,11 @@ struct PlaceProbe {
 PlaceProbe system_probe();
 
 /// Problems of a database's location, each with reason and remedy; empty: none known. The folder need not
-/// exist. Follows links.
+/// exist. Symbolic links are resolved.
 std::vector<std::string> place_problems(const std::filesystem::path& database,
                                         const PlaceProbe& probe = system_probe());
 
-/// Prints them on stderr.
+/// Prints place_problems() as warnings on stderr.
 void warn_of_place(const std::filesystem::path& database);
 
 }  // namespace study

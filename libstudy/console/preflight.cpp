@@ -85,7 +85,7 @@ PreflightLine judge_disk(const StationFacts& station, std::uint64_t needed_bytes
   if (!station.free_disk_bytes) return {Readiness::Unknown, "free disk", "not known"};
   const double free_mb = 1e-6 * static_cast<double>(*station.free_disk_bytes);
   const double needed_mb = 1e-6 * static_cast<double>(needed_bytes);
-  // Requires ten times the bytes, because the log of a database can grow as large as its content.
+  // Requires ten times the estimate: the database's write-ahead log alone can grow as large as the database.
   const bool enough = *station.free_disk_bytes / 10 >= needed_bytes;
   return {enough ? Readiness::Ok : Readiness::Warn, "free disk",
           fmt::format("{:.0f} MB, the session writes about {:.0f} MB", free_mb, needed_mb)};
@@ -93,7 +93,7 @@ PreflightLine judge_disk(const StationFacts& station, std::uint64_t needed_bytes
 
 PreflightLine judge_gpu(const StationFacts& station) {
   if (!station.gpu_clock_mhz || !station.gpu_max_mhz)
-    return {Readiness::Unknown, "GPU clock", "no nvidia-smi"};
+    return {Readiness::Unknown, "GPU clock", "nvidia-smi does not report it"};
   return {Readiness::Ok, "GPU clock",
           fmt::format("{:.0f} of {:.0f} MHz now, at rest", *station.gpu_clock_mhz, *station.gpu_max_mhz)};
 }

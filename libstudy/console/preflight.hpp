@@ -1,5 +1,5 @@
 #pragma once
-/// Checks before a participant begins: lines that say ok, warn or unknown.
+/// Checks of screen and computer before a participant begins. Each result is ok, warn or unknown.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace study {
 
-/// Facts of the participant's window.
+/// Facts of the screen that shows the participant's window.
 struct ScreenFacts {
   double reported_hz = 0;  ///< reported by the system; 0: none
   double measured_hz = 0;  ///< 0: swaps do not wait for the screen
@@ -19,8 +19,8 @@ struct ScreenFacts {
 
 /// Facts of the computer.
 struct StationFacts {
-  std::vector<std::string> governors;                ///< of the processors' frequency; empty: not known
-  std::optional<std::uint64_t> free_disk_bytes;      ///< beside the database
+  std::vector<std::string> governors;  ///< distinct frequency governors of the CPUs; empty: not known
+  std::optional<std::uint64_t> free_disk_bytes;      ///< on the database's disk
   std::optional<double> gpu_clock_mhz, gpu_max_mhz;  ///< from nvidia-smi
   std::optional<bool> on_battery;
 };
@@ -35,11 +35,11 @@ struct PreflightLine {
 /// Reads the facts from the system; unknown ones stay empty.
 StationFacts read_station(const std::filesystem::path& database);
 
-/// needed_bytes: estimate of what the session will write. A pure function.
+/// One line for each check. needed_bytes: estimate of the bytes that the session will write. A pure function.
 std::vector<PreflightLine> judge_preflight(const std::optional<ScreenFacts>& screen,
                                            const StationFacts& station, std::uint64_t needed_bytes);
 
-/// "ok refresh rate: 60 Hz" and so on, one line each.
+/// Text with one row per line, such as "ok       refresh rate: 60 Hz".
 std::string format_preflight(const std::vector<PreflightLine>& lines);
 
 }  // namespace study

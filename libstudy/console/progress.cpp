@@ -80,7 +80,8 @@ std::uint64_t expected_bytes(const Protocol& protocol, std::span<const OpenUnit>
     for (const TrialStep& step : block_of(protocol, unit).steps) {
       if (step.kind != StepKind::Stimulus) continue;
       const FpsSetting& setting = protocol.design.cells.at(cell_of(*unit.trial, step.interval)).setting;
-      frames += setting.duration_s * (setting.mean > 0 ? setting.mean : 60);  // native: assume 60 Hz
+      frames += setting.duration_s *
+                (setting.mean > 0 ? setting.mean : 60);  // without a schedule: assume 60 frames/s
     }
   }
   return static_cast<std::uint64_t>(64 * frames + 4096 * static_cast<double>(units.size()));

@@ -8,9 +8,10 @@
 
 namespace study {
 
-/// Expected duration of a unit, s: its block's times, 3.5 words per second for reading, 5 s for each question
-/// with choices, 10 s for a number and 30 s for text. A simulated person reads and answers at once.
-/// showing_s: duration of a showing of each cell of the design here; empty: as planned.
+/// Expected duration of a unit, s: the times of its block, plus reading at 3.5 words per second, plus 5 s for
+/// each question with listed answers, 10 s for a number, 30 s for text. person = false: a simulated
+/// participant, who reads and answers at once. showing_s: duration of one showing for each cell of the
+/// design, s; empty: as planned.
 double expected_s(const Protocol& protocol, const OpenUnit& unit, bool person = true,
                   std::span<const double> showing_s = {});
 double expected_s(const Protocol& protocol, std::span<const OpenUnit> units, bool person = true,

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t fewest_swaps = 20;
 constexpr double shortest_ns = 2e6, longest_ns = 50e6;
 
-/// Fraction of steps that are a whole number of periods, within a tenth of a period.
+/// Fraction of the steps that last a whole number of periods, within a tenth of a period.
 double share_in_time(const std::vector<double>& steps_ns, double period_ns) {
   std::size_t good = 0;
   for (const double step : steps_ns) {

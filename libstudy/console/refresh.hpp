@@ -1,6 +1,6 @@
 #pragma once
 /// Measures a screen's refresh from the times at which buffer swaps returned. A beat is an instant at which
-/// the screen takes a picture.
+/// the screen takes over a new picture.
 
 #include <cstdint>
 #include <span>
@@ -9,26 +9,30 @@
 namespace study {
 
 struct MeasuredRefresh {
-  bool in_effect = false;    ///< swaps wait for the screen
-  double nominal_hz = 0;     ///< rate for schedules; 0: frames are shown as they come
-  double period_ns = 0;      ///< measured; 0: frames are shown as they come
-  std::int64_t beat_ns = 0;  ///< time of one beat
-  std::string finding;       ///< in words, for the record
+  bool in_effect = false;    ///< true: swaps wait for the screen
+  double nominal_hz = 0;     ///< rate for schedules; 0: swaps do not wait for the screen
+  double period_ns = 0;      ///< measured; 0: swaps do not wait for the screen
+  std::int64_t beat_ns = 0;  ///< time of one beat: the screen takes over a picture
+  std::string finding;       ///< the result in words, for the record
 };
 
-/// Judges successive returns of a swap that waits until it is done. reported_hz: rate reported by the system;
-/// 0: none. The nominal rate is study::nominal_refresh: 60 for 59.95. Irregular swaps (steps that are not
-/// multiples of a period of 2 to 50 ms) are not in effect.
+/// Derives the refresh from the return times of successive swaps, each followed by glFinish(). reported_hz:
+/// rate reported by the system; 0: none. The nominal rate is study::nominal_refresh: 60 for 59.95 Hz.
+/// in_effect is false for fewer than 20 swaps, for a median step outside 2 to 50 ms, and if more than a tenth
+/// of the steps are no multiple of the median step.
 MeasuredRefresh judge_swaps(std::span<const std::int64_t> returns_ns, double reported_hz);
 
-/// The beat of the last of some swaps: each returned at a beat or a little after it, never before.
+/// The time at which the screen took over the picture of the last swap (its beat). A swap returns at its beat
+/// or shortly after, so the earliest return counts, shifted by whole periods.
 std::int64_t beat_of(std::span<const std::int64_t> returns_ns, double period_ns);
 
-/// The first instant from earliest_ns on in the middle between two beats, so that a schedule begins as far as
-/// possible from the edges where a frame would move to another period. earliest_ns itself without a beat.
+/// The first instant from earliest_ns on in the middle between two beats (times at which the screen takes
+/// over a picture). A frame submitted at that instant is least likely to slip into another period. Returns
+/// earliest_ns if swaps do not wait for the screen.
 std::int64_t between_beats(const MeasuredRefresh& refresh, std::int64_t earliest_ns);
 
-/// The first beat after an instant: when a frame submitted then appears. -1 without a beat.
+/// The time at which the screen takes over a frame submitted at handed_over_ns: the next beat. -1 if swaps do
+/// not wait for the screen.
 std::int64_t next_beat(const MeasuredRefresh& refresh, std::int64_t handed_over_ns);
 
 }  // namespace study

@@ -16,7 +16,7 @@ namespace {
 constexpr int wait_ms = 100;
 constexpr int usual_columns = 80, usual_rows = 24;  // if the terminal does not report its size
 constexpr std::int64_t whole_ns = 1'000'000'000;
-// Sequences that open the alternate screen and return (xterm and compatible terminals).
+// Control sequences that open and close a terminal's alternate screen (xterm and compatible terminals).
 constexpr const char* open_screen = "\033[?1049h";
 constexpr const char* close_screen = "\033[?1049l";
 }  // namespace
@@ -61,7 +61,7 @@ void ConsoleTerminal::read_keys() {
   char bytes[64];
   const ssize_t count = read(STDIN_FILENO, bytes, sizeof bytes);
   if (count <= 0) input_ended_ = true;
-  // Escape sequences, such as arrows, are not keys of the console.
+  // Ignores escape sequences, such as those of arrow keys: the console has no such keys.
   if (count > 1 && bytes[0] == 27) return;
   for (ssize_t i = 0; i < count; ++i) console_.key(bytes[i]);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// Runs the console in the terminal that started the program: shows its screen (console_screen.hpp) and reads
-/// keys as they are pressed. Runs on its own thread, so that a slow terminal delays no frame.
+/// Runs the console in the terminal that started the program: shows the console's screen (console_screen.hpp)
+/// and reads keys as they are pressed. Runs on a separate thread: a slow terminal delays no frame.
 
 #include <termios.h>
 
@@ -14,9 +14,9 @@
 
 namespace study {
 
-/// Reads standard input and writes to standard error. If input is not a terminal, its bytes still are keys;
-/// if output is not one, it writes lines instead of a screen. After the screen closes, all lines are printed
-/// below the terminal's former content. Ctrl-C works as usual.
+/// Reads standard input and writes to standard error. If standard input is no terminal, its bytes still count
+/// as keys. If standard error is no terminal, messages are written as lines without a screen. When the screen
+/// closes, all messages are printed below the terminal's former content. Ctrl-C works as usual.
 class ConsoleTerminal {
  public:
   explicit ConsoleTerminal(Console& console);
@@ -34,7 +34,7 @@ class ConsoleTerminal {
   bool terminal_in_ = false, terminal_out_ = false;
   termios before_{};
   bool input_ended_ = false;
-  std::vector<std::string> said_;   ///< all lines so far, if there is a screen
+  std::vector<std::string> said_;   ///< all messages so far, if there is a screen
   std::vector<std::string> drawn_;  ///< current content of the screen
   int columns_ = 0, rows_ = 0;
   std::int64_t drawn_whole_ns_ = 0;

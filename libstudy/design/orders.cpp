@@ -14,7 +14,8 @@ std::vector<int> latin_row(int k, int row) {
 int williams_rows(int k) { return k % 2 == 0 || k == 1 ? k : 2 * k; }
 
 std::vector<int> williams_row(int k, int row) {
-  // 0, 1, k - 1, 2, k - 2, ...: all its steps differ; the second half of an odd design reverses them.
+  // Row 0 is 0, 1, k - 1, 2, k - 2, ...: the differences between neighbours are distinct modulo k. Row r adds
+  // r modulo k to each item. If k is odd, rows k to 2 k - 1 are reversed.
   std::vector<int> out;
   for (int i = 0; i < k; ++i) {
     const int zigzag = i % 2 == 1 ? (i + 1) / 2 : (k - i / 2) % k;

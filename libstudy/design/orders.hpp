@@ -8,18 +8,18 @@
 
 namespace study {
 
-/// Row `row` of the cyclic Latin square: over k rows, each item occurs once at each position.
+/// Row `row` of the cyclic Latin square of k items: over all k rows, each item occurs once at each position.
 std::vector<int> latin_row(int k, int row);
 
-/// Rows of a Williams design: k when k is even, 2 k when it is odd.
+/// Number of rows of a Williams design of k items: k if k is even or 1, otherwise 2 k.
 int williams_rows(int k);
 /// Row `row` of a Williams design: over all rows, each item occurs equally often at each position and
 /// directly after each other item (Williams 1949).
 std::vector<int> williams_row(int k, int row);
 
-/// A random order without clashing neighbours. Each next item is drawn from those that do not clash with the
-/// last; if none is left, the search starts over. Empty after 10,000 failed starts (fewer if k is above 141).
-/// Not every such order is equally likely.
+/// A random order in which no two neighbours clash. Each next item is drawn from the remaining items that do
+/// not clash with the last one. If all remaining items clash, the search starts over. Empty after 10,000
+/// failed starts (fewer if k is above 141). Not all orders without clashes are equally likely.
 std::vector<int> order_without_clashes(int k, const std::function<bool(int, int)>& clash,
                                        RandomStream& random);
 

@@ -11,23 +11,24 @@ namespace study {
 
 namespace {
 
-/// What a slot of the assignment means: groups, round and row.
+/// The groups and the row of the square that a slot of the assignment gives to a participant.
 struct Deal {
   std::vector<int> groups;  ///< in order of presentation, as indices into cell_groups()
   int round = 0;            ///< number of complete passes through all sequences before this slot
-  /// First row of the square; the k-th group shown takes the k-th row after it. Over all slots, each sequence
-  /// begins equally often with each row; for pairs, in both interval orders.
+  /// Row of the square (Latin or Williams) for the first group; each later group takes the next row. Over all
+  /// slots, each sequence of groups begins equally often with each row; with pairs, in both interval orders.
   int row = 0;
 };
 
-/// Interval orders of pairs come in couples: a random order and its mirror.
+/// Rounds come in couples: in the second round of a couple, each pair has the opposite interval order of the
+/// first round. 32 rounds are 16 couples with different random interval orders.
 constexpr int rounds_of_intervals = 32;
 
 const StimulusSpec& stimulus_of(const Design& design, const std::vector<int>& group) {
   return design.cells[static_cast<std::size_t>(group.front())].stimulus;
 }
 
-/// Largest difference between the frequencies of two n_* in a sequence.
+/// How often the most frequent n_* occurs in a sequence minus how often the least frequent one does.
 int unevenness(const Design& design, const std::vector<std::vector<int>>& groups,
                const std::vector<int>& sequence) {
   std::map<std::string, int> count;
@@ -57,7 +58,8 @@ void extend(const Design& design, const std::vector<std::vector<int>>& groups, s
   }
 }
 
-/// Every sequence of groups with different scenes; `even`: only those that spread n_* most evenly.
+/// Every sequence of design.groups groups with different scenes. `even` true: only the sequences that spread
+/// n_* most evenly.
 std::vector<std::vector<int>> sequences_of(const Design& design, bool even) {
   const auto groups = cell_groups(design);
   std::vector<std::vector<int>> out;
@@ -70,7 +72,8 @@ std::vector<std::vector<int>> sequences_of(const Design& design, bool even) {
   return out;
 }
 
-/// Rows of the square; 1 if there is none.
+/// Number of rows of the square (Latin or Williams); for groups of different sizes, the least common multiple
+/// of their numbers of rows; 1 for other orders.
 int rows_of(const Design& design) {
   if (design.order != TrialOrder::Latin && design.order != TrialOrder::Williams) return 1;
   int rows = 1;
@@ -82,7 +85,7 @@ int rows_of(const Design& design) {
   return rows;
 }
 
-/// Rounds through all sequences before the assignment starts over.
+/// Number of passes through all sequences before the assignment starts over.
 int rounds_of(const Design& design) {
   const bool couples = design.pairs && design.assignment == Assignment::Balanced;
   return couples ? std::lcm(2 * rows_of(design), rounds_of_intervals) : rows_of(design);
@@ -92,7 +95,7 @@ std::vector<std::vector<int>> dealt_sequences(const Design& design) {
   return sequences_of(design, design.assignment == Assignment::Balanced);
 }
 
-/// slot >= 0. Under Assignment::PaperRandom the groups are drawn with `key`.
+/// The Deal of a slot; slot >= 0. Under Assignment::PaperRandom the groups are drawn with `key` instead.
 Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
   const Design& design = protocol.design;
   const auto all = dealt_sequences(design);
@@ -100,7 +103,7 @@ Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
     RandomStream random(key, std::uint64_t{1} << 33);
     return {all[random.below(all.size())], slot, slot};
   }
-  // Each round goes through all sequences in its own random order.
+  // Each round uses every sequence once, in a random order that differs between rounds.
   const auto count = static_cast<int>(all.size());
   std::vector<int> order(all.size());
   std::iota(order.begin(), order.end(), 0);
@@ -108,7 +111,7 @@ Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
   RandomStream random(random_key(protocol.sha256 + "\nround " + std::to_string(round)));
   shuffle(order, random);
   const int sequence = order[static_cast<std::size_t>(slot % count)];
-  // Both rounds of a couple, whose intervals are mirrored, use the same rows.
+  // With pairs, both rounds of a couple use the same rows, so each row occurs in both interval orders.
   return {all[static_cast<std::size_t>(sequence)], round, sequence + (design.pairs ? round / 2 : round)};
 }
 
@@ -133,7 +136,8 @@ std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t ke
 
 namespace {
 
-// Schedule seeds, practice, repeats and catches use counters far from those of the shuffles.
+// First random counters of schedule seeds, and of practice, repeats, catches and random interval orders. The
+// shuffles of trials start at counter 0, so that no two purposes share random numbers.
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
@@ -172,7 +176,7 @@ class Planner {
       case BlockKind::Repeat:
         return add_repeats(index);
       case BlockKind::Catch:
-        return;  // among the trials
+        return;  // scatter_catches() adds catch pages among the trials
       default:
         add_page(index);
     }
@@ -180,7 +184,7 @@ class Planner {
 
   void add_page(int index) { plan_.units.push_back({0, index, {}}); }
 
-  /// Appends the trial to the session.
+  /// Appends a trial to the plan, as a trial and as a unit.
   void add_trial(PlannedTrial trial) {
     trial.position = static_cast<int>(plan_.trials.size());
     plan_.units.push_back({0, trial.block, trial.position});
@@ -204,7 +208,8 @@ class Planner {
     }
   }
 
-  /// The trials of one group in file order.
+  /// All trials of the participant's g-th group (from 0), in the protocol's order of cells. With pairs, one
+  /// trial for each pair of cells. `index`: the block.
   std::vector<PlannedTrial> trials_of(int g, int index) const {
     const auto cells =
         cell_groups(design_)[static_cast<std::size_t>(deal_.groups[static_cast<std::size_t>(g)])];
@@ -231,8 +236,9 @@ class Planner {
     return out;
   }
 
-  /// True if a pair shows its second cell first. Rounds come in couples: a random choice and its opposite,
-  /// equal for all participants of a round.
+  /// True if pair number `pair` of group g shows its second cell first. The choice is random but equal for
+  /// all participants of a round; the second round of a couple has the opposite choice. Under
+  /// Assignment::PaperRandom the choice is drawn for each participant.
   bool mirrored(int g, int pair) const {
     const auto which = static_cast<std::uint64_t>(g) * counters_per_group + static_cast<std::uint64_t>(pair);
     if (design_.assignment == Assignment::PaperRandom)
@@ -253,8 +259,9 @@ class Planner {
       auto out = order_without_clashes(
           k, [&](int a, int b) { return share_level(design_, cell(a), cell(b)); }, random_);
       if (!out.empty()) return out;
-      throw base::Error("protocol " + protocol_.name, "has no order that keeps never_adjacent",
-                        "name fewer factors, or use order = \"shuffle\"");
+      throw base::Error("protocol " + protocol_.name,
+                        "no order of the trials was found that satisfies design.never_adjacent",
+                        "name fewer factors in never_adjacent, or use order = \"shuffle\"");
     }
     std::vector<int> out(trials.size());
     std::iota(out.begin(), out.end(), 0);
@@ -267,14 +274,15 @@ class Planner {
                         first_extra_counter + static_cast<std::uint64_t>(index + 1) * counters_per_block);
   }
 
-  /// Draws from the first group without replacement, and starts over when all are drawn.
+  /// Draws practice trials from the participant's first group without replacement; once all trials are drawn,
+  /// draws from all of them again.
   void add_practice(int index) {
     auto random = extra(index);
     const auto candidates = trials_of(0, index);
     add_drawn(candidates, block(index).count, index, random);
   }
 
-  /// Repeats trials with the same stimuli and frame intervals.
+  /// Adds trials drawn at random from those of block `like`, with the same stimuli and frame intervals.
   void add_repeats(int index) {
     auto random = extra(index);
     std::vector<PlannedTrial> shown;
@@ -302,7 +310,7 @@ class Planner {
     for (std::size_t index = 0; index < protocol_.blocks.size(); ++index) {
       const Block& catches = protocol_.blocks[index];
       if (catches.kind != BlockKind::Catch) continue;
-      std::vector<int> places;  // positions of trials
+      std::vector<int> places;  // positions of the trials after which a catch page may follow
       for (const auto& trial : plan_.trials) {
         if (block(trial.block).id == catches.like) places.push_back(trial.position);
       }

@@ -1,6 +1,6 @@
 #pragma once
-/// Several stations that record one study. Each station deals its own share of the assignment and uses its
-/// own seed. Together they use the assignment as one station would.
+/// Several stations that record one study. Each station gives out its own share of the slots and uses its own
+/// seed. Together the stations use the slots of the assignment as one station would.
 
 #include <cstdint>
 #include <optional>
@@ -17,20 +17,20 @@ struct StationNumber {
   bool operator==(const StationNumber&) const = default;
 };
 
-/// The number at the end of a station's name: "2/5", or "lab2 2/5". None if the name has no number.
-/// base::Error for an impossible number, such as "6/5".
+/// Parses the station number at the end of a station's name, such as "2/5" or "lab2 2/5". None if the name
+/// has no number. base::Error for an impossible number, such as "6/5".
 std::optional<StationNumber> parse_station_number(const std::string& station);
 
-/// "2/5"
+/// The station number as text: "2/5".
 std::string station_text(const StationNumber& station);
 
-/// The seed of a station's sessions, so that P01 has different orders at two stations. `seed` if there is no
-/// number. At most 2^63 - 1.
+/// The seed of a station's sessions, computed from the study's seed and the station number, at most 2^63 - 1.
+/// So participant code P01 gets different orders at two stations. Returns `seed` if there is no number.
 std::uint64_t seed_of_station(std::uint64_t seed, const std::optional<StationNumber>& station);
 
-/// The slot for the station's next participant: the first of the least used slots that this station deals.
-/// Station k of n deals every n-th slot, from slot k - 1 on, and starts over after the last. Without a
-/// number: next_slot(protocol, taken).
+/// The slot for the station's next participant: among the least used slots of this station, the one that
+/// comes first. Station k of n gives out every n-th slot from slot k - 1 on, modulo slot_count(). Without a
+/// station number, returns next_slot(protocol, taken).
 int next_slot(const Protocol& protocol, const std::vector<int>& taken,
               const std::optional<StationNumber>& station);
 

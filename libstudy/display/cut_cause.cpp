@@ -35,7 +35,7 @@ CutWords words_of(CutCause cause) {
 }
 
 void note_cut(std::optional<CutCause>& noted, CutCause cause) {
-  const bool explains = cause == CutCause::SessionLost ||  // a lost session also stops pictures and focus
+  const bool explains = cause == CutCause::SessionLost ||  // a lost session also ends pictures and focus
                         (noted == CutCause::Focus && cause == CutCause::TakenOff);
   if (!noted || explains) noted = cause;
 }

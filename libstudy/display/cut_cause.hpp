@@ -1,12 +1,12 @@
 #pragma once
-/// Causes for which a showing is cut and its trial shown again.
+/// Causes for which the showing of a stimulus is cut and its trial shown again.
 
 #include <optional>
 #include <string>
 
 namespace study {
 
-/// Each cut has one cause. A new cause needs its words and an entry in the test over all causes.
+/// The cause of a cut. A new cause needs a case in words_of() and an entry in the test over all causes.
 enum class CutCause {
   Experimenter,  ///< the experimenter asked to show the trial again
   Participant,   ///< the participant opened the stop dialog and went on
@@ -28,8 +28,8 @@ struct CutWords {
 };
 CutWords words_of(CutCause cause);
 
-/// Keeps the first cause, with two exceptions that explain an earlier one: a lost session replaces any cause,
-/// and a headset taken off replaces a lost focus.
+/// Stores a cause in `noted` if `noted` is empty. Two causes also replace an earlier cause, because they
+/// explain it: a lost session replaces any cause, and a headset taken off replaces a lost focus.
 void note_cut(std::optional<CutCause>& noted, CutCause cause);
 
 }  // namespace study

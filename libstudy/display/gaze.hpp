@@ -1,6 +1,5 @@
 #pragma once
-/// Where the participant looks: the interface through which an eye tracker, a headset or the mouse feeds a
-/// session.
+/// Interface through which an eye tracker, a headset or the mouse sends a session the participant's gaze.
 
 #include <array>
 #include <cstdint>
@@ -10,14 +9,15 @@
 
 namespace study {
 
-/// The device behind the samples. Mouse and head are only stand-ins: people often look elsewhere.
+/// The device that measures the samples. Mouse and head only approximate the gaze: people often look
+/// elsewhere.
 enum class GazeOrigin { Tracker, Head, Mouse };
 
 /// A point of the picture: fractions of its width from the left edge and of its height from the top edge.
 using GazePoint = std::pair<double, double>;
 
-/// The combined (cyclopean) ray of both eyes in the head's frame: x right, y up, z back from the midpoint of
-/// the eyes. The head's pose (headset.hpp) transforms it to the room.
+/// The combined (cyclopean) gaze ray of both eyes in the head's frame: x right, y up, z back; the origin is
+/// the midpoint of the eyes. HeadPose (headset.hpp) transforms the ray to the room.
 struct GazeRay {
   std::array<double, 3> origin_m{};
   std::array<double, 3> direction{0, 0, -1};  ///< unit vector
@@ -25,11 +25,11 @@ struct GazeRay {
 
 struct GazeSample {
   std::int64_t sampled_ns = 0;            ///< arrival time, on the session's clock
-  std::optional<std::int64_t> device_ns;  ///< the device's own time stamp, if it gives one
+  std::optional<std::int64_t> device_ns;  ///< time stamp of the device; none: it reports none
   bool valid = false;                     ///< false during a blink or with the pointer off the picture
-  std::optional<GazePoint> point;         ///< may be set even if not valid, e.g. beside the picture
-  std::optional<bool> tracked{};  ///< false: estimated by the source (sub-nominal); none: not reported
-  std::optional<GazeRay> ray{};   ///< none: the source gives only points of the picture
+  std::optional<GazePoint> point;         ///< may be set without `valid`, e.g. beside the picture
+  std::optional<bool> tracked{};          ///< false: estimated by the source; none: not reported
+  std::optional<GazeRay> ray{};           ///< none: the source gives only points of the picture
 };
 
 /// A source of samples at its own rate. Calls come from the session's thread; a device with its own thread
@@ -38,10 +38,10 @@ class GazeSource {
  public:
   virtual ~GazeSource() = default;
   virtual GazeOrigin origin() const = 0;
-  /// Begins to buffer samples; the participant has allowed it. A source that reports only changes first adds
-  /// the current state.
+  /// Begins to buffer samples; call it only with the participant's consent. A source that reports only
+  /// changes first adds a sample of the current state.
   virtual void start() = 0;
-  /// Returns the samples since start() or the last call, in the order of sampled_ns.
+  /// Returns the samples since start() or the last take(), in the order of sampled_ns.
   virtual std::vector<GazeSample> take() = 0;
   /// Stops buffering and discards the samples that were not taken.
   virtual void stop() = 0;

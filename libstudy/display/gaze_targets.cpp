@@ -18,13 +18,13 @@ Vector unit(const Vector& v) {
   return size > 0 ? Vector{v[0] / size, v[1] / size, v[2] / size} : v;
 }
 
-/// Accurate for small angles too.
+/// The angle between two vectors, degrees; atan2 keeps small angles accurate.
 double degrees_between(const Vector& a, const Vector& b) {
   const Vector across = cross(a, b);
   return std::atan2(std::sqrt(dot(across, across)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
-/// The gaze in a frame with the target straight ahead and up unchanged.
+/// The gaze direction in the target's frame: -z points to the target, and x stays horizontal.
 Vector from_target(const TargetSample& sample) {
   const Vector ahead = unit(sample.target);
   const Vector right = unit(cross(ahead, {0, 1, 0}));

@@ -10,20 +10,21 @@
 
 namespace study {
 
-/// A gaze sample while a target is shown: unit vectors in one frame, x right, y up, z back.
+/// A gaze sample while a target is shown: directions of the gaze and the target in one frame, x right, y up,
+/// z back.
 struct TargetSample {
   bool valid = false;
   std::array<double, 3> gaze{}, target{};
 };
 
-/// Shows targets and records gaze meanwhile. Calls come from the session's thread.
+/// Shows targets and records the gaze while they are shown. Calls come from the session's thread.
 class GazeTargets {
  public:
   virtual ~GazeTargets() = default;
   /// Places the grid of targets straight ahead of the head's current pose.
   virtual void begin() = 0;
-  /// Shows a target at these angles right and up from the grid's middle for settle_s + sample_s; returns the
-  /// samples of the last sample_s. `check` is called often and may throw.
+  /// Shows a target for settle_s + sample_s and returns the samples of the last sample_s. Angles are to the
+  /// right and up from the middle of the grid. `check` is called often and may throw.
   virtual std::vector<TargetSample> look_at(double azimuth_deg, double elevation_deg, double settle_s,
                                             double sample_s, const std::function<void()>& check) = 0;
   /// Hides the targets.
@@ -33,13 +34,13 @@ class GazeTargets {
 /// Accuracy and precision at one target, degrees, as defined in eye tracking (Holmqvist et al. 2012).
 struct GazeQuality {
   std::int64_t samples = 0, valid = 0;
-  std::optional<double> accuracy_deg;  ///< of the mean direction; none: no valid sample
-  std::optional<double> sd_deg;        ///< root mean square of the angles to that mean; none: likewise
-  std::optional<double>
-      rms_s2s_deg;  ///< of the angles between successive valid samples; none: fewer than two
+  std::optional<double> accuracy_deg;  ///< angle from target to mean gaze; none: no valid sample
+  std::optional<double> sd_deg;        ///< root mean square angle to the mean gaze; none: no valid sample
+  std::optional<double> rms_s2s_deg;   ///< likewise, between successive valid samples; none: < 2
 };
 
-/// Directions are relative to the target, which may move in the samples' frame, e.g. when the head moves.
+/// Computes accuracy and precision from directions relative to the target. The target may move in the
+/// samples' frame, e.g. when the head moves.
 GazeQuality gaze_quality(std::span<const TargetSample> samples);
 
 }  // namespace study

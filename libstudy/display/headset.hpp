@@ -1,5 +1,5 @@
 #pragma once
-/// What a session records about a headset: its properties, its slots and the head's poses.
+/// The records of a session about a headset: properties, slots (periods of its compositor) and head poses.
 
 #include <array>
 #include <cstdint>
@@ -9,20 +9,20 @@
 
 namespace study {
 
-/// One eye's picture; angles from straight ahead, negative to the left and downwards.
+/// Size and edges of one eye's picture; angles from straight ahead, negative to the left and downwards.
 struct EyeFacts {
   int width_px = 0, height_px = 0;
   double left_deg = 0, right_deg = 0, up_deg = 0, down_deg = 0;
   bool operator==(const EyeFacts&) const = default;
 };
 
-/// What a headset and its runtime report.
+/// Properties that a headset and its OpenXR runtime report.
 struct HeadsetFacts {
   std::string runtime, runtime_version, headset;
   std::array<EyeFacts, 2> eyes;  ///< left and right
   std::string format;            ///< pixel format of the submitted pictures
   std::optional<double> refresh_told_hz, refresh_measured_hz;
-  std::string hold = "image";  ///< "image", "state" or "head_locked" (Hold): what is shown between two frames
+  std::string hold = "image";  ///< "image", "state" or "head_locked" (Hold): picture between two frames
   std::string blend;           ///< environment blend mode: "opaque"
   bool times_convert = false;
   bool position_tracking = false;  ///< the runtime reports that it tracks the head's position
@@ -30,8 +30,9 @@ struct HeadsetFacts {
   bool operator==(const HeadsetFacts&) const = default;
 };
 
-/// Position and orientation of the midpoint of the eyes in the runtime's room frame: x right, y up, z back,
-/// m. Not valid: unknown. Valid but not tracked: estimated.
+/// Position (m) and orientation of the midpoint of the eyes in the runtime's room frame: x right, y up, z
+/// back. A part that is not valid is unknown. A part that is valid but not tracked is an estimate of the
+/// runtime.
 struct HeadPose {
   std::array<double, 3> place_m{};
   std::array<double, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
@@ -45,26 +46,26 @@ inline constexpr double ipd_change_mm = 0.2;
 /// A period of the headset's compositor.
 struct SlotRecord {
   std::int64_t predicted_ns = 0;  ///< predicted display time, on the session's clock
-  std::int64_t period_ns = 0;     ///< as the runtime reports it
-  bool should_render = false;     ///< false: nothing drawn now would be visible
-  std::optional<HeadPose> head;   ///< none: not requested
+  std::int64_t period_ns = 0;     ///< period as the runtime reports it
+  bool should_render = false;     ///< false: a picture would not be visible
+  std::optional<HeadPose> head;   ///< pose of the head; none: not requested
   double ipd_mm = 0;              ///< distance between the eyes; 0: not known
 };
 
-/// A headset as the session sees it. Calls come from the session's thread.
+/// Interface through which a session records a headset. Calls come from the session's thread.
 class SlotSource {
  public:
   virtual ~SlotSource() = default;
-  /// The current facts.
+  /// The current properties.
   virtual HeadsetFacts facts() const = 0;
-  /// Begins to record slots; with_heads: also the head's pose, which the participant has allowed.
+  /// Begins to record slots. with_heads: also records the head's pose; needs the participant's consent.
   virtual void start_slots(bool with_heads) = 0;
-  /// Returns the slots that ended since start_slots() or the last call, in order.
+  /// Returns the slots that ended since start_slots() or the last take_slots(), in order of time.
   virtual std::vector<SlotRecord> take_slots() = 0;
   virtual void stop_slots() = 0;
   /// Distance between the eyes in the newest slot, mm; none: not known.
   virtual std::optional<double> ipd_mm() = 0;
-  /// Events of the headset since the last call, in words for the log. facts() may have changed.
+  /// Events of the headset since the last call, in words for the log. Each may have changed facts().
   virtual std::vector<std::string> take_news() = 0;
 };
 

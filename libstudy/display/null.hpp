@@ -1,5 +1,5 @@
 #pragma once
-/// A stimulus and a display that show nothing: to run plans, observers and stores without a fluid or a
+/// A stimulus and a display that show nothing. With them plans, observers and stores run without a fluid or a
 /// screen.
 
 #include "libstudy/base/clock.hpp"
@@ -7,7 +7,7 @@
 
 namespace study {
 
-/// Counts content steps.
+/// A stimulus without content: reports only the simulated time of each content step.
 class NullStimulus final : public Stimulus {
  public:
   /// content_step_s: simulated time of one step, s.
@@ -26,7 +26,7 @@ class NullStimulus final : public Stimulus {
   double content_step_s_;
 };
 
-/// Takes each frame at its scheduled time and draws nothing.
+/// Waits until the scheduled time of each frame and draws nothing.
 class NullDisplay final : public Display {
  public:
   std::string description() const override { return "none"; }

@@ -1,6 +1,6 @@
 #pragma once
-/// What a trial shows (Stimulus) and where (Display). libstudy uses fluids and GL only through these two
-/// interfaces.
+/// Interfaces for the content of a trial (Stimulus) and the device that shows it (Display). A session uses
+/// fluids and OpenGL only through these two interfaces.
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace study {
 
-/// How often a fluid's safety rules acted while it computed one frame; the schema says what each counts.
+/// How often each safety rule of the fluid solver acted in one frame; the database schema explains each
+/// count.
 struct FrameGuards {
   std::int64_t speed_limited = 0, coincident_pairs = 0, not_finite = 0, neighbours_dropped = 0;
   std::int64_t wall_projected = 0, nozzle_waited = 0, saliency_not_finite = 0, gaze_lost = 0;
@@ -19,13 +20,13 @@ struct FrameGuards {
 
 /// Parameters of temporal acceleration in one frame, for a fluid that skips particles.
 struct FrameTolerance {
-  std::optional<double> tau_fps;            ///< empty: no frame time was known yet
-  double beta = 1;                          ///< lowest probability of being solved, [0, 1]
+  std::optional<double> tau_fps;            ///< tau (Eq. 11), frames/s; none: no frame time was known yet
+  double beta = 1;                          ///< lowest probability that a particle is solved, [0, 1]
   double active_fraction = 1;               ///< share of particles that were solved, [0, 1]
-  std::optional<double> mu_fps, delta_fps;  ///< mean and standard deviation behind tau; empty: tau was given
+  std::optional<double> mu_fps, delta_fps;  ///< mean and standard deviation for tau; empty: tau is fixed
 };
 
-/// Facts about a frame from its producer, stored in every frame record. Empty if not measured.
+/// Facts about a frame from the stimulus that made it, stored in every frame record. Empty: not measured.
 struct FrameFacts {
   double simulation_time_s = 0;
   std::vector<std::int64_t> particles_by_level;  ///< finest first
@@ -39,13 +40,14 @@ class Stimulus {
   virtual ~Stimulus() = default;
   /// Names scene, method, n_*, back end and bake hash, for the record.
   virtual std::string description() const = 0;
-  /// Content steps after which the process ends or repeats; 0 = unlimited.
+  /// Number of content steps after which the process ends or repeats; 0: unlimited.
   virtual std::int64_t length() const = 0;
   /// Rewinds to content step `start_step`.
   virtual void start(std::int64_t start_step) = 0;
-  /// Makes content step `step` (>= the last one asked for) ready to draw.
+  /// Computes content step `step` so that draw() can draw it; `step` >= the last prepared step.
   virtual FrameFacts prepare(std::int64_t step) = 0;
-  /// Draws the prepared step. base::Error if it cannot be drawn for two eyes.
+  /// Draws the prepared step. base::Error if the canvas has two eyes and the stimulus cannot draw for two
+  /// eyes.
   virtual void draw(const Canvas& canvas) = 0;
 };
 
@@ -57,11 +59,11 @@ struct PresentTimes {
   std::int64_t actual_display_ns = -1;
 };
 
-/// Grade of the evidence for onset times. Compositor: the compositor predicted the display time.
+/// Grade of the evidence for onset times. Compositor: the display time is a prediction of the compositor.
 enum class TimingGrade : char { Photodiode = 'A', DisplayFeedback = 'B', Compositor = 'C', CpuSubmit = 'D' };
 
-/// The time that is compared with a frame's scheduled time: the predicted display time under grade C if there
-/// is a prediction, else the submission.
+/// The time that is compared with a frame's scheduled time. Under grade C this is the predicted display time,
+/// if there is a prediction. Otherwise it is the submission time.
 inline std::int64_t placed_ns(const PresentTimes& times, TimingGrade grade) {
   const bool predicted = grade == TimingGrade::Compositor && times.predicted_display_ns >= 0;
   return predicted ? times.predicted_display_ns : times.submitted_ns;
@@ -77,21 +79,22 @@ class Display {
   virtual TimingGrade grade() const = 0;
   /// Fixed refresh rate in Hz; 0 if frames are shown as they arrive.
   virtual double refresh_hz() const = 0;
-  /// The measured refresh rate: a screen of 60 Hz may run at 59.95 Hz. Holds are counted in its periods.
+  /// The measured refresh rate, Hz: a screen of 60 Hz may run at 59.95 Hz. A hold of k periods lasts
+  /// k / measured_hz() seconds.
   virtual double measured_hz() const { return refresh_hz(); }
   /// The first instant from earliest_ns on at which a schedule may begin, on the session's clock. A screen
   /// with a fixed refresh returns the middle between two refreshes, so that jitter moves no frame into
   /// another period.
   virtual std::int64_t first_onset(std::int64_t earliest_ns) const { return earliest_ns; }
-  /// Draws the stimulus off-screen so that present() is short. May do nothing.
+  /// Draws the stimulus off-screen in advance, to keep present() short. A display may do nothing here.
   virtual void render(Stimulus& stimulus) = 0;
-  /// Shows the rendered frame at scheduled_ns or as soon after it as possible; returns once it was submitted.
-  /// Waits on the session's clock.
+  /// Shows the rendered frame at scheduled_ns or as soon after as possible. Waits on the session's clock and
+  /// returns once the frame was submitted.
   virtual PresentTimes present(std::int64_t scheduled_ns, Clock& clock) = 0;
-  /// Keeps the presented frame on until until_ns; returns then or earlier. For displays that must redraw it
-  /// meanwhile.
+  /// Keeps the presented frame on the display until until_ns, for displays that must redraw it. Returns at
+  /// until_ns or earlier.
   virtual void hold(std::int64_t /*until_ns*/, Clock&) {}
-  /// Ends a presentation, complete or cut: its frame is no longer shown.
+  /// Ends the showing of a stimulus, complete or cut: removes its last frame from the display.
   virtual void clear() {}
 };
 

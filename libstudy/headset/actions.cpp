@@ -45,7 +45,8 @@ XrAction make_action(const SessionHandle& session, XrActionSet set, XrActionType
   return action;
 }
 
-/// False if the runtime does not know this kind of device.
+/// Suggests the bindings of one kind of controller to the runtime. Returns false if the runtime does not
+/// support it.
 bool suggest_profile(const SessionHandle& session, const std::string& profile,
                      const std::vector<Binding>& bindings) {
   std::vector<XrActionSuggestedBinding> suggested;
@@ -99,7 +100,7 @@ void Actions::suggest(bool eye_gaze) const {
   struct Device {
     std::string profile, select, menu, stick;
   };
-  // Every runtime has the simple controller, which has no stick.
+  // Every runtime supports the simple controller, which has no stick.
   for (const Device& device : std::vector<Device>{
            {"khr/simple_controller", "/input/select/click", "/input/menu/click", ""},
            {"oculus/touch_controller", "/input/trigger/value", "", "/input/thumbstick"},
@@ -113,7 +114,8 @@ void Actions::suggest(bool eye_gaze) const {
       if (!device.menu.empty()) bindings.push_back({menu_, hand + device.menu});
       if (!device.stick.empty()) bindings.push_back({stick_, hand + device.stick});
     }
-    if (device.menu.empty()) {  // hands have different buttons, and the system may own the left menu
+    if (device.menu
+            .empty()) {  // left and right have different buttons; the system may reserve the left menu button
       bindings.push_back({menu_, "/user/hand/left/input/y/click"});
       bindings.push_back({menu_, "/user/hand/right/input/b/click"});
     }
@@ -121,7 +123,7 @@ void Actions::suggest(bool eye_gaze) const {
   }
   if (eye_gaze && !suggest_profile(session_, "/interaction_profiles/ext/eye_gaze_interaction",
                                    {{gaze_, "/user/eyes_ext/input/gaze_ext/pose"}})) {
-    throw base::Error("headset", "the runtime offers eye tracking and does not take it as an input",
+    throw base::Error("headset", "the runtime offers eye tracking but rejects its input profile",
                       "update the headset's software");
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Reads HeadsetInput through OpenXR's actions.
+/// Reads gaze, buttons and pointing (HeadsetInput) through OpenXR's actions.
 
 #include <memory>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace study {
 
-/// Made once per session, in the specification's order: actions, suggested bindings, attachment, spaces.
-/// Afterwards the actions are synchronised while the session is focused.
+/// OpenXR's actions of one session. The constructor makes them in the order that the specification requires:
+/// actions, suggested bindings, attachment to the session, spaces. read() synchronises them.
 class Actions {
  public:
   Actions(const SessionHandle& session, RuntimeClock& clock, bool eye_gaze);
@@ -19,7 +19,7 @@ class Actions {
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
 
-  /// Reads gaze and hands at `time` in `world`; call while focused.
+  /// Reads gaze and hands at `time`, with poses in `world`, into `out`. Call it while the session is focused.
   void read(const Space& world, XrTime time, HeadsetInput& out);
 
  private:

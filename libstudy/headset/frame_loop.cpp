@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::chrono::seconds most_idle{30};
 constexpr std::chrono::milliseconds slot_wait{100};
-/// A picture shown for longer than this was left by a program that hangs: it fades out, so that the person is
-/// not left in a frozen world.
+/// A picture that stays on for longer than most_held_s means that the program hangs. The picture then fades
+/// to black within fade_s: the participant must not stay in a frozen world.
 constexpr double most_held_s = 2, fade_s = 0.3;
 
 std::int64_t system_ns() { return RealClock().now_ns(); }
@@ -91,7 +91,7 @@ void FrameLoop::make_session() {
   changed_.notify_all();
 }
 
-/// Replaces a session that the runtime lost.
+/// Replaces the session that the runtime lost by a new session.
 void FrameLoop::make_anew() {
   std::unique_ptr<HeadsetSession> lost;
   const SessionFacts before = session();
@@ -115,7 +115,7 @@ void FrameLoop::make_anew() {
   events_.push_back({.kind = HeadsetEvent::Kind::MadeAnew});
 }
 
-/// Runs on the thread. The session lives and ends on it, in its context.
+/// Body of the slot thread: makes the session, runs its slots and destroys it, all in the context slots_gl_.
 void FrameLoop::run() {
   try {
     const RealTimeScheduling real_time;
@@ -144,7 +144,7 @@ void FrameLoop::draw_slots() {
   }
 }
 
-/// Returns false if no frames must be run now.
+/// Runs one slot, or replaces a lost session. Returns false if no slot was run.
 bool FrameLoop::turn_slot() {
   try {
     if (poll()) {
@@ -161,14 +161,14 @@ bool FrameLoop::turn_slot() {
   return false;
 }
 
-/// Returns true if frames must be run.
+/// Processes the session's events. Returns true if the session runs frames.
 bool FrameLoop::poll() {
   const std::vector<HeadsetEvent> events = session_->poll();
   const std::lock_guard held(mutex_);
   events_.insert(events_.end(), events.begin(), events.end());
   for (const HeadsetEvent& event : events) {
     using Kind = HeadsetEvent::Kind;
-    // Lost events may have included a move; at_ns of -1 is before all slots.
+    // Lost events may include a move of the world's origin. Their at_ns is -1, before all slots.
     if (event.kind == Kind::Recentred || event.kind == Kind::EventsLost) moves_ns_.push_back(event.at_ns);
     runtime_ends_ |= event.kind == Kind::RuntimeEnds;
   }
@@ -176,26 +176,28 @@ bool FrameLoop::poll() {
   return running_ = session_->running();
 }
 
-/// A move of the world's origin takes effect at the first slot whose predicted time has reached it.
+/// Applies moves of the world's origin: a move takes effect at the first slot whose predicted time is not
+/// before the move's time.
 void FrameLoop::follow_world(std::int64_t predicted_ns) {
   if (std::erase_if(moves_ns_, [&](std::int64_t at_ns) { return at_ns <= predicted_ns; }) == 0) return;
   ++facts_.world;
   black_out(CutCause::Recentred);
 }
 
-/// Pictures and pages placed in the old world would jump.
+/// Removes picture and page, because their positions are those of the old world. Notes the cause if a picture
+/// was shown or waiting.
 void FrameLoop::black_out(CutCause cause) {
   if (picture_turns_.shows() || picture_turns_.waits()) note_cut(unseen_, cause);
   picture_turns_.drop();
   page_turns_.drop();
 }
 
-/// Records the slot and returns its layers.
+/// Stores the record of a slot and returns the layers that the slot shows.
 HeadsetLayers FrameLoop::take_in(HeadsetRecord record) {
   const HeadsetSlot& slot = record.slot;
   const RateMeter& meter = session_->meter();
   HeadsetRate rate{facts_.rate.reported_hz, meter.hz()};
-  // The rate that the runtime reports may be wrong before the measured rate has settled.
+  // Reads the reported rate only once the measured rate has settled: before, the reported rate may be wrong.
   if (rate.measured_hz && !facts_.rate.measured_hz) rate = session_->rate();
   HeadsetLayers out;
   {
@@ -263,16 +265,16 @@ void FrameLoop::turn() {
   if (drive_ == SlotDrive::Caller) {
     const auto since = std::chrono::steady_clock::now();
     while (!turn_slot()) {
-      if (!events_.empty()) return;  // an event may explain why no slot comes any more
+      if (!events_.empty()) return;  // an event may explain why no more slots come
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "nobody wears it", "put it on; vip-study resume continues a session");
+        throw base::Error("headset", "it is not worn", "put it on; vip-study resume continues a session");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return;
   }
   std::unique_lock held(mutex_);
   changed_.wait_for(held, slot_wait, [this, before = slots_] { return slots_ > before || error_; });
-  // Events that came before explain the error better.
+  // Throws only after the caller took the events: they explain the error better.
   if (error_ && events_.empty()) std::rethrow_exception(error_);
 }
 
@@ -342,7 +344,7 @@ HeadsetSlot FrameLoop::show(const HeldViews& from, std::int64_t due_ns) {
     const std::lock_guard held(mutex_);
     if (picture_turns_.shows() && !picture_turns_.waits()) return came_on_;
     if (picture_turns_.waits() && running_ && !error_) continue;
-    // The picture is not seen: the headset is off, or it was dropped.
+    // The picture will not be shown: the session does not run, or black_out() dropped the picture.
     picture_turns_.clear();
     if (!running_) note_cut(unseen_, CutCause::TakenOff);
     if (running_ && !unseen_) unseen_ = CutCause::NotDrawn;

@@ -1,5 +1,5 @@
 #pragma once
-/// Runs the slots of a headset one after the other, independently of the rest of the program.
+/// Runs the slots (frames) of a headset one after the other, independently of the rest of the program.
 
 #include <condition_variable>
 #include <cstdint>
@@ -20,9 +20,9 @@
 
 namespace study {
 
-/// Who runs the slots. Caller: the code that asks for the next one, for runtimes whose time stops in between.
-/// Thread: a thread that does nothing else, so that no slot is missed while the program computes, writes and
-/// waits.
+/// The thread that runs the slots (frames of the runtime). Caller: the thread that calls FrameLoop::turn(),
+/// for runtimes whose time stops between slots. Thread: a thread that does nothing else, so that no slot is
+/// missed while the program computes, writes or waits.
 enum class SlotDrive { Caller, Thread };
 
 /// The eye views that a picture was drawn from.
@@ -31,41 +31,41 @@ struct HeldViews {
   bool in_head = false;  ///< see HeadsetLayers
 };
 
-/// What one slot delivered.
+/// The record of one slot.
 struct HeadsetRecord {
   HeadsetSlot slot;
-  EyeViews views;  ///< where the eyes will be at slot.predicted_ns
+  EyeViews views;  ///< predicted poses of the eyes at slot.predicted_ns
   HeadsetInput input;
-  int world = 0;                     ///< number of the world of its poses; changes when the origin moves
-  std::optional<HeldViews> shown{};  ///< the picture on show; none: black
+  int world = 0;                     ///< number of moves of the poses' origin so far
+  std::optional<HeldViews> shown{};  ///< eye views of the shown picture; none: black
 };
 
-/// The session's state at the end of its last slot.
+/// The session's state as of its last slot.
 struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
   HeadsetRate rate;
-  bool trusted = false;  ///< times convert, go forward and stay on their grid
+  bool trusted = false;  ///< times convert, ascend and are multiples of the period
   int world = 0;         ///< number of moves of the world's origin
   HeadsetSlot last;
-  EyeViews views;  ///< of the last slot
+  EyeViews views;  ///< predicted poses of the eyes in the last slot
 };
 
-/// What is seen at the moment.
+/// The view of the participant in the last slot, for an onlooker.
 struct SeenNow {
-  HeadsetLayers layers;  ///< as the last slot showed them
-  EyeViews eyes;         ///< where the eyes were then
+  HeadsetLayers layers;  ///< picture and page that the last slot showed
+  EyeViews eyes;         ///< poses of the eyes in the last slot
 };
 
-/// Owns the session. Draw its pictures on the thread that made the loop, where its context is current; all
-/// calls except the onlooker's come from that thread. They throw the session's errors: base::Error,
-/// HeadsetLost.
+/// Owns the session and runs its slots. The loop's OpenGL context is current on the thread that made the
+/// loop. Draw pictures on this thread, and make all calls on it, except look() and look_away(). Calls throw
+/// the session's errors: base::Error, HeadsetLost.
 ///
-/// If the runtime loses the session, SessionMaker makes a new one: events report this, and no slots come in
-/// between. When the session is lost or the world's origin moves, the picture on show turns black until
-/// another one is shown.
+/// If the runtime loses the session, SessionMaker makes a new session. Events report the loss and the new
+/// session; no slots come in between. When the session is lost or the world's origin moves, the slots are
+/// black until another picture is shown.
 class FrameLoop {
  public:
-  /// Limit of records that were not taken; more than a minute's worth.
+  /// Largest number of stored records: slots of more than a minute.
   static constexpr std::size_t most_records = 20000;
 
   /// Connects to the headset.
@@ -77,40 +77,46 @@ class FrameLoop {
   /// Facts of the newest session.
   SessionFacts session() const;
   LoopFacts facts() const;
-  /// When a picture posted now would be seen: the next slot's time on the session's clock. If a thread runs
-  /// the slots and none come, it advances with the system's clock.
+  /// The predicted time of the next slot on the session's clock, in which a picture posted now would be
+  /// shown. If a thread runs the slots and no slots come, the time advances with the system's clock.
   std::int64_t next_ns() const;
-  /// The same; if a thread runs the slots, it also advances with the system's clock between two slots.
+  /// As next_ns(). If a thread runs the slots, the time also advances with the system's clock between two
+  /// slots.
   std::int64_t now_ns() const;
-  /// Runs a slot; with a thread, waits for one, a tenth of a second at most.
+  /// Runs a slot. With SlotDrive::Thread, waits for the next slot instead, 0.1 s at most.
   void turn();
   /// Refresh period of the display, ns; 0 before any slot.
   std::int64_t period_ns() const;
-  /// Where the eyes will be, at a time of the session's clock; in the world, or in the head's own space. Not
-  /// valid while there is no session.
+  /// Predicted poses of the eyes at a time of the session's clock, in the world or (views_in_head) in the
+  /// head's frame. Not valid while there is no session.
   EyeViews views_at(std::int64_t at_ns);
   EyeViews views_in_head(std::int64_t at_ns);
 
-  /// The canvas for both eyes' picture, arranged as in HeadsetLayers; call it again for each picture.
+  /// The canvas to draw the next picture of both eyes into, side by side as in HeadsetLayers. Call it for
+  /// each picture.
   const sim::Offscreen& canvas();
-  /// Shows the canvas from the slot nearest to due_ns, or the next slot after that, until another picture is
-  /// shown or clear() is called. Waits until the picture is on; returns its slot.
+  /// Shows the canvas from the slot nearest to due_ns, or a later one if that slot is over, until another
+  /// picture is shown or clear() is called. Waits until the picture is shown and returns its first slot. If
+  /// it cannot be shown, stops waiting; take_unseen() then gives the cause.
   HeadsetSlot show(const HeldViews& from, std::int64_t due_ns);
   void clear();
-  /// The same for the page.
+  /// page() and show_page() do for the page what canvas() and show() do for the picture, but do not wait.
+  /// hide_page() removes the page.
   const sim::Offscreen& page();
   void show_page(const HeadsetPage& place);
   void hide_page();
 
-  /// Events, and records of finished slots, since the last call; too many records drop the oldest.
+  /// Events, and records of finished slots, since the last call. Beyond most_records, the older half is
+  /// dropped.
   std::vector<HeadsetEvent> take_events();
   std::vector<HeadsetRecord> take_records();
-  /// Why a slot with a picture could not be seen since the last call; none if all were seen.
+  /// Why a picture could not be seen in some slot since the last call; none if all pictures could be seen.
   std::optional<CutCause> take_unseen();
 
-  /// Makes a context for an onlooker on another thread; it shares the pictures and is not current.
+  /// Makes an OpenGL context for an onlooker (a mirror) on another thread. The context shares the pictures
+  /// and is not current.
   sim::GlContext admit_onlooker();
-  /// For the onlooker. The pictures stay unchanged until its next call or look_away().
+  /// The shown picture and page, for the onlooker. They stay unchanged until the next look() or look_away().
   SeenNow look();
   void look_away();
 
@@ -133,11 +139,11 @@ class FrameLoop {
   float light_at(std::int64_t at_ns) const;
 
   sim::GlContext gl_;
-  std::optional<sim::GlContext> slots_gl_;  ///< of the thread; shares objects with gl_
+  std::optional<sim::GlContext> slots_gl_;  ///< context of the slot thread; shares objects with gl_
   SlotDrive drive_;
   std::optional<SessionMaker> maker_;
   std::mutex asking_;                        ///< guards session_ against other threads; lock it before mutex_
-  std::unique_ptr<HeadsetSession> session_;  ///< null: it was lost, and the next one is being made
+  std::unique_ptr<HeadsetSession> session_;  ///< null: the session is lost, a new one is being made
   base::PictureSize page_size_;              ///< 0: no pages
   std::vector<std::unique_ptr<sim::Offscreen>> canvases_, pages_;  ///< indexed by PictureTurns
   bool onlooker_ = false;
@@ -147,12 +153,12 @@ class FrameLoop {
   PictureTurns picture_turns_, page_turns_;
   HeldViews shown_from_, waiting_from_;
   HeadsetPage shown_place_, waiting_place_;
-  std::int64_t due_ns_ = 0;         ///< of the waiting picture
-  HeadsetSlot came_on_;             ///< slot in which the shown picture came on
-  std::optional<CutCause> unseen_;  ///< why a picture that was on was not seen
+  std::int64_t due_ns_ = 0;         ///< due time of the waiting picture
+  HeadsetSlot came_on_;             ///< first slot of the shown picture
+  std::optional<CutCause> unseen_;  ///< why a shown picture could not be seen
   bool running_ = false, stopping_ = false;
-  bool doubted_ = false;       ///< times repeated or left their grid
-  bool runtime_ends_ = false;  ///< no session can be made anew
+  bool doubted_ = false;       ///< predicted times repeated or were no multiples of the period
+  bool runtime_ends_ = false;  ///< the runtime shuts down: no new session is possible
   SessionFacts reported_;
   std::vector<std::int64_t> moves_ns_;  ///< times at which the world's origin will move
   LoopFacts facts_;
@@ -160,7 +166,7 @@ class FrameLoop {
   std::int64_t last_system_ns_ = 0;  ///< when the last slot began, on the system's clock
   std::vector<HeadsetEvent> events_;
   std::vector<HeadsetRecord> records_;
-  std::exception_ptr error_;  ///< thrown on the thread
+  std::exception_ptr error_;  ///< error that ended the slot thread
   std::thread thread_;
 };
 

@@ -18,25 +18,26 @@ namespace study {
 namespace {
 
 constexpr std::chrono::seconds most_idle_waiting{30};
-/// Number of slots within which a worn headset should be ready, and a rate should settle.
+/// Largest number of slots to wait for a worn headset and for a settled rate.
 constexpr int most_slots = 3000;
 
-/// Relative tolerance of a rate.
+/// Rates with a relative difference up to same_rate count as equal.
 constexpr double same_rate = 0.02;
 bool near_rate(double a_hz, double b_hz) { return std::abs(a_hz - b_hz) <= same_rate * b_hz; }
 
 const char* rate_problem(const HeadsetRules& rules) {
-  return rules.refresh_hz ? "it does not go to the protocol's refresh_hz"
+  return rules.refresh_hz ? "its refresh rate does not change to the protocol's refresh_hz"
                           : "its predicted times show no steady rate";
 }
-constexpr const char* rate_mend = "choose that refresh rate, and a fixed one, in the headset's software";
+constexpr const char* rate_mend =
+    "set a fixed refresh rate (refresh_hz, if the protocol has it) in its software";
 
 HeadsetChoice with_rate(HeadsetChoice choice, const HeadsetRules& rules) {
   choice.refresh_hz = rules.refresh_hz;
   return choice;
 }
 
-/// Why a picture is not seen in a state other than focused.
+/// Why the participant sees no picture in a state other than focused.
 CutCause cause_of(HeadsetState state) {
   if (state == HeadsetState::LossPending) return CutCause::SessionLost;
   return state == HeadsetState::Visible ? CutCause::Focus : CutCause::TakenOff;
@@ -44,7 +45,7 @@ CutCause cause_of(HeadsetState state) {
 
 /// Widens both eyes' fields of view by a margin.
 void widen(EyeViews& views, double margin_deg) {
-  constexpr float most = 1.55f;  // rad; a plane cannot reach a right angle
+  constexpr float most = 1.55f;  // rad; the picture is a plane, so its edges stay below a right angle
   const auto margin = static_cast<float>(margin_deg * std::numbers::pi / 180);
   for (HeadsetEye& eye : views) {
     eye.fov.left = std::max(eye.fov.left - margin, -most);
@@ -58,21 +59,21 @@ void widen(EyeViews& views, double margin_deg) {
 
 HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, const HeadsetRules& rules)
     : rules_(rules), loop_(with_rate(choice, rules), drive), slots_by_thread_(drive == SlotDrive::Thread) {
-  await([this] { return focused(); }, "nobody wears it, or another program has its focus",
-        "put it on, and close what lies before this program");
+  await([this] { return focused(); }, "it is not worn, or another program has its focus",
+        "put it on, and close menus, overlays and other programs in it");
   await([this] { return (refresh_hz_ = met_hz().value_or(0)) > 0; }, rate_problem(rules), rate_mend);
   if (drive == SlotDrive::Caller) check_time_stands_still();
-  spoilt_.reset();  // a requested rate has come
+  spoilt_.reset();  // discards the change to the requested rate
 }
 
-/// The settled rate as schedules count it, if it meets the rules; none otherwise.
+/// The nominal rate, Hz, if the measured rate has settled and meets the rules; none otherwise.
 std::optional<double> HeadsetDisplay::met_hz() const {
   const auto [reported_hz, measured_hz] = facts().rate;
   if (!measured_hz || (rules_.refresh_hz && !near_rate(*measured_hz, *rules_.refresh_hz))) return {};
   return nominal_refresh(*measured_hz, reported_hz.value_or(0));
 }
 
-/// Accepts a new session once its rate is known, because trials are compiled for a rate.
+/// Accepts a new session once its refresh rate is known, because the schedules of trials depend on the rate.
 void HeadsetDisplay::settle_new_session() {
   const auto hz = met_hz();
   if (!hz) {
@@ -86,7 +87,8 @@ void HeadsetDisplay::settle_new_session() {
   note_cut(spoilt_, CutCause::Rate);
 }
 
-/// Refuses a runtime whose time runs on by itself: it would drop slots while the program computes.
+/// Throws if the runtime's time advances without calls: such a runtime would drop slots while the program
+/// computes.
 void HeadsetDisplay::check_time_stands_still() {
   turn();
   const std::int64_t before_ns = facts().last.predicted_ns;
@@ -122,12 +124,12 @@ std::int64_t HeadsetDisplay::first_onset(std::int64_t earliest_ns) const {
   return next_ns + (ahead_ns + period_ns - 1) / period_ns * period_ns;
 }
 
-/// How long before its slot a picture is drawn.
+/// Time before its slot at which drawing a picture begins, ns.
 std::int64_t HeadsetDisplay::lead_ns() const {
   return slots_by_thread_ ? draw_ns_ + draw_ns_ / 2 + loop_.period_ns() : 0;
 }
 
-/// Processes the session's events.
+/// Processes the session's events: notes causes of a cut, throws if the headset's software ends.
 void HeadsetDisplay::poll_requests() {
   using Kind = HeadsetEvent::Kind;
   for (const HeadsetEvent& event : loop_.take_events()) {
@@ -136,14 +138,14 @@ void HeadsetDisplay::poll_requests() {
       throw base::Error("headset", "its software asked the program to leave",
                         "vip-study resume continues a session");
     if (event.kind == Kind::RuntimeEnds)
-      throw base::Error("headset", "its software ends",
+      throw base::Error("headset", "its software is shutting down",
                         "start it again; vip-study resume continues a session");
     if (event.kind == Kind::Lost) news_.emplace_back("the headset's software lost the session");
     new_session_ |= event.kind == Kind::Lost;
     if (event.kind == Kind::Lost && playing_) note_cut(spoilt_, CutCause::SessionLost);
     if (event.kind == Kind::Refresh && !new_session_) {
       refresh_hz_ = nominal_refresh(event.to_hz);
-      // Also between pictures: the current trial uses the intervals of the old rate.
+      // Cuts also between pictures: the intervals of the current trial are those of the old rate.
       note_cut(spoilt_, CutCause::Rate);
     }
     if (state && event.state != HeadsetState::Focused && playing_) note_cut(spoilt_, cause_of(event.state));
@@ -186,10 +188,12 @@ std::vector<HeadsetRecord> HeadsetDisplay::next_records() {
   return take_records();
 }
 
-/// Draws both eyes into the canvas, as they will be at at_ns; none if their poses are unknown.
+/// Draws the pictures of both eyes for their predicted poses at at_ns. Returns the views that were drawn;
+/// none if the poses are unknown.
 std::optional<HeldViews> HeadsetDisplay::draw(std::int64_t at_ns) {
   const auto begun = std::chrono::steady_clock::now();
-  const sim::Offscreen& canvas = loop_.canvas();  // taken first: if the world moves now, it is never shown
+  const sim::Offscreen& canvas =
+      loop_.canvas();  // before views_at(): a later move of the origin drops the picture
   EyeViews views = loop_.views_at(at_ns);
   if (!can_be_shown(views)) return {};
   widen(views, rules_.hold_margin_deg);
@@ -209,7 +213,7 @@ void HeadsetDisplay::render(Stimulus& stimulus) {
   pending_ = &stimulus;
   if (playing_) return;
   if (!focused()) note_cut(spoilt_, cause_of(new_session_ ? HeadsetState::LossPending : facts().state));
-  // The first picture of a presentation takes longest, and its time tells how early the others must start.
+  // Measures the drawing time with the first picture, which takes longest: lead_ns() depends on it.
   if (slots_by_thread_) draw(loop_.next_ns());
 }
 
@@ -233,7 +237,7 @@ PresentTimes HeadsetDisplay::present(std::int64_t scheduled_ns, Clock& clock) {
 
 void HeadsetDisplay::hold(std::int64_t until_ns, Clock&) {
   if (rules_.hold != Hold::State || !playing_) return;
-  // A picture that cannot be drawn in time would delay the next one.
+  // Stops before until_ns: a picture that is not drawn in time would delay the next frame.
   while (!spoilt_ && loop_.next_ns() < until_ns - lead_ns() - loop_.period_ns() / 2) {
     const std::int64_t at_ns = loop_.next_ns() + draw_ns_;
     const auto from = draw(at_ns);

@@ -1,5 +1,5 @@
 #pragma once
-/// A headset as a display of stimuli, and its slots as the session's clock.
+/// A headset as a display of stimuli, and a session clock that follows the headset's slots.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,65 +16,67 @@
 
 namespace study {
 
-/// Shows a picture for as long as the schedule says, in every slot that the runtime gives; the rules' hold
-/// mode says how it behaves while the head moves. Black is a slot without a picture. A session that the
-/// runtime loses is made again (FrameLoop). First destroy stimuli that drew on it. All calls except the
-/// onlooker's come from the thread that made it.
+/// Shows each picture in all slots (frames of the runtime) of its scheduled interval. The rules' hold mode
+/// says how the picture follows head movements in between. A slot without a picture is black. If the runtime
+/// loses the session, FrameLoop makes a new session. Destroy stimuli that drew on the display before the
+/// display. All calls except look() and look_away() come from the thread that made the display.
 class HeadsetDisplay final : public Display {
  public:
-  /// Connects, then waits until the headset is worn and its rate has settled. base::Error for missing parts,
-  /// a headset that nobody puts on, and one that does not take the rules' rate.
+  /// Connects, then waits until the headset is worn and its refresh rate has settled. base::Error if a part
+  /// is missing, if the headset is not put on, or if its rate does not reach the rules' rate.
   explicit HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice = {}, const HeadsetRules& rules = {});
 
   std::string description() const override;
-  /// C; D if the runtime's times do not convert, repeat or leave their grid.
+  /// Grade C; grade D if the runtime's times do not convert to the session's clock, repeat, or are no
+  /// multiples of the period.
   TimingGrade grade() const override;
   double refresh_hz() const override { return refresh_hz_; }
   double measured_hz() const override;
   std::int64_t first_onset(std::int64_t earliest_ns) const override;
-  /// Remembers the stimulus: it is drawn as late as possible, from where the head will be when it comes on.
-  /// The first one of a presentation is also drawn now, to measure how long that takes.
+  /// Stores the stimulus. present() draws it as late as possible, for the predicted head pose. The first
+  /// frame of a showing is also drawn here, to measure the drawing time.
   void render(Stimulus& stimulus) override;
   PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override;
-  /// Draws the shown picture again for each slot; Hold::State only.
+  /// With Hold::State, draws the shown content again for each slot, for the new head pose; otherwise does
+  /// nothing.
   void hold(std::int64_t until_ns, Clock& clock) override;
   void clear() override;
 
-  /// When a picture posted now would be seen, on the runtime's clock, ns: the time of the next slot. If a
-  /// thread runs the slots, it also advances between them.
+  /// The time at which a picture posted now would be shown: the time of the next slot on the session's clock,
+  /// ns. If a thread runs the slots, the time also advances between slots.
   std::int64_t now_ns() const { return loop_.now_ns(); }
-  /// Waits until the next slot is the nearest one to deadline_ns, or a later one.
+  /// Waits until the next slot is the slot nearest to deadline_ns, or a later slot.
   void turn_until(std::int64_t deadline_ns);
-  /// Waits for the next slot, a tenth of a second at most.
+  /// Waits for the next slot, 0.1 s at most, and processes events.
   void turn();
 
-  /// The canvas of the page, of the chosen size; call it again for each drawing.
+  /// The canvas to draw the page into, of the size in HeadsetChoice. Call it for each drawing.
   const sim::Offscreen& page() { return loop_.page(); }
   /// Shows the page in front of everything else until hide_page().
   void show_page(const HeadsetPage& page) { loop_.show_page(page); }
   void hide_page() { loop_.hide_page(); }
 
-  /// Records of finished slots since the last call; too many drop the oldest.
+  /// Records of finished slots since the last call. Beyond FrameLoop::most_records, older ones are dropped.
   std::vector<HeadsetRecord> take_records();
-  /// The same after the next slot; empty if none came for a tenth of a second.
+  /// Waits for the next slot, then as take_records(); empty if no slot came within 0.1 s.
   std::vector<HeadsetRecord> next_records();
-  /// As take_records(), for the code that records the session: each of the two gets all records.
+  /// As take_records(), for the code that records the session. Both functions return every record once.
   std::vector<HeadsetRecord> take_for_record();
   SessionFacts session() const { return loop_.session(); }
   const HeadsetRules& rules() const { return rules_; }
   LoopFacts facts() const { return loop_.facts(); }
 
-  /// See FrameLoop.
+  /// As in FrameLoop.
   sim::GlContext admit_onlooker() { return loop_.admit_onlooker(); }
   SeenNow look() { return loop_.look(); }
   void look_away() { loop_.look_away(); }
 
-  /// True if the participant sees and can answer.
+  /// True if the participant sees pictures and can give input.
   bool focused() const { return facts().state == HeadsetState::Focused && !new_session_; }
-  /// Why, since the last call, a picture that was on could not be seen, or that the world or the rate
-  /// changed; none if all is well.
+  /// Cause for which the showing must be cut, since the last call: a shown picture could not be seen, the
+  /// world's origin moved, or the refresh rate changed. None: no cause.
   std::optional<CutCause> take_spoilt();
-  /// Log lines since the last call: the session was lost, or made again.
+  /// Lines for the log since the last call: the session was lost, or a new session was made.
   std::vector<std::string> take_news() { return std::exchange(news_, {}); }
 
  private:
@@ -91,17 +93,18 @@ class HeadsetDisplay final : public Display {
   FrameLoop loop_;
   Stimulus* pending_ = nullptr;
   double refresh_hz_ = 0;
-  std::int64_t draw_ns_ = 0;  ///< recent drawing time; 0: nothing drawn, or slots by the caller
+  std::int64_t draw_ns_ = 0;  ///< recent drawing time; 0: nothing drawn, or SlotDrive::Caller
   std::vector<HeadsetRecord> for_pages_, for_record_;
   std::vector<std::string> news_;
-  std::optional<CutCause> spoilt_;  ///< why nothing more of the presentation is shown
+  std::optional<CutCause> spoilt_;  ///< why the rest of the showing is black
   bool slots_by_thread_;
-  bool playing_ = false;      ///< a presentation is on
-  bool new_session_ = false;  ///< the session was made again, and its rate has not settled yet
+  bool playing_ = false;      ///< a stimulus is being shown
+  bool new_session_ = false;  ///< the session was lost, and the rate of a new one has not settled
 };
 
-/// The time at which a picture posted now would be seen. A wait ends at the slot nearest to its deadline, and
-/// the clock then shows at least the deadline.
+/// The session's clock for a headset. Its time is the time at which a picture posted now would be shown. A
+/// wait ends once the next slot is the slot nearest to the deadline; the clock's time is then at least the
+/// deadline.
 class HeadsetClock final : public Clock {
  public:
   explicit HeadsetClock(HeadsetDisplay& display) : display_(display) {}

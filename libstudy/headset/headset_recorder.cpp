@@ -15,7 +15,7 @@ Triple wide(const std::array<float, 3>& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-/// Right, up and back components of a room direction in this pose's frame.
+/// Converts a direction of the room to the frame of a pose: its right, up and back components.
 Triple into(const HeadsetPose& pose, const Triple& direction) {
   const auto axes = axes_of(pose);
   Triple out{};
@@ -25,7 +25,7 @@ Triple into(const HeadsetPose& pose, const Triple& direction) {
   return out;
 }
 
-/// Where a room direction meets an eye's picture; none if it is behind the eye.
+/// The point of an eye's picture in a direction of the room; none if the direction points behind the eye.
 std::optional<GazePoint> point_of(const HeadsetEye& eye, const Triple& direction) {
   const Triple d = into(eye.pose, direction);
   if (!eye.pose.turn_valid || !(d[2] < 0)) return {};
@@ -52,7 +52,7 @@ EyeFacts facts_of(const HeadsetEye& eye) {
           degrees(eye.fov.right), degrees(eye.fov.up), degrees(eye.fov.down)};
 }
 
-/// The pose whose direction is followed; null if unknown.
+/// The pose whose direction counts as gaze: of the eye tracker (`eyes`) or of the head; null if not valid.
 const HeadsetPose* followed(const HeadsetRecord& record, bool eyes) {
   const bool seen = record.input.gaze && record.input.gaze->ray.turn_valid;
   if (eyes) return seen ? &record.input.gaze->ray : nullptr;
@@ -78,7 +78,7 @@ GazeSample gaze_of(const HeadsetRecord& record, GazeOrigin origin) {
   sample.tracked = pose->turn_tracked;
   GazeRay& ray = sample.ray.emplace();
   ray.direction = into(head, direction);
-  // In the picture as it was drawn: it may have a margin, and the head has moved since.
+  // The point refers to the picture as it was drawn, perhaps with a margin and for an earlier head pose.
   if (record.shown)
     sample.point = point_of(record.shown->views[0], record.shown->in_head ? ray.direction : direction);
   if (pose->place_valid && head.place_valid)
@@ -96,13 +96,13 @@ std::optional<double> ipd_of(const EyeViews& views) {
 }
 
 void HeadsetRecorder::drain() {
-  for (HeadsetRecord& record : display_.take_for_record()) {
+  for (const HeadsetRecord& record : display_.take_for_record()) {
     if (allowed_) add_gaze(record);
     const HeadsetSlot& slot = record.slot;
     slots_.push_back({slot.predicted_ns, slot.period_ns, slot.should_render, {}, 0});
     if (with_heads_) slots_.back().head = head_of(record.input.head);
     slots_.back().ipd_mm = ipd_of(record.views).value_or(0);
-    newest_ = std::move(record);
+    newest_ = record;
   }
 }
 
@@ -114,7 +114,7 @@ void HeadsetRecorder::add_gaze(const HeadsetRecord& record) {
     last_reported_ns_ = *sample.device_ns;
     lag_ns_ = std::max(lag_ns_, record.slot.predicted_ns - last_reported_ns_);
   } else if (!sample.valid) {
-    // Also if the runtime still reports the last sample's time: the eyes are lost.
+    // The eyes are lost. The runtime may still report the time of the last sample: it is not used.
     sample.device_ns.reset();
     sample.sampled_ns = std::max(record.slot.predicted_ns - lag_ns_, last_ns_);
   }

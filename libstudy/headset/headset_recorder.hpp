@@ -1,5 +1,5 @@
 #pragma once
-/// A headset as a source of gaze and slots for a session's record and for the fluid.
+/// Provides a headset's gaze and slots to the session's record, and its gaze to the fluid.
 
 #include <array>
 #include <cstdint>
@@ -14,16 +14,16 @@
 
 namespace study {
 
-/// Takes the records of the display while a presentation is on; the display must outlive it. The gaze is that
-/// of the eye tracker, or the head's direction as a substitute. Tracker data are used only between start()
-/// and stop(), which enclose what the participant allows; otherwise the fluid follows the head.
+/// Converts the display's records to gaze samples and slots; the display must outlive it. The gaze is that of
+/// the eye tracker, or the head's direction as a substitute. Tracker data are used only between start() and
+/// stop(), the time for which the participant consents. Otherwise ray() gives the head's direction.
 ///
-/// Makes one sample for each sample time that the runtime reports, and one per slot if it reports none.
-/// Samples of lost eyes have no reported time: they lie before their slots by the largest lag reported so
-/// far, but never before the last sample, so that samples stay in order.
+/// Makes one sample for each sample time that the runtime reports, or one per slot if it reports no times. A
+/// sample of lost eyes has no reported time. Its time is the slot's time minus the largest lag reported so
+/// far, but not before the last sample.
 class HeadsetRecorder final : public GazeSource, public SlotSource {
  public:
-  /// origin: Tracker, for a display that asked for one, or Head.
+  /// origin: Head, or Tracker for a display made with HeadsetChoice::eye_gaze.
   HeadsetRecorder(HeadsetDisplay& display, GazeOrigin origin) : display_(display), origin_(origin) {}
 
   GazeOrigin origin() const override { return origin_; }
@@ -38,7 +38,7 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
   std::optional<double> ipd_mm() override;
   std::vector<std::string> take_news() override { return display_.take_news(); }
 
-  /// Ray of the gaze, or of the head, in the newest finished slot, in the scene's metres; none if unknown.
+  /// Ray of the gaze, or of the head, in the newest finished slot; in metres of the scene. None if unknown.
   std::optional<RoomRay> ray();
 
  private:
@@ -51,15 +51,15 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
   std::vector<GazeSample> gaze_;
   std::vector<SlotRecord> slots_;
   std::optional<HeadsetRecord> newest_;
-  std::int64_t last_reported_ns_ = 0, lag_ns_ = 0;  ///< last reported time; largest lag before its slot
+  std::int64_t last_reported_ns_ = 0, lag_ns_ = 0;  ///< last sample time; largest lag before its slot
   std::int64_t last_ns_ = 0;                        ///< time of the last sample
 };
 
-/// The gaze sample of a slot, in the head's frame; not valid if the eyes, or the head's orientation, are not.
-/// Its point is on the left eye's picture that was on; none in black.
+/// The gaze sample of a slot; its ray is in the head's frame. Not valid if the eyes or the head's orientation
+/// are not valid. The point is in the picture shown to the left eye; none without a picture.
 GazeSample gaze_of(const HeadsetRecord& record, GazeOrigin origin);
 
-/// Distance between the eyes, mm; none if they are not valid.
+/// Distance between the eyes, mm; none if their poses are not valid.
 std::optional<double> ipd_of(const EyeViews& views);
 
 }  // namespace study

@@ -16,10 +16,10 @@ namespace study {
 
 namespace {
 
-/// The chosen mode and its name.
+/// The environment blend mode of all frames, and its name.
 constexpr XrEnvironmentBlendMode blend_mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 constexpr const char* blend_name = "opaque";
-/// Relative difference below which a measured rate equals the rate of an event.
+/// Relative difference up to which a measured rate counts as the rate that an event reported.
 constexpr double rate_tolerance = 0.04;
 
 HeadsetSystem read_opaque_system(const XrConnection& xr) {
@@ -46,7 +46,7 @@ const char* name_of(HeadsetState state) {
   return names[static_cast<std::size_t>(state)];
 }
 
-/// Members in order of construction; they are destroyed in reverse order.
+/// The parts of a session. They are constructed in this order and destroyed in reverse.
 struct HeadsetSession::Parts {
   Parts(const sim::GlContext& gl, const HeadsetChoice& choice)
       : patience(static_cast<std::int64_t>(choice.patience_s * 1e9)),
@@ -72,10 +72,10 @@ struct HeadsetSession::Parts {
   RefreshControl refresh;
   Space world, head;
   Actions actions;
-  std::vector<base::PictureSize> sizes;                ///< left, right and, if asked for, the page
-  std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< in the same order
+  std::vector<base::PictureSize> sizes;                ///< of left eye, right eye and, if requested, page
+  std::vector<std::unique_ptr<Swapchain>> swapchains;  ///< in the order of `sizes`
   RateMeter meter;
-  double reported_hz = 0;                ///< from the last event; 0: none came
+  double reported_hz = 0;                ///< rate of the last event; 0: no event came
   std::optional<HeadsetEvent> measured;  ///< a change of the rate that no event reported
   std::int64_t next_index = 0;
   WatchedThread watched;
@@ -93,7 +93,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
   const auto answer = std::make_shared<Answer>();
   answer->frame.type = XR_TYPE_FRAME_STATE;
   const auto call = xr.function<PFN_xrWaitFrame>("xrWaitFrame");
-  // The runtime does not touch a GL context in this call, so it may run on another thread.
+  // Runs the call on another thread. This is safe: xrWaitFrame uses no OpenGL context.
   const bool back = watched.run(
       [answer, call, handle = session.get()] {
         XrFrameWaitInfo info{};

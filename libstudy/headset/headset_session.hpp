@@ -1,5 +1,5 @@
 #pragma once
-/// A session in a headset, frame by frame.
+/// An OpenXR session in a headset, and its frames (slots).
 
 #include <array>
 #include <cstdint>
@@ -16,27 +16,27 @@
 
 namespace study {
 
-/// As in OpenXR's specification.
+/// The states of a session in OpenXR's specification.
 enum class HeadsetState {
   Unknown,
   Idle,
-  Ready,         ///< frames begin
-  Synchronized,  ///< frames run, but nothing is seen
-  Visible,       ///< pictures are seen, but there is no input from controllers and eyes
+  Ready,         ///< the session begins to run frames
+  Synchronized,  ///< frames run, but pictures are not visible
+  Visible,       ///< pictures are visible, without input from controllers and eyes
   Focused,
-  Stopping,     ///< frames end: the headset was taken off, or the session is about to end
-  LossPending,  ///< the session must be made again
+  Stopping,     ///< frames stop: the headset was taken off, or the session ends
+  LossPending,  ///< the session will be lost; a new one can be made
   Exiting,      ///< the session must end, and no new one may start by itself
 };
 
-/// "focused".
+/// The name of a state, such as "focused".
 const char* name_of(HeadsetState state);
 
 struct HeadsetEvent {
   enum class Kind {
     State,        ///< `state` was entered
-    RuntimeEnds,  ///< the whole runtime shuts down at `at_ns`
-    Refresh,      ///< the display changed its rate, Hz
+    RuntimeEnds,  ///< the OpenXR runtime shuts down at `at_ns`
+    Refresh,      ///< the refresh rate changed from `from_hz` to `to_hz`
     Recentred,    ///< the world's origin moves at `at_ns`
     EventsLost,   ///< some events were dropped
     Lost,         ///< the session is gone; no slots come until MadeAnew
@@ -45,23 +45,23 @@ struct HeadsetEvent {
   Kind kind = Kind::State;
   HeadsetState state = HeadsetState::Unknown;
   double from_hz = 0, to_hz = 0;
-  std::int64_t at_ns = -1;  ///< the session's clock; -1: not reported
+  std::int64_t at_ns = -1;  ///< time on the session's clock; -1: not reported
 };
 
-/// One ray for both eyes; it starts at `ray.place_m` and goes along direction_of(ray).
+/// The gaze ray of both eyes together. It starts at ray.place_m and has the direction direction_of(ray).
 struct HeadsetGaze {
-  /// When the eyes were sampled, on the session's clock; none if the runtime does not say.
+  /// Time of the sample on the session's clock; none if the runtime does not report it.
   std::optional<std::int64_t> sampled_ns;
-  HeadsetPose ray;  ///< orientation valid but not tracked: sub-nominal
+  HeadsetPose ray;  ///< orientation valid but not tracked: an estimate
 };
 
-/// Buttons and pointing. A button held on both hands counts once.
+/// Buttons and pointing of both hands. A button held on both hands counts once.
 struct HeadsetHands {
-  bool select = false;                            ///< pressed now
-  bool select_began = false;                      ///< pressed since the last reading
-  bool menu = false;                              ///< pressed now
-  std::array<float, 2> stick{};                   ///< right and up, [-1, 1]; 0 without a stick
-  std::array<std::optional<HeadsetPose>, 2> aim;  ///< left and right hand; along direction_of()
+  bool select = false;                            ///< is pressed
+  bool select_began = false;                      ///< was pressed since the last input()
+  bool menu = false;                              ///< is pressed
+  std::array<float, 2> stick{};                   ///< deflection right and up, [-1, 1]; 0 without a stick
+  std::array<std::optional<HeadsetPose>, 2> aim;  ///< left, right hand; points along direction_of()
 };
 
 /// The participant's input: gaze, head pose, buttons and pointing.
@@ -73,24 +73,26 @@ struct HeadsetInput {
 };
 
 struct HeadsetChoice {
-  bool eye_gaze = false;                      ///< asks for eye tracking; only with the participant's consent
-  double patience_s = 10;                     ///< longest wait for the runtime; a longer one ends the session
+  bool eye_gaze = false;                      ///< requests eye tracking; needs the participant's consent
+  double patience_s = 10;                     ///< longest wait for the runtime, s; then the session ends
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
-  std::optional<double> refresh_hz{};         ///< rate to ask for; see request_rate()
-  /// If the runtime's times do not convert, their clock does not start before this time.
+  std::optional<double> refresh_hz{};         ///< refresh rate to request; see request_rate()
+  /// If the runtime's times do not convert to the session's clock, the first time is not before earliest_ns.
   std::int64_t earliest_ns = 0;
 };
 
-/// One frame of the headset's runtime, for one picture. The content is HeadsetLayers.
+/// One frame of the headset's runtime: a display period that can show one picture. HeadsetLayers is its
+/// content.
 struct HeadsetSlot {
   std::int64_t index = 0;         ///< from 0
-  std::int64_t predicted_ns = 0;  ///< when its picture is to be seen, on the session's clock
-  std::int64_t period_ns = 0;     ///< as the runtime reports it; often wrong at first
-  bool should_render = false;     ///< false: its picture would not be seen
+  std::int64_t predicted_ns = 0;  ///< predicted display time on the session's clock
+  std::int64_t period_ns = 0;     ///< period that the runtime reports; often wrong at first
+  bool should_render = false;     ///< false: a picture would not be visible
   std::int64_t runtime_time = 0;  ///< predicted_ns on the runtime's clock
 };
 
-/// Place of a page in the world: its centre, orientation and size, m. It faces along +z of its pose.
+/// Position and size (m) of a page in the world. The pose is that of the page's centre; the page faces +z of
+/// the pose.
 struct HeadsetPage {
   HeadsetPose pose;
   float width_m = 0, height_m = 0;
@@ -98,39 +100,40 @@ struct HeadsetPage {
 
 /// The content of a slot.
 struct HeadsetLayers {
-  /// Of picture_size(), both eyes side by side, the left one first; sRGB values, as on a desktop. Null:
-  /// black.
+  /// Pictures of both eyes side by side, left eye first, of picture_size(), with sRGB values as on a desktop.
+  /// Null: black.
   const sim::Offscreen* picture = nullptr;
-  EyeViews views{};      ///< that the picture was drawn from
-  bool in_head = false;  ///< the views are in the head's space: the picture moves with the head
-  float light = 1;       ///< factor of the picture's levels, [0, 1]
-  const sim::Offscreen* page = nullptr;  ///< of the chosen size; in front of the picture. Null: no page
-  HeadsetPage place{};                   ///< of the page
-  /// Content that keeps its number is copied to the runtime once, however many slots show it; 0: in each
-  /// slot.
+  EyeViews views{};                      ///< eye views for which the picture was drawn
+  bool in_head = false;                  ///< views are in the head's frame: the picture moves with the head
+  float light = 1;                       ///< factor on the picture's levels, [0, 1]
+  const sim::Offscreen* page = nullptr;  ///< in front of the picture; null: no page
+  HeadsetPage place{};                   ///< position of the page
+  /// Numbers of the content: while a number is unchanged, the content is not copied to the runtime again. 0:
+  /// copied in each slot.
   std::uint64_t picture_number = 0, page_number = 0;
 };
 
-/// Names and properties that runtime and headset report.
+/// Names and properties that the runtime and the headset report.
 struct HeadsetNames {
   std::string runtime, runtime_version, headset;
-  std::string format;              ///< of the pictures handed over
-  std::string blend;               ///< environment blend mode chosen from those offered
+  std::string format;              ///< pixel format of the submitted pictures
+  std::string blend;               ///< environment blend mode of the session
   bool position_tracking = false;  ///< the head's position is tracked, not only its direction
 };
 
-/// A display rate and its source.
+/// The refresh rate of the display, Hz, from two sources.
 struct HeadsetRate {
-  std::optional<double> reported_hz;  ///< reported by the runtime; only if it lists several rates
-  std::optional<double> measured_hz;  ///< from settled steps between predicted times
+  std::optional<double> reported_hz;  ///< by the runtime; only if it lists several rates
+  std::optional<double> measured_hz;  ///< by RateMeter; none: not settled
 };
 
-/// One session of one runtime, from connecting to leaving. All calls except views_at() come from the thread
-/// on which `gl` is current; another thread can take over between two calls, with the context. base::Error
-/// for missing parts and failed calls; HeadsetLost (loader.hpp) once the session or the runtime is gone.
+/// One session of an OpenXR runtime, from connecting to disconnecting. Calls come from the thread on which
+/// `gl` is current, except views_at() and views_in_head(). Another thread may take over between two calls,
+/// together with the context. Calls throw base::Error for missing parts and failed calls, and HeadsetLost
+/// (loader.hpp) once the session or the runtime is gone.
 ///
-/// A frame is wait, begin, then views, input and drawing, then end, while running(); call poll() between
-/// frames.
+/// Run frames while running() is true. For each frame call wait(), begin(), then views(), input() and
+/// drawing, then end(). Call poll() between frames.
 class HeadsetSession {
  public:
   /// Connects. Refuses headsets that show the real world through the picture.
@@ -139,28 +142,28 @@ class HeadsetSession {
   HeadsetSession(const HeadsetSession&) = delete;
   HeadsetSession& operator=(const HeadsetSession&) = delete;
 
-  std::string description() const;  ///< headset, picture and format
-  bool keeps_levels() const;        ///< levels 0 to 255 arrive within one level
-  bool times_convert() const;       ///< otherwise predicted_ns rests on a guess of the runtime's clock
+  std::string description() const;  ///< headset, picture size and pixel format
+  bool keeps_levels() const;        ///< each of the 256 levels is shown within one level
+  bool times_convert() const;       ///< false: predicted_ns uses a guessed clock offset
   bool has_eye_gaze() const;
   HeadsetNames names() const;
 
   HeadsetState state() const;
-  bool running() const;  ///< frames must be run
+  bool running() const;  ///< true: run frames
   std::vector<HeadsetEvent> poll();
   void request_exit();
 
-  /// Sleeps until the next slot.
+  /// Sleeps until the next slot (frame) may begin.
   HeadsetSlot wait();
   void begin(const HeadsetSlot& slot);
-  /// Where the eyes will be. Draw only if can_be_shown().
+  /// Predicted eye views at the slot's display time. Draw only if can_be_shown() is true for them.
   EyeViews views(const HeadsetSlot& slot) { return views_at(slot.runtime_time); }
-  /// The same at any time of the runtime; from any thread.
+  /// Predicted eye views at a time of the runtime's clock. Any thread may call it.
   EyeViews views_at(std::int64_t runtime_time);
-  /// The same in the head's own space.
+  /// As views_at(), but poses are in the head's frame. Any thread may call it.
   EyeViews views_in_head(std::int64_t runtime_time);
   HeadsetInput input(const HeadsetSlot& slot);
-  /// Picture size of an eye, 0 left, 1 right.
+  /// Size of one eye's picture; eye: 0 left, 1 right.
   base::PictureSize eye_size(std::size_t eye) const;
   /// Size of both eyes' pictures side by side.
   base::PictureSize picture_size() const;
@@ -169,7 +172,7 @@ class HeadsetSession {
 
   HeadsetRate rate() const;
   const RateMeter& meter() const;
-  /// Asks for a listed rate; rate() and an event tell if it came.
+  /// Requests one of the refresh rates that the runtime lists. rate() and an event show a change.
   void request_rate(double hz);
 
  private:

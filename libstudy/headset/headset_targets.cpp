@@ -11,12 +11,12 @@ namespace study {
 
 namespace {
 
-/// About the distance at which the lenses of headsets focus.
+/// Distance of the targets, m: about the focal distance of headsets' lenses.
 constexpr double distance_m = 2;
 constexpr double size_deg = 1, dot_share = 0.2;
-/// If check() takes longer, another page was shown and read.
+/// A longer call of check() means that the participant read another page meanwhile.
 constexpr std::int64_t most_checking_ns = 200'000'000;
-constexpr int most_turns = 200;  ///< to find a head with a known pose
+constexpr int most_turns = 200;  ///< slots to wait for a valid head pose
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
@@ -75,7 +75,7 @@ void HeadsetTargets::begin() {
                     "check its tracking, and continue with vip-study resume");
 }
 
-/// White, with a black dot in the middle.
+/// Draws a white target with a black dot in the middle.
 void HeadsetTargets::draw() {
   const sim::Offscreen& page = display_.page();
   const float white[4] = {1, 1, 1, 1}, black[4] = {0, 0, 0, 1};
@@ -90,7 +90,8 @@ void HeadsetTargets::draw() {
 
 std::vector<TargetSample> HeadsetTargets::look_at(double azimuth_deg, double elevation_deg, double settle_s,
                                                   double sample_s, const std::function<void()>& check) {
-  // Repeats if the target was not seen: another page was in front, the headset was off, or the world moved.
+  // Repeats until the target was visible throughout: no other page in front, headset worn, no move of the
+  // world's origin.
   for (;;) {
     if (world_ != display_.facts().world && display_.focused()) begin();
     const HeadsetPage page = target_page(middle_, azimuth_deg, elevation_deg);
@@ -120,7 +121,7 @@ std::optional<std::vector<TargetSample>> HeadsetTargets::look_once(const Headset
     for (const HeadsetRecord& record : display_.take_for_record()) {
       if (record.slot.predicted_ns < from_ns) continue;
       const auto sampled_ns = record.input.gaze ? record.input.gaze->sampled_ns : std::nullopt;
-      if (sampled_ns && *sampled_ns <= last_ns) continue;  // the same sample again
+      if (sampled_ns && *sampled_ns <= last_ns) continue;  // a sample that was already counted
       last_ns = sampled_ns.value_or(last_ns);
       samples.push_back(sample_of(record, page.pose));
     }

@@ -1,14 +1,14 @@
 #pragma once
 #include <optional>
 #include <vector>
-/// Targets for the validation of a headset's eye tracker, shown on its page at fixed places of the world.
+/// Targets for the validation of a headset's eye tracker, shown as a page at fixed positions of the world.
 
 #include "libstudy/display/gaze_targets.hpp"
 #include "libstudy/headset/headset_display.hpp"
 
 namespace study {
 
-/// Needs a display with a page and an eye tracker, which must outlive it.
+/// Shows targets in a headset. Needs a display with a page and an eye tracker; the display must outlive it.
 class HeadsetTargets final : public GazeTargets {
  public:
   explicit HeadsetTargets(HeadsetDisplay& display) : display_(display) {}
@@ -26,10 +26,10 @@ class HeadsetTargets final : public GazeTargets {
 
   HeadsetDisplay& display_;
   HeadsetPose middle_;  ///< the head's pose at begin(), or after the world's origin moved
-  int world_ = 0;       ///< number of the world of middle_
+  int world_ = 0;       ///< HeadsetRecord::world of middle_
 };
 
-/// The page for a target at these angles from straight ahead of a head, facing the head.
+/// The page of a target that faces the head, at angles to the right and up from straight ahead of the head.
 HeadsetPage target_page(const HeadsetPose& head, double azimuth_deg, double elevation_deg);
 
 }  // namespace study

@@ -1,5 +1,5 @@
 #pragma once
-/// The states of a session, from the runtime's events.
+/// Follows the states of an OpenXR session through the runtime's events.
 
 #include <string>
 #include <vector>
@@ -10,16 +10,17 @@
 
 namespace study {
 
-/// Begins and ends the session at the states that the specification names.
+/// Begins the session in the state READY and ends it in the state STOPPING, as the specification requires.
 class Lifecycle {
  public:
   Lifecycle(const SessionHandle& session, RuntimeClock& clock);
   HeadsetState state() const { return state_; }
-  /// True between READY and STOPPING: frames must be run.
+  /// True between READY and STOPPING: the program must run frames.
   bool running() const { return running_; }
-  /// Processes all waiting events and ignores unknown ones. Do not call it between begin and end of a frame.
+  /// Processes all waiting events; unknown events are ignored. Do not call it between begin and end of a
+  /// frame.
   std::vector<HeadsetEvent> poll();
-  /// Asks for STOPPING and then EXITING. Does nothing unless running.
+  /// Requests the end of the session: the states STOPPING and EXITING follow. Does nothing unless running.
   void request_exit() const;
 
  private:

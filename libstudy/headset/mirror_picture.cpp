@@ -44,7 +44,7 @@ bool MirrorPicture::draw(const SeenNow& seen, bool with_picture) const {
   glUniform1i(program_.uniform("shows_picture"), picture);
   glUniform1i(program_.uniform("shows_page"), page);
   if (picture) {
-    // A picture that moves with the head is seen from the eye's current pose.
+    // A picture that moves with the head has the eye's current orientation.
     set_axes(program_.uniform("picture_turn"), shown.in_head ? eye.pose : from.pose);
     glUniform4f(program_.uniform("picture_tangents"), std::tan(from.fov.left), std::tan(from.fov.right),
                 std::tan(from.fov.down), std::tan(from.fov.up));
@@ -66,8 +66,8 @@ bool MirrorPicture::draw(const SeenNow& seen, bool with_picture) const {
   return true;
 }
 
-/// Draws in strips, because a device draws for one context at a time, and software OpenGL is slow: a slot
-/// then waits for one strip at most.
+/// Draws the picture in strips, with a pause after each. A device draws for one context at a time, and
+/// software OpenGL is slow: a slot then waits for one strip at most.
 void MirrorPicture::draw_in_strips() {
   glEnable(GL_SCISSOR_TEST);
   for (int y = 0; y < side_px; y += strip_px) {

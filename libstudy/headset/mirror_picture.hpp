@@ -6,10 +6,12 @@
 
 namespace study {
 
-/// Needs a current context that shares the headset's pictures, at every call.
+/// Draws the picture for a mirror. At every call, a context that shares the headset's pictures must be
+/// current.
 class MirrorPicture {
  public:
-  /// Degrees from edge to edge: a page is legible, and the edges of most fields of view are cut off.
+  /// Field of view of the picture, degrees from edge to edge: narrow enough for legible pages, so the edges
+  /// of most headsets' fields of view are missing.
   static constexpr double field_deg = 60;
   static constexpr int side_px = 720;
 
@@ -18,9 +20,10 @@ class MirrorPicture {
   MirrorPicture(const MirrorPicture&) = delete;
   MirrorPicture& operator=(const MirrorPicture&) = delete;
 
-  /// with_picture: if false, the stimulus is black. Returns false and draws nothing if all is black.
+  /// Draws the view; with_picture = false: stimuli are black. Returns false, without drawing, if all of it is
+  /// black.
   bool draw(const SeenNow& seen, bool with_picture) const;
-  /// Waits until the drawing is done.
+  /// Returns the drawn picture; waits until the drawing is done.
   sim::Image read() const { return drawn_.read(); }
 
  private:

@@ -17,7 +17,8 @@ void read_instance(const XrConnection& xr, HeadsetOffer& out) {
   out.time_converts = xr.has(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
 }
 
-/// Uses a session that is never begun: it shows nothing and needs no frames.
+/// Reads properties that only a session reports. This session is never begun: it shows nothing and needs no
+/// frames.
 void read_in_session(const XrConnection& xr, const HeadsetSystem& system, HeadsetOffer& out) {
   std::optional<sim::GlContext> gl;
   try {

@@ -8,22 +8,22 @@
 
 namespace study {
 
-/// One eye's picture as the runtime recommends it, px.
+/// Size of one eye's picture that the runtime recommends, px.
 struct EyePicture {
   std::uint32_t width = 0, height = 0;
   friend bool operator==(const EyePicture&, const EyePicture&) = default;
 };
 
 struct HeadsetOffer {
-  std::string runtime, runtime_version;  ///< the version in the runtime's own numbering
+  std::string runtime, runtime_version;  ///< version in the numbering of the runtime
   std::string headset;
-  std::vector<std::string> extensions;  ///< ascending
-  std::vector<EyePicture> eyes;         ///< two
+  std::vector<std::string> extensions;  ///< names, in ascending order
+  std::vector<EyePicture> eyes;         ///< left and right
   bool opaque = false;                  ///< the picture can hide the real world
   bool position = false;                ///< the head's position is tracked, not only its direction
-  bool eye_gaze = false;                ///< an eye tracker answers through XR_EXT_eye_gaze_interaction
-  bool time_converts = false;           ///< the runtime's times convert to the system's clock
-  /// Known only in a session; none if no session could be made, and `no_session` says why.
+  bool eye_gaze = false;                ///< an eye tracker is available (XR_EXT_eye_gaze_interaction)
+  bool time_converts = false;           ///< the runtime's times can be converted to the system's clock
+  /// Properties that only a session reports. None if no session could be made; `no_session` gives the reason.
   struct InSession {
     std::vector<double> refresh_hz;     ///< ascending; empty: not reported
     std::optional<double> refresh_now;  ///< Hz; read only if several rates are listed
@@ -33,8 +33,8 @@ struct HeadsetOffer {
   std::string no_session;
 };
 
-/// Connects, asks and disconnects. base::Error: no loader, no runtime, no headset, no pair of views, and
-/// failed calls.
+/// Connects to the headset, reads the properties and disconnects. base::Error if there is no loader, runtime,
+/// headset or pair of views, or if a call fails.
 HeadsetOffer read_headset_offer();
 
 }  // namespace study

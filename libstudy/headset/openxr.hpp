@@ -1,8 +1,8 @@
 #pragma once
-/// OpenXR's declarations for OpenGL through EGL, with functions by pointer, because the loader is opened at
-/// run time.
+/// OpenXR's declarations for OpenGL through EGL. Functions are declared as pointer types only, because the
+/// loader is opened at run time.
 
-// epoxy first: it replaces the headers of EGL and GL.
+// epoxy must come first: it replaces the headers of EGL and OpenGL.
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 

@@ -16,7 +16,8 @@ struct Format {
   Worth worth;
 };
 
-/// Linear half floats and 16 bits resolve the darkest sRGB levels; 8, 10 and 11 bits do not.
+/// Known pixel formats and their quality for pictures. Linear formats with half floats or 16 bits resolve the
+/// darkest sRGB levels; linear formats with 8, 10 or 11 bits do not.
 const std::map<std::int64_t, Format> known{
     {GL_SRGB8_ALPHA8, {"GL_SRGB8_ALPHA8", srgb}},
     {GL_SRGB8, {"GL_SRGB8", srgb}},
@@ -76,7 +77,7 @@ void PictureCopy::copy(const sim::Offscreen& picture, const PicturePart& part, c
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.framebuffer);
   glViewport(0, 0, to.width_px, to.height_px);
   for (const GLenum off : {GL_FRAMEBUFFER_SRGB, GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE})
-    glDisable(off);  // with GL_FRAMEBUFFER_SRGB, sRGB values would be encoded again
+    glDisable(off);  // GL_FRAMEBUFFER_SRGB would encode the sRGB values a second time
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   program_.use();
   glUniform1i(program_.uniform("x"), part.x_px);

@@ -10,18 +10,18 @@
 
 namespace study {
 
-/// The known formats that can take a picture, best first: 8-bit sRGB, then linear ones fine enough for all
-/// 256 levels, then coarser ones. Depth and unknown formats are left out.
+/// Those of the offered formats that can store a picture, best first: 8-bit sRGB, then linear formats fine
+/// enough for all 256 levels, then coarser ones. Excludes depth formats and unknown formats.
 std::vector<std::int64_t> picture_formats(const std::vector<std::int64_t>& offered);
-/// True if each of the 256 levels of an sRGB picture arrives within one level.
+/// True if images of this format show each of the 256 sRGB levels with an error of at most one level.
 bool keeps_levels(std::int64_t format);
-/// "GL_SRGB8_ALPHA8", or the number in hex.
+/// The name of a pixel format, such as "GL_SRGB8_ALPHA8", or its number in hexadecimal.
 std::string gl_format_name(std::int64_t format);
 
 /// The part of a picture to copy, and its brightness.
 struct PicturePart {
   int x_px = 0;     ///< left edge of the part
-  float light = 1;  ///< factor of its levels, [0, 1]
+  float light = 1;  ///< factor on the levels, [0, 1]
   bool operator==(const PicturePart&) const = default;
 };
 struct CopyTarget {
@@ -30,19 +30,19 @@ struct CopyTarget {
   int width_px = 0, height_px = 0;
 };
 
-/// Copies pictures into textures of one format. Needs a current context at every call.
+/// Copies pictures into textures of one format. An OpenGL context must be current at every call.
 class PictureCopy {
  public:
   explicit PictureCopy(std::int64_t format);
   ~PictureCopy();
   PictureCopy(const PictureCopy&) = delete;
   PictureCopy& operator=(const PictureCopy&) = delete;
-  /// Copies as many pixels as the target has. Levels arrive unchanged if the image is shown as its format
-  /// says.
+  /// Copies the part of the picture that has the target's size. The shown levels are those of the picture
+  /// times part.light if the runtime decodes the texture by its format.
   void copy(const sim::Offscreen& picture, const PicturePart& part, const CopyTarget& to) const;
 
  private:
-  bool same_words_;  ///< the format stores pixels as the pictures do, so that copying needs no drawing
+  bool same_words_;  ///< the format is that of the pictures: copying needs no shader
   sim::GlProgram program_;
   unsigned vertices_ = 0;
 };

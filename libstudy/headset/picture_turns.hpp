@@ -1,26 +1,28 @@
 #pragma once
-/// Keeps track of which picture is drawn into, waits for its slot, is shown, and is looked at by an onlooker.
+/// Keeps track of the pictures that are drawn into, wait for their slot, are shown, or are read by an
+/// onlooker.
 
 #include <cstddef>
 #include <cstdint>
 
 namespace study {
 
-/// One side draws and posts, another takes the posted picture and reads it, and a third may look on; all
-/// under one lock.
+/// Assigns the pictures of a fixed set to three threads. The drawing thread calls begin() and post(), the
+/// slot thread take() and read(), an onlooker look() and look_away(). The callers hold one common lock.
 class PictureTurns {
  public:
-  /// Number of pictures needed, and one more for an onlooker.
+  /// Number of pictures that are needed without and with an onlooker.
   static constexpr std::size_t count = 3, count_with_onlooker = 4;
 
-  /// Returns a picture to draw into: nobody reads it, and the next post() posts it.
+  /// Returns a picture to draw into, which no thread reads. The next post() posts it.
   std::size_t begin() {
     drawn_ = 0;
     while (drawn_ == waiting_ || drawn_ == shown_ || drawn_ == read_ || drawn_ == looked_at_) ++drawn_;
     dropped_ = false;
     return drawn_;
   }
-  /// Makes the last begun picture wait, unless it was dropped; it replaces one that waited before.
+  /// Makes the last begun picture wait for its slot, unless it was dropped. It replaces a picture that still
+  /// waits.
   void post() {
     if (!dropped_) waiting_ = drawn_;
   }
@@ -32,15 +34,15 @@ class PictureTurns {
     ++number_;
   }
   bool shows() const { return shown_ != none; }
-  /// Number of the shown picture, from 1: no two pictures have the same.
+  /// Number of the shown picture, counted from 1 by take().
   std::uint64_t number() const { return number_; }
-  /// Returns the shown picture, which is read from now until the next call.
+  /// Returns the shown picture and protects it from being drawn into until the next read().
   std::size_t read() { return read_ = shown_; }
-  /// The same for the onlooker, until its next call or look_away().
+  /// As read() for the onlooker: protects the picture until the next look() or look_away().
   std::size_t look() { return looked_at_ = shown_; }
   void look_away() { looked_at_ = none; }
   void clear() { shown_ = waiting_ = none; }
-  /// As clear(), and the picture being drawn is never shown.
+  /// As clear(); the picture that is being drawn will not be shown either.
   void drop() {
     clear();
     dropped_ = true;

@@ -11,17 +11,18 @@ namespace {
 
 constexpr int first_steps = 8;
 constexpr std::size_t window = 16;
-constexpr double multiple = 0.2;  // largest deviation from a whole number of periods
+constexpr double multiple = 0.2;  // largest deviation from a whole number, periods
 constexpr double most = 0.7;
-constexpr double same_rate_share = 0.04;  // relative difference of two measures of one rate
+constexpr double same_rate_share = 0.04;  // largest relative difference of equal rates
 constexpr double on_grid = 0.1;           // periods
 
 double whole_periods(std::int64_t step_ns, double period_ns) {
   return std::max(1.0, std::round(static_cast<double>(step_ns) / period_ns));
 }
 
-/// The shortest step of which most others are whole multiples, within jitter: if many slots are left out, the
-/// usual step has several periods.
+/// The shortest step of which at least 70 % of the steps are whole multiples, within jitter; the median
+/// without such a step. The most frequent step would be wrong: it has several periods if the runtime leaves
+/// many slots out.
 std::int64_t typical_step(std::vector<std::int64_t> steps_ns) {
   std::sort(steps_ns.begin(), steps_ns.end());
   for (const std::int64_t candidate_ns : steps_ns) {
@@ -62,8 +63,8 @@ std::optional<RateChange> RateMeter::settle() {
   const double period_ns = period_of_latest();
   if (period_ns_ != 0) {
     if (same(period_ns, period_ns_)) return {};
-    // Old and new steps are mixed, so the new rate is reported once it has settled. Counts relative to the
-    // old rate are meaningless.
+    // The window mixes steps of the old and the new rate: the new rate is reported once it has settled.
+    // Removes the counts of these steps, because they are relative to the old rate.
     for (const Step& step : latest_) {
       dropped_ -= step.dropped;
       off_grid_ -= step.off_grid;

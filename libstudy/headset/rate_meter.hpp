@@ -11,21 +11,23 @@ struct RateChange {
   double from_hz = 0, to_hz = 0;
 };
 
-/// Runtimes report wrong first periods, jitter and leave slots out. The rate comes from settled steps between
-/// predicted times. The shortest step of which most others are multiples gives the number of periods in each
-/// step; the period is the sum of the steps over the number of periods. The first steps never count, nor do
-/// slots that only seem to be left out because the rate changes.
+/// Measures the refresh rate from the steps between predicted times of slots, because runtimes report wrong
+/// periods at first, jitter, and leave slots out. The shortest step of which most others are multiples gives
+/// the number of periods in each step. The period is the sum of the steps divided by the sum of these
+/// numbers. The first 8 steps never count. dropped() and off_grid() do not count steps during a change of the
+/// rate.
 class RateMeter {
  public:
-  /// Takes the next slot's predicted time. Returns the change once the rate has settled at another value.
+  /// Adds the predicted time of the next slot. Returns the change of the rate once it has settled at another
+  /// value.
   std::optional<RateChange> add(std::int64_t predicted_ns);
-  /// Call it when frames stopped: the next time makes no step with the last one.
+  /// Call it when frames stopped: the interval until the next predicted time is no step.
   void interrupt();
-  /// Hz; none until enough steps have settled, and while the rate changes.
+  /// The measured rate, Hz; none before 16 steps were measured, and while the rate changes.
   std::optional<double> hz() const;
-  /// Number of slots whose predicted time never came, although a later one did; over the whole session.
+  /// Number of slots that the runtime left out between two predicted times, over the whole session.
   std::int64_t dropped() const { return dropped_; }
-  /// Number of predicted times that did not go forward.
+  /// Number of predicted times that were not later than the time before.
   std::int64_t repeated() const { return repeated_; }
   /// Number of steps that differ by more than a tenth of a period from a whole number of periods.
   std::int64_t off_grid() const { return off_grid_; }
@@ -33,7 +35,7 @@ class RateMeter {
  private:
   struct Step {
     std::int64_t ns = 0;
-    std::int64_t dropped = 0, off_grid = 0;  ///< as counted for this step
+    std::int64_t dropped = 0, off_grid = 0;  ///< counts of this step
   };
 
   double period_of_latest() const;
@@ -43,8 +45,8 @@ class RateMeter {
   std::optional<std::int64_t> last_ns_;
   double period_ns_ = 0;                               ///< 0: not settled
   double before_ns_ = 0;                               ///< the last settled period; 0: none
-  int steps_ = 0;                                      ///< since frames run
-  std::int64_t counted_ns_ = 0, counted_periods_ = 0;  ///< since the rate settled
+  int steps_ = 0;                                      ///< number of steps since frames run
+  std::int64_t counted_ns_ = 0, counted_periods_ = 0;  ///< sums since the rate settled
   std::int64_t dropped_ = 0, repeated_ = 0, off_grid_ = 0;
   std::vector<Step> latest_;
 };

@@ -11,12 +11,13 @@ namespace study {
 class RefreshControl {
  public:
   explicit RefreshControl(const SessionHandle& session);
-  /// Hz, ascending; empty: not reported.
+  /// The refresh rates that the runtime lists, Hz, ascending; empty: not reported.
   const std::vector<double>& rates() const { return rates_; }
-  /// The current rate. None unless several rates are listed: some runtimes that list one rate report another.
+  /// The current rate, Hz. None unless the runtime lists several rates: some runtimes list one rate and
+  /// report another.
   std::optional<double> reported_hz() const;
-  /// Asks for a listed rate; the display may take it later, or never. base::Error for a rate that is not
-  /// listed.
+  /// Requests a listed rate, Hz; the display may change to it later, or never. base::Error for a rate that is
+  /// not listed.
   void request(double hz) const;
 
  private:

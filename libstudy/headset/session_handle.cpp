@@ -1,4 +1,5 @@
-// epoxy first. X is included with OpenXR only in this file, because X's macros clash with other code.
+// epoxy must come first. Only this file includes X together with OpenXR, because X's macros clash with other
+// code.
 #include <epoxy/gl.h>
 #include <epoxy/glx.h>
 #define XR_USE_PLATFORM_XLIB
@@ -21,7 +22,7 @@ constexpr XrPosef no_offset{{0, 0, 0, 1}, {0, 0, 0}};
 static_assert(XR_SPACE_LOCATION_POSITION_TRACKED_BIT == XR_VIEW_STATE_POSITION_TRACKED_BIT);
 static_assert(XR_SPACE_LOCATION_ORIENTATION_VALID_BIT == XR_VIEW_STATE_ORIENTATION_VALID_BIT);
 
-/// The specification requires this query before a session is made.
+/// Checks the version of OpenGL. The specification requires this query before a session is made.
 void check_graphics(const XrConnection& xr, XrSystemId system) {
   XrGraphicsRequirementsOpenGLKHR needs{};
   needs.type = XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR;
@@ -82,7 +83,7 @@ void KeptContext::take_back_egl() const {
     eglMakeCurrent(eglGetCurrentDisplay(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
-/// False if no context is current.
+/// Makes the GLX context of the constructor current again. Returns false if there was none.
 bool KeptContext::take_back_glx() const {
   const auto context = static_cast<GLXContext>(x_context_);
   if (glXGetCurrentContext() == context && glXGetCurrentDrawable() == x_drawable_) return context;
@@ -98,7 +99,7 @@ KeptContext::~KeptContext() {
   if (!on_x_) take_back_egl();
   const bool current = on_x_ ? take_back_glx() : context_ != EGL_NO_CONTEXT;
   if (!current) return;
-  // Bounded, because a lost context returns errors forever.
+  // Clears OpenGL errors. The loop is bounded, because a lost context returns errors forever.
   for (int i = 0; i < 64 && glGetError() != GL_NO_ERROR; ++i) {
   }
 }
@@ -162,7 +163,7 @@ HeadsetPose pose_of(const XrPosef& pose, XrFlags64 flags) {
   out.turn_valid = flags & XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
   out.place_tracked = flags & XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
   out.turn_tracked = flags & XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
-  // Invalid parts may hold any values.
+  // Copies valid parts only: invalid parts may have any values.
   if (out.place_valid) out.place_m = {pose.position.x, pose.position.y, pose.position.z};
   if (out.turn_valid)
     out.turn = {pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w};

@@ -1,5 +1,5 @@
 #pragma once
-/// OpenXR's session on a GL context, and calls into it that preserve the caller's GL context.
+/// OpenXR's session on an OpenGL context. Calls into the session preserve the caller's OpenGL context.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,12 @@
 
 namespace study {
 
-/// Restores the calling thread's GL context after a call into the runtime.
-///
-/// Runtimes make their own contexts current and leave GL errors behind. The destructor makes the context
-/// current that was current at construction, and clears its errors.
+/// Restores the calling thread's OpenGL context after a call into the runtime, because runtimes make other
+/// contexts current and leave OpenGL errors behind. The destructor makes the context of the constructor
+/// current again and clears its errors.
 class KeptContext {
  public:
-  /// on_x: the context is GLX's; otherwise EGL's.
+  /// on_x: true for a GLX context, false for an EGL context.
   explicit KeptContext(bool on_x);
   ~KeptContext();
   KeptContext(const KeptContext&) = delete;
@@ -37,11 +36,11 @@ class KeptContext {
   EGLSurface draw_, read_;
 };
 
-/// The destructor destroys the session; everything made from it must be destroyed before.
+/// An OpenXR session. The destructor destroys it; objects made from the session must be destroyed before.
 class SessionHandle {
  public:
-  /// base::Error if the runtime does not take contexts of this kind, or this one. `gl` is current on the
-  /// calling thread and outlives the session.
+  /// base::Error if the runtime does not accept contexts of this kind, or not this context. `gl` must be
+  /// current on the calling thread and outlive the session.
   SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl);
   ~SessionHandle();
   SessionHandle(const SessionHandle&) = delete;
@@ -50,27 +49,28 @@ class SessionHandle {
   XrSession get() const { return session_; }
   const XrConnection& xr() const { return xr_; }
 
-  /// call<PFN_xrEndSession>("xrEndSession", session): base::Error for a failure; returns the success code.
+  /// Calls an OpenXR function: call<PFN_xrEndSession>("xrEndSession", session). Returns its success code;
+  /// base::Error for a failure.
   template <class F, class... Arguments>
   XrResult call(const char* name, Arguments... arguments) const {
     const XrResult result = attempt<F>(name, arguments...);
     check_xr(result, name);
     return result;
   }
-  /// The same, but also returns failures.
+  /// As call(), but returns a failure instead of throwing.
   template <class F, class... Arguments>
   XrResult attempt(const char* name, Arguments... arguments) const {
     const F function = xr_.function<F>(name);
     const KeptContext kept(on_x_);
     return function(arguments...);
   }
-  /// Destroys an object made from the session, unless the session was left behind.
+  /// Destroys an object made from the session; does nothing after leave_behind().
   template <class F, class Handle>
   void destroy(const char* name, Handle handle) const {
     if (handle != XR_NULL_HANDLE && !left_behind_) attempt<F>(name, handle);
   }
-  /// For a call that never returned: nothing of the session may be touched any more. It stays until the
-  /// process ends.
+  /// Call it after a call into the runtime never returned: the session's objects must not be used any more,
+  /// and exist until the process ends.
   void leave_behind() { left_behind_ = true; }
 
   /// GL internal formats for pictures, in the runtime's order of preference.
@@ -83,7 +83,7 @@ class SessionHandle {
   bool left_behind_ = false;
 };
 
-/// A space of the session; destroyed with the object.
+/// An OpenXR space (frame of reference) of the session. The destructor destroys it.
 class Space {
  public:
   Space(const SessionHandle& session, XrReferenceSpaceType kind);
@@ -95,7 +95,7 @@ class Space {
   Space& operator=(Space&&) = delete;
 
   XrSpace get() const { return space_; }
-  /// Its pose in `base`; `next` is chained to the result structure.
+  /// The pose of this space in `base` at `time`. `next`: structure to chain to the result structure.
   HeadsetPose locate(const Space& base, XrTime time, void* next = nullptr) const;
 
  private:
@@ -103,7 +103,7 @@ class Space {
   XrSpace space_ = XR_NULL_HANDLE;
 };
 
-/// Conversions between OpenXR's poses and ours.
+/// Conversions between OpenXR's poses and HeadsetPose.
 HeadsetPose pose_of(const XrPosef& pose, XrFlags64 flags);
 XrPosef pose_of(const HeadsetPose& pose);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Makes a headset's first session, and new ones when the runtime loses it. Some facts of a session must not
-/// change then.
+/// Makes a headset's first session, and a new session when the runtime loses one. Some properties of the new
+/// session must equal those of the lost one.
 
 #include <memory>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace study {
 
-/// Facts of one session.
+/// Properties of one session.
 struct SessionFacts {
-  std::string description;  ///< headset, picture and format
+  std::string description;  ///< headset, picture size and pixel format
   HeadsetNames names;
   bool times_convert = false, eye_gaze = false;
   base::PictureSize picture;  ///< size of both eyes' pictures side by side
@@ -19,20 +19,21 @@ struct SessionFacts {
 
 SessionFacts facts_of(const HeadsetSession& session);
 
-/// Throws base::Error if a loop and its program cannot go on with the new session.
+/// Throws base::Error if the program cannot go on with the new session: its pictures have another size, or it
+/// lacks the eye tracker.
 void require_alike(const SessionFacts& before, const SessionFacts& after);
 
 class SessionMaker {
  public:
-  /// In all. A runtime that loses this many would lose the next one, too.
+  /// Largest number of sessions. A runtime that loses this many is likely to lose the next one as well.
   static constexpr int most_sessions = 3;
 
-  /// gl: as in HeadsetSession. Makes no session yet.
+  /// gl: as in HeadsetSession. The constructor makes no session.
   SessionMaker(const sim::GlContext& gl, const HeadsetChoice& choice) : gl_(gl), choice_(choice) {}
 
-  /// Makes the first session, with one attempt. Later calls make a new session after the lost one was
-  /// destroyed: they retry for the choice's patience, because the headset may be gone only for a moment.
-  /// base::Error if none can be made, or too many were lost. earliest_ns: see HeadsetChoice.
+  /// The first call makes the first session, with one attempt. Later calls make a new session; destroy the
+  /// lost one before. They retry for HeadsetChoice::patience_s, because the headset may be absent only for a
+  /// moment. base::Error if no session can be made, or after most_sessions. earliest_ns: see HeadsetChoice.
   std::unique_ptr<HeadsetSession> make(std::int64_t earliest_ns = 0);
 
  private:

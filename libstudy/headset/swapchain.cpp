@@ -69,13 +69,13 @@ std::uint32_t Swapchain::acquire(std::chrono::nanoseconds limit) const {
         XR_TIMEOUT_EXPIRED)
       return index;
   } while (std::chrono::steady_clock::now() < deadline);
-  throw base::Error("headset", "the runtime does not give a picture's image back",
+  throw base::Error("headset", "the runtime does not release an image for the next picture",
                     "restart the headset's software; vip-study resume continues a session");
 }
 
 void Swapchain::write(const sim::Offscreen& picture, const PicturePart& part, std::uint64_t number,
                       std::chrono::nanoseconds limit) {
-  // A layer shows the image that was released last, in as many frames as it likes.
+  // Unchanged content needs no copy: a layer keeps showing the image that was released last.
   if (number != 0 && number == last_number_ && part == last_part_) return;
   copy_->copy(picture, part, images_.at(acquire(limit)));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
@@ -104,7 +104,7 @@ std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& ses
     } catch (const HeadsetLost&) {
       throw;
     } catch (const base::Error&) {
-      if (format == formats.back()) throw;  // a listed format may not work
+      if (format == formats.back()) throw;  // the runtime may refuse a listed format: tries the next one
     }
   }
   return {};

@@ -1,5 +1,5 @@
 #pragma once
-/// A runtime's swapchain for one picture.
+/// An OpenXR swapchain: the images through which a program passes one picture to the runtime.
 
 #include <chrono>
 #include <cstdint>
@@ -12,22 +12,22 @@
 
 namespace study {
 
-/// The destructor destroys the swapchain and needs the session's context.
+/// A swapchain of a session. The destructor destroys it and needs the session's OpenGL context.
 class Swapchain {
  public:
-  /// base::Error if the runtime does not make such images, or OpenGL cannot draw into them.
+  /// base::Error if the runtime cannot make images of this format and size, or OpenGL cannot draw into them.
   Swapchain(const SessionHandle& session, std::int64_t format, int width_px, int height_px);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
   std::int64_t format() const { return format_; }
-  /// Copies a part of a picture, of the image's size, into the next image and releases that to the runtime.
-  /// Does nothing if the last image holds that part of the picture of this number; 0: a new picture each
-  /// time. base::Error if the runtime holds all images for longer than `limit`.
+  /// Copies the part of a picture that has the image's size into the next image, and releases the image to
+  /// the runtime. number: identifies the picture's content. Does nothing if the last call had the same part
+  /// and the same number other than 0. base::Error if the runtime does not free an image within `limit`.
   void write(const sim::Offscreen& picture, const PicturePart& part, std::uint64_t number,
              std::chrono::nanoseconds limit);
-  /// The whole image, for a layer.
+  /// The whole image that was released last, for use in a layer.
   XrSwapchainSubImage image() const;
 
  private:
@@ -45,8 +45,8 @@ class Swapchain {
   std::uint64_t last_number_ = 0;
 };
 
-/// Makes one swapchain per size, all of the best offered format that can really be made. base::Error if there
-/// is none.
+/// Makes one swapchain per size, all of the best offered format with which this succeeds. base::Error if it
+/// succeeds with no format.
 std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& session,
                                                         const std::vector<base::PictureSize>& sizes);
 

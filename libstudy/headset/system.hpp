@@ -1,5 +1,5 @@
 #pragma once
-/// The headset behind a runtime: its name, views and tracking.
+/// The headset of an OpenXR runtime (its "system"): name, views and tracking.
 
 #include <string>
 #include <utility>
@@ -18,20 +18,21 @@ struct HeadsetSystem {
   bool position = false;                       ///< the head's position is tracked
   bool eye_gaze = false;                       ///< XR_EXT_eye_gaze_interaction is enabled and supported
   bool opaque = false;                         ///< a blend mode that hides the real world is offered
-  std::vector<XrViewConfigurationView> views;  ///< two
+  std::vector<XrViewConfigurationView> views;  ///< left and right
 };
 
-/// Makes a context that the active runtime takes, current on the calling thread: EGL, or GLX if the runtime
-/// takes no EGL. base::Error if there is no runtime, or no such context.
+/// Makes an OpenGL context that the active runtime accepts, current on the calling thread: an EGL context, or
+/// GLX if the runtime does not accept EGL. base::Error if there is no runtime, or no such context.
 sim::GlContext make_headset_context();
 
-/// Connects with every extension that the program can use; eye tracking only if asked for.
+/// Connects to the runtime and enables every offered extension that the program can use; eye tracking only if
+/// eye_gaze is true.
 XrConnection connect_to_headset(bool eye_gaze = true);
 
-/// The runtime's name, and its version in its own numbering.
+/// The runtime's name and version.
 std::pair<std::string, std::string> read_runtime(const XrConnection& xr);
 
-/// base::Error if no headset is connected, or it has no pair of views.
+/// Reads the properties of the headset. base::Error if no headset is connected, or it has no pair of views.
 HeadsetSystem read_system(const XrConnection& xr);
 
 }  // namespace study

@@ -8,21 +8,22 @@
 
 namespace study {
 
-/// A disc that faces +z, in the headset's world.
+/// A disc in the headset's world that faces +z.
 struct TestDisc {
   std::array<float, 3> middle_m;
   float radius_m;
   std::array<float, 3> paint;  ///< sRGB, [0, 1]
 };
-/// At 0.5, 1 and 2 m, each four degrees wide: red left, green in the middle, blue right.
+/// Three discs, each 4 degrees wide: red to the left at 0.5 m, green ahead at 1 m, blue to the right at 2 m.
 const std::array<TestDisc, 3>& test_discs();
 
-/// An upright strip of 256 greys, level 0 at the left.
+/// Edges of an upright strip with 256 grey levels, level 0 at the left.
 struct TestRamp {
   float left_m = -0.6f, right_m = 0.6f, down_m = -0.6f, up_m = -0.3f, z_m = -1.5f;
 };
 
-/// The discs, the ramp, and an infinitely distant yellow line at eye level. Needs a current context.
+/// Draws test_discs(), the grey ramp, and a yellow line at infinity at eye level. Needs a current OpenGL
+/// context.
 class TestScene {
  public:
   TestScene();

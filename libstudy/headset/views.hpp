@@ -7,13 +7,13 @@
 
 namespace study {
 
-/// Position and orientation in the headset's world: x right, y up, -z ahead, metres; the origin is the head's
-/// position when the runtime fixed it (OpenXR's LOCAL space).
+/// Position (m) and orientation in the headset's world: x right, y up, -z ahead. The runtime fixed the origin
+/// at the head's position at some time (OpenXR's LOCAL space).
 struct HeadsetPose {
   std::array<float, 3> place_m{};
   std::array<float, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
   bool place_valid = false, turn_valid = false;
-  /// Valid but not tracked: the runtime's guess, sub-nominal.
+  /// False for a valid part: the part is an estimate of the runtime.
   bool place_tracked = false, turn_tracked = false;
 
   bool valid() const { return place_valid && turn_valid; }
@@ -31,19 +31,19 @@ struct HeadsetEye {
   int width_px = 0, height_px = 0;
 };
 
-/// Left and right.
+/// The views of the left and the right eye.
 using EyeViews = std::array<HeadsetEye, 2>;
 
 /// True if both poses are valid, so that a picture drawn from them can be shown.
 bool can_be_shown(const EyeViews& views);
 
-/// The right, up and back unit vectors of a pose, concatenated.
+/// The unit vectors to the right, up and back of a pose, one after the other.
 std::array<float, 9> axes_of(const HeadsetPose& pose);
 /// The direction in which a pose looks, a unit vector.
 std::array<float, 3> direction_of(const HeadsetPose& pose);
 
-/// Converts an eye's view for stimuli; its picture starts at x_px of the canvas. world_scale: metres of the
-/// room per metre of the scene.
+/// Converts an eye's view to the form for stimuli. The eye's picture starts at x_px of the canvas.
+/// world_scale: metres of the room per metre of the scene.
 EyeView study_view(const HeadsetEye& eye, int x_px, double world_scale = 1);
 
 }  // namespace study

@@ -29,7 +29,7 @@ struct WatchedThread::Shared {
 };
 
 WatchedThread::WatchedThread() : shared_(std::make_shared<Shared>()) {
-  // The thread owns a share of its state, because it may outlive this object.
+  // The thread shares ownership of its state, because it may outlive this object.
   shared_->thread = std::thread([shared = shared_] { shared->work(); });
 }
 

@@ -7,7 +7,7 @@
 
 namespace study {
 
-/// Runs calls on its own thread while the caller waits for them, up to a limit.
+/// Runs calls on a separate thread; the caller waits for each call up to a time limit.
 class WatchedThread {
  public:
   WatchedThread();
@@ -16,8 +16,8 @@ class WatchedThread {
   WatchedThread(const WatchedThread&) = delete;
   WatchedThread& operator=(const WatchedThread&) = delete;
 
-  /// Returns true if the call returned in time. After false the thread hangs and takes no further calls; the
-  /// call must own the memory that it writes to.
+  /// Returns true if the call returned within `limit`. After false the call still runs, and further calls are
+  /// refused. The call must own the memory that it writes to.
   bool run(std::function<void()> call, std::chrono::nanoseconds limit);
   bool hangs() const { return hangs_; }
 

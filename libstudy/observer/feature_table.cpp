@@ -10,14 +10,14 @@ namespace study {
 namespace {
 
 struct Row {
-  std::string_view scene;  ///< name of its file
+  std::string_view scene;  ///< name of the scene's file without .toml
   std::string_view method;
   PictureFeatures at_16k, at_32k;
 };
 
-// Measured live on an H200 as --display headless does it for every cell: vip-study run protocols/task1.toml
-// --participants 6 --observer frames --display headless --backend cuda. Ours-TSp equals Ours where its
-// published frame rate keeps tau above 0, because nothing is accelerated.
+// Measured on an H200 on live fluid: vip-study run protocols/task1.toml --participants 6 --observer frames
+// --display headless --backend cuda. Ours-TSp equals Ours in cells whose published frame rate gives tau > 0,
+// because Ours-TSp then accelerates no particles.
 constexpr std::array<Row, 15> rows{{{"single_dam", "LoRes", {8.313, 0.01347}, {8.284, 0.01372}},
                                     {"single_dam", "FovFluid", {7.325, 0.01882}, {7.299, 0.01836}},
                                     {"single_dam", "Ours", {7.146, 0.02018}, {6.787, 0.02095}},

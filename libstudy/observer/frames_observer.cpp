@@ -57,7 +57,7 @@ int FramesObserver::symptom(const Question& question, const Occasion& occasion) 
   const std::uint64_t key = question_key(occasion, question);
   double worst = -quality(occasion.shown.front());
   for (const ShownStimulus& shown : occasion.shown) worst = std::max(worst, -quality(shown));
-  // The person's random draw is the same for every symptom.
+  // One random number per participant shifts the scores of all symptoms alike.
   const double person = parameters_.participant_sd * normal_of(person_key(occasion), 1);
   const double noise =
       0.5 * parameters_.noise * normal_of(key, 1 + static_cast<std::uint64_t>(occasion.position));

@@ -15,9 +15,9 @@ namespace study {
 
 namespace {
 
-// Observers without information: a report should be able to detect them.
+// Observers whose answers carry no information about the stimulus. A report should detect them.
 
-/// "random": every score equally likely, whatever was shown.
+/// "random": every score of a question is equally likely for every stimulus.
 class RandomObserver final : public Observer {
  public:
   std::optional<std::string> simulated() const override { return "random"; }
@@ -26,7 +26,7 @@ class RandomObserver final : public Observer {
   }
 };
 
-/// "constant:4": always the nearest score to 4.
+/// "constant:4": always answers with the question's score that is nearest to 4.
 class ConstantObserver final : public Observer {
  public:
   explicit ConstantObserver(double score) : score_(score) {}
@@ -39,8 +39,8 @@ class ConstantObserver final : public Observer {
   double score_;
 };
 
-/// "dropout:0.2,OBSERVER": answers as OBSERVER (default: random) and leaves for good with this probability
-/// before each trial.
+/// "dropout:0.2,OBSERVER": answers as OBSERVER does (default: random). Before each trial the observer leaves
+/// the study with this probability.
 class DropoutObserver final : public Observer {
  public:
   DropoutObserver(double probability, std::unique_ptr<Observer> answers)
@@ -78,7 +78,7 @@ std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSo
                                            make_observer(rest.empty() ? "random" : rest, features));
 }
 
-/// The score in "constant:4" or "dropout:0.2,constant:4"; none for other observers.
+/// The score 4 of "constant:4" or "dropout:0.2,constant:4"; none for other observers.
 std::optional<double> constant_of(std::string_view specification) {
   std::size_t at = 0;
   if (specification.starts_with(dropout))

@@ -68,7 +68,7 @@ bool asks_symptom(const Question& question) {
 
 int nearest_score(const Question& question, double x) {
   const auto scores = scores_of(question);
-  // Counting the thresholds below x needs no clamp at the ends of the scale.
+  // Counts the thresholds below x; values of x beyond the ends of the scale need no clamping.
   std::size_t i = 0;
   while (i + 1 < scores.size() && x > 0.5 * (scores[i] + scores[i + 1])) ++i;
   return scores[i];

@@ -1,5 +1,6 @@
 #pragma once
-/// Base of all simulated observers: they read at once, wait on the clock and answer without delay.
+/// Base of all simulated observers. Reading a page and answering questions take no time; pauses wait on the
+/// clock.
 
 #include <memory>
 #include <string>
@@ -12,8 +13,8 @@
 namespace study {
 
 /// Every answer is a pure function of the observer's parameters, the seed, the participant, the unit's
-/// position, the question and what was shown. Questions that decide on participation (Question::accept) are
-/// always answered so that the session goes on.
+/// position, the question and the shown stimuli. A question that decides on participation gets an accepted
+/// score (Question::accept), so that the session continues.
 class Observer : public Participant {
  public:
   void read(const Block&, double, Clock&, const Check&) final {}
@@ -21,29 +22,31 @@ class Observer : public Participant {
                                const Occasion& occasion, Clock& clock, const Check& check) final;
   void pause(const Pause& pause, Clock& clock, const Check& check) final;
 
-  /// Returns one of the question's scores. Called for no question of kind Text and none with `accept`.
-  /// `judges`: this is the first question on the page that judges the stimulus.
+  /// Returns one of the question's scores. Never called for a question of kind Text or with `accept`.
+  /// `judges`: true for the first question of kind Scale or Choice after a stimulus.
   virtual int score(const Question& question, const Occasion& occasion, bool judges) const = 0;
-  /// True if its symptom scores are modelled. Otherwise a score that would stop the session is lowered to
+  /// True if the observer models symptom scores. Otherwise a score that would stop the session is lowered to
   /// stop_at - 1.
   virtual bool feels() const { return false; }
 };
 
-/// Uniform in (0, 1) and standard normal (Box and Muller 1958): draw `counter` of a key.
+/// Random number `counter` of the stream of `key`: uniform_of() is uniform in (0, 1), normal_of() standard
+/// normal (Box and Muller 1958).
 double uniform_of(std::uint64_t key, std::uint64_t counter);
 double normal_of(std::uint64_t key, std::uint64_t counter);
-/// Random keys of a person, and of one question asked of that person.
+/// Keys of random streams: one for the participant, one for this question to this participant.
 std::uint64_t person_key(const Occasion& occasion);
 std::uint64_t question_key(const Occasion& occasion, const Question& question);
 
-/// True for a rating from 0 on, such as those of the SSQ and the FMS.
+/// True for a rating on a scale that starts at 0, as in the SSQ and the FMS. Observers take such a rating for
+/// a symptom.
 bool asks_symptom(const Question& question);
-/// The score nearest to x: thresholds lie halfway between neighbouring scores.
+/// The question's score that is nearest to x. Thresholds lie halfway between neighbouring scores.
 int nearest_score(const Question& question, double x);
-/// Every score equally likely.
+/// Draws a score of the question; every score is equally likely.
 int random_score(const Question& question, const Occasion& occasion);
-/// The answer of an attentive, healthy person to a question that the model does not cover: the expected
-/// answer of a catch, a low score of symptoms (scales from 0), else a random score.
+/// The answer of an attentive, healthy person to a question that the model does not cover: the expected score
+/// of a catch question, a low score on a symptom scale, else a random score.
 int bystander_score(const Question& question, const Occasion& occasion);
 
 /// Makes an observer from "ptpe:a=31,b=0.035", "random", "constant:4", "dropout:0.2[,OBSERVER]" or
@@ -51,9 +54,9 @@ int bystander_score(const Question& question, const Occasion& occasion);
 /// the character at which the text is wrong.
 std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features);
 
-/// One sentence for each scale of the trials that lacks the score of a constant observer such as "constant:9"
-/// (alone or after "dropout"), which then gives the nearest score. Empty for other kinds of observers.
-/// base::Error if no question takes the score.
+/// For a constant observer such as "constant:9" (alone or after "dropout"): one sentence for each rating
+/// scale of the trials that does not contain the observer's score. On such a scale the observer gives the
+/// nearest score. Empty for other kinds of observers. base::Error if no question's scale contains the score.
 std::vector<std::string> scales_beyond(std::string_view specification, const Protocol& protocol);
 
 }  // namespace study

@@ -1,31 +1,32 @@
 #pragma once
-/// Picture features for the frames observer, without a reference picture: live fluid is decorrelated from
-/// every other run long before 30 s, so a distance to a reference would measure chaos.
+/// Picture features for the frames observer. They need no reference picture: two runs of live fluid
+/// decorrelate long before 30 s, so a distance between their pictures would measure chaos.
 
 #include "libstudy/protocol/design.hpp"
 
 namespace study {
 
-/// Means over the frames of one cell, on luminance 0 .. 1, pictures 640 pixels wide.
+/// Features of one cell: means over its measured pictures, which are 640 px wide, with luminance in 0 .. 1.
 struct PictureFeatures {
-  /// Size of the visible structures near the gaze, px: the characteristic wavelength 2 pi sqrt(<r^2> / <|grad
-  /// r|^2>) of luminance less its mean over a window of 31 x 31 px, in the quarter of the fluid's pixels that
-  /// is nearest to the gaze. Larger is coarser.
+  /// Size of the visible structures near the gaze, px; larger is coarser. It is the characteristic wavelength
+  /// 2 pi sqrt(<r^2> / <|grad r|^2>). r is the luminance minus its mean over the fluid in a window of 31 x 31
+  /// px; <> is the mean over the quarter of the fluid's pixels nearest to the gaze.
   double granularity_px = 0;
-  /// Mean |L(t - 1) - 2 L(t) + L(t + 1)| of three successive frames over the fluid's pixels: uniform motion
-  /// cancels in part, popping does not.
+  /// Mean |L(t - 1) - 2 L(t) + L(t + 1)| over the fluid's pixels, with the luminance L of three successive
+  /// frames. Uniform motion cancels in part; popping does not cancel.
   double flicker = 0;
 };
 
-/// Returns the features of a cell; they do not depend on its timing.
+/// Source of the picture features of cells. The features do not depend on a cell's frame rate.
 class FeatureSource {
  public:
   virtual ~FeatureSource() = default;
   virtual PictureFeatures of(const StimulusSpec& stimulus) = 0;
 };
 
-/// Features from a table, for cells without pictures (source: feature_table.cpp): the three scenes at n_* =
-/// 16k and 32k; other sizes use those of 16k. base::Error for a scene or method without a row.
+/// Features from the table in feature_table.cpp, for sessions without pictures. The table has the paper's
+/// three scenes at n_* = 16k and 32k; every other n_* uses the values of 16k. base::Error for a scene or
+/// method without a row.
 class FeatureTable final : public FeatureSource {
  public:
   PictureFeatures of(const StimulusSpec& stimulus) override;

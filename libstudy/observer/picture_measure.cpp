@@ -11,7 +11,7 @@ namespace {
 constexpr int window_radius_px = 15;
 constexpr std::size_t least_pixels = 100;
 
-/// Sums over rectangles in constant time.
+/// Summed-area table: gives the sum of a value over any rectangle of pixels in constant time.
 class SumTable {
  public:
   template <class Value>
@@ -26,7 +26,7 @@ class SumTable {
       }
     }
   }
-  /// Columns x0 .. x1 - 1, rows y0 .. y1 - 1.
+  /// Sum over the columns x0 .. x1 - 1 and the rows y0 .. y1 - 1.
   double sum(int x0, int y0, int x1, int y1) const {
     return sums_[at(x1, y1)] - sums_[at(x0, y1)] - sums_[at(x1, y0)] + sums_[at(x0, y0)];
   }
@@ -43,7 +43,7 @@ std::size_t index_of(const MeasuredPicture& picture, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
 }
 
-/// Luminance minus its mean over the fluid in the surrounding window; 0 outside the fluid.
+/// Luminance of each pixel minus the mean over the fluid's pixels in a window around it; 0 outside the fluid.
 std::vector<double> residual(const MeasuredPicture& picture) {
   const auto is_fluid = [&](int x, int y) { return picture.fluid[index_of(picture, x, y)]; };
   const SumTable count(picture.width, picture.height,
@@ -67,7 +67,7 @@ std::vector<double> residual(const MeasuredPicture& picture) {
   return out;
 }
 
-/// Mask of the quarter of the fluid's pixels nearest to (x, y).
+/// Mask of the quarter of the fluid's pixels that is nearest to the gaze point.
 std::vector<std::uint8_t> near_gaze(const MeasuredPicture& picture, double gaze_x, double gaze_y) {
   std::vector<std::pair<double, std::size_t>> distances;
   for (int y = 0; y < picture.height; ++y) {

@@ -9,15 +9,15 @@
 
 namespace study {
 
-/// Luminance in [0, 1] and the mask of fluid pixels; both of size width x height, any row order.
+/// Luminance in [0, 1] and a mask of the fluid's pixels. Both have width x height values, in any row order.
 struct MeasuredPicture {
   int width = 0, height = 0;
   std::vector<float> luminance;
-  std::vector<std::uint8_t> fluid;  ///< 1: fluid
+  std::vector<std::uint8_t> fluid;  ///< 1: the pixel shows fluid; 0: it does not
 };
 
-/// Features of three successive pictures of equal size; granularity is of the middle one. (x, y) is the gaze
-/// point, px. Both features are 0 if fewer than 100 pixels show fluid.
+/// Features of three successive pictures of equal size; granularity is measured in the middle picture. (x, y)
+/// is the gaze point, px. Both features are 0 if fewer than 100 pixels show fluid in all three pictures.
 PictureFeatures measure_pictures(const std::array<MeasuredPicture, 3>& pictures, double x_px, double y_px);
 
 }  // namespace study

@@ -39,7 +39,7 @@ std::optional<std::string> PtpeObserver::simulated() const {
   return std::string(ptpe_kind) + write_observer_keys(written(keys_of(copy)));
 }
 
-/// x - m of one stimulus (ptpe_observer.hpp).
+/// Latent satisfaction x of one stimulus minus the scale's midpoint m; see PtpeObserverParameters.
 double PtpeObserver::latent(const Occasion& occasion, std::size_t interval) const {
   const std::uint64_t key = person_key(occasion);
   const stats::FpsMoments& seen = occasion.shown[interval].realised;

@@ -1,5 +1,6 @@
 #pragma once
-/// The parametric simulated observer: an ordinal judge of the realised frame rate.
+/// The simulated observer "ptpe": it rates a stimulus by the mean and standard deviation of its realised
+/// frame rate.
 
 #include <string>
 #include <string_view>
@@ -14,29 +15,30 @@ namespace study {
 ///
 /// with mu the harmonic mean and delta the standard deviation of the frames shown, participant ~ N(0,
 /// participant_sd^2) drawn once for each person and noise ~ N(0, noise^2) once for each trial; effects is
-/// added if they are a factor and the level is not "none". The score is the category whose thresholds, m +-
-/// 1/2, 3/2, ..., hold x: symmetric about m, so that E[score] = m (4 on a 7-point scale) exactly on the
+/// added for a level of effects other than "none". The score is the category whose thresholds, m +- 1/2, 3/2,
+/// ..., enclose x. They are symmetric about m, so that E[score] = m (4 on a 7-point scale) exactly on the
 /// contour tau = 0.
 ///
 /// The default slope and noise give cell means over 16 people from about 1 to 6.5 on the pilot's grid, the
-/// range of the paper's Fig. 6; the scatter of single people's scores is not printed there, so noise and
+/// range of the paper's Fig. 6. The paper does not print the scatter of single people's scores, so noise and
 /// participant_sd are our choice.
 struct PtpeObserverParameters {
   double a = 0;                 ///< frames/s, > 0; must be given
   double b = 0;                 ///< s/frame; must be given
   double slope = 0.14;          ///< scores per frame/s, > 0
-  double noise = 1.0;           ///< scores, >= 0
-  double participant_sd = 0.5;  ///< scores, >= 0
-  double effects = 0;           ///< scores that effects add; recorded only if not 0
+  double noise = 1.0;           ///< standard deviation per trial, scores, >= 0
+  double participant_sd = 0.5;  ///< standard deviation over participants, scores, >= 0
+  double effects = 0;           ///< scores that a level with effects adds; recorded only if not 0
 };
 
-/// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..][,effects=..]". base::Error naming the
-/// place for anything else: another kind, a key unknown, repeated or missing, a bad number or one out of
+/// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..][,effects=..]". base::Error names the
+/// character of another kind, of an unknown, repeated or missing key, and of a wrong number or one out of
 /// range.
 PtpeObserverParameters parse_ptpe_observer(std::string_view specification);
 
-/// The model answers the first question about a stimulus; of two stimuli it prefers the one with the larger
-/// x, each with its own noise. All other answers are bystander_score().
+/// Answers the first question about a stimulus by the model. Of two stimuli the observer prefers the stimulus
+/// with the larger latent satisfaction x; the noise of the two is independent. All other answers are
+/// bystander_score().
 class PtpeObserver final : public Observer {
  public:
   explicit PtpeObserver(const PtpeObserverParameters& parameters) : parameters_(parameters) {}

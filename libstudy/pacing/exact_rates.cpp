@@ -31,12 +31,12 @@ double population_sd(const std::vector<double>& values) {
   return static_cast<double>(std::sqrt(squares / static_cast<long double>(values.size())));
 }
 
-/// A setting to solve.
+/// A setting for which rates are sought, and the bounds of these rates.
 struct Problem {
   FpsSetting setting;
   FpsMean mean;
-  double low = 0;          // frames/s
-  double high = infinity;  // frames/s
+  double low = 0;          // lowest rate, frames/s
+  double high = infinity;  // highest rate, frames/s
   std::size_t n = 0;
 
   double mean_of(const std::vector<double>& rates) const { return mean_rate(rates, mean); }
@@ -48,26 +48,29 @@ struct Problem {
   }
 };
 
-/// The root of `excess`. Fails if double precision cannot distinguish the moments, so that the sign does not
-/// change.
+/// The root of `excess` between low and high. Fails if `excess` has one sign there: double precision cannot
+/// distinguish the moments.
 double root_of(const Problem& problem, const std::function<double(double)>& excess, double low, double high) {
   try {
     return stats::find_root(excess, low, high);
   } catch (const std::invalid_argument&) {
-    problem.fail("no list of frame rates was found that has this mean and sd",
-                 fmt::format("use an sd of 0 or of at least {:.4g}, and a mean and sd further from the cuts",
-                             least_sd_fps));
+    problem.fail(
+        "no list of frame rates was found that has this mean and sd",
+        fmt::format(
+            "use an sd of 0 or of at least {:.4g} frames/s, and a mean further from fps_min and fps_max",
+            least_sd_fps));
   }
 }
 
-/// Rates low + scale y of distances y above the cut.
+/// Frame rates low + scale * y, where y are the distances from the lower bound in standard deviations.
 std::vector<double> scaled(const Problem& problem, std::vector<double> strata, double scale) {
   for (double& y : strata) y = problem.low + scale * y;
   return strata;
 }
 
-/// Without an upper bound the scale follows from the standard deviation in closed form, and the mean falls
-/// monotonically as the parent's lower cut (in its own standard deviations) rises.
+/// Rates of a setting without an upper bound. The scale follows from the standard deviation in closed form.
+/// The search is over `cut`, the lower bound in standard deviations from the mean of the untruncated (parent)
+/// normal: the rates' mean falls monotonically as `cut` rises.
 std::vector<double> solve_open(const Problem& problem) {
   const double sd = problem.setting.sd;
   const auto rates = [&](double cut) {
@@ -76,7 +79,7 @@ std::vector<double> solve_open(const Problem& problem) {
     return scaled(problem, std::move(strata), scale);
   };
   const auto excess = [&](double cut) { return problem.mean_of(rates(cut)) - problem.setting.mean; };
-  const double exponential = 1e4;  // the parent's mean so far below the cut gives an exponential distribution
+  const double exponential = 1e4;  // a parent mean so far below the bound gives an exponential
   const double bell = -10 * (problem.setting.mean + sd) / sd;
   if (excess(exponential) > 0) {
     const double least = problem.setting.mean + excess(exponential);
@@ -88,8 +91,8 @@ std::vector<double> solve_open(const Problem& problem) {
   return rates(root_of(problem, excess, bell, exponential));
 }
 
-/// Rates of the parent normal whose window is `width` standard deviations wide and that has the requested
-/// mean.
+/// Rates with the requested mean. The range from low to high spans `width` standard deviations of the
+/// untruncated (parent) normal.
 std::vector<double> with_mean(const Problem& problem, double width) {
   const double scale = (problem.high - problem.low) / width;
   const auto rates = [&](double cut) {
@@ -103,15 +106,16 @@ std::vector<double> with_mean(const Problem& problem, double width) {
   const double left = -0.5 * width - reach, right = -0.5 * width + reach;
   if (excess(left) < 0 || excess(right) > 0) {
     problem.fail(
-        fmt::format("the mean lies too near a cut ({:.4g} to {:.4g} frames/s) for any list of this length",
-                    problem.low, problem.high),
-        "widen fps_min and fps_max");
+        fmt::format(
+            "the mean is too near the lowest or highest rate ({:.4g} and {:.4g} frames/s) for so few frames",
+            problem.low, problem.high),
+        "lower fps_min or raise fps_max");
   }
   return rates(root_of(problem, excess, left, right));
 }
 
-/// With an upper bound: the standard deviation falls as the window, in the parent's standard deviations,
-/// grows.
+/// Rates of a setting with an upper bound. The search is over `width`, the range from low to high in standard
+/// deviations of the untruncated (parent) normal: the rates' standard deviation falls as `width` grows.
 std::vector<double> solve_capped(const Problem& problem) {
   const auto excess = [&](double log_width) {
     return population_sd(with_mean(problem, std::exp(log_width))) - problem.setting.sd;
@@ -129,9 +133,9 @@ std::vector<double> solve_capped(const Problem& problem) {
 
 void check_constant(const Problem& problem) {
   if (problem.setting.mean >= problem.low && problem.setting.mean <= problem.high) return;
-  problem.fail(fmt::format("a constant {:.4g} frames/s lies outside {:.4g} to {:.4g}", problem.setting.mean,
-                           problem.low, problem.high),
-               "widen fps_min, max_interval_ms or fps_max");
+  problem.fail(fmt::format("a constant {:.4g} frames/s lies outside {:.4g} to {:.4g} frames/s",
+                           problem.setting.mean, problem.low, problem.high),
+               "lower fps_min, raise max_interval_ms or raise fps_max");
 }
 
 }  // namespace
@@ -153,16 +157,17 @@ std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& ru
   if (problem.n < 2) problem.fail("one frame has no standard deviation", "lengthen the trial");
   if (setting.mean <= problem.low || setting.mean >= problem.high) {
     problem.fail(
-        fmt::format("the mean is not between the cuts {:.4g} and {:.4g} frames/s", problem.low, problem.high),
-        "widen fps_min, max_interval_ms or fps_max");
+        fmt::format("the mean is not between the lowest rate {:.4g} and the highest rate {:.4g} frames/s",
+                    problem.low, problem.high),
+        "lower fps_min, raise max_interval_ms or raise fps_max");
   }
   auto rates = std::isfinite(problem.high) ? solve_capped(problem) : solve_open(problem);
   const double mean_error = std::abs(problem.mean_of(rates) / setting.mean - 1);
   const double sd_error = std::abs(population_sd(rates) / setting.sd - 1);
   if (!(mean_error <= 1e-9 && sd_error <= 1e-9)) {
-    problem.fail(
-        fmt::format("the moments were met only to {:.4g} (relative)", std::max(mean_error, sd_error)),
-        "choose a mean and sd further from the cuts");
+    problem.fail(fmt::format("mean and sd were met only with a relative error of {:.4g}",
+                             std::max(mean_error, sd_error)),
+                 "choose a mean further from fps_min and fps_max, or another sd");
   }
   return rates;
 }

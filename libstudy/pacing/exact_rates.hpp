@@ -1,5 +1,5 @@
 #pragma once
-/// The rates of a schedule, with exact moments, before they are ordered.
+/// The frame rates of a schedule, with exact mean and standard deviation, before they are ordered.
 
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace study {
 
-/// Smallest standard deviation other than 0 that a design may ask for, frames/s: intervals are whole
-/// nanoseconds.
+/// Smallest standard deviation other than 0 that a design may have, frames/s. Smaller ones are lost when
+/// intervals are rounded to whole nanoseconds.
 inline constexpr double least_sd_fps = 1e-3;
 
 /// N = frame_count(setting) instantaneous rates, frames/s, ascending: stratified quantiles of a truncated
@@ -17,7 +17,7 @@ inline constexpr double least_sd_fps = 1e-3;
 /// moments if there is no solution.
 std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& rules);
 
-/// The mean of the rates, harmonic or arithmetic.
+/// The harmonic or arithmetic mean of the rates, frames/s.
 double mean_rate(const std::vector<double>& rates, FpsMean mean);
 
 }  // namespace study

@@ -11,7 +11,7 @@ namespace study {
 
 namespace {
 
-/// Box and Muller 1958.
+/// n samples of the standard normal distribution (Box and Muller 1958).
 std::vector<double> gaussian(std::size_t n, RandomStream& random) {
   std::vector<double> out(n);
   for (double& value : out) {
@@ -21,8 +21,8 @@ std::vector<double> gaussian(std::size_t n, RandomStream& random) {
   return out;
 }
 
-/// Orders `sorted` (ascending) so that its ranks equal those of `pattern`; `tie` decides between equal
-/// entries.
+/// Orders `sorted` (ascending) so that its ranks equal the ranks of `pattern`; `tie` ranks equal entries of
+/// `pattern`.
 std::vector<double> by_ranks(const std::vector<double>& sorted, const std::vector<double>& pattern,
                              const std::vector<std::uint64_t>& tie) {
   std::vector<std::size_t> place(pattern.size());
@@ -48,7 +48,8 @@ std::vector<double> ar1_order(const std::vector<double>& sorted, double wished, 
   std::vector<std::uint64_t> tie(sorted.size());
   for (auto& value : tie) value = random.bits();
   const auto at = [&](double coefficient) { return by_ranks(sorted, ar1_pattern(noise, coefficient), tie); };
-  // The correlation rises with the coefficient except for jumps of single ranks: bisect and keep the nearest.
+  // The correlation rises with the coefficient, except for small jumps where two ranks swap. Bisects the
+  // coefficient and keeps the order whose correlation is nearest to `wished`.
   double low = -0.9999, high = 0.9999;
   auto best = at(wished);
   for (int i = 0; i < 60; ++i) {
@@ -82,7 +83,7 @@ double lag1(std::span<const double> values) {
     squares += (values[i] - mean) * (values[i] - mean);
     if (i) products += (values[i] - mean) * (values[i - 1] - mean);
   }
-  // With equal values, the rest is rounding, not variation.
+  // If all values are equal, the sum of squares contains only rounding errors.
   const bool equal = squares <= 1e-24 * mean * mean * static_cast<double>(values.size());
   return equal ? 0 : products / squares;
 }

@@ -8,7 +8,8 @@ namespace study {
 
 namespace {
 
-/// A list of holds as counts, with the sums for its moments.
+/// A list of holds, stored as the number of frames held at most k periods for each k, with the sums that give
+/// mean and standard deviation of its rates.
 class Holds {
  public:
   explicit Holds(const HoldTarget& target)
@@ -19,7 +20,7 @@ class Holds {
     recount();
   }
 
-  /// Edge 0 ... edges() - 1 lies between hold shortest + edge and the next longer hold.
+  /// Number of edges. Edge 0 ... edges() - 1 separates hold shortest + edge from the next longer hold.
   int edges() const { return static_cast<int>(counts_.size()) - 1; }
   std::int64_t total() const { return total_; }
   double rate(int edge) const { return target_.refresh_hz / (target_.shortest + edge); }
@@ -39,7 +40,7 @@ class Holds {
            std::max(0.0, std::abs(sd() - target_.sd) - target_.sd_tolerance);
   }
 
-  /// Weight of the mean's miss relative to the standard deviation's in the search.
+  /// Sets the weight of the mean's error in excess(), relative to the error of the standard deviation.
   void weigh_mean(double weight) { mean_weight_ = weight; }
 
   void set(int edge, std::int64_t count) { counts_[static_cast<std::size_t>(edge)] = count; }
@@ -49,7 +50,7 @@ class Holds {
     return by > 0 ? counts_[at] < counts_[at + 1] : counts_[at] > (edge ? counts_[at - 1] : 0);
   }
 
-  /// Moves one frame across an edge: by = 1 shortens its hold by a period, -1 lengthens it.
+  /// Moves one frame across an edge: by = 1 shortens the frame's hold by a period, -1 lengthens it.
   void move(int edge, int by) {
     auto& count = counts_[static_cast<std::size_t>(edge)];
     const long double fast = rate(edge), slow = rate(edge + 1);
@@ -69,7 +70,8 @@ class Holds {
     return holds;
   }
 
-  /// Recounts the sums for mean(). A harmonic mean needs only integer sums, not a pass over the frames.
+  /// Recomputes the sums for mean(). A harmonic mean needs only the total of periods, without a pass over the
+  /// frames.
   void recount_for_mean() {
     if (target_.mean_kind == FpsMean::Arithmetic) return recount();
     total_ = 0;
@@ -102,8 +104,10 @@ class Holds {
   long double sum_ = 0, squares_ = 0, distance2_ = 0;
 };
 
-/// Minimises the objective + spread x (sum of squared deviations from the mean) + price x (the mean's sum):
-/// frame i crosses an edge if its x_i is above a threshold. Then mean() is valid; recount() updates the rest.
+/// Sets the holds that minimise sum_i (f_i - x_i)^2 + spread sum_i (f_i - m)^2 - 2 price sum_i f_i. f_i: rate
+/// of frame i; x_i: its target rate; m: target mean. For a harmonic mean, the last term is 2 price (total
+/// periods). Frame i gets the shorter hold of an edge if x_i is above the edge's threshold. Updates mean()
+/// only; recount() updates the other sums.
 void place(Holds& holds, const HoldTarget& target, double spread, double price) {
   std::int64_t last = 0;
   const auto& x = target.rates;
@@ -119,7 +123,7 @@ void place(Holds& holds, const HoldTarget& target, double spread, double price) 
   holds.recount_for_mean();
 }
 
-/// Bisects the price until the target mean is reached; a higher price shortens holds.
+/// Bisects `price` of place() until the target mean is reached; a higher price shortens holds.
 void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   double low = -1, high = 1;
   const auto mean_at = [&](double price) {
@@ -136,14 +140,14 @@ void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   holds.recount();
 }
 
-/// Bisects the weight on the spread until the target standard deviation is reached.
+/// Bisects `spread` of place() until the target standard deviation is reached.
 void place_with_moments(Holds& holds, const HoldTarget& target) {
   const auto sd_at = [&](double log_weight) {
     place_with_mean(holds, target, std::exp(log_weight) - 1);
     return holds.sd();
   };
   if (std::abs(sd_at(0) - target.sd) <= target.sd_tolerance) return;
-  double low = -6, high = 6;  // the standard deviation falls from low to high
+  double low = -6, high = 6;  // the standard deviation is largest at low
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
     const double sd = sd_at(middle);
@@ -152,7 +156,8 @@ void place_with_moments(Holds& holds, const HoldTarget& target) {
   }
 }
 
-/// Moves single frames, cheapest first by the objective, until the total is as given.
+/// Changes the holds of single frames by one period until all holds sum to `total` periods; each step takes
+/// the change that raises the objective least.
 void fix_total(Holds& holds, std::int64_t total) {
   while (holds.total() != total) {
     const int by = holds.total() > total ? 1 : -1;
@@ -171,7 +176,7 @@ void fix_total(Holds& holds, std::int64_t total) {
   }
 }
 
-/// Compares by the moments' excess, then by the objective.
+/// Quality of a list: first the excess of its moments over their tolerances, then the objective.
 struct Score {
   double excess, distance2;
   explicit Score(const Holds& holds) : excess(holds.excess()), distance2(holds.distance2()) {}
@@ -181,7 +186,8 @@ struct Score {
   }
 };
 
-/// Moves a period from one frame to another; the total is unchanged.
+/// Moves single periods from one frame to another where this improves the score; the total is unchanged.
+/// Returns true if a period was moved.
 bool exchange(Holds& holds, Score& score) {
   bool moved = false;
   for (int up = 0; up < holds.edges(); ++up) {
@@ -204,7 +210,8 @@ bool exchange(Holds& holds, Score& score) {
   return moved;
 }
 
-/// Changes one frame's hold by a period; the total changes.
+/// Changes the holds of single frames by one period where this improves the score; the total changes. Returns
+/// true if a hold was changed.
 bool adjust(Holds& holds, Score& score) {
   bool moved = false;
   for (int edge = 0; edge < holds.edges(); ++edge) {
@@ -239,7 +246,8 @@ HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total
           total > 0 && holds.total() != total ? HUGE_VAL : holds.excess()};
 }
 
-/// Lists of two holds that bracket the mean have extreme standard deviations: descends from each such pair.
+/// Calls descend() from every list that has only two different holds, around the mean, until the excess is 0:
+/// these lists have the extreme standard deviations. Returns the best list.
 HoldList from_pairs(const HoldTarget& target, std::int64_t total, HoldList best) {
   const auto n = static_cast<std::int64_t>(target.rates.size());
   const auto first = static_cast<std::int64_t>(target.shortest);
@@ -271,8 +279,8 @@ HoldList search_holds(const HoldTarget& target, std::int64_t total) {
   auto best = result(holds, target, total);
   if (best.excess == 0) return best;
   if (total > 0) return from_pairs(target, total, std::move(best));
-  // With a free total, the search may trade the mean for the standard deviation and stop halfway: weight the
-  // mean.
+  // With a free total, the search may stop where a better mean costs standard deviation and the reverse.
+  // Repeats it with a high weight of the mean.
   for (Holds* start : {&holds, &strict}) {
     start->weigh_mean(1000);
     descend(*start, total);
@@ -285,10 +293,10 @@ HoldList search_holds(const HoldTarget& target, std::int64_t total) {
 
 namespace {
 
-/// Calls f(fast rate, slow rate, weight of the fast one) for every pair of holds that can have the target
-/// mean.
+/// Calls f(fast rate, slow rate, fraction of frames at the fast rate) for every pair of holds that can have
+/// the target mean. Rates in frames/s.
 void for_each_pair(const HoldTarget& target, const std::function<void(double, double, double)>& f) {
-  const auto value = [&](int hold) {  // the quantity whose average gives the mean
+  const auto value = [&](int hold) {  // its average over the frames gives the mean
     return target.mean_kind == FpsMean::Harmonic ? static_cast<double>(hold) : target.refresh_hz / hold;
   };
   const double wished = target.mean_kind == FpsMean::Harmonic ? target.refresh_hz / target.mean : target.mean;
@@ -303,7 +311,8 @@ void for_each_pair(const HoldTarget& target, const std::function<void(double, do
   }
 }
 
-/// Largest mean of (rate - c)^2 over all pairs: an upper bound on the variance for every c.
+/// Largest mean of (rate - c)^2 over the pairs of for_each_pair(), (frames/s)^2. For every c it is an upper
+/// bound of the variance.
 double largest_square(const HoldTarget& target, double c) {
   double largest = 0;
   for_each_pair(target, [&](double fast, double slow, double weight) {
@@ -322,7 +331,7 @@ SdBounds sd_bounds(const HoldTarget& target) {
   });
   if (!std::isfinite(least)) return bounds;
   bounds.low = least;
-  // largest_square() is convex in c, as a maximum of parabolas: this narrows in on its minimum.
+  // largest_square() is a maximum of parabolas and so convex in c: a ternary search finds its minimum.
   double left = target.refresh_hz / target.longest, right = target.refresh_hz / target.shortest;
   for (int i = 0; i < 100 && right - left > 1e-9 * right; ++i) {
     const double a = left + (right - left) / 3, b = right - (right - left) / 3;

@@ -1,10 +1,12 @@
 #pragma once
-/// Search for lists of whole hold counts near a target distribution of rates, for quantise().
+/// Search for a list of holds whose frame rates are near a target distribution, for quantise().
 ///
-/// With N frames, hold k shows at the rate f_k = R / k. Objective: the mean squared difference of the sorted
-/// rates, 1/N sum_i (f_k(i) - x_i)^2, which is the squared 2-Wasserstein distance between the two
-/// distributions. The list is described by c_k, the number of frames held at most k periods: objective, total
-/// time and both sums of rates are then sums of one term for each c_k, and the objective's terms are convex.
+/// A hold is the number k of refresh periods for which a frame is shown. At the refresh rate R the frame then
+/// has the rate f_k = R / k. Objective for N frames: the mean squared difference of the sorted rates, 1/N
+/// sum_i (f_k(i) - x_i)^2. This is the squared 2-Wasserstein distance between the list and the target rates
+/// x_i. The search describes a list by c_k, the number of frames held at most k periods: the objective, the
+/// total time and the sums of rates and of squared rates each have one term per c_k, and the objective's
+/// terms are convex.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,12 +16,12 @@
 
 namespace study {
 
-/// The target of the search.
+/// The target of the search: rates and their moments, and the range of holds.
 struct HoldTarget {
   std::vector<double> rates;  ///< x_i, frames/s, descending
-  double refresh_hz = 0;      ///< R
-  int shortest = 1;           ///< periods
-  int longest = 1;            ///< periods, >= shortest
+  double refresh_hz = 0;      ///< refresh rate R, Hz
+  int shortest = 1;           ///< shortest hold, periods
+  int longest = 1;            ///< longest hold, periods, >= shortest
   FpsMean mean_kind = FpsMean::Harmonic;
   double mean = 0;            ///< frames/s
   double mean_tolerance = 0;  ///< frames/s
@@ -27,24 +29,24 @@ struct HoldTarget {
   double sd_tolerance = 0;    ///< frames/s
 };
 
-/// A list of holds, in descending rate.
+/// A list of holds, from the highest rate to the lowest.
 struct HoldList {
   std::vector<int> holds;
-  double mean = 0, sd = 0;  ///< frames/s; mean: of the target's mean_kind
+  double mean = 0, sd = 0;  ///< of the rates, frames/s; mean of the target's mean_kind
   double distance = 0;      ///< root of the objective, frames/s
-  double excess = 0;        ///< how far the moments miss their tolerances; 0 = both are met
+  double excess = 0;        ///< error of mean and sd beyond their tolerances; 0: both met
 };
 
-/// The best list found with `total` periods in all (harmonic: this fixes the mean) or, with total = 0, with
-/// any total. Deterministic: Lagrange multipliers for both moments, then exchanges of single periods between
-/// frames. A list with excess 0 is proof; excess > 0 proves nothing (see sd_bounds for that).
+/// The best list found whose holds sum to `total` periods (this fixes a harmonic mean); total = 0: any sum.
+/// Deterministic: Lagrange multipliers for both moments, then exchanges of single periods between frames.
+/// Excess 0 proves that the target can be met. Excess > 0 does not prove the contrary; sd_bounds() may.
 HoldList search_holds(const HoldTarget& target, std::int64_t total);
 
-/// Bounds on the standard deviation of any list, of any length, with exactly the target's mean and holds in
-/// its range. Both come from lists of two holds, which are the extreme points of all lists with that mean.
-/// low is the smallest deviation of such a pair. high is the square root of the least value, over c, of the
-/// largest mean of (rate - c)^2 of a pair, since a variance is the minimum of that mean over c. low > high:
-/// no list has that mean.
+/// Bounds of the standard deviation, frames/s, of every list of any length with exactly the target's mean and
+/// holds from shortest to longest. Both come from lists with two different holds, the extreme points of all
+/// lists with this mean. low: the smallest standard deviation of these pairs. high^2: the minimum over c of
+/// the largest mean of (rate - c)^2 among the pairs, because a variance is the minimum over c of the mean of
+/// (rate - c)^2. low > high: no list has this mean.
 struct SdBounds {
   double low = 1, high = 0;
 };

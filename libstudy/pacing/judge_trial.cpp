@@ -21,7 +21,7 @@ bool has_display_times(const PlayedTrial& played, TimingGrade grade) {
                      [](const FrameRecord& frame) { return frame.times.actual_display_ns >= 0; });
 }
 
-/// Collects reasons and keeps the worst verdict.
+/// Collects the reasons and stores the worst verdict.
 class Judgement {
  public:
   void add(Verdict verdict, const std::string& reason) {
@@ -92,7 +92,7 @@ void judge_cut(Judgement& judgement, TimingVerdict& trial, const PlayedTrial& pl
   judgement.add(Verdict::Fail, reason);
 }
 
-/// False if the onsets do not ascend.
+/// Measures the realised moments and intervals. Returns false if the onsets do not ascend.
 bool measure(TimingVerdict& trial, const PlayedTrial& played) {
   const auto intervals_s = realised_intervals(played, trial.grade);
   if (*std::min_element(intervals_s.begin(), intervals_s.end()) <= 0) return false;

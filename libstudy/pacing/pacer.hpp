@@ -16,9 +16,10 @@ namespace study {
 
 enum class AtEnd { Loop, Hold };
 
-/// How content advances. per_frame: frame i shows step start_frame + i (the paper's reading). real_time:
-/// frame i shows the step at the scheduled time since the first frame. A process of finite length goes back
-/// to start_frame (Loop) or stays at its last step (Hold).
+/// How content advances. real_time = false (per_frame, the paper's interpretation): frame i shows content
+/// step start_frame + i. real_time = true: frame i shows the step at its scheduled time since the first
+/// frame. At its end, a process of finite length goes back to start_frame (Loop) or stays at its last step
+/// (Hold).
 struct ContentRules {
   bool real_time = false;
   double content_step_s = 1.0 / 60;
@@ -39,58 +40,57 @@ struct FrameRecord {
   std::int64_t content_step = 0;
   std::int64_t scheduled_ns = 0;
   PresentTimes times;
-  bool late = false;  ///< placed_ns() is after `scheduled_ns` by more than the protocol's bound
+  bool late = false;  ///< placed_ns() exceeds scheduled_ns by more than the protocol's bound
   FrameFacts facts;
 };
 
-/// All frames of a trial, plus the closing instant, so that N intervals follow from N frames.
+/// All frames of a trial, and the end of the last frame: N frames then give N intervals.
 struct PlayedTrial {
   std::vector<FrameRecord> frames;
   std::int64_t end_ns = 0;
-  std::optional<std::int64_t> cut;  ///< the trial overran: number of scheduled frames not shown
+  std::optional<std::int64_t> cut;  ///< set if the trial overran: number of frames not shown
 };
 
 /// Timing bounds of a trial while it is shown.
 struct ShowingBounds {
   std::int64_t late_after_ns = 0;  ///< a frame is late if placed_ns() - scheduled exceeds this
-  std::int64_t overrun_ns = 0;     ///< a trial is cut if it goes on for longer past its planned end
+  std::int64_t overrun_ns = 0;     ///< a trial is cut this long after its planned end
 };
 
 /// Shows one trial. Frame i + 1 is prepared and rendered while frame i is on, then shown at its deadline.
-/// Deadlines are absolute: they are counted from the first frame, and a late frame, which is shown at once,
-/// moves none of them. No frame and no content step is skipped. The last frame stays on until the end of its
-/// interval, or for its whole interval when it came after that end. A frame that is ready only after the
-/// overrun is not shown: the trial is cut, and ends once the last one has had its interval. `each` (may be
-/// empty) is called after every frame, for the journal. base::Error when there is no interval, one is not
-/// positive, or the content ends before start_frame.
+/// Deadlines are absolute: they count from the first frame. A late frame is shown at once and moves no
+/// deadline. No frame and no content step is skipped. The last frame stays on until the planned end of the
+/// trial; if it came after the planned end, it stays on for its whole interval. A frame that is ready later
+/// than overrun_ns after the planned end is not shown: the trial is cut, and ends when the interval of the
+/// frame before is over. `each` (may be empty) is called after every frame, for the journal. base::Error if
+/// there is no interval, if an interval is not positive, or if the content ends before start_frame.
 PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
                        Stimulus& stimulus, Display& display, Clock& clock, const ShowingBounds& bounds,
                        const std::function<void(const FrameRecord&)>& each);
 
 /// Shows a trial without a schedule: every frame as soon as it is ready, until `duration_s` have passed since
-/// the first; scheduled_ns is the instant at which it was ready, and no frame is late. The last frame stays
-/// on until the next one, which is not shown, is ready; if that takes longer than the overrun, the trial
-/// counts as cut. base::Error if the clock does not advance meanwhile (VirtualClock) or the content ends
-/// before start_frame.
+/// the first frame. scheduled_ns is the instant at which a frame was ready; no frame is late. The last frame
+/// stays on until another frame is ready, which is not shown. If this takes more than overrun_ns beyond
+/// `duration_s`, the trial counts as cut. base::Error if the clock does not advance while a frame is made
+/// (VirtualClock), or if the content ends before start_frame.
 PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus& stimulus, Display& display,
                         Clock& clock, std::int64_t overrun_ns,
                         const std::function<void(const FrameRecord&)>& each);
 
-/// Tolerances of a protocol.
+/// A protocol's tolerances for the timing of a trial. `relative` ones are fractions.
 struct TimingTolerance {
   double late_after_ms = 0.5;
   double mean_relative = 0.005;
   double sd_relative = 0.02;
-  double sd_absolute = 0.25;         ///< frames/s; the wider of the two sd bounds applies
-  double fail_mean_relative = 0.05;  ///< beyond this the trial has failed, not only degraded
+  double sd_absolute = 0.25;         ///< frames/s; the wider of the two sd_ bounds applies
+  double fail_mean_relative = 0.05;  ///< a larger error of the mean fails the trial
   double fail_sd_relative = 0.20;
-  double fail_sd_absolute = 2.5;  ///< frames/s; the wider of the two applies
-  /// How long a trial may go on past its planned end before it is cut; none: as long as the trial, at least
-  /// 5 s.
+  double fail_sd_absolute = 2.5;  ///< frames/s; the wider of the two fail_sd_ bounds applies
+  /// Time past its planned end after which a trial is cut, s; none: the planned duration, but at least 5 s.
   std::optional<double> overrun_s;
 };
 
-/// The bounds of a trial of this length.
+/// The bounds of a trial with the planned duration duration_s.
 ShowingBounds showing_bounds(const TimingTolerance& tolerance, double duration_s);
 
 enum class Verdict { Pass, Degraded, Fail };
@@ -109,25 +109,26 @@ struct TimingVerdict {
   /// Mean absolute difference between the content's step and the interval of a frame, ms; none if the content
   /// follows frames instead of time.
   std::optional<double> animation_error_ms;
-  double lag1 = 0;  ///< autocorrelation of 1/dt at lag 1; 0 when delta is 0
+  double lag1 = 0;  ///< lag-1 autocorrelation of the realised rates; 0: all are equal
   std::int64_t late = 0;
   double worst_late_ms = 0;
-  bool cut = false;    ///< it overran
+  bool cut = false;    ///< true: cut, because the trial overran
   std::string reason;  ///< why the verdict is not pass
 };
 
-/// Intervals in seconds between the onsets of successive frames, the last one up to end_ns. Onsets are actual
-/// display times if the grade is A or B and every frame has one, else placed_ns().
+/// Intervals in seconds between the onsets of successive frames; the last interval ends at end_ns. Onsets are
+/// the actual display times if the grade is A or B and every frame has an actual display time, else
+/// placed_ns().
 std::vector<double> realised_intervals(const PlayedTrial& played, TimingGrade grade);
 
-/// pass: no frame late and both realised moments within tolerance. fail: cut, or a moment beyond the fail_
-/// bounds. degraded: everything between. The mean is the one that the rules specify. Needs at least one
-/// frame; onsets that do not ascend are a fail with that reason.
+/// pass: no frame is late, and mean and standard deviation are within tolerance. fail: the trial was cut, a
+/// moment is beyond its fail_ bound, or onsets do not ascend. degraded: otherwise. The mean is harmonic or
+/// arithmetic, as the rules specify. base::Error if no frame was shown.
 TimingVerdict judge_trial(const FpsSetting& nominal, const PacingRules& rules, const PlayedTrial& played,
                           const TimingTolerance& tolerance, TimingGrade grade);
 
-/// Timing of a trial without a schedule: realised moments and intervals; the nominal moments are 0. A cut
-/// trial is a fail; otherwise `verdict` has no meaning.
+/// Timing of a trial without a schedule: realised moments and intervals; the nominal moments are 0. The
+/// verdict is fail for a cut trial; otherwise it has no meaning. base::Error if no frame was shown.
 TimingVerdict describe_trial(const PlayedTrial& played, TimingGrade grade);
 
 /// "pass", "degraded" or "fail".

@@ -9,7 +9,8 @@ namespace study {
 
 namespace {
 
-// Time from the first frame's rendering to its deadline: long enough to wait for it as for any other frame.
+// Time from the end of the first frame's rendering to its deadline: long enough for the usual wait of
+// present().
 constexpr std::int64_t lead_ns = 2'000'000;
 
 /// Computes which content step a frame shows.
@@ -26,7 +27,7 @@ class ContentCourse {
     rewind();
   }
 
-  /// Makes the step of frame `index`, scheduled `onset_ns` after the first, ready to draw.
+  /// Prepares the content step of frame `index`, which is scheduled onset_ns after the first frame.
   FrameFacts prepare(std::int64_t index, std::int64_t onset_ns) {
     const std::int64_t next = step_at(index, onset_ns);
     if (next < step_) rewind();
@@ -38,7 +39,7 @@ class ContentCourse {
 
  private:
   std::int64_t step_at(std::int64_t index, std::int64_t onset_ns) {
-    // A tolerance of a millionth of a step absorbs rounding if an onset falls on a step's edge.
+    // Adds a millionth of a step, because rounding may put an onset at a step's start into the step before.
     // The error moves every second frame by its whole size: steps are alternately longer and shorter.
     const double moved_s = (index % 2 == 1 ? rules_.animation_error_s : 0) - rules_.latency_s;
     const double elapsed =
@@ -102,7 +103,7 @@ PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const Cont
   const std::int64_t length_ns = std::accumulate(intervals_ns.begin(), intervals_ns.end(), std::int64_t{0});
   std::int64_t first_ns = 0;
   std::int64_t onset_ns = 0;
-  std::int64_t making_ns = 0;  // recent time to make a frame
+  std::int64_t making_ns = 0;  // recent largest time to make a frame
   for (std::size_t i = 0; i < intervals_ns.size(); ++i) {
     if (i > 0) display.hold(first_ns + onset_ns - 2 * making_ns, clock);
     const std::int64_t begun_ns = clock.now_ns();

@@ -19,7 +19,7 @@ constexpr double approximate_mean = 0.005;
 constexpr double arithmetic_mean_met = 1e-4;
 constexpr double harmonic_mean_met = 1e-9;
 constexpr double exact_interval = 0.01;  // largest move of a pattern's interval, as a share of itself
-constexpr double whole = 1e-6;           // periods; tolerance for rounding in refresh * frames / mean
+constexpr double whole = 1e-6;           // rounding tolerance of period counts; relative in is_whole()
 
 HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, double refresh_hz) {
   HoldTarget target;
@@ -47,7 +47,7 @@ double requested_periods(const HoldTarget& target) {
 
 bool is_whole(double periods) { return std::abs(periods - std::round(periods)) <= whole * periods; }
 
-/// A list that meets the mean and the standard deviation; excess > 0 if none was found.
+/// A list of holds that meets mean and standard deviation; its excess is > 0 if no such list was found.
 HoldList exact_list(const HoldTarget& target) {
   if (target.mean_kind == FpsMean::Arithmetic) return search_holds(target, 0);
   const double periods = requested_periods(target);
@@ -63,8 +63,10 @@ double sd_miss(const HoldList& list, const HoldTarget& target) {
 
 double mean_miss(const HoldList& list, const HoldTarget& target) { return std::abs(list.mean - target.mean); }
 
-/// Searches every total within 0.5 % of the target. The nearest delta wins; unless one meets its tolerance,
-/// deltas that differ by less than the tolerance count as equal. Among equal ones the nearest mu wins.
+/// The best list of holds with a mean within 0.5 % of the target; no holds if there is none. For a harmonic
+/// mean it searches every total of periods in this range. Lists within the tolerance of the standard
+/// deviation come first. If there are none, those whose error is at most a tolerance above the least error
+/// remain. Among the remaining lists the nearest mean wins.
 HoldList approximate_list(HoldTarget target) {
   const double bound = approximate_mean * target.mean;
   std::vector<HoldList> found;
@@ -92,7 +94,8 @@ HoldList approximate_list(HoldTarget target) {
   return best;
 }
 
-/// Proof that no list with exactly this mean has the target standard deviation, in words; empty: no proof.
+/// Why no list with exactly the target mean can have the target standard deviation, in words; empty: no proof
+/// of this.
 std::string what_bounds_sd(const HoldTarget& target) {
   const auto bounds = sd_bounds(target);
   if (bounds.low > bounds.high)
@@ -107,8 +110,8 @@ std::string what_bounds_sd(const HoldTarget& target) {
   return {};
 }
 
-/// The moments that the best list misses, by how much, and why. `tried`: a list with exactly the target mean;
-/// `target`: with the tolerances of an exact list.
+/// Words that say which moments the list `best` misses, by how much, and why. `tried`: a list with exactly
+/// the target mean. `target` has the tolerances of an exact list.
 std::string what_misses(const HoldTarget& target, const HoldList& tried, const HoldList& best) {
   std::string words;
   if (best.holds.empty())
@@ -196,7 +199,8 @@ RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& requested_
   }
   if (target.shortest > target.longest) {
     verdict.reason =
-        fmt::format("no hold lies between {} periods and {} periods", target.shortest, target.longest);
+        fmt::format("a frame would have to stay on for at least {} but at most {} refresh periods",
+                    target.shortest, target.longest);
     return verdict;
   }
   HoldList list = exact_list(target);

@@ -15,8 +15,8 @@ namespace study {
 namespace {
 constexpr int raised_nice = -10;
 
-/// The kernel's quality-of-service file for wake-up latency: the lowest number among its open writers
-/// applies.
+/// Requests a wake-up latency of at most most_us from the kernel. Returns the open file, -1 if refused. The
+/// request lasts until the file is closed; the lowest request of all programs applies.
 int hold_latency(std::int32_t most_us) {
   const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   if (file < 0) return -1;

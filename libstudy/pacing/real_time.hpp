@@ -1,5 +1,5 @@
 #pragma once
-/// Asks the operating system to wake the pacing thread on time.
+/// Requests from the operating system that it wakes the pacing thread on time.
 
 #include <string>
 
@@ -7,9 +7,10 @@ namespace study {
 
 /// During its lifetime, the calling thread has a timer slack of 1 ns and, where the system allows it,
 /// SCHED_FIFO with the lowest real-time priority (RLIMIT_RTPRIO or CAP_SYS_NICE), else a raised nice level.
-/// If /dev/cpu_dma_latency may be opened, processors avoid idle states that are slow to leave. Threads it
-/// starts meanwhile do not inherit SCHED_FIFO. Nothing is an error: note() says what was granted, for the
-/// session's record. Memory is not locked: a mapped bake would be pinned with it.
+/// If /dev/cpu_dma_latency can be opened, processors avoid idle states that are slow to leave. Threads that
+/// the calling thread starts do not inherit SCHED_FIFO. A refused request is no error: note() lists the
+/// granted and refused requests for the session's record. Memory is not locked, because this would pin a
+/// mapped bake as well.
 class RealTimeScheduling {
  public:
   RealTimeScheduling();
@@ -24,7 +25,7 @@ class RealTimeScheduling {
   int old_policy_ = -1;  // -1: unchanged
   bool niced_ = false;
   int old_nice_ = 0;
-  int latency_file_ = -1;  // -1: not open; the request lasts while it is open
+  int latency_file_ = -1;  // -1: not open; the latency request lasts while open
 };
 
 }  // namespace study

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double bound = 1e-6;
 
-/// Sums for both moments, so that changing one interval costs constant time.
+/// Sums that give mean and standard deviation. With them, changing one interval costs constant time.
 struct Sums {
   long double time = 0, rate = 0, square = 0;
 
@@ -28,7 +28,8 @@ struct Sums {
     square += sign / (dt * dt);
   }
 
-  /// The larger of the two errors.
+  /// The larger error of the two moments: of the mean relative to it, of the sd relative to max(sd, 1
+  /// frame/s).
   double error(std::size_t count, const FpsSetting& setting, FpsMean mean) const {
     const auto n = static_cast<long double>(count);
     const long double mean_rate = rate / n;
@@ -52,7 +53,7 @@ std::vector<std::int64_t> rounded_deadlines(const std::vector<double>& intervals
   return out;
 }
 
-/// One pass of coordinate descent over all intervals; returns the error after it.
+/// One pass of coordinate descent, in steps of 1 ns, over all intervals; returns the error after the pass.
 double descend(std::vector<std::int64_t>& intervals_ns, Sums& sums, double error, const FpsSetting& setting,
                FpsMean mean) {
   for (auto& interval : intervals_ns) {
@@ -71,10 +72,10 @@ double descend(std::vector<std::int64_t>& intervals_ns, Sums& sums, double error
   return error;
 }
 
-/// Rounds so that deadlines never drift by more than half a nanosecond, then moves single intervals by a
-/// nanosecond where that is needed for the mean (relative) and the standard deviation (of max(sd, 1 frame/s))
-/// to hold to 1e-6. A constant schedule stays constant. base::Error naming the setting when no such list is
-/// found.
+/// Rounds intervals to nanoseconds. First rounds every deadline, so that none drifts by more than 0.5 ns.
+/// Then changes single intervals by 1 ns until the mean (relative) and the standard deviation (relative to
+/// max(sd, 1 frame/s)) are met to 1e-6. With sd = 0, all intervals stay equal. base::Error naming the setting
+/// if no such list is found.
 std::vector<std::int64_t> whole_nanoseconds(const std::vector<double>& intervals_s, const FpsSetting& setting,
                                             FpsMean mean) {
   if (setting.sd == 0)
@@ -87,7 +88,7 @@ std::vector<std::int64_t> whole_nanoseconds(const std::vector<double>& intervals
     error = descend(intervals_ns, sums, error, setting, mean);
   if (error > bound) {
     throw base::Error("setting " + setting_name(setting),
-                      "whole nanoseconds cannot hold its moments to 1e-6 over so few frames",
+                      "so few frames with whole-nanosecond intervals cannot meet its mean and sd to 1e-6",
                       "lengthen the trial");
   }
   return intervals_ns;

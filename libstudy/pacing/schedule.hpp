@@ -15,21 +15,21 @@ namespace study {
 using stats::FpsMean;
 enum class FrameOrder { White, Ar1, Trace };
 
-/// The part of a protocol that fixes how a setting (mu, delta) becomes a list of intervals. Hashed and stored
-/// per trial.
+/// The part of a protocol that determines the list of frame intervals for a setting (mu, delta). The
+/// protocol's hash covers these rules.
 struct PacingRules {
   FpsMean mean = FpsMean::Harmonic;
   double fps_min = 4;               ///< lowest instantaneous rate, frames/s
-  std::optional<double> fps_max;    ///< highest, frames/s; none = no upper bound
-  bool fps_max_is_refresh = false;  ///< the upper bound is the display's refresh; see for_display()
-  double max_interval_ms = 250;     ///< longest interval allowed
+  std::optional<double> fps_max;    ///< highest instantaneous rate, frames/s; none: no bound
+  bool fps_max_is_refresh = false;  ///< the highest rate is the display's refresh; see for_display()
+  double max_interval_ms = 250;     ///< longest allowed interval
   FrameOrder order = FrameOrder::White;
-  double ar1 = 0;                   ///< lag-1 correlation wanted with FrameOrder::Ar1, in (-1, 1)
-  std::vector<double> trace_rates;  ///< order pattern with FrameOrder::Trace
+  double ar1 = 0;                   ///< requested lag-1 autocorrelation for FrameOrder::Ar1, (-1, 1)
+  std::vector<double> trace_rates;  ///< frame rates that FrameOrder::Trace takes the order from
 };
 
-/// The rules on a display of this fixed refresh (0 = none): the bound "refresh" becomes a number, or no upper
-/// bound without a fixed refresh.
+/// The rules for a display with the fixed refresh refresh_hz (0: none): fps_max_is_refresh is replaced by
+/// fps_max = refresh_hz, or by no upper bound if there is no fixed refresh.
 PacingRules for_display(PacingRules rules, double refresh_hz);
 
 /// Timing of one cell of the design.
@@ -51,48 +51,52 @@ FpsSetting setting_of(const TimingProfile& profile, double duration_s);
 bool has_pattern(const FpsSetting& setting);
 /// The setting as messages and tables name it, e.g. "(50, 20)", or profile_text().
 std::string setting_name(const FpsSetting& setting);
-/// N = round(mean * duration), at least 1.
+/// The number of frames of a trial, N = round(mean * duration), at least 1.
 std::int64_t frame_count(const FpsSetting& setting);
 
-/// A finished schedule. Interval i is the time that frame i stays on.
+/// A schedule. Interval i is the time for which frame i is shown.
 struct Schedule {
-  std::vector<double> intervals_s;         ///< meets both moments to 1e-9
-  std::vector<std::int64_t> intervals_ns;  ///< whole nanoseconds, meets them to 1e-6
+  std::vector<double> intervals_s;         ///< mean and sd are exact to 1e-9
+  std::vector<std::int64_t> intervals_ns;  ///< whole nanoseconds; mean and sd are exact to 1e-6
 };
 
-/// N = round(mean * duration) stratified quantiles of a truncated normal in FPS whose parameters are solved
-/// so that the list has the requested moments exactly, ordered by `seed`. base::Error naming the setting when
-/// there is no solution. With a pattern: its intervals, without any rule.
+/// Makes the schedule of a setting without a fixed refresh. Its frame rates are N = round(mean * duration)
+/// stratified quantiles of a truncated normal, whose parameters are solved so that the list has exactly the
+/// requested mean and sd. `seed` and the rules determine their order. base::Error naming the setting if there
+/// is no solution. With a pattern: its intervals, without any rule.
 Schedule compile_schedule(const FpsSetting& setting, const PacingRules& rules, std::uint64_t seed);
 
 enum class Feasibility { Exact, Approximate, Unreachable };
 
-/// How well a fixed refresh reproduces a setting.
+/// Result of quantise(): how well a display with a fixed refresh can show a setting.
 struct RefreshVerdict {
   Feasibility feasibility = Feasibility::Unreachable;
-  std::int64_t frames = 0;  ///< N
-  double mean = 0;          ///< best found, frames/s; harmonic or arithmetic by the rules
-  double sd = 0;            ///< frames/s
+  std::int64_t frames = 0;  ///< number N of frames
+  double mean = 0;          ///< of the best list, frames/s; harmonic or arithmetic by the rules
+  double sd = 0;            ///< of the best list, frames/s
   double distance = 0;      ///< 2-Wasserstein distance to the unquantised rates, frames/s
-  int longest_hold = 0;     ///< periods
-  /// Periods each frame is held, in the order of `seed`; empty when unreachable.
+  int longest_hold = 0;     ///< longest hold, refresh periods
+  /// Number of refresh periods for each frame, in display order; empty if unreachable.
   std::vector<int> holds;
-  std::string reason;  ///< why it is not Exact
+  std::string reason;  ///< why `feasibility` is not Exact
 };
 
-/// exact: some N = round(mean * duration) hold counts whose sum is exactly R N / mean periods (R T where mean
-/// * duration is whole), with delta within max(2 %, 0.25 frames/s) and no hold longer than the unquantised
-/// schedule's longest interval rounded up to a period, nor than max_interval_ms. approximate: mu within 0.5
-/// %, delta as near as possible, same bound on the holds. unreachable: neither, or no unquantised schedule.
-/// Of the lists that meet the moments, the one nearest to the unquantised rates is searched
-/// (hold_search.hpp). With the arithmetic mean, sums of R / k seldom hit a number exactly: there mu counts as
-/// met within 0.01 %. refresh_hz > 0. Applies rules.fps_max_is_refresh.
+/// Finds the holds (whole numbers of refresh periods) of N = round(mean * duration) frames on a display with
+/// the fixed refresh R = refresh_hz > 0.
+///
+/// exact: the holds sum to exactly R N / mean periods, the sd is within max(2 %, 0.25 frames/s), and no hold
+/// exceeds max_interval_ms or the longest interval of the unquantised schedule, rounded up to a period.
+/// approximate: the mean is within 0.5 %, the sd as near as possible, the same bound on holds. unreachable:
+/// neither, or there is no unquantised schedule. Among lists that meet mean and sd, the search aims at the
+/// list nearest to the unquantised rates (hold_search.hpp). Sums of R / k seldom equal a given number, so an
+/// arithmetic mean counts as met within 0.01 %. Applies for_display().
+///
 /// With a pattern, each deadline moves to the nearest period, at least one after the last, without any rule.
 /// exact: no interval moved by more than 1 % of itself. approximate: the mean moved by at most 0.5 %.
 RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& rules, double refresh_hz,
                         std::uint64_t seed);
 
-/// The schedule of a list of holds.
+/// The schedule of a list of holds, in refresh periods.
 Schedule schedule_of_holds(const std::vector<int>& holds, double refresh_hz);
 
 /// "exact", "approximate" or "unreachable".

@@ -12,7 +12,8 @@ constexpr double tail_from = 8;
 
 double upper_tail(double t) { return 0.5 * std::erfc(t / std::numbers::sqrt2); }
 
-/// Mills' ratio Q(t) / phi(t) for t >= tail_from: Laplace's continued fraction.
+/// Mills' ratio Q(t) / phi(t) for t >= tail_from by Laplace's continued fraction. Q: upper tail of the
+/// standard normal; phi: its density.
 double mills_tail(double t) {
   double fraction = t;
   for (int k = 24; k >= 1; --k) fraction = t + k / fraction;
@@ -21,7 +22,7 @@ double mills_tail(double t) {
 
 double log_upper_tail(double t) { return t < 0 ? std::log1p(-upper_tail(-t)) : std::log(upper_tail(t)); }
 
-/// log(Q(cut + y) / Q(cut)), y >= 0.
+/// log(Q(cut + y) / Q(cut)) for y >= 0; Q: upper tail of the standard normal.
 double log_survival(double cut, double y) {
   if (cut < tail_from) {
     const double t = cut + y;
@@ -32,14 +33,14 @@ double log_survival(double cut, double y) {
   return -y * (cut + 0.5 * y) + std::log(mills_tail(cut + y) / mills_tail(cut));
 }
 
-/// phi(t) / Q(t).
+/// Hazard rate phi(t) / Q(t) of the standard normal: density by upper tail.
 double hazard(double t) {
   if (t >= tail_from) return 1 / mills_tail(t);
   return std::exp(-0.5 * t * t) / std::sqrt(2 * std::numbers::pi) / upper_tail(t);
 }
 
-/// y with log_survival(cut, y) = target < 0. log Q is concave, so Newton's method converges monotonically
-/// from the right after its first step.
+/// Solves log_survival(cut, y) = target for y; target < 0. log Q is concave, so Newton's method converges
+/// monotonically from the right after its first step.
 double quantile(double cut, double target, double guess) {
   double y = guess;
   for (int i = 0; i < 200; ++i) {
@@ -55,12 +56,14 @@ double quantile(double cut, double target, double guess) {
 }  // namespace
 
 std::vector<double> truncated_normal_strata(double cut, double width, std::size_t n) {
-  // Most of the mass in the lower tail: reflect, so that upper-tail formulas stay exact.
+  // If most of the mass is in the lower tail, reflects the interval: the formulas are exact for the upper
+  // tail.
   const bool reflected = std::isfinite(width) && 2 * cut + width < 0;
   const double from = reflected ? -(cut + width) : cut;
   const double lost = std::isfinite(width) ? -std::expm1(log_survival(from, width)) : 1;
   std::vector<double> strata(n);
-  // Starts where the hazard is not yet flat, so that the first step is finite; then each from its neighbour.
+  // The first search starts where the hazard is not near 0, which keeps its first Newton step finite. Each
+  // later search starts from the previous quantile.
   double y = std::max(0.0, -from);
   for (std::size_t i = 0; i < n; ++i) {
     const double p = (static_cast<double>(i) + 0.5) / static_cast<double>(n);

@@ -6,10 +6,11 @@
 
 namespace study {
 
-/// The n quantiles at p = (i + 1/2) / n, ascending, of a standard normal truncated to [cut, cut + width],
-/// given as distances from `cut`, in standard deviations of the parent normal. width may be infinite.
-/// cut >> 0 tends to an exponential distribution, width << 1 to a tilted uniform one: both ends keep full
-/// relative precision. n >= 1, cut finite, width > 0.
+/// The n quantiles at p = (i + 1/2) / n, i = 0 ... n - 1, of a standard normal truncated to [cut, cut +
+/// width]. Returns their distances from `cut`, ascending, in standard deviations of the untruncated normal.
+/// width may be infinite. The distances keep full relative precision for cut >> 0, where the distribution
+/// tends to an exponential, and for width << 1, where it tends to a tilted uniform distribution. n >= 1, cut
+/// finite, width > 0.
 std::vector<double> truncated_normal_strata(double cut, double width, std::size_t n);
 
 }  // namespace study

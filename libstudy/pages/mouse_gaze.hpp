@@ -1,5 +1,5 @@
 #pragma once
-/// The mouse over the picture as a gaze source, recorded as a mouse.
+/// The mouse over the picture as a gaze source. Its samples are recorded with the origin "mouse".
 
 #include <functional>
 
@@ -8,15 +8,15 @@
 
 namespace study {
 
-/// Gives a sample at the start of a presentation and one for each mouse movement that the window processes:
-/// the mouse reports only changes, and the window polls after each picture. The system has no time stamp that
-/// could be converted to the session's clock.
+/// Adds a sample at the start of a showing and one for each mouse movement that the window processes, because
+/// the mouse reports only changes. The window processes movements after each picture. Sample times are the
+/// times of processing: the system gives no time stamp that converts to the session's clock.
 class MouseGaze final : public GazeSource {
  public:
-  /// Position of the mouse; none: not over the picture.
+  /// Position of the mouse in the picture; none: outside the picture.
   using Place = std::optional<GazePoint>;
 
-  /// where_now: called at each start.
+  /// where_now: returns the position of the mouse; start() calls it.
   MouseGaze(std::function<Place()> where_now, const Clock& clock)
       : where_now_(std::move(where_now)), clock_(clock) {}
 
@@ -25,7 +25,7 @@ class MouseGaze final : public GazeSource {
   std::vector<GazeSample> take() override { return std::exchange(samples_, {}); }
   void stop() override;
 
-  /// The mouse moved to `place` or left the picture.
+  /// Call it when the mouse moved to `place`; none: the mouse left the picture.
   void moved(const Place& place);
 
  private:

@@ -59,7 +59,7 @@ void PageState::move_cursor(int by) {
   PageItem& item = items_[focus_];
   const auto scores = scores_of(questions_[focus_]);
   if (!item.cursor) item.cursor = item.chosen;
-  if (!item.cursor) {  // start at the end from which the arrow comes
+  if (!item.cursor) {  // begins at the lowest score with +1, at the highest with -1
     item.cursor = by > 0 ? scores.front() : scores.back();
     return;
   }
@@ -120,7 +120,7 @@ void PageState::erase(std::int64_t now_ns) {
   if (item.typed.empty()) return;
   const auto follows = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; };
   while (item.typed.size() > 1 && follows(item.typed.back()))
-    item.typed.pop_back();  // bytes of one UTF-8 character
+    item.typed.pop_back();  // continuation bytes of a UTF-8 character
   item.typed.pop_back();
   mark_changed(item, now_ns);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// State of a participant's page: choices, the effect of keys and clicks, and when it can be confirmed.
-/// Without window and clock: times are passed in, in ns on the session's clock.
+/// State of a participant's page: answers, effect of keys and clicks, and when the page can be confirmed. The
+/// state uses no window and no clock: callers pass times, ns on the session's clock.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,31 +15,32 @@ namespace study {
 
 enum class PageKey { Left, Right, Up, Down, Next, Previous, Enter, Erase };
 
-/// State of one question.
+/// State of the answer to one question.
 struct PageItem {
-  std::optional<int> chosen;           ///< Scale, Choice: none at first
-  std::optional<int> cursor;           ///< position of the arrow keys; not a choice
-  std::string typed;                   ///< Number, Text
-  std::int64_t changed_ns = 0;         ///< last change of the answer
-  std::optional<AnswerInput> input{};  ///< input of that change
+  std::optional<int> chosen;           ///< chosen score of a Scale or Choice; none at first
+  std::optional<int> cursor;           ///< score marked by the arrow keys, not yet chosen
+  std::string typed;                   ///< typed content of a Number or Text
+  std::int64_t changed_ns = 0;         ///< time of the last change
+  std::optional<AnswerInput> input{};  ///< input device of the last change
 };
 
-/// Nothing is preselected. Every answer can be changed until the page is confirmed, which requires an answer
-/// to each required question. Ignores input in the first 300 ms.
+/// State of one page. No answer is preselected. Answers can be changed until the page is confirmed.
+/// Confirming needs an answer to each required question. Input in the first 300 ms is ignored.
 class PageState {
  public:
   static constexpr std::int64_t guard_ns = 300'000'000;
-  static constexpr std::size_t most_bytes = 2000;  ///< of a Text
+  static constexpr std::size_t most_bytes = 2000;  ///< longest content of a Text
 
-  /// Without questions the page is a text to read. It can be confirmed `least_s` after shown_ns at the
-  /// earliest.
+  /// Without questions, the page is a text to read. The page can be confirmed least_s seconds after shown_ns
+  /// at the earliest.
   PageState(std::span<const Question> questions, double least_s, std::int64_t shown_ns);
 
   /// Sets the input device of the following calls; default: keyboard.
   void use(AnswerInput input) { input_ = input; }
-  /// Enter chooses the score at the arrows' position, then goes to the next question and finally confirms.
+  /// Handles a key. Enter chooses the score that the arrow keys mark; pressed again, it goes to the next
+  /// question; at the button to go on, it confirms the page.
   void press(PageKey key, std::int64_t now_ns);
-  /// 0 to 9: a score if all scores have one digit, or a digit of a Number.
+  /// Handles a typed digit, 0 to 9: chooses this score if all scores have one digit; appends it to a Number.
   void digit(int digit, std::int64_t now_ns);
   void minus(std::int64_t now_ns);
   void click(std::size_t question, int score, std::int64_t now_ns);
@@ -47,34 +48,36 @@ class PageState {
   void click_question(std::size_t question, std::int64_t now_ns);
   /// Confirms the page, or focuses the first question that prevents it.
   void click_confirm(std::int64_t now_ns);
-  /// Appends letters to the focused Text; Erase removes the last one.
+  /// Appends letters to the focused Text. PageKey::Erase removes the last letter.
   void type(const std::string& letters, std::int64_t now_ns);
-  /// Sets the content of a Text, typed at the keyboard.
+  /// Sets the content of a Text that was typed at the keyboard.
   void write(std::size_t question, const std::string& words, std::int64_t now_ns);
-  /// Excludes time not spent on the page, such as in a dialog above it, from response times; then ignores
-  /// input for 300 ms again.
+  /// Excludes a period from response times, such as the time in a dialog above the page. Then ignores input
+  /// for 300 ms.
   void leave_out(std::int64_t from_ns, std::int64_t to_ns);
 
   std::size_t size() const { return questions_.size(); }
   const Question& question(std::size_t i) const { return questions_[i]; }
   const PageItem& item(std::size_t i) const { return items_[i]; }
-  /// The question that keys act on; size(): the button to go on.
+  /// Index of the question that keys act on; size(): the button to go on.
   std::size_t focus() const { return focus_; }
-  /// True if input is ignored: at the beginning and after the confirmation.
+  /// True if input is ignored: in the first 300 ms, in the 300 ms after leave_out(), and after the
+  /// confirmation.
   bool guarded(std::int64_t now_ns) const { return confirmed() || now_ns - guarded_from_ns_ < guard_ns; }
   /// True if the question has a valid answer.
   bool answered(std::size_t question) const;
-  /// True if the field has an invalid answer, such as an age of 900.
+  /// True if a Number has an invalid answer, such as an age of 900.
   bool out_of_range(std::size_t question) const;
-  /// Number of required questions without an answer and of fields with an invalid one.
+  /// Number of questions that prevent confirming: required without an answer, or with an invalid answer.
   std::size_t missing() const;
-  /// Time until the page can be confirmed, s; 0 if that is over.
+  /// Rest of the least reading time, s; the page cannot be confirmed before it is 0.
   double wait_s(std::int64_t now_ns) const;
   bool can_confirm(std::int64_t now_ns) const;
   bool confirmed() const { return confirmed_ns_.has_value(); }
 
-  /// The answers; call once confirmed. Response times run from the page's appearance to the last change of
-  /// each answer, or to the confirmation if it was left empty; the same holds for their input.
+  /// The answers of a confirmed page. A response time runs from the page's appearance to the last change of
+  /// the answer; for an empty answer, to the confirmation. `input` is the device of this change or
+  /// confirmation.
   std::vector<TimedAnswer> answers() const;
 
  private:

@@ -8,11 +8,11 @@
 
 namespace study {
 
-/// A text of a page and its place in the protocol.
+/// A text of a page, and the key of the protocol that it comes from, such as "block 'a', title".
 struct PlacedText {
   std::string place, text;
 };
-/// Titles, texts, questions and the words of their answers, in the order of the file.
+/// The titles, texts, questions and anchors of all pages, in the order of the protocol file.
 std::vector<PlacedText> texts_of_pages(const Protocol& protocol);
 
 /// Decodes UTF-8; invalid bytes give U+FFFD.
@@ -20,16 +20,17 @@ std::u32string characters_of(const std::string& text);
 /// The distinct characters in ascending order, without line ends and tabs.
 std::u32string characters_of(const std::vector<PlacedText>& texts);
 
-/// For messages: "U+4E2D (中)".
+/// The name of a character in messages: "U+4E2D (中)".
 std::string name_of(char32_t character);
 
-/// Why the pages draw a character wrongly with any font; empty if they draw it correctly.
+/// Why the pages draw this character wrongly with every font, in words; empty if a font can draw it
+/// correctly.
 std::string script_limit(char32_t character);
 
-/// The Debian package with a font for the character.
+/// The Debian package that is likely to have a font for the character.
 std::string package_with(char32_t character);
 
-/// True if a line may break before and after it without a space: Chinese and Japanese characters.
+/// True if a line may break before and after the character without a space, as in Chinese and Japanese.
 bool breaks_anywhere(char32_t character);
 
 }  // namespace study

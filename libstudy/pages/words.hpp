@@ -1,5 +1,5 @@
 #pragma once
-/// The program's own texts for participants, in the protocol's language.
+/// The texts that the program itself shows to participants, in the protocol's language.
 
 #include <string>
 
@@ -7,29 +7,29 @@
 
 namespace study {
 
-/// A page without questions.
+/// Texts of a page without questions.
 struct DeskPage {
   std::string title, text, button;
 };
 
-/// A choice of two; the first is the harmless one.
+/// Texts of a page with a choice of two answers; the first answer is the harmless one.
 struct DeskChoice {
   std::string title, text, question, first, second;
 };
 
 struct DeskWords {
   std::string go_on, confirm, finish, rest, pause, ready;
-  std::string first, second;                  ///< announce the stimuli of a pair
-  std::string held_title, held;               ///< during a pause by the experimenter
-  std::string trouble_title, trouble;         ///< if a trial cannot be shown
-  std::string corner, begin;                  ///< how to stop: on every page, and as a sentence on the first
-  std::string corner_by_hand, begin_by_hand;  ///< the same in a headset
+  std::string first, second;                  ///< announce the two stimuli of a pair
+  std::string held_title, held;               ///< shown while the experimenter pauses the session
+  std::string trouble_title, trouble;         ///< shown if a trial cannot be shown
+  std::string corner, begin;                  ///< how to stop: note on every page, sentence on the first
+  std::string corner_by_hand, begin_by_hand;  ///< as `corner` and `begin`, in a headset
   std::string by_ray, by_stick, by_dwell;     ///< how to answer in a headset, as sentences
-  std::string one_open, many_open;            ///< "{}" is the number
-  std::string wait;                           ///< "{}" is the seconds
-  std::string range;                          ///< two "{}"
+  std::string one_open, many_open;            ///< "{}" stands for the number of open questions
+  std::string wait;                           ///< "{}" stands for the seconds until confirming is possible
+  std::string range;                          ///< two "{}" stand for the lowest and the highest number
   std::string optional;
-  std::string digits, arrows, tab;  ///< how to answer
+  std::string digits, arrows, tab;  ///< how to answer with the keyboard
   DeskChoice stop;
   DeskPage over, refused, not_eligible, kept, deleted, goodbye;
   DeskChoice stay_out, questionnaire, keep;
@@ -38,7 +38,7 @@ struct DeskWords {
   const DeskChoice& choice(Offer offer) const;
 };
 
-/// English if the language ("en", "de", "de-AT", ...) is not known.
+/// The texts in a language ("en", "de", "de-AT", ...); in English if there are none in this language.
 const DeskWords& desk_words(const std::string& language);
 
 }  // namespace study

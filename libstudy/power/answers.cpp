@@ -17,10 +17,11 @@ namespace {
 
 constexpr int sickness_item_count = 4;
 constexpr double rounding_variance = 1.0 / 12;
-/// Separates the random numbers for a person's methods from those for the trials.
+/// Combined with a study's key. It makes the random numbers for person by method independent of those for
+/// persons and trials.
 constexpr std::uint64_t by_method_key = 0x6d6574686f64;
 
-/// Random numbers of one participant: 0 to 9 belong to the person, then ten to each trial.
+/// Random numbers of one participant, by index: 0 to 9 for the person, then ten for each trial.
 class Draws {
  public:
   Draws(std::uint64_t key, int participant)
@@ -30,7 +31,7 @@ class Draws {
   double uniform(const ShownTrial& trial, int which) const { return uniform_of(key_, counter(trial, which)); }
 
  private:
-  /// A trial is identified by its position, which is unique for a participant.
+  /// Index of a trial's random number. A participant's trials differ in their position.
   static std::uint64_t counter(const ShownTrial& trial, int which) {
     return 10 * (static_cast<std::uint64_t>(trial.position) + 1) + static_cast<std::uint64_t>(which);
   }
@@ -48,8 +49,8 @@ const Question& question(const Protocol& protocol, const char* id) {
 double latent_variance(const char* option, double wanted, double rounding) {
   if (wanted >= rounding) return wanted - rounding;
   throw base::Error(option,
-                    "leaves less scatter within a person than rounding to whole scores makes by itself",
-                    "give a larger one, a smaller --person-by-method, or --answers continuous");
+                    "is too small: rounding to whole scores alone makes a person's answers scatter more",
+                    "give a larger value, a smaller --person-by-method, or --answers continuous");
 }
 
 double answer(const Task1Scatter& scatter, double latent, double low, double high) {
@@ -76,7 +77,8 @@ Task1Scatter task1_scatter(const PowerRequest& request) {
   out.method_realism = std::sqrt(method_realism);
   out.method_sickness = std::sqrt(method_sickness);
   out.noise_realism = std::sqrt(latent_variance("--sd", realism - method_realism, rounding));
-  // The items get half of the variance, or less if person by method takes more than the other half.
+  // Half of the variance goes to the single items. The other half goes to person by method and to the report
+  // as a whole. If person by method needs more than its half, the items get less.
   const double report = std::max(sickness / 2 - method_sickness, 0.0);
   out.noise_sickness = std::sqrt(report);
   out.noise_item = std::sqrt(

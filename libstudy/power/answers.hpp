@@ -1,5 +1,5 @@
 #pragma once
-/// Simulated answers to planned trials.
+/// Simulates answers to planned trials.
 
 #include <cstdint>
 #include <span>
@@ -12,51 +12,54 @@
 
 namespace study {
 
-/// Standard deviations of Task 1's latent answers, in points. A participant's own level cancels in pairs.
+/// Standard deviations of the parts of Task 1's latent answers, in points of the scale. The part of the
+/// participant is equal for all methods, so differences between methods do not depend on it.
 struct Task1Scatter {
-  static constexpr double participant_share = 0.6;  ///< SD of participants' levels / SD of the differences
+  /// Standard deviation of the part of the participant / standard deviation of the difference between
+  /// methods.
+  static constexpr double participant_share = 0.6;
   AnswerScale answers = AnswerScale::Likert;
   double participant_realism = 0, participant_sickness = 0;
-  double method_realism = 0, method_sickness = 0;  ///< of the effect of person by method, the same at every
-                                                   ///< n_*
+  double method_realism = 0, method_sickness = 0;  ///< SD of the effect of person by method
   double noise_realism = 0;
-  double noise_sickness = 0;  ///< shared by the four items of a report
+  double noise_sickness = 0;  ///< SD of the part common to the four items of a report
   double noise_item = 0;
   double realism_min = 1, realism_max = 7, item_min = 0, item_max = 3;
 };
 
-/// Scatter for which the difference between two methods' answers has the requested standard deviation, away
-/// from the ends of the scale. This includes the variance from rounding, 1/12 per answer (Sheppard).
-/// base::Error if the request is less than rounding alone.
+/// Scatter for which the difference between two methods' answers has the requested standard deviation, as
+/// long as no answer is cut off at an end of the scale. The variance from rounding, 1/12 per answer
+/// (Sheppard), is included. base::Error if rounding alone exceeds the requested standard deviation.
 Task1Scatter task1_scatter(const PowerRequest& request);
 
 struct Task1Answers {
-  std::vector<stats::MethodScore> realism, sickness;  ///< by participant
+  std::vector<stats::MethodScore> realism, sickness;  ///< scores, ordered by participant
 };
 
-/// Answers depend only on the key and the trial, not on the number of other trials.
+/// Simulates the answers to these trials. An answer depends on the key and its trial and not on other trials.
 Task1Answers answer_task1(std::span<const ShownTrial> trials, const ShownFactors& factors,
                           const Scenario& truth, const Task1Scatter& scatter, std::uint64_t key);
 
 std::vector<stats::PairChoice> answer_task2(std::span<const ShownTrial> trials, const ShownFactors& factors,
                                             const Scenario& truth, double interval_bias, std::uint64_t key);
 
-/// The realised frame rates of a setting.
+/// Nominal and realised moments of a frame-rate setting, in frames/s.
 struct RealisedSetting {
-  double mu = 0, delta = 0;  ///< nominal
+  double mu = 0, delta = 0;  ///< nominal mean and standard deviation
   double harmonic = 0, arithmetic = 0, sd = 0;
 };
 
-/// Compiles each cell's schedule once; its moments do not depend on its order.
+/// The moments of each cell of the design, from one compiled schedule each. The order of the frames in a
+/// schedule does not change its moments.
 std::vector<RealisedSetting> realised_settings(const Protocol& protocol);
 
-/// Range of scores, and the level at which the observer's curve is the contour of the mean score.
+/// Range of the scale's scores. `level`: mean score of the observer on its curve mu = a exp(b delta).
 struct RatedScale {
   int min = 1, max = 7;
   double level = 4;
 };
 
-/// Ratings by the parametric observer (libstudy/observer/ptpe_observer.hpp).
+/// Simulates the ratings of a pilot by the parametric observer (libstudy/observer/ptpe_observer.hpp).
 std::vector<stats::PilotRating> answer_pilot(std::span<const ShownTrial> trials,
                                              std::span<const RealisedSetting> settings,
                                              const PtpeObserverParameters& observer, const RatedScale& scale,

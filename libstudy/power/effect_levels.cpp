@@ -21,7 +21,8 @@ bool has_effects(const ShownFactors& factors, std::size_t treatment) {
   return factors.effects[static_cast<std::size_t>(level)] != no_effects_level;
 }
 
-/// Preferences, treatments by treatments.
+/// Preferences as in Scenario::preferred: a treatment with effects is chosen over one without with
+/// probability p, any other pair with .5.
 std::vector<double> preferring_effects(const ShownFactors& factors, double p) {
   const std::size_t count = factors.methods.size();
   std::vector<double> out;
@@ -34,7 +35,7 @@ std::vector<double> preferring_effects(const ShownFactors& factors, double p) {
   return out;
 }
 
-/// The test of the level over none, in whichever order the protocol lists them.
+/// The test that `level` is preferred over none. `none_first`: in `found`, a is none and b is the level.
 stats::HypothesisTest test_of(const stats::LevelPreference& found, bool none_first, const std::string& level,
                               const stats::AnalysisPlan& plan) {
   stats::HypothesisTest out;
@@ -73,7 +74,7 @@ World effect_world(const PowerRequest& request, const ShownFactors& factors, con
   };
   if (place_of(factors.effects, no_effects_level) == factors.effects.size()) {
     throw base::Error("protocol " + request.protocol.name,
-                      "varies effects without level none, over which a level could be preferred",
+                      "varies effects but lacks level none, with which power compares the other levels",
                       "simulate it: vip-study run with --observer, then vip-stats report");
   }
   if (id == "null") return world("every preference is .5: participants do not see what effects do", 0.5);

@@ -1,6 +1,7 @@
 #pragma once
-/// Power if effects are a factor of a protocol that shows pairs: the preference for a level over level none,
-/// all else equal, by the analysis of the report's table of factors (stats/analysis/factor_levels.hpp).
+/// Power for a protocol that shows pairs and has effects as a factor. The test is of the preference for a
+/// level of effects over level none in pairs that differ in nothing else. It is the test of the report's
+/// table of factors (stats/analysis/factor_levels.hpp).
 
 #include <span>
 #include <string>
@@ -12,17 +13,17 @@
 
 namespace study {
 
-/// World "effect": every other level is chosen over none with probability PowerRequest::effect, whatever the
-/// methods; or world "null". Pairs that do not contain none are chosen with .5. base::Error if the world does
-/// not apply to effects, or without --effect.
+/// Makes world "effect" or "null". In "effect" each level is chosen over none with probability
+/// PowerRequest::effect, for all methods. All other pairs, and all pairs in "null", are chosen with .5.
+/// base::Error for another world, for a protocol without level none, or for "effect" without --effect.
 World effect_world(const PowerRequest& request, const ShownFactors& factors, const std::string& id);
 
-/// The claim that each level is preferred over none: one t test of the participants' shares for each level,
-/// with Holm over all pairs of levels.
+/// Tests the claim that each level is preferred over none: one t test of the participants' shares for each
+/// level, corrected by Holm's method over all pairs of levels.
 stats::Hypothesis effect_hypothesis(std::span<const stats::PairChoice> choices, const ShownFactors& factors,
                                     const stats::AnalysisPlan& plan);
 
-/// The true preference for the level of such a test.
+/// The true preference for the level that a test of effect_hypothesis() compares with none.
 double effect_truth(const Scenario& scenario, const ShownFactors& factors, const stats::HypothesisTest& test);
 
 }  // namespace study

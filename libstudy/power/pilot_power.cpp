@@ -12,7 +12,7 @@ namespace study {
 
 namespace {
 
-/// `level`: score of the observer's curve.
+/// Fits one simulated pilot. `level`: score at which the curve is fitted.
 PilotOutcome estimate(std::span<const stats::PilotRating> ratings, double level,
                       const PowerRequest& request) {
   PilotOutcome out;
@@ -29,7 +29,7 @@ PilotOutcome estimate(std::span<const stats::PilotRating> ratings, double level,
   return out;
 }
 
-/// Standard deviation of values; divisor n - 1.
+/// Standard deviation of the values (divisor n - 1) and its Monte-Carlo standard error.
 Estimated sd_of(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   const double mean = mean_of(values).value;
@@ -39,7 +39,7 @@ Estimated sd_of(std::span<const double> values) {
     m4 += std::pow(x - mean, 4) / n;
   }
   const double sd = std::sqrt(m2 * n / (n - 1));
-  // The delta method on the variance's own standard error.
+  // Standard error of the standard deviation by the delta method, from the standard error of the variance.
   return {sd, sd > 0 ? std::sqrt(std::max(0.0, m4 - m2 * m2) / n) / (2 * sd) : 0};
 }
 
@@ -84,7 +84,7 @@ PilotPoint describe(const std::vector<PilotOutcome>& pilots, const PowerRequest&
               request.observer.b, request.precision_b, request)};
 }
 
-/// The smallest n from which on `reached` is always true.
+/// The smallest n such that `reached` is true at this n and at every larger requested n.
 std::optional<int> lasting(const PowerRequest& request, const std::vector<PilotPoint>& curve,
                            const std::function<bool(const PilotPoint&)>& reached) {
   std::optional<int> out;

@@ -1,6 +1,6 @@
 #pragma once
-/// Precision with which a pilot determines a and b: the direct estimate (stats/ptpe/direct_fit.hpp) of
-/// simulated pilots on the protocol's own plan.
+/// Computes how precisely a pilot determines a and b. Pilots with the protocol's plan are simulated and
+/// fitted by the direct estimate (stats/ptpe/direct_fit.hpp).
 
 #include <array>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace study {
 
-/// One pilot's estimate of one coefficient, with the jackknife's interval.
+/// One pilot's estimate of a or b, with standard error and interval by the jackknife.
 struct PilotEstimate {
   double value = 0, se = 0;
   std::array<double, 2> ci{};
@@ -19,24 +19,25 @@ struct PilotEstimate {
 };
 
 struct PilotOutcome {
-  bool fitted = false, interval = false;  ///< true if there is an estimate; if there is also an interval
+  bool fitted = false, interval = false;  ///< true if there is an estimate; true if there is an interval too
   PilotEstimate a, b;                     ///< valid if `interval`
 };
 
-/// Indexed by number of participants as PowerRequest::n, then by study.
+/// First index: number of participants, as in PowerRequest::n. Second index: study.
 using PilotOutcomes = std::vector<std::vector<PilotOutcome>>;
 
-/// One coefficient at one number of participants. All but `sd` and `mean` refer to the jackknife's interval,
-/// over the pilots that have one.
+/// One coefficient at one number of participants, summarised over the simulated pilots with a jackknife
+/// interval.
 struct CoefficientPoint {
-  Estimated mean;               ///< of the estimates
-  Estimated sd;                 ///< of the estimates: the true standard error
+  Estimated mean;               ///< mean of the estimates
+  Estimated sd;                 ///< standard deviation of the estimates: the true standard error of one pilot
   Estimated se;                 ///< median of the pilots' standard errors
   Estimated half_width;         ///< median half width of the interval
-  Estimated half_width_wished;  ///< quantile of the half widths at the requested power
+  Estimated half_width_wished;  ///< the half width that a share PowerRequest::power of the intervals does not
+                                ///< exceed
   Estimated coverage;           ///< share of intervals that cover the truth
-  /// Share of all pilots whose half width reaches the requested precision; a pilot without an interval does
-  /// not.
+  /// Share of all pilots whose half width is at most the requested precision. A pilot without an interval
+  /// counts as failed.
   std::optional<Estimated> reached;
 };
 
@@ -47,21 +48,23 @@ struct PilotPoint {
 };
 
 struct PilotPower {
-  std::vector<PilotPoint> curve;  ///< as PowerRequest::n
-  /// The smallest n from which on every requested n reaches the precision with the requested power; for the
-  /// medians, with the median half width, that is, in half of the pilots.
+  std::vector<PilotPoint> curve;  ///< one point for each of PowerRequest::n
+  /// The smallest requested n such that, at this n and every larger one, a share of pilots reaches the
+  /// requested precision. The share is PowerRequest::power, for n_for_a_median and n_for_b_median it is one
+  /// half.
   std::optional<int> n_for_a, n_for_b, n_for_both;
   std::optional<int> n_for_a_median, n_for_b_median;
 };
 
-/// Simulates these pilots with each number of participants. The result does not depend on the number of
-/// threads. base::Error unless the protocol asks one scale about each setting.
+/// Simulates the pilots in `studies` with each number of participants. The result does not depend on the
+/// number of threads. base::Error if the trials do not ask the requested scale, or if the level lies outside
+/// the scale.
 PilotOutcomes simulate_pilots(const PowerRequest& request, StudyRange studies);
 
-/// Summarises all pilots of the request.
+/// Summarises the outcomes of all pilots of the request.
 PilotPower pilot_power(const PowerRequest& request, const PilotOutcomes& pilots);
 
-/// Simulates and summarises, in one process.
+/// Simulates all pilots of the request and summarises their outcomes.
 PilotPower simulate_pilot_power(const PowerRequest& request);
 
 }  // namespace study

@@ -32,7 +32,7 @@ struct Curve {
 struct Panel {
   std::string title;
   std::vector<Curve> curves;
-  std::vector<double> marks;  ///< horizontal lines
+  std::vector<double> marks;  ///< values at which horizontal lines are drawn
   double most = 1;
   int decimals = 1;
 };
@@ -92,7 +92,7 @@ class Drawing {
   double height() const { return top + panel_height + 64; }
 
  private:
-  /// A line, with bars of two standard errors to either side if there are few points.
+  /// Draws a curve as a line. If it has at most 12 points, each has a bar of two standard errors up and down.
   template <class At>
   std::string curve(const Curve& curve, std::size_t index, At at) const {
     std::string moves, marks;

@@ -1,5 +1,5 @@
 #pragma once
-/// Power over the number of participants, drawn from the JSON of power_json().
+/// Draws power over the number of participants from the JSON of power_json().
 
 #include <string>
 
@@ -7,7 +7,8 @@
 
 namespace study {
 
-/// Task 1 and 2: a panel for each hypothesis with a line for each world; pilot: half widths of a and b.
+/// Task 1 and 2: a panel for each hypothesis with a line for each world. Pilot: a panel for a and one for b,
+/// with half widths of intervals and the true standard error.
 std::string power_svg(const Json& json);
 
 }  // namespace study

@@ -140,7 +140,7 @@ Json coefficient_json(const std::optional<CoefficientPoint>& at) {
   return out;
 }
 
-/// A CSV field; texts are quoted.
+/// A JSON value as a CSV field; texts are quoted.
 std::string field(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
@@ -149,7 +149,8 @@ std::string field(const Json& value) {
   return out + '"';
 }
 
-/// Lines for every figure of one point of a curve that has a standard error, and for its closed form.
+/// Adds a line for each value of one point of a curve that has a standard error, and for "closed_form" and
+/// "mean_estimate".
 void add_lines(std::string& out, const std::string& lead, const Json& point, const Json& n) {
   for (const auto& [name, value] : point.items()) {
     const bool figure = point.contains(name + "_se");

@@ -1,6 +1,6 @@
 #pragma once
-/// The results of a power calculation as JSON ("vip-power/1", docs/statistics.md) and as a table. Figures and
-/// printed tables are made from the JSON.
+/// Writes the results of a power calculation as JSON (schema "vip-power/1", docs/statistics.md) and as a CSV
+/// table. Figures and printed tables are made from the JSON.
 
 #include <string>
 #include <vector>
@@ -11,14 +11,15 @@
 
 namespace study {
 
-/// Everything that simulated studies depend on besides their number and n: program, protocol, plan, worlds,
-/// settings.
+/// Everything that the outcome of a simulated study depends on except its number and n: program, protocol,
+/// plan, worlds, settings.
 Json studies_json(const PowerRequest& request);
 
 Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds);
 Json power_json(const PowerRequest& request, const PilotPower& pilot);
 
-/// One line for each figure and n.
+/// CSV with one line for each n and each value that has a standard error, and for closed forms and mean
+/// estimates.
 std::string power_csv(const Json& json);
 
 }  // namespace study

@@ -35,7 +35,7 @@ bool has_question(const Protocol& protocol, const std::string& id) {
                      [&](const auto& question) { return question.second->id == id; });
 }
 
-/// Checks that a claim can be tested: worlds are about H1 to H6, or about levels of effects.
+/// base::Error if the protocol neither varies effects nor tests one of H1 to H6: worlds exist for these only.
 void check_claims(const Protocol& protocol) {
   if (!protocol.design.effects.empty()) return;
   const auto shown = hypotheses_of(protocol, {});
@@ -43,12 +43,12 @@ void check_claims(const Protocol& protocol) {
   std::string why;
   for (const auto& [id, reason] : shown.left_out) why += (why.empty() ? "" : "; ") + id + ": " + reason;
   throw base::Error("protocol " + protocol.name,
-                    "tests none of H1 to H6, of which power knows the tests (" + why + ")",
+                    "tests none of H1 to H6, and power is computed for these alone (" + why + ")",
                     "simulate it: vip-study run with --observer for several numbers of participants, then "
                     "vip-stats report, which describes the answers of any protocol");
 }
 
-/// sd_method^2 / (sd_method^2 + sd_residual^2) of one score's model.
+/// Share sd_method^2 / (sd_method^2 + sd_residual^2), from the mixed model of one score in the results.
 double share_of_method(const std::filesystem::path& file, const Json& results, const std::string& score) {
   const auto refuse = [&](const std::string& problem) {
     throw base::Error(file.string(), problem, "give the share itself with --person-by-method, such as 0.3");
@@ -60,7 +60,7 @@ double share_of_method(const std::filesystem::path& file, const Json& results, c
       refuse("has no mixed model of " + score + ": " + model.at("refused").dump());
     const Json method = model.value("sd_method", Json()), residual = model.value("sd_residual", Json());
     if (!method.is_number() || !residual.is_number())
-      refuse("has no variance of person by method of " + score + ": nobody judged one method twice");
+      refuse("has no variance of person by method of " + score + ": no participant judged one method twice");
     const double of_method = std::pow(method.get<double>(), 2), rest = std::pow(residual.get<double>(), 2);
     if (!(of_method + rest > 0)) refuse("has answers of " + score + " without any scatter");
     return of_method / (of_method + rest);
@@ -95,8 +95,8 @@ const char* power_kind_name(PowerKind kind) {
 PowerKind power_kind(const Protocol& protocol) {
   if (!protocol.design.effects.empty() && !protocol.design.pairs) {
     throw base::Error("protocol " + protocol.name,
-                      "varies effects of stimuli that are rated, and the worlds of power know effects of "
-                      "pairs alone",
+                      "varies effects of rated stimuli, and power can simulate effects only where pairs are "
+                      "shown",
                       "simulate it: vip-study run with --observer ptpe:effects=... for several numbers of "
                       "participants, then vip-stats report");
   }
@@ -108,8 +108,8 @@ PowerKind power_kind(const Protocol& protocol) {
   for (const char* id : {"realism", "disorientation", "unrealism", "dizziness", "confusion"}) {
     if (!has_question(protocol, id)) {
       throw base::Error("protocol " + protocol.name, "does not ask \"" + std::string(id) + "\"",
-                        "power knows the pilot (mean_fps and sd_fps), Task 1 (realism and the four items of "
-                        "cybersickness) and Task 2 (pairs)");
+                        "use a pilot (mean_fps and sd_fps), Task 1 (realism and the four items of "
+                        "cybersickness) or Task 2 (pairs)");
     }
   }
   check_claims(protocol);
@@ -119,7 +119,7 @@ PowerKind power_kind(const Protocol& protocol) {
 Question rated_question(const PowerRequest& request) {
   const auto questions = curve_questions(request.protocol);
   if (questions.empty()) {
-    throw base::Error("protocol " + request.protocol.name, "asks no score about its settings",
+    throw base::Error("protocol " + request.protocol.name, "asks no question on a scale in its trials",
                       "add a question of kind \"scale\" to its block of kind \"stimulus\"");
   }
   std::vector<std::string> ids;

@@ -1,5 +1,5 @@
 #pragma once
-/// The input of a power calculation.
+/// Input of a power calculation.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,59 +15,62 @@ namespace study {
 
 /// The kind of power calculation that a protocol's trials allow.
 enum class PowerKind { Task1, Task2, Pilot };
-/// "task1", "task2", "pilot".
+/// Name in JSON: "task1", "task2", "pilot".
 const char* power_kind_name(PowerKind kind);
-/// base::Error if the protocol shows neither settings, nor pairs of methods, nor rated methods.
+/// base::Error unless the protocol is a pilot, tests one of H1 to H6, or shows pairs that vary effects.
 PowerKind power_kind(const Protocol& protocol);
 
-/// How simulated people answer Task 1.
+/// The answers that simulated people give in Task 1.
 enum class AnswerScale {
-  Likert,     ///< whole scores within the question's scale
-  Continuous  ///< unrounded and unbounded, for which the closed forms hold exactly
+  Likert,     ///< scores rounded to whole numbers and limited to the question's scale
+  Continuous  ///< scores neither rounded nor limited; the closed forms hold exactly for them
 };
 
-/// Task 1: the share of an answer's variance, excluding the person's own level, that belongs to person by
-/// method and so is the same at every n_*; 0 to 1.
+/// Task 1: share, from 0 to 1, of the variance of one person's answers that is due to the interaction of
+/// person and method. This part is equal at every n_*.
 struct PersonByMethod {
   double realism = 0, sickness = 0;
 };
 
 struct PowerRequest {
   Protocol protocol;
-  std::string file;    ///< the protocol's file, as given
-  std::vector<int> n;  ///< participants, ascending
-  int studies = 2000;  ///< simulated for each number of participants and world
+  std::string file;    ///< path of the protocol's file, as the user gave it
+  std::vector<int> n;  ///< numbers of participants, ascending
+  int studies = 2000;  ///< simulated studies for each number of participants and each world
   std::uint64_t seed = 1;
-  PlanInForce plan;                 ///< margins, level
-  double power = 0.8;               ///< requested power
+  PlanInForce plan;                 ///< analysis plan, with margins and the pilot's level
+  double power = 0.8;               ///< requested power, 0 to 1
   std::vector<std::string> worlds;  ///< "effect", "null", "margin", "paper"; each at most once
 
-  /// Task 1: difference in standard deviations of the paired differences; Task 2: true preference of the
-  /// better method.
+  /// True effect. Task 1: difference between two methods, in standard deviations of the paired differences.
+  /// Task 2: probability that the better method is chosen.
   std::optional<double> effect;
-  std::optional<double> difference;  ///< Task 1: the same in points of realism
+  std::optional<double> difference;  ///< Task 1: true difference in points of realism, in place of `effect`
   AnswerScale answers = AnswerScale::Likert;
-  double sd_realism = 1.3;  ///< of the difference between two methods' answers of one person, points
+  double sd_realism = 1.3;  ///< SD of the difference between one person's answers to two methods, in points
   double sd_sickness = 0.65;
   PersonByMethod person_by_method;
-  double interval_bias = 0;  ///< Task 2: log odds in favour of the second interval
+  double interval_bias = 0;  ///< Task 2: log odds by which the second interval is favoured
 
-  PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: the paper's PTPE@4.0
+  PtpeObserverParameters observer{23.68, 0.02};  ///< Pilot: simulated observer; default: the paper's PTPE@4.0
   std::string question = {};         ///< Pilot: id of the scale; empty: the first that the trials ask
-  std::optional<double> level = {};  ///< Pilot: score of the observer's curve; empty: see level_of()
+  std::optional<double> level = {};  ///< Pilot: score at which the curve is fitted; empty: see level_of()
   std::optional<double> precision_a, precision_b;  ///< requested half widths: frames/s, s/frame
 };
 
-/// The scale that a simulated pilot is rated on, and the level at which its curve is fitted. base::Error if
-/// the trials ask no scale, or not the requested one, or if the level lies outside it.
+/// rated_question() is the scale on which a simulated pilot is rated, rated_level() the score at which its
+/// curve is fitted. base::Error if the trials ask no scale or not the requested one, or if the score lies
+/// outside the scale.
 Question rated_question(const PowerRequest& request);
 double rated_level(const PowerRequest& request);
 
-/// The shares estimated by the mixed models of Task 1 in an earlier study: `results` is the JSON of vip-stats
-/// report or task1. base::Error if it holds no such model, or if no participant judged one method at two n_*.
+/// Shares estimated by the mixed models of Task 1 in an earlier study. `results`: JSON file of `vip-stats
+/// report` or `vip-stats task1`. base::Error if it lacks these models, or if no participant judged one method
+/// at two n_*.
 PersonByMethod person_by_method_of(const std::filesystem::path& results);
 
-/// "10:60", "10:60:5" or "26" as numbers of participants, from 2 to 2,000. base::Error otherwise.
+/// Reads numbers of participants from "26", "10:60" (step 1) or "10:60:5" (step 5). base::Error for another
+/// form or a number outside 2 to 2,000.
 std::vector<int> parse_participants(const std::string& text);
 
 }  // namespace study

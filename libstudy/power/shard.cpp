@@ -26,7 +26,7 @@ constexpr const char* schema = "vip-power-shard/1";
 constexpr const char* head = R"({"schema":"vip-power-shard/)";
 constexpr std::size_t most_bytes = std::size_t{1} << 28, most_named = 10;
 
-// An entry's figures in the order of the file, for writing or reading.
+// References to the numbers of an entry in the order of the file, for writing and reading.
 auto figures(auto& count) requires requires { count.holds; }
 {
   return std::tie(count.holds, count.uncorrected, count.against, count.refused, count.estimates,
@@ -49,7 +49,7 @@ Json written(const auto& entry) {
   return std::apply([&](const auto&... value) { return Json::array({json(value)...}); }, figures(entry));
 }
 
-/// Reads a number as written by json_number().
+/// Reads a number that json_number() wrote.
 void fill(double& out, const Json& json) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   if (json.is_null())
@@ -64,7 +64,7 @@ void fill(Whole& out, const Json& json) {
   json.get_to(out);
 }
 
-/// std::out_of_range if the list has another size; Json::exception for other kinds of values.
+/// std::out_of_range if `list` is no list of this size.
 void expect_size(const Json& list, std::size_t size) {
   if (!list.is_array() || list.size() != size) throw std::out_of_range("size");
 }
@@ -94,7 +94,8 @@ Json written(const StudyOutcomes& outcomes) {
   return out;
 }
 
-/// Adds a cell's counts. `sum` must have the final shape; it may contain no study yet.
+/// Adds one cell's counts to `sum`. `sum` must already hold all hypotheses and tests, with counts of 0 or
+/// more studies.
 void add_outcomes(std::vector<HypothesisCount>& sum, const Json& outcomes) {
   expect_size(outcomes, sum.size());
   auto counts = sum;
@@ -135,14 +136,14 @@ Json read_shard(const fs::path& file) {
   return out;
 }
 
-/// base::Error that names the first difference.
+/// base::Error if the shard's studies differ from the request's; it names the first difference.
 void check_studies(const fs::path& file, const Json& there, const Json& here) {
   for (const auto& [name, value] : here.items()) {
     const Json other = there.value(name, Json());
     if (other == value) continue;
     const std::string which = name == "plan" ? "" : fmt::format(" ({}, here {})", other.dump(), value.dump());
     throw base::Error(file.string(), "holds studies with another " + name + which,
-                      "give what its cell was run with, or run the cell again");
+                      "give the options with which its cell was run, or run the cell again");
   }
 }
 
@@ -161,7 +162,7 @@ std::string words_of(const PowerCell& cell) { return cell.key + " (" + to_text(c
                     "run each with --cell KEY --out SHARD, and name its file too");
 }
 
-/// Joins shards until all cells are present.
+/// Collects the outcomes of the request's cells from shards.
 class Join {
  public:
   explicit Join(const PowerRequest& request)
@@ -258,7 +259,7 @@ Json power_json(const PowerRequest& request, const StudyOutcomes& outcomes) {
 void run_cell(const PowerRequest& request, const PowerCell& cell, const fs::path& file) {
   if (fs::exists(file) && fs::file_size(file) > 0) {
     if (read_shard(file).value("key", Json()) == cell.key) return;
-    throw base::Error(file.string(), "is there and does not hold cell " + words_of(cell),
+    throw base::Error(file.string(), "exists already and does not hold cell " + words_of(cell),
                       "name another file, or delete this one");
   }
   const Json shard{{"schema", schema},

@@ -7,8 +7,9 @@
 /// - Task 1 and 2: for each hypothesis of each world [[supported, any, any_false, paper], tests], where a
 ///   test is [holds, uncorrected, against, refused, estimates, estimate_units, participants_least,
 ///   participants_most];
-/// - pilot: for each study [fitted, interval, a, se, low, high, b, se, low, high], where all but the first
-///   two are of the jackknife's interval. Doubles are written so that they are read back exactly.
+/// - pilot: for each study [fitted, interval, a, se, low, high, b, se, low, high], where a and
+///   b are the estimates, se their standard errors and low and high the ends of their intervals, all by the
+///   jackknife. Reading a written double gives exactly the same value.
 
 #include <filesystem>
 #include <string>
@@ -19,38 +20,39 @@
 
 namespace study {
 
-/// Some studies with one number of participants.
+/// A part of a power calculation: consecutive simulated studies with one number of participants.
 struct PowerCell {
-  std::string key;  ///< 16 hexadecimal digits, a hash of everything that its outcome depends on
+  std::string key;  ///< 16 hexadecimal digits: a hash of everything that the cell's outcome depends on
   int n = 0;
   StudyRange studies;
 };
 
-/// "26 participants, studies 1 to 192".
+/// The cell in words: "26 participants, studies 1 to 192".
 std::string to_text(const PowerCell& cell);
 
-/// All cells of a request, by n and study. A cell has about 100,000 participants over all its studies, and at
-/// most 10,000 studies; 5,000 participants if the plan fits the mixed model, which is ten times slower. So
-/// each cell takes minutes at most.
+/// All cells of a request, sorted by n and study. A cell simulates about 100,000 participants in at most
+/// 10,000 studies; about 5,000 participants if the plan uses the mixed model, which is slower. So a cell
+/// takes at most minutes.
 std::vector<PowerCell> power_cells(const PowerRequest& request);
 
-/// Outcomes of simulated studies: of Task 1 or 2, or of the pilot.
+/// Outcomes of simulated studies: counts for Task 1 or 2, estimates for a pilot.
 using StudyOutcomes = std::variant<TaskCounts, PilotOutcomes>;
 
-/// Simulates the studies with each number of participants. A study's outcome does not depend on the process
-/// or on the other studies.
+/// Simulates `studies` with each number of participants. A study's outcome does not depend on the process or
+/// on other studies.
 StudyOutcomes simulate_studies(const PowerRequest& request, StudyRange studies);
 StudyOutcomes simulate_cell(const PowerRequest& request, const PowerCell& cell);
 
-/// JSON of all studies of a request.
+/// The results of all studies of a request as JSON.
 Json power_json(const PowerRequest& request, const StudyOutcomes& outcomes);
 
-/// Simulates the cell and writes its file atomically. Does nothing if the file exists and holds this cell.
-/// base::Error if another file exists there.
+/// Simulates the cell and writes its file atomically. Does nothing if the file already holds this cell.
+/// base::Error if the file exists with another content.
 void run_cell(const PowerRequest& request, const PowerCell& cell, const std::filesystem::path& file);
 
-/// Joins files in any order; a cell that occurs twice counts once. base::Error for a file that is not a
-/// shard, is damaged, newer, or of other studies, and if cells are missing, which it names.
+/// Collects the outcomes of all cells from their files, in any order. A cell that occurs twice counts once.
+/// base::Error for a file that is no shard, is damaged, has a newer format or holds other studies.
+/// base::Error that names missing cells.
 StudyOutcomes join_shards(const PowerRequest& request, const std::vector<std::filesystem::path>& files);
 
 }  // namespace study

@@ -17,7 +17,7 @@ int index_or_add(std::vector<std::string>& list, const std::string& item) {
   return static_cast<int>(list.size()) - 1;
 }
 
-/// Sets the periods of one participant's trials. A block is a scene at one n_*.
+/// Sets the periods of one participant's trials. Trials of one scene at one n_* form a block.
 void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
   std::vector<int> blocks;
   for (const auto& trial : trials) {
@@ -31,7 +31,7 @@ void count_periods(std::span<ShownTrial> trials, const ShownFactors& factors) {
 }  // namespace
 
 ShownFactors::ShownFactors(const Design& design) {
-  std::vector<std::string> alone;  // methods without their level of effects
+  std::vector<std::string> alone;  // names of the methods without their level of effects
   for (const auto& cell : design.cells) {
     const StimulusSpec& what = cell.stimulus;
     cells.push_back({index_or_add(scenes, what.scene), index_or_add(n_stars, what.n_star),
@@ -46,7 +46,8 @@ std::vector<ShownTrial> planned_trials(const Protocol& protocol, std::uint64_t s
   const ShownFactors factors(protocol.design);
   std::vector<ShownTrial> out;
   for (int participant = 0; participant < n; ++participant) {
-    // The least used slot comes next: 0, 1, ..., then from the start.
+    // A session takes the least used slot, so participants take slots 0, 1, ... in turn and then slot 0
+    // again.
     const auto plan = make_plan(protocol, "P" + std::to_string(participant + 1), seed, participant % slots);
     const auto before = out.size();
     for (const auto& trial : plan.trials) {

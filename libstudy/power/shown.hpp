@@ -1,5 +1,5 @@
 #pragma once
-/// The protocol's plan of trials for each participant, reduced to the fields that an analysis uses.
+/// Plans the trials of simulated participants, reduced to the fields that an analysis uses.
 
 #include <cstdint>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace study {
 
-/// The factors of a design, in file order.
+/// The levels of a design's factors, in the order of the protocol's file.
 struct ShownFactors {
   explicit ShownFactors(const Design& design);
 
@@ -18,22 +18,23 @@ struct ShownFactors {
     int scene = 0, n_star = 0, method = 0;
   };
   std::vector<std::string> scenes, n_stars;
-  std::vector<std::string> methods;            ///< with their level if effects are a factor: treatment_name()
-  std::vector<Place> cells;                    ///< as Design::cells
+  std::vector<std::string> methods;            ///< treatment_name(): method, and its level of effects
+  std::vector<Place> cells;                    ///< scene, n_* and method of each of Design::cells
   std::vector<std::string> effects;            ///< levels of the factor; empty if effects are not a factor
-  std::vector<stats::FactorPlace> treatments;  ///< of `methods`: level of effects, and method
+  std::vector<stats::FactorPlace> treatments;  ///< effects and method of each of `methods`
 };
 
 struct ShownTrial {
-  int participant = 0;  ///< 0-based
-  int first = 0;        ///< cell
+  int participant = 0;  ///< number of the participant, from 0
+  int first = 0;        ///< cell of the only or first stimulus
   int second = -1;      ///< cell of the second interval, or -1
   int position = 0;
-  int period = 0;  ///< as stats::MethodScore::period
+  int period = 0;  ///< see stats::MethodScore::period
 };
 
-/// Trials of blocks of kind stimulus for n participants. They take the assignment's slots in turn, each with
-/// the plan that `vip-study run` would make with this seed. The first m of n participants form a study of m.
+/// Trials of the blocks of kind stimulus for n participants. Participants take the slots of the order
+/// assignment in turn, and each has the plan that `vip-study run` makes with this seed. The plan of a
+/// participant does not depend on n.
 std::vector<ShownTrial> planned_trials(const Protocol& protocol, std::uint64_t seed, int n);
 
 }  // namespace study

@@ -12,56 +12,57 @@
 
 namespace study {
 
-/// Consecutive studies. A study is identified by its number, whichever process simulates it and with which
-/// others.
+/// Consecutive studies, from number `first` on. A study's number alone fixes its random numbers, in any
+/// process.
 struct StudyRange {
   int first = 0, count = 0;
 };
 
-/// Runs `simulate` for each study, on all threads, in any order, with a progress bar. The first exception
-/// stops it and is rethrown.
+/// Calls `simulate` with each study's number, on all threads and in any order, and shows a progress bar.
+/// After an exception no further study begins, and the exception is rethrown.
 void for_each_study(StudyRange studies, const std::string& label, const std::function<void(int)>& simulate);
 
-/// A figure and its Monte-Carlo standard error.
+/// A value estimated by simulation and its Monte-Carlo standard error.
 struct Estimated {
   double value = 0, se = 0;
 };
 
-/// The share k of n. The error is that of (k + 1) of (n + 2), so that it is never 0.
+/// The share k / n. Its standard error is computed for the share (k + 1) / (n + 2) and so is never 0.
 Estimated share_of(std::int64_t k, int n);
-/// Mean of the values, summed in the order given; at least two.
+/// Mean of at least two values.
 Estimated mean_of(std::span<const double> values);
-/// Sample quantile; its error is half the distance between the order statistics one binomial standard
-/// deviation to either side. At least two values.
+/// Sample quantile of at least two values. Its standard error is half the distance between two order
+/// statistics: those one binomial standard deviation of the rank below and above.
 Estimated quantile_of(std::span<const double> values, double share);
 
-/// Counts over simulated studies of Task 1 or 2. Counts are whole numbers, so sums depend neither on their
-/// order nor on which process counted them.
+/// Counts of one test over simulated studies of Task 1 or 2. All are whole numbers, so a sum depends neither
+/// on its order nor on the processes that counted.
 struct TestCount {
-  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;  ///< studies
-  std::int64_t estimates = 0;                                         ///< studies with an estimate
-  std::int64_t estimate_units = 0;                                    ///< their sum, in 1e-9
-  int participants_least = 1 << 30, participants_most = 0;            ///< participants who gave both answers
+  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;  ///< studies; see TestPoint
+  std::int64_t estimates = 0;                                         ///< number of studies with an estimate
+  std::int64_t estimate_units = 0;                          ///< sum of the estimates in units of 1e-9
+  int participants_least = 1 << 30, participants_most = 0;  ///< participants who gave both answers
 
   void add(const TestCount& other);
-  double mean_estimate() const;  ///< 0 without an estimate
+  double mean_estimate() const;  ///< mean of the estimates; 0 without an estimate
 };
 
 struct HypothesisCount {
-  std::int64_t supported = 0, any = 0, any_false = 0, paper = 0;  ///< studies, as HypothesisPoint
+  std::int64_t supported = 0, any = 0, any_false = 0, paper = 0;  ///< numbers of studies; see HypothesisPoint
   std::vector<TestCount> tests;
 
-  /// Adds counts of the same hypothesis.
+  /// Adds counts of the same hypothesis over other studies.
   void add(const HypothesisCount& other);
 };
 
-/// Indexed by number of participants as PowerRequest::n, then by hypothesis in the order of the worlds.
+/// First index: number of participants, as in PowerRequest::n. Second index: hypothesis, in the order of
+/// worlds and their scenarios.
 using TaskCounts = std::vector<std::vector<HypothesisCount>>;
 
-/// Counts of one study. claims: for each test, true if its claim is true.
+/// Counts of one study. `claims`: for each test, true if the test's claim is true in the simulated world.
 HypothesisCount count_hypothesis(const stats::Hypothesis& hypothesis, const std::vector<bool>& claims);
 
-/// Adds counts of the same request.
+/// Adds counts of the same request over other studies.
 void add(TaskCounts& sum, const TaskCounts& other);
 
 }  // namespace study

@@ -20,17 +20,18 @@ namespace {
 using stats::Alternative;
 using stats::HypothesisKind;
 
-/// Tolerance for truths, which are sums of decimal fractions.
+/// Tolerance when a truth is compared with a margin: truths are sums of decimal fractions and have rounding
+/// errors.
 constexpr double rounding = 1e-9;
 
 std::optional<double> value_of(const stats::Result<double>& result) {
   return result ? std::optional(*result) : std::nullopt;
 }
 
-/// True if a higher score is better.
+/// True if a higher score of the test's scale is better.
 bool higher_is_better(const stats::HypothesisTest& test) { return test.score == "realism"; }
 
-/// True if the test's claim is true.
+/// True if the test's claim is true in the simulated world, whose difference or preference is `truth`.
 bool claim_is_true(HypothesisKind kind, const stats::HypothesisTest& test, double truth) {
   const double better = higher_is_better(test) ? truth : -truth;
   switch (kind) {
@@ -46,14 +47,15 @@ bool claim_is_true(HypothesisKind kind, const stats::HypothesisTest& test, doubl
   return truth > 0.5 + rounding;
 }
 
-/// Power of a test with this true difference (or preference for `a`) at n participants: p < alpha in the
-/// direction claimed. For Task 1 as if answers were continuous. Empty for the mixed model and for levels of
-/// effects, which have no formula.
+/// Power of a test at n participants by a formula: the probability of p < alpha in the direction claimed.
+/// `truth`: true difference, or true preference for a. For Task 1 the formula assumes continuous answers.
+/// Empty without a formula: mixed model, levels of effects, interval bias.
 std::optional<double> closed_form_power(const PowerRequest& request, const stats::Hypothesis& hypothesis,
                                         const stats::HypothesisTest& test, double truth, int n) {
   const bool by_model = request.plan.plan.tests == stats::ScoreTests::Mixed;
   if (by_model && hypothesis.kind != HypothesisKind::Preference) return {};
-  // The claimed side of a symmetric two-sided test is the one-sided test at half the level.
+  // A symmetric two-sided test rejects in the claimed direction exactly if the one-sided test at half its
+  // level does.
   const double level = (hypothesis.one_sided ? 1 : 0.5) * hypothesis.alpha, margin = test.margin.value_or(0);
   const double sd = higher_is_better(test) ? request.sd_realism : request.sd_sickness;
   const double better = higher_is_better(test) ? truth : -truth;
@@ -68,13 +70,14 @@ std::optional<double> closed_form_power(const PowerRequest& request, const stats
     case HypothesisKind::Preference:
       break;
   }
-  const bool of_shares = !request.protocol.design.effects.empty();  // by t, not exactly
+  // Preferences for levels of effects are tested by a t test of shares, for which no formula is computed.
+  const bool of_shares = !request.protocol.design.effects.empty();
   if (request.interval_bias != 0 || of_shares) return {};
   const auto power = stats::binomial_power(n, truth, 0.5, level, Alternative::Greater);
   return power ? std::optional(power->power) : std::nullopt;
 }
 
-/// One hypothesis of one scenario. The analysis itself supplies its texts and tests.
+/// One hypothesis of one scenario, with the truth of each of its tests and if each test's claim is true.
 struct Judged {
   const Scenario* scenario = nullptr;
   stats::Hypothesis hypothesis;
@@ -82,7 +85,7 @@ struct Judged {
   std::vector<bool> claims;
 };
 
-/// True difference a - b, or true preference for a.
+/// Truth of a test in the scenario: the true difference a - b, or the true preference for a.
 double truth_of(const Scenario& scenario, const ShownFactors& factors, const stats::HypothesisTest& test) {
   if (!factors.effects.empty()) return effect_truth(scenario, factors, test);
   const auto index = [](const std::vector<std::string>& list, const std::string& item) {
@@ -97,7 +100,7 @@ double truth_of(const Scenario& scenario, const ShownFactors& factors, const sta
   return means[row + a] - means[row + b];
 }
 
-/// Answers of participants 0 to n - 1; `answers` is ordered by participant.
+/// The answers of participants 0 to n - 1. `answers` must be ordered by participant.
 template <class Answer>
 std::span<const Answer> of_first(const std::vector<Answer>& answers, int n) {
   const auto end = std::partition_point(answers.begin(), answers.end(),
@@ -141,7 +144,7 @@ class Simulation {
   }
 
  private:
-  /// Analyses an empty study, which gives every hypothesis and its tests.
+  /// Fills judged_. The hypotheses and their tests come from the analysis of a study without answers.
   void prepare() {
     for (const auto& world : worlds_) {
       for (const auto& scenario : world.scenarios) {
@@ -161,7 +164,7 @@ class Simulation {
     }
   }
 
-  /// All answers of one study in one scenario, by participant.
+  /// All answers of one study in one scenario, ordered by participant.
   struct Answers {
     Task1Answers task1;
     std::vector<stats::PairChoice> task2;
@@ -173,7 +176,7 @@ class Simulation {
     return {answer_task1(trials, factors_, scenario, scatter_, key), {}};
   }
 
-  /// The scenario's hypotheses for the first n participants.
+  /// Tests the scenario's hypotheses on the answers of the first n participants.
   std::vector<stats::Hypothesis> analyse(const Scenario& scenario, const Answers& answers, int n) const {
     auto all = request_.protocol.design.pairs ? analyse_task2(answers, n) : analyse_task1(answers, n);
     std::erase_if(all, [&](const stats::Hypothesis& one) {
@@ -202,7 +205,7 @@ class Simulation {
     return stats::task2_hypotheses(pairs, factors_.methods, plan, "");
   }
 
-  /// Zero counts.
+  /// Counts of 0 for every hypothesis.
   std::vector<HypothesisCount> none() const {
     std::vector<HypothesisCount> out;
     for (const auto& one : judged_) out.push_back({.tests = std::vector<TestCount>(one.claims.size())});
@@ -277,7 +280,7 @@ class Simulation {
     return out;
   }
 
-  /// The smallest n from which on the requested power is always reached.
+  /// The smallest n such that the requested power is reached at this n and at every larger requested n.
   template <class Power>
   std::optional<int> lasting(Power power) const {
     std::optional<int> out;

@@ -1,6 +1,6 @@
 #pragma once
-/// Power of H1 to H6: studies on the protocol's own plan, answered by simulated people and analysed as real
-/// data are.
+/// Computes the power of H1 to H6 (or of levels of effects). Studies with the protocol's plan are answered by
+/// simulated people and analysed like real data.
 
 #include <optional>
 #include <string>
@@ -12,43 +12,45 @@
 
 namespace study {
 
-/// A test at one number of participants.
+/// One test at one number of participants.
 struct TestPoint {
-  Estimated holds;        ///< share of studies in which it holds after Holm
-  Estimated uncorrected;  ///< p < alpha in the direction claimed, without Holm
-  Estimated against;      ///< significant after Holm in the other direction
+  Estimated holds;        ///< share of studies in which the test holds after Holm's correction
+  Estimated uncorrected;  ///< share with p < alpha in the direction claimed, without correction
+  Estimated against;      ///< share in which it is significant in the other direction after Holm's correction
   Estimated refused;      ///< share of studies in which the test has no p
-  /// Power of the uncorrected test for normal differences (Task 1) or exactly (Task 2). Empty if the plan
-  /// gives different studies different numbers of pairs, or with interval bias.
+  /// Power of the uncorrected test by a formula, for normal differences (Task 1) or exactly (Task 2). Empty
+  /// if studies differ in the number of participants with both answers, for the mixed model, for levels of
+  /// effects and with interval bias.
   std::optional<double> closed_form;
-  double mean_estimate = 0;  ///< mean difference of answers, or mean share chosen, over studies with an
-                             ///< estimate
-  int participants_least = 0, participants_most = 0;  ///< participants who gave both answers
+  double mean_estimate = 0;  ///< mean over studies of the estimated difference, or share that chose a
+  /// Smallest and largest number of participants with both answers in a study.
+  int participants_least = 0, participants_most = 0;
 };
 
 struct TestPower {
   std::string label, score, n_star, a, b;
   double truth = 0;         ///< true difference a - b, or true preference for a
-  bool claim_true = false;  ///< true if the test's claim is true
+  bool claim_true = false;  ///< true if the test's claim is true in the world
   std::optional<double> margin;
-  std::vector<TestPoint> curve;    ///< indexed as PowerRequest::n
-  std::optional<int> n_for_power;  ///< see HypothesisPower
+  std::vector<TestPoint> curve;    ///< one point for each of PowerRequest::n
+  std::optional<int> n_for_power;  ///< as in HypothesisPower, for `holds`; empty if the claim is false
 };
 
 struct HypothesisPoint {
-  Estimated supported;  ///< every test holds under the plan's rule
-  Estimated any;        ///< at least one test holds after Holm
-  Estimated any_false;  ///< at least one test with a false claim holds after Holm: the family's error rate
-  Estimated paper;      ///< the paper's own, uncorrected rule would have confirmed it
+  Estimated supported;  ///< share of studies in which every test holds under the plan's rule
+  Estimated any;        ///< share in which at least one test holds after Holm's correction
+  Estimated any_false;  ///< share in which a test with a false claim holds after Holm's correction:
+                        ///< familywise error rate
+  Estimated paper;      ///< share in which the paper's uncorrected rule supports the hypothesis
 };
 
 struct HypothesisPower {
   std::string id, title, rule, paper_rule;
   stats::HypothesisKind kind = stats::HypothesisKind::Superiority;
-  int claims_true = 0;  ///< number of its tests whose claim is true
+  int claims_true = 0;  ///< number of tests whose claim is true in the world
   std::vector<HypothesisPoint> curve;
-  /// The smallest n from which on `supported` reaches the requested power at every requested n; empty if the
-  /// claim is not wholly true or the power is not reached.
+  /// The smallest requested n such that `supported` reaches the requested power at this n and every larger
+  /// one. Empty if no such n exists or if a test's claim is false.
   std::optional<int> n_for_power;
   std::vector<TestPower> tests;
 };
@@ -58,15 +60,15 @@ struct WorldPower {
   std::vector<HypothesisPower> hypotheses;
 };
 
-/// Task 1 or 2: simulates these studies with each number of participants. The result does not depend on the
-/// number of threads. Studies of different size share their first participants, and worlds share their random
-/// numbers, so that curves are smooth and differences between worlds precise.
+/// Task 1 or 2: simulates `studies` with each number of participants. The result does not depend on the
+/// number of threads. A study of 10 is the first 10 participants of the study of 20, which makes curves over
+/// n smooth. All worlds use the same random numbers, which makes differences between worlds precise.
 TaskCounts count_task_studies(const PowerRequest& request, StudyRange studies);
 
 /// Summarises the counts over all studies of the request.
 std::vector<WorldPower> task_power(const PowerRequest& request, const TaskCounts& counts);
 
-/// Simulates and summarises, in one process.
+/// Simulates all studies of the request and summarises the counts.
 std::vector<WorldPower> simulate_task_power(const PowerRequest& request);
 
 }  // namespace study

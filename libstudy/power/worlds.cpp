@@ -12,20 +12,22 @@ namespace study {
 
 namespace {
 
-/// From worst to best: as H1 and H4 to H6 claim, with LoRes, which they do not name, put first.
+/// Methods from worst to best. H1 and H4 to H6 claim this order; LoRes, which they do not mention, comes
+/// first.
 constexpr std::array<const char*, 5> methods_by_rank{"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"};
 
-/// Index in methods_by_rank, or -1.
+/// Index of the method in methods_by_rank; -1 if it is not there.
 int rank_of(const std::string& method) {
   const auto* const found = std::find(methods_by_rank.begin(), methods_by_rank.end(), method);
   return found == methods_by_rank.end() ? -1 : static_cast<int>(found - methods_by_rank.begin());
 }
 
-using Qualities = std::array<double, 5>;  // by rank
+using Qualities = std::array<double, 5>;  // quality of each method in methods_by_rank
 
 constexpr double middle_of_realism = 4, middle_of_sickness = 1.5;
 
-/// Means that differ by `unit` points for each unit of quality; cybersickness decreases with quality.
+/// Scenario of Task 1. A method's mean differs from the middle of the scale by its quality times unit_realism
+/// points, or minus its quality times unit_sickness points.
 Scenario by_quality(const ShownFactors& factors, std::vector<std::string> hypotheses,
                     const Qualities& quality, double unit_realism, double unit_sickness) {
   Scenario out{std::move(hypotheses), {}, {}, {}};
@@ -40,10 +42,10 @@ Scenario by_quality(const ShownFactors& factors, std::vector<std::string> hypoth
   return out;
 }
 
-/// The paper gives no means for its Fig. 9, only which differences were significant and their direction.
-/// These means are our reading of its text: Ours and Ours-TSp above FovFluid; Ours below HiRes in realism;
-/// Ours-TSp above HiRes at 16k, slightly below and with more cybersickness at 32k; Ours-TSp nowhere worse
-/// than Ours in realism.
+/// Assumed mean answers of the paper's Task 1. The paper prints no means for its Fig. 9, only the direction
+/// of each significant difference. The means follow its text: Ours and Ours-TSp above FovFluid; Ours below
+/// HiRes in realism; Ours-TSp above HiRes at 16k, slightly below HiRes and with more cybersickness at 32k;
+/// Ours-TSp never below Ours in realism.
 struct PaperMeans {
   const char* n_star;
   Qualities realism, sickness;
@@ -109,7 +111,7 @@ World task1_world(const PowerRequest& request, const ShownFactors& factors, cons
       {by_quality(factors, all, {-1, -1, 0, 0, 0}, d * request.sd_realism, d * request.sd_sickness)}};
 }
 
-/// The same preference for the better of any two methods.
+/// Preferences in which the better of any two methods (methods_by_rank) is chosen with probability p.
 std::vector<double> equal_preference(const ShownFactors& factors, double p) {
   std::vector<double> out;
   for (const auto& a : factors.methods) {
@@ -122,8 +124,9 @@ std::vector<double> equal_preference(const ShownFactors& factors, double p) {
   return out;
 }
 
-/// Choices of the first method by 26 participants. The first two follow from the p-values in the paper (.029,
-/// .002), the others are our reading of its text on Fig. 10; pairs that it omits follow the first.
+/// Number of the paper's 26 participants who chose a over b. The first two numbers follow from the p-values
+/// in the paper (.029, .002), the others from its text on Fig. 10. For any other pair 19 of 26 are assumed to
+/// choose the better method.
 struct PaperPreference {
   const char *a, *b;
   int chosen;
@@ -181,7 +184,7 @@ World task2_world(const PowerRequest& request, const ShownFactors& factors, cons
 
 namespace {
 
-/// Removes hypotheses about methods that the protocol does not show.
+/// Removes from the world the hypotheses about methods that the protocol does not show.
 void keep_shown(World& world, const PowerRequest& request) {
   const auto shown = hypotheses_of(request.protocol, request.plan.plan).claims;
   for (Scenario& scenario : world.scenarios) {

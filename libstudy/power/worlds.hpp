@@ -1,5 +1,5 @@
 #pragma once
-/// The assumed truth of a simulated study.
+/// The true effects that are assumed for simulated studies.
 
 #include <string>
 #include <vector>
@@ -9,21 +9,22 @@
 
 namespace study {
 
-/// One assumed truth, and the hypotheses evaluated under it.
+/// Assumed true means or preferences, and the hypotheses that are tested under them.
 struct Scenario {
-  std::vector<std::string> hypotheses;    ///< "H1", ...
-  std::vector<double> realism, sickness;  ///< Task 1: mean answer by n_* and method, row after row
-  std::vector<double> preferred;          ///< Task 2: methods by methods, P(row is chosen over column)
+  std::vector<std::string> hypotheses;    ///< ids: "H1" to "H6", or "effects"
+  std::vector<double> realism, sickness;  ///< Task 1: mean answers, row-major: row n_*, column method
+  std::vector<double> preferred;          ///< Task 2: P(row's method is chosen over column's), row-major
 };
 
 struct World {
   std::string id;     ///< "effect", "null", "margin" or "paper"
-  std::string words;  ///< what it assumes, in words
+  std::string words;  ///< the world's assumptions in words
   std::vector<Scenario> scenarios;
 };
 
-/// Worlds as PowerRequest::worlds names them; Task 1 or 2. base::Error if a world needs an effect that was
-/// not given, or the design has an n_* that the paper does not have.
+/// The worlds named in PowerRequest::worlds, for Task 1 or 2. base::Error if world "effect" is requested
+/// without an effect, if world "paper" is requested for an n_* that the paper lacks, or if the world does not
+/// exist for levels of effects.
 std::vector<World> make_worlds(const PowerRequest& request, const ShownFactors& factors);
 
 }  // namespace study

@@ -30,7 +30,7 @@ std::string hypothesis_text(const Json& hypothesis) {
   return out;
 }
 
-/// The text, with a line for each curve.
+/// Lines for PREREGISTRATION.txt: for each curve that the protocol's pilot fits, the level and the scale.
 std::string curves_text(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   std::string out;
   for (const auto& question : curve_questions(protocol)) {
@@ -41,13 +41,14 @@ std::string curves_text(const Protocol& protocol, const stats::AnalysisPlan& pla
   return out;
 }
 
-/// True if a protocol's session has a block of this kind.
+/// True if the protocol has a block of this kind.
 bool has_block(const Protocol& protocol, BlockKind kind) {
   return std::any_of(protocol.blocks.begin(), protocol.blocks.end(),
                      [&](const Block& block) { return block.kind == kind; });
 }
 
-/// The largest possible difference of two ratings of a trial.
+/// The largest possible difference between two ratings of a stimulus, over the protocol's scales except those
+/// on sickness.
 int widest_scale(const Protocol& protocol) {
   int out = 0;
   for (const auto& [block, question] : all_questions(protocol))
@@ -56,7 +57,7 @@ int widest_scale(const Protocol& protocol) {
   return out;
 }
 
-/// Keys of the plan that can have no effect, and why.
+/// Keys of the plan that have no effect in any of the protocols -> the reason.
 std::map<std::string, std::string> idle_rules(const std::vector<Protocol>& protocols,
                                               const stats::AnalysisPlan& plan) {
   const auto none = [&](auto holds) { return std::none_of(protocols.begin(), protocols.end(), holds); };
@@ -82,14 +83,15 @@ std::map<std::string, std::string> idle_rules(const std::vector<Protocol>& proto
   return out;
 }
 
-/// The result for sessions whose clock contradicts the order of the rows.
+/// Comparison of the bundle's date with first answers whose time contradicts the order of the database's
+/// rows.
 struct ByOrder {
-  bool known = true;  ///< for each of them the bundle is known to be older
+  bool known = true;  ///< true if the bundle is known to be older than each of these answers
   std::string text;
 };
 
-/// An impossible time shows that this session's clock was wrong, so the times of the rows before it count.
-/// For other contradictions it is unknown which time is wrong.
+/// If the answer's time is impossible, the session's clock was wrong, and the times of the rows before the
+/// answer decide. Otherwise it is unknown which of the two times is wrong.
 ByOrder judge_by_order(const std::string& frozen, const Json& used) {
   ByOrder out;
   for (const Json& one : used.value("doubtful_times", Json::array())) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Functions shared by freezing and comparing a preregistration.
+/// Functions used both to write a preregistration and to compare it with a study.
 
 #include <cstddef>
 #include <string>
@@ -14,22 +14,24 @@ namespace study::report {
 /// Largest size of a file of a bundle, in bytes.
 inline constexpr std::size_t largest_bundle_file = 1 << 24;
 
-/// The part of a hypothesis that preregistration fixes: no estimate, no p. Takes an entry of "hypotheses" of
-/// the results as well as the output of hypothesis_json(), so that both sides of a comparison use it.
+/// The fields of a hypothesis that preregistration fixes, thus without estimates and p values. `hypothesis`:
+/// output of hypothesis_json() when a bundle is written, an entry of "hypotheses" of the results when it is
+/// compared.
 base::Json fixed_part(const base::Json& hypothesis);
 
-/// plan.toml of a bundle. A rule that cannot act on anything these protocols show and ask is written as a
-/// comment that says why.
+/// Text of a bundle's plan.toml. A key that has no effect in any of the protocols is written as a TOML
+/// comment with the reason.
 std::string frozen_plan(const std::vector<Protocol>& protocols, const stats::AnalysisPlan& plan);
 
-/// The readable text, to be deposited with the hash. `untested`: "H1 of task1: the protocol does not show
-/// FovFluid".
+/// Text of a bundle's PREREGISTRATION.txt. `untested`: as returned by untested_claims(). `with_power`: true
+/// if the bundle holds power.json.
 std::string bundle_text(const std::vector<Protocol>& protocols, const stats::AnalysisPlan& plan,
                         const base::Json& hypotheses, const std::vector<std::string>& untested,
                         bool with_power, const std::string& frozen_utc);
 
-/// An entry of "times": tells if the bundle is older than the first answer of a part, by both clocks, or by
-/// the order of rows if these disagree. `used`: the part's entry of the results' study.protocols.
+/// An entry of "times": "frozen_before" is true if the bundle is older than the first answer to a protocol,
+/// and null if this is unknown. Times of answers decide, and for doubtful times the order of the database's
+/// rows. `used`: the protocol's entry in study.protocols of the results.
 base::Json time_json(const std::string& frozen_utc, const base::Json& used);
 
 }  // namespace study::report

@@ -14,14 +14,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = base::Json;
 
-/// Most lines of a changed protocol that the page quotes.
+/// Largest number of differing lines of a protocol that are quoted from each version.
 constexpr std::size_t most_lines = 12;
 
 [[noreturn]] void no_bundle(const fs::path& folder, const std::string& problem) {
   throw base::Error(folder.string(), problem, "give a folder that vip-stats preregister wrote");
 }
 
-/// File names by the hash that the manifest gives them.
+/// SHA-256 of each file by its name, from the text of MANIFEST.sha256. `folder`: named in errors.
 std::map<std::string, std::string> read_manifest(const std::string& text, const fs::path& folder) {
   std::map<std::string, std::string> out;
   std::istringstream lines(text);
@@ -34,7 +34,8 @@ std::map<std::string, std::string> read_manifest(const std::string& text, const 
   return out;
 }
 
-/// Deepest nesting in a bundle. Comparing or printing much deeper JSON would overflow the stack.
+/// Deepest nesting that is accepted in a bundle's JSON. To compare or print much deeper JSON would overflow
+/// the stack.
 constexpr int most_levels = 16;
 
 Json parsed(const std::string& bytes, const fs::path& file) {
@@ -53,7 +54,7 @@ bool has_texts(const Json& object, std::initializer_list<const char*> keys) {
          });
 }
 
-/// Checks that the fields that the comparison reads exist and are texts.
+/// base::Error unless about.json has the fields that the comparison reads, as texts.
 void check_about(const Json& about, const fs::path& file) {
   if (!has_texts(about, {"schema"}) || about["schema"] != "vip-preregistration/1")
     no_bundle(file, "is not of schema vip-preregistration/1");
@@ -90,14 +91,15 @@ std::string name_in_bundle(const Json& about, const std::string& sha256) {
   return "";
 }
 
-/// True if the study's protocol is in the bundle; adds the differences.
+/// True if the study's protocol is in the bundle. Otherwise adds its differences from the bundle's protocol
+/// of the same name.
 bool same_protocol(const Bundle& bundle, const ProtocolRow& used, bool pilot, Json& differences) {
   if (bundle.protocols.contains(used.sha256)) return true;
   const auto planned = std::find_if(bundle.protocols.begin(), bundle.protocols.end(), [&](const auto& entry) {
     return name_in_bundle(bundle.about, entry.first) == used.name;
   });
   if (planned == bundle.protocols.end()) {
-    // A pilot besides the tasks is exploratory and need not be in their bundle.
+    // A bundle of Task 1 or 2 need not hold the pilot, which is then exploratory.
     if (pilot) return false;
     differences.push_back("protocol " + used.name + " was not preregistered");
     return false;
@@ -112,8 +114,8 @@ bool same_protocol(const Bundle& bundle, const ProtocolRow& used, bool pilot, Js
   return false;
 }
 
-/// Adds differences between two parts, as "H2, margin: preregistered 0.5, tested 0.4"; false if there are
-/// any.
+/// Compares two objects key by key. Adds each difference, such as "H2, margin: preregistered 0.5, tested
+/// 0.4". Returns false if there is one.
 bool same_part(const std::string& name, const Json& planned, const Json& tested, Json& differences) {
   bool same = true;
   for (const auto& [key, value] : tested.items()) {
@@ -126,7 +128,8 @@ bool same_part(const std::string& name, const Json& planned, const Json& tested,
   return same;
 }
 
-/// The same for a hypothesis, test by test.
+/// Compares two fixed_part()s of one hypothesis, test by test. Adds each difference; returns false if there
+/// is one.
 bool same_hypothesis(Json planned, Json tested, Json& differences) {
   const std::string id = tested.at("id");
   std::map<std::string, Json> before;
@@ -151,7 +154,7 @@ bool same_hypothesis(Json planned, Json tested, Json& differences) {
   return same_part(id, planned, tested, differences) && same;
 }
 
-/// True if the hypotheses of a task were tested as planned; adds the differences.
+/// True if the hypotheses of a task were tested as the bundle plans. Adds each difference.
 bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& results, Json& differences) {
   bool same = true;
   std::map<std::string, Json> planned;
@@ -177,7 +180,8 @@ bool same_hypotheses(const Bundle& bundle, const std::string& task, const Json& 
   return same;
 }
 
-/// True if a pilot's curve was fitted at the level in the bundle's plan; adds the differences.
+/// True if the pilot's curve was fitted at the level of the bundle's plan, or if the plan has no level. Adds
+/// the difference.
 bool same_level(const Bundle& bundle, const Json& results, Json& differences) {
   const Json pilot = results.value("pilot", Json());
   if (!pilot.is_object() || !pilot.contains("question") || !pilot.at("level").is_number()) return true;

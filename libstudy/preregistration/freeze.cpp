@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = base::Json;
-using Files = std::map<std::string, std::string>;  ///< bytes by name
+using Files = std::map<std::string, std::string>;  ///< content of each file by its name
 
 std::vector<Protocol> read_protocols(const std::vector<fs::path>& paths) {
   std::vector<Protocol> out;
@@ -28,21 +28,22 @@ std::vector<Protocol> read_protocols(const std::vector<fs::path>& paths) {
     out.push_back(read_protocol(find_protocol(path)));
     for (std::size_t i = 0; i + 1 < out.size(); ++i) {
       if (out[i].name == out.back().name)
-        throw base::Error(path.string(), "has the name of another protocol, " + out[i].name,
-                          "give each protocol of a bundle a name of its own");
+        throw base::Error(path.string(), "has the same name as another protocol, " + out[i].name,
+                          "give each protocol of a bundle a different name");
     }
   }
   return out;
 }
 
-/// True if all hypotheses of a range, "H1" or "H1 to H3", are among `ids`.
+/// True if `ids` has all hypotheses of the range, which is written "H1" or "H1 to H3".
 bool all_among(const std::string& range, const std::set<std::string>& ids) {
   for (char number = range.at(1); number <= range.back(); ++number)
     if (!ids.contains(std::string("H") + number)) return false;
   return true;
 }
 
-/// Claims that none of the protocols tests.
+/// For each protocol, the hypotheses that it does not test, with the reason: "H1 of task1: ...". A hypothesis
+/// is omitted if another protocol tests it, unless this protocol tests none at all.
 std::vector<std::string> untested_of(const std::vector<Protocol>& protocols,
                                      const stats::AnalysisPlan& plan) {
   std::vector<stats::ShownClaims> shown;
@@ -60,7 +61,8 @@ std::vector<std::string> untested_of(const std::vector<Protocol>& protocols,
   return out;
 }
 
-/// The plan with the level of each curve: that of the plan, else that of the protocol.
+/// The plan with a level for each curve. A level that the plan lacks is taken from the protocol. base::Error
+/// if two protocols have different levels for one question.
 stats::AnalysisPlan with_levels(stats::AnalysisPlan plan, const std::vector<Protocol>& protocols) {
   const auto given = plan.levels;
   std::map<std::string, std::string> named_by;
@@ -117,16 +119,18 @@ Files contents(const BundleRequest& request) {
   return files;
 }
 
-/// A folder that is deleted unless keep() renames it to its final name.
+/// A new folder with a temporary name. keep() renames it to its final name; without keep() the destructor
+/// deletes it.
 class Draft {
  public:
   explicit Draft(const fs::path& out) : out_(out), path_(base::draft_name(out)) {
     std::error_code failed;
     if (out.has_parent_path()) fs::create_directories(out.parent_path(), failed);
-    // An existing folder or link of that name is refused: only a folder made here is written to.
+    // create_directory() returns false for an existing folder or link. It is refused, so that files are
+    // written only into a new folder.
     if (failed || !fs::create_directory(path_, failed))
-      throw base::Error(path_.string(), failed ? failed.message() : "is there already",
-                        "choose a folder that can be written");
+      throw base::Error(path_.string(), failed ? failed.message() : "exists already",
+                        "choose a folder in which you may create files");
   }
   ~Draft() {
     std::error_code ignored;
@@ -139,7 +143,7 @@ class Draft {
   void keep() {
     base::sync_folders(path_);
     if (!base::rename_durably(path_, out_))
-      throw base::Error(out_.string(), std::strerror(errno), "choose a folder that is not there yet");
+      throw base::Error(out_.string(), std::strerror(errno), "choose a folder that does not exist yet");
   }
 
  private:
@@ -155,7 +159,7 @@ std::vector<std::string> untested_claims(const BundleRequest& request) {
 std::string freeze_bundle(const BundleRequest& request, const fs::path& given) {
   const fs::path out = given.has_filename() ? given : given.parent_path();
   if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
-    throw base::Error(out.string(), "is there already, and a bundle is never written over",
+    throw base::Error(out.string(), "exists already, and a bundle is never overwritten",
                       "choose a new folder");
   const Files files = contents(request);
   std::string manifest;

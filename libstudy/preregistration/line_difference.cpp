@@ -22,7 +22,7 @@ std::vector<std::string> lines_of(std::string_view text) {
 
 LineDifference line_difference(std::string_view first, std::string_view second) {
   const auto a = lines_of(first), b = lines_of(second);
-  // common[i][j]: length of the longest common subsequence of a from i and b from j.
+  // common[i][j]: length of the longest common subsequence of a[i], a[i + 1], ... and b[j], b[j + 1], ...
   std::vector<std::vector<std::size_t>> common(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = a.size(); i-- > 0;) {
     for (std::size_t j = b.size(); j-- > 0;)

@@ -1,5 +1,5 @@
 #pragma once
-/// Line-by-line difference of two texts.
+/// Compares two texts line by line.
 
 #include <string>
 #include <string_view>
@@ -8,10 +8,11 @@
 namespace study::report {
 
 struct LineDifference {
-  std::vector<std::string> only_first, only_second;  ///< in their order; blank lines are ignored
+  std::vector<std::string> only_first, only_second;  ///< lines in the order of the text, without blank lines
 };
 
-/// By the longest common subsequence of lines; for texts of up to a few thousand lines.
+/// Lines outside the longest common subsequence of the two texts' lines. Time and memory grow with the
+/// product of their numbers of lines, so texts should have at most a few thousand.
 LineDifference line_difference(std::string_view first, std::string_view second);
 
 }  // namespace study::report

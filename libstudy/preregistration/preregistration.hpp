@@ -1,6 +1,6 @@
 #pragma once
-/// Preregistration: a folder (bundle) with protocols, hypotheses and rules under one SHA-256, fixed before
-/// the data.
+/// Writes and reads preregistrations. A preregistration is a folder (bundle) with protocols, hypotheses and
+/// rules, identified by one SHA-256 and written before data are collected.
 
 #include <filesystem>
 #include <map>
@@ -21,31 +21,32 @@ struct BundleRequest {
   std::optional<std::filesystem::path> power;  ///< JSON of `vip-stats power`
 };
 
-/// Writes the folder `out`: a copy of each protocol, hypotheses.json (H1 to H6 as far as the protocols test
-/// them, each test with its margin), plan.toml (margins, level, exclusion rules, seed), power.json if given,
-/// about.json, the readable PREREGISTRATION.txt, and MANIFEST.sha256 for sha256sum -c. Returns the bundle's
-/// hash: the SHA-256 of MANIFEST.sha256. base::Error if `out` is not empty, a protocol cannot be read or two
-/// have the same name; nothing is then left behind.
+/// Writes the folder `out` with these files: a copy of each protocol; hypotheses.json (those of H1 to H6 that
+/// the protocols test, each test with its margin); plan.toml (margins, levels, exclusion rules, seed);
+/// power.json if requested; about.json; PREREGISTRATION.txt for people; MANIFEST.sha256 for `sha256sum -c`.
+/// Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and no folder is left, if
+/// `out` exists and is not an empty folder, if a protocol cannot be read, or if two have the same name.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
-/// Hypotheses of the built-in analyses that these protocols do not test, each with the reason: "H1 of task1:
+/// The hypotheses of H1 to H6 that the requested protocols do not test, each with the reason: "H1 of task1:
 /// the protocol does not show FovFluid".
 std::vector<std::string> untested_claims(const BundleRequest& request);
 
-/// A bundle as it is on disk now.
+/// A bundle as read from disk.
 struct Bundle {
-  std::string sha256;                ///< of the manifest
-  std::vector<std::string> altered;  ///< files that are missing or do not have the manifest's hash
+  std::string sha256;                ///< SHA-256 of MANIFEST.sha256: the bundle's hash
+  std::vector<std::string> altered;  ///< files that are missing or whose SHA-256 differs from the manifest
   base::Json about, hypotheses;
-  std::map<std::string, std::string> protocols;  ///< text by SHA-256 of the protocol
+  std::map<std::string, std::string> protocols;  ///< text of each protocol by its SHA-256
   PlanInForce plan;
 };
 
-/// base::Error if the folder is not a bundle.
+/// Reads a bundle and checks its files against the manifest. base::Error if the folder is no bundle.
 Bundle read_bundle(const std::filesystem::path& folder);
 
-/// "preregistration" of the results (docs/report.md): tells if each task's protocol and hypotheses are those
-/// of the bundle, and lists differences. `results`: from study_results() under the bundle's plan.
+/// The entry "preregistration" of the results (docs/report.md): for each task, true if its protocol and
+/// hypotheses are those of the bundle and the bundle is older than the answers; and all differences.
+/// `protocols`: the database's protocols. `results`: from study_results() with the bundle's plan.
 base::Json compare_with_bundle(const Bundle& bundle, const std::vector<ProtocolRow>& protocols,
                                const base::Json& results);
 

@@ -1,4 +1,5 @@
-/// Checks names that other parts must know. An unknown name would otherwise be noticed only after the study.
+/// Checks names of methods and questions that libsim and the analyses must know. Without the check, an
+/// unknown name could stay unnoticed until after the study.
 #include <algorithm>
 #include <charconv>
 
@@ -10,7 +11,7 @@ namespace study {
 
 namespace {
 
-/// Blank names are refused by the readers of the design.
+/// True for a blank name. The readers of the design refuse blank names.
 bool is_blank(const std::string& word) { return word.find_first_not_of(" \t\r\n") == std::string::npos; }
 
 bool among(const std::vector<std::string>& known, const std::string& word) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The stimuli of a study, their combinations and their assignment to participants.
+/// The design of a study: its stimuli, their order and their assignment to participants.
 
 #include <optional>
 #include <string>
@@ -11,42 +11,43 @@
 
 namespace study {
 
-/// Names a stimulus; libstudy does not interpret these words.
+/// Names a stimulus in the words of the protocol. The parsers of libsim interpret these words.
 struct StimulusSpec {
-  std::string scene;         ///< scene file
-  std::string method;        ///< "HiRes", ...
-  std::string n_star;        ///< "32k"
-  std::string effects = {};  ///< level of the factor effects: EffectSet::name; empty: not a factor
+  std::string scene;         ///< path of the scene file
+  std::string method;        ///< name of the method, such as "HiRes"
+  std::string n_star;        ///< number of particles if all were at the coarsest level, such as "32k"
+  std::string effects = {};  ///< level of effects: EffectSet::name; empty: the design does not vary effects
 
   bool operator==(const StimulusSpec&) const = default;
 };
 
-/// Name of the treatment compared within a group: "Ours", or "Ours, foam" if effects are a factor.
+/// Name of the treatment compared within a group: "Ours", or "Ours, foam" if the design varies effects.
 std::string treatment_name(const StimulusSpec& what);
 
-/// Levels of the factor effects without a table: no effect at all, and the effects of the scene file.
+/// Levels of the factor effects that need no [[design.effect_set]]: no effects, and the effects of the scene
+/// file.
 inline constexpr const char* no_effects_level = "none";
 inline constexpr const char* scene_effects_level = "scene";
 
-/// A level of the factor effects.
+/// A level of the factor effects: its name and its effects.
 struct EffectSet {
   std::string name;
-  /// Description: "keeps foam; air_drag rate_per_s = 2"; "no effects"; "those of the scene's file". libsim
-  /// reads kinds and numbers from the protocol's text.
+  /// Description for messages, such as "keeps foam; air_drag rate_per_s = 2" or "no effects". The effects
+  /// themselves are read from the protocol's text (effects_of()).
   std::string words;
 };
 
-/// True if effects are a factor and this level is not "none".
+/// True if the design varies effects and the level of this stimulus is not "none".
 inline bool has_effects(const StimulusSpec& what) {
   return !what.effects.empty() && what.effects != no_effects_level;
 }
 
-/// Source of the moments of the frame rate.
+/// Source of the mean and standard deviation (moments) of each cell's frame rate.
 enum class TimingSource {
-  Settings,  ///< mean_fps and sd_fps of the design (pilot)
-  Native,    ///< as fast as the method runs: no schedule, the setting's moments are 0
+  Settings,  ///< all pairs from mean_fps and sd_fps of the design, as in the pilot
+  Native,    ///< as fast as the method runs: no schedule, and the moments in Cell::setting are 0
   Equal,     ///< the same mean and SD of the frame rate for all cells
-  Table2,    ///< each cell's published moments (paper, Table 2), also used for tau
+  Table2,    ///< moments by cell from [[design.moments]], such as those of the paper's Table 2
   Profiles   ///< each cell's own timing profile (format 3)
 };
 
@@ -59,51 +60,53 @@ struct DesignFactor {
   std::vector<std::string> levels;  ///< ids, in file order; at least two
 };
 
-/// One combination of the factors.
+/// A cell of the design: one stimulus at one setting of the frame rate.
 struct Cell {
   StimulusSpec stimulus;
-  FpsSetting setting;            ///< moments 0 under TimingSource::Native
+  FpsSetting setting;            ///< mean and standard deviation are 0 under TimingSource::Native
   std::vector<int> levels = {};  ///< by factor: index into DesignFactor::levels; empty in formats 1 and 2
 };
 
 enum class TrialOrder {
-  Shuffle,     ///< every permutation equally likely
-  Latin,       ///< rows of a Latin square, dealt in turn: each trial equally often at each position
-  Williams,    ///< rows of a Williams design: first-order carry-over balanced
-  Constrained  ///< shuffled until no neighbours share a level of `never_adjacent`
+  Shuffle,     ///< random; every permutation is equally likely
+  Latin,       ///< rows of a Latin square in turn: each trial equally often at each position
+  Williams,    ///< rows of a Williams design, which balances first-order carry-over
+  Constrained  ///< shuffled until no neighbouring trials share a level of a factor in `never_adjacent`
 };
 
 enum class Assignment {
-  Balanced,    ///< groups and rows are dealt by quota over all participants but dropouts
-  PaperRandom  ///< independent draws, as the paper did
+  Balanced,    ///< groups and rows are assigned by quotas over all participants except dropouts
+  PaperRandom  ///< groups and orders are drawn at random for each participant, as in the paper
 };
 
 /// Cells are grouped by (scene, n_star), in format 3 by the levels of the between-subject factors, with
-/// equally many in each group. A participant sees `groups` groups, one after another, and within each all its
-/// cells or all pairs of its cells.
+/// equally many in each group. A participant sees `groups` groups, one after
+/// another. In each group the participant sees all cells, or all pairs of cells.
 struct Design {
-  std::vector<Cell> cells;            ///< grouped, in file order; a trial names one or two by index
+  std::vector<Cell> cells;            ///< by group, in file order; trials name cells by their index
   std::vector<DesignFactor> factors;  ///< of format 3, in file order; empty in formats 1 and 2
-  std::vector<EffectSet> effects;     ///< levels in file order; empty: not a factor
-  bool paint_temperature = false;  ///< on the water of every cell; libsim checks that each has a temperature
+  std::vector<EffectSet> effects;     ///< levels in file order; empty: the design does not vary effects
+  bool paint_temperature = false;     ///< on the water of every cell, which then needs the effect heat
   TimingSource timing = TimingSource::Settings;
-  bool pairs = false;  ///< a trial shows two cells; all unordered pairs of a group
+  bool pairs =
+      false;  ///< true: each trial shows two cells; without `standard` all unordered pairs of a group
   /// Two-interval trials of format 3: each other cell is paired with the standard of its group. `pairs` is
   /// true then. By within-subject factor: index of the standard's level.
   std::optional<std::vector<int>> standard;
   int repetitions = 1;  ///< trials of each cell, or pair, in a session; more than 1 only in format 3
-  int groups = 1;       ///< per participant: different scenes, and different n_star as far as possible
+  int groups = 1;  ///< groups per participant: with different scenes, and different n_star as far as possible
   TrialOrder order = TrialOrder::Shuffle;
-  /// Constrained: "method", "effects", "mean_fps" or "sd_fps"; in format 3 names of factors.
+  /// Factors for TrialOrder::Constrained: "method", "effects", "mean_fps" or "sd_fps"; in format 3 their
+  /// names.
   std::vector<std::string> never_adjacent;
   Assignment assignment = Assignment::Balanced;
 };
 
-/// The cells of each group, as indices, in file order.
+/// For each group, in file order, the indices of its cells in Design::cells.
 std::vector<std::vector<int>> cell_groups(const Design& design);
 
-/// Number of trials of one group: its cells, or its pairs of cells, times the repetitions. Equal for all
-/// groups of a file.
+/// Number of trials of one group: the number of its cells, or of its pairs of cells, times the repetitions.
+/// All groups of a design have equally many trials.
 int trials_of_group(const Design& design);
 
 /// The pairs of cells of one group that two-interval trials show, in file order: all unordered pairs, or

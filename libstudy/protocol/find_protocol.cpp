@@ -30,7 +30,7 @@ std::vector<std::string> shipped_names(const fs::path& folder) {
 fs::path find_protocol(const fs::path& named) {
   std::error_code ignored;
   const bool bare = !named.has_parent_path() && (named.extension().empty() || named.extension() == ".toml");
-  // A folder of that name is more likely a study's output than a protocol.
+  // A folder with a protocol's name is more likely a study's output than a protocol.
   if (!bare || (fs::exists(named, ignored) && !fs::is_directory(named, ignored)))
     return base::find_input(named);
   const fs::path folder = base::resource("protocols");

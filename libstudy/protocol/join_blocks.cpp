@@ -11,7 +11,8 @@ namespace {
 
 using Tables = std::vector<base::TomlTable>;
 
-/// Scales whose questions have the same ids in every block; the reader gives no other question such an id.
+/// True for SSQ and FMS. Their questions have the same ids in every block, and no other question may have
+/// these ids.
 bool is_scale_of_its_own(BlockKind kind) { return kind == BlockKind::Ssq || kind == BlockKind::Fms; }
 
 void check_ids(const Tables& tables, const std::vector<Block>& blocks) {
@@ -41,7 +42,7 @@ void check_fms(const Tables& tables, const std::vector<Block>& blocks) {
   }
 }
 
-/// Checks that questions with `accept` come before anything is shown.
+/// Checks that all questions with `accept` come before the first block with trials.
 void check_accepts(const Tables& tables, const std::vector<Block>& blocks) {
   bool shown = false;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -59,7 +60,7 @@ struct Asked {
   const Question* question;
 };
 
-/// Questions by id; those of ssq and fms blocks are from the first such block.
+/// Questions by id; questions of ssq and fms blocks are taken from the first block of their kind.
 std::map<std::string, Asked> questions_by_id(const std::vector<Block>& blocks) {
   std::map<std::string, Asked> out;
   for (const Block& block : blocks) {
@@ -123,7 +124,8 @@ std::string stimulus_block(const std::vector<Block>& blocks) {
       ->id;
 }
 
-/// Practice, Repeat, Catch: resolves `like` and copies from that block.
+/// For a Practice, Repeat or Catch block: checks that `like` names the stimulus block. Practice and Repeat
+/// copy its steps and its interruption policy.
 void join_like(const base::TomlTable& table, const Design& design, std::vector<Block>& blocks,
                std::size_t index) {
   Block& block = blocks[index];

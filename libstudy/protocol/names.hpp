@@ -6,8 +6,8 @@
 
 namespace study {
 
-/// The methods that libsim implements. libstudy does not include libsim; a test of the programs compares both
-/// lists.
+/// Names of the methods that libsim implements. libstudy/protocol does not include libsim, so a test compares
+/// this list with libsim's.
 const std::vector<std::string>& method_names();
 
 /// Ids of questions that a program or a shipped analysis looks for: realism and the four items of

@@ -65,16 +65,17 @@ void read_order(const base::TomlTable& table, PacingRules& rules) {
   if (order == "trace") {
     rules.order = FrameOrder::Trace;
     rules.trace_rates = table.numbers("trace_fps", 0, base::positive);
-    if (rules.trace_rates.size() < 2) table.fail("trace_fps", "is too short", "give at least two rates");
+    if (rules.trace_rates.size() < 2)
+      table.fail("trace_fps", "has fewer than two rates", "give at least two rates");
   } else if (table.has("trace_fps")) {
     table.fail("trace_fps", "needs order = \"trace\"", "change the order or remove trace_fps");
   }
 }
 
-/// Refuses bounds that no list of intervals with these means can satisfy.
+/// Refuses bounds on the frame rate that contradict each other or the settings' means.
 void check_cuts(const base::TomlTable& table, const PacingRules& rules,
                 const std::vector<FpsSetting>& settings) {
-  // A relative margin for a limit that was written with a few digits, such as 333.333 for fps_min = 3.
+  // The relative margin accepts a limit that was written with a few digits, such as 333.333 for fps_min = 3.
   if (rules.max_interval_ms < 1000 / rules.fps_min * (1 - 1e-5)) {
     table.fail("max_interval_ms",
                "contradicts fps_min = " + shown(rules.fps_min) + ", which allows " +
@@ -87,12 +88,12 @@ void check_cuts(const base::TomlTable& table, const PacingRules& rules,
   for (const auto& setting : settings) {
     const bool below = setting.sd > 0 ? setting.mean <= rules.fps_min : setting.mean < rules.fps_min;
     if (below) {
-      table.fail("fps_min", "= " + shown(rules.fps_min) + " leaves no room for " + setting_name(setting),
+      table.fail("fps_min", "= " + shown(rules.fps_min) + " excludes the setting " + setting_name(setting),
                  "lower fps_min or remove the setting");
     }
     const double top = rules.fps_max.value_or(HUGE_VAL);
     if (setting.sd > 0 ? setting.mean >= top : setting.mean > top) {
-      table.fail("fps_max", "= " + shown(top) + " leaves no room for " + setting_name(setting),
+      table.fail("fps_max", "= " + shown(top) + " excludes the setting " + setting_name(setting),
                  "raise fps_max or remove the setting");
     }
   }

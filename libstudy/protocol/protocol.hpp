@@ -1,5 +1,5 @@
 #pragma once
-/// A study as described by its file: plain structs, checked and hashed.
+/// The content of a protocol file as plain structs. The readers check and hash the file.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,50 +15,50 @@
 
 namespace study {
 
-/// How a picture that is held for several display periods follows the head. Do not pool data of different
-/// modes.
+/// How a picture that a headset shows for several display periods moves when the head moves. Do not pool data
+/// of different modes.
 enum class Hold {
-  Image,      ///< it stays at the pose where it was drawn: the runtime reprojects the old picture
-  State,      ///< the fluid is frozen and redrawn from the new head pose
-  HeadLocked  ///< it moves with the head
+  Image,      ///< the runtime reprojects the picture from the head pose at which it was drawn
+  State,      ///< the fluid is frozen and redrawn from the current head pose
+  HeadLocked  ///< the picture moves with the head
 };
 
-/// "image", "state" or "head_locked".
+/// The word for `hold` in protocol files: "image", "state" or "head_locked".
 const char* hold_name(Hold hold);
 
-/// How a headset shows the stimuli of a study. A desktop ignores it.
+/// How a headset shows the stimuli of a study. A desktop display ignores these rules.
 struct HeadsetRules {
   Hold hold = Hold::Image;
-  /// Held pictures extend this far beyond the eyes' field of view, degrees on each side.
+  /// Under Hold::Image, pictures extend this far beyond the eyes' field of view on each side, degrees.
   double hold_margin_deg = 0;
   double world_scale = 1;            ///< metres in the room per metre of the scene
-  std::optional<double> refresh_hz;  ///< that the headset must have; none: any
+  std::optional<double> refresh_hz;  ///< refresh rate that the headset must have, Hz; none: any
 };
 
-/// In the file and in the database: block_kind_name(), e.g. "instructions".
+/// Kind of a block. Its word in protocol files and databases is block_kind_name(), such as "instructions".
 enum class BlockKind {
   Instructions,  ///< a text to be read
   Screening,     ///< questions that may exclude a person
-  Consent,       ///< a text with boxes to tick; asked before anything is stored
+  Consent,       ///< a text and the questions that give consent
   Demographics,  ///< questions, usually personal
-  Practice,      ///< trials that are flagged, never dropped
+  Practice,      ///< trials for practice: stored, with a flag
   Stimulus,      ///< the trials of the design
   Question,      ///< questions outside the trials
   Rest,          ///< a pause with a countdown that cannot be cut short
   Break,         ///< a longer pause, ended by the participant after `seconds` or later
   Black,         ///< a black screen
-  Repeat,        ///< trials shown again: test-retest
+  Repeat,        ///< trials of the design, shown again to measure test-retest reliability
   Catch,         ///< pages among the trials that test attention
   Ssq,           ///< Simulator Sickness Questionnaire (Kennedy et al. 1993)
   /// Targets that measure the eye tracker's accuracy. Skipped without a tracker or permission to record.
   GazeValidation,
   Fms,     ///< Fast Motion Sickness scale, 0 to 20 (Keshavarz and Hecht 2011), with a stop rule
-  Debrief  ///< the last text
+  Debrief  ///< the text at the end of the session
 };
 
-/// "instructions", "screening", ...
+/// The word for `kind` in protocol files: "instructions", "screening", ...
 std::string block_kind_name(BlockKind kind);
-/// True if its units are trials: Practice, Stimulus and Repeat.
+/// True for the kinds whose units are trials: Practice, Stimulus and Repeat.
 bool has_trials(BlockKind kind);
 
 /// One step of a trial. In the file: "black 3", "stimulus", "stimulus first", "stimulus second", "ask realism
@@ -67,37 +67,39 @@ enum class StepKind { Black, Stimulus, Ask, Rest };
 
 struct TrialStep {
   StepKind kind = StepKind::Stimulus;
-  double seconds = 0;             ///< Black, Rest
-  int interval = 0;               ///< Stimulus: 0, or 0 and 1 of a pair
-  std::vector<std::string> asks;  ///< Ask: ids of questions of any block
+  double seconds = 0;  ///< Black, Rest: duration
+  int interval = 0;    ///< Stimulus: 0 for the first or only stimulus of the trial, 1 for the second
+  std::vector<std::string> asks;  ///< Ask: ids of the asked questions, from any block
 
   bool operator==(const TrialStep&) const = default;
 };
 
-/// Policy for the trial that was interrupted, applied when the session is resumed. In the file: "resume",
-/// "restart_block", "invalidate". All earlier showings and answers stay in the database.
+/// Policy for an interrupted trial when its session is resumed. In the file: "resume", "restart_block",
+/// "invalidate". All earlier showings and answers stay in the database.
 enum class Interruption {
   Resume,        ///< the trial is shown again
   RestartBlock,  ///< all trials of its block are shown again, from the first
-  Invalidate     ///< the trial is left out, excluded as interrupted; the next one follows
+  Invalidate     ///< the trial is excluded as interrupted; the session continues with the next trial
 };
 
 struct Block {
   BlockKind kind = BlockKind::Instructions;
   std::string id;                   ///< unique in the protocol
-  std::string title;                ///< of a page; may be empty
-  std::string text;                 ///< of a page: plain, paragraphs separated by empty lines
-  double seconds = 0;               ///< Rest, Break, Black: length. Instructions, Debrief: least time
-  std::vector<Question> questions;  ///< of a page; Stimulus: asked in its steps
-  /// Practice, Repeat: trials. Catch: pages, at random places of `like`. GazeValidation: tries.
+  std::string title;                ///< heading of the page; may be empty
+  std::string text;                 ///< plain text of the page; empty lines separate paragraphs
+  double seconds = 0;               ///< Rest, Break, Black: length. Instructions, Debrief: shortest display
+  std::vector<Question> questions;  ///< asked on the block's page; Stimulus: by its steps
+  /// Practice, Repeat: number of trials. Catch: number of pages, at random positions in the block `like`.
+  /// GazeValidation: number of tries.
   int count = 0;
-  double extent_deg = 10;  ///< GazeValidation: offset of the outer targets, across and up
-  /// GazeValidation: bound on the mean over the targets; beyond it a try fails. None: any accuracy passes.
+  /// GazeValidation: horizontal and vertical angle from the middle target to the outer targets.
+  double extent_deg = 10;
+  /// GazeValidation: largest mean error over the targets with which a try passes. None: any error passes.
   std::optional<double> max_accuracy_deg;
   std::string like;              ///< Practice, Repeat, Catch: id of a Stimulus block
   std::vector<TrialStep> steps;  ///< Practice, Stimulus, Repeat: steps of each trial
   double between_groups_s = 0;   ///< Stimulus: a break before each group of the design but the first
-  Interruption on_interruption = Interruption::Resume;  ///< Practice and Repeat copy that of Stimulus
+  Interruption on_interruption = Interruption::Resume;  ///< Practice, Repeat: the policy of `like`
 };
 
 struct Protocol {
@@ -107,38 +109,41 @@ struct Protocol {
   std::string name;
   std::string version;
   std::string language;
-  int participants = 16;  ///< planned
+  int participants = 16;  ///< planned number
   Design design;
-  std::vector<Block> blocks;  ///< in the order of the session
+  std::vector<Block> blocks;  ///< in the order in which a session runs them
   PacingRules pacing;
   ContentRules content;
   TimingTolerance timing;
   HeadsetRules headset;
   bool accept_approximate = false;
-  /// Allows comparing stimuli whose pictures differ in renderer, size or angle, as baked and live ones can.
+  /// Allows sessions in which compared stimuli differ in renderer, picture size or angle, as baked and live
+  /// stimuli can.
   bool accept_mixed_pictures = false;
-  /// Participants are instructed to look at the middle of the picture, so the gaze point is known in advance.
+  /// True: the texts instruct participants to look at the middle of the picture, so the gaze point is known
+  /// before the session.
   bool fixation = false;
-  /// H1 and H5 need gaze: without tracked gaze they are labelled not testable.
+  /// The hypotheses H1 and H5 need gaze: without tracked gaze in the data, reports label them not testable.
   bool needs_gaze = false;
-  /// The camera uses the visual angle of the picture instead of each scene's own angle.
+  /// True: the camera uses the visual angle of the picture instead of each scene's angle.
   bool true_angle = false;
-  /// True if the command line changed it (--trial-seconds ...): data are marked as test and the hash differs.
+  /// True if an option such as --trial-seconds changed the protocol: its data are marked as test data, and
+  /// the hash differs.
   bool test_data = false;
-  /// Argument of override_trial_seconds(); none = trial lengths of the file. `text` and this rebuild the
-  /// protocol.
+  /// Argument of override_trial_seconds(); none = trial lengths of the file. `text` and `trial_seconds`
+  /// together rebuild the protocol.
   std::optional<double> trial_seconds;
 
-  std::string place;   ///< name of the file in messages; empty: rebuilt from tables
+  std::string place;   ///< name of the protocol file in messages
   std::string text;    ///< the file as read, stored in every database
-  std::string sha256;  ///< of `text`, or of text + overrides when there are any
+  std::string sha256;  ///< of `text`; if an option changed the protocol, of `text` and the change
 };
 
-/// Every question of the protocol with its block's index, in the order of the file.
+/// Every question of the protocol with the index of its block, in the order of the file.
 std::vector<std::pair<int, const Question*>> all_questions(const Protocol& protocol);
 
-/// Stored: accepts protocols of earlier versions, which allowed any method name and question id and any form
-/// of gaze_question and sharing_question.
+/// How strictly to read a protocol. Stored accepts protocols of earlier program versions, with any method
+/// name, any question id and any form of gaze_question and sharing_question.
 enum class ProtocolUse { New, Stored };
 
 /// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range

@@ -14,7 +14,7 @@ enum class AnswerKind {
   Scale,   ///< a row of scores, some with words below them (Likert)
   Choice,  ///< one of a list; every score has words
   Number,  ///< typed, such as years of age
-  Text     ///< free text; exported only on request
+  Text     ///< typed text; exported only on request
 };
 
 struct Question {
@@ -28,10 +28,10 @@ struct Question {
   std::vector<std::pair<int, std::string>> anchors;
   /// Answers go to the personal file instead of the study's database (age, gender, ...).
   bool personal = false;
-  /// False: the participant may leave it empty.
+  /// False: the participant may leave the question unanswered.
   bool required = true;
-  /// An answer outside [accept_min, accept_max] ends the session before anything is shown: no consent, or
-  /// exclusion by screening.
+  /// Lowest and highest accepted score. Any other answer ends the session before the first stimulus, as
+  /// refused consent or exclusion.
   std::optional<std::pair<int, int>> accept;
   std::optional<int> stop_at;  ///< this score or more offers a rest, then ends the session (Fms)
   std::optional<int> expect;   ///< the answer of an attentive person (Catch)
@@ -42,27 +42,28 @@ struct Question {
 };
 
 /// Properties of a kind of answer. Code that reads, stores, exports or analyses answers looks them up here
-/// and never names a kind. Only the code that draws a question does: libstudy/pages/gui has a switch over all
-/// kinds.
+/// and never names a kind. Only the code that draws questions names kinds: libstudy/pages/gui has a switch
+/// over all kinds.
 struct AnswerKindTraits {
   AnswerKind kind{};
-  const char* word = "";     ///< in protocols, databases and exports
-  const char* meaning = "";  ///< of the word, in the reference of protocols
+  const char* word = "";     ///< name of the kind in protocols, databases and exports
+  const char* meaning = "";  ///< explanation of `word` in the reference of protocols
   bool scored = true;        ///< the answer is a whole number, stored as a score; otherwise words
   bool listed = false;       ///< the participant chooses one of scores_of()
-  bool labelled = false;     ///< every score has words, which stand for it in exports; it has no mean
-  bool required = true;      ///< default of `required`
-  double answering_s = 5;    ///< expected time to answer
+  bool labelled = false;     ///< every score has words (Question::anchors); such scores have no mean
+  bool required = true;      ///< default of Question::required
+  double answering_s = 5;    ///< expected time for answering one question
 
   /// A rating: scores with equal distances, which have means.
   bool rated() const { return listed && !labelled; }
   /// A whole number that the participant types.
   bool typed() const { return scored && !listed; }
 };
-/// A row for each AnswerKind, in its order.
+/// One entry for each AnswerKind, in the order of the enum.
 const std::array<AnswerKindTraits, 4>& answer_kinds();
 const AnswerKindTraits& traits_of(AnswerKind kind);
-/// "scale, choice or number": the words of those kinds for which `is` holds; `last` stands before the last.
+/// "scale, choice or number": the words of the kinds for which `is` returns true; `last`, such as " or ",
+/// precedes the last word.
 std::string kind_words(bool (*is)(const AnswerKindTraits&), const char* last);
 
 /// All possible scores in ascending order; none for free text.
@@ -70,7 +71,7 @@ std::vector<int> scores_of(const Question& question);
 /// True if the score is a possible answer.
 bool can_be_given(const Question& question, int score);
 
-/// Score of a scale at which a pilot's curve is fitted: its level, else its midpoint.
+/// Score of a scale at which a pilot's curve is fitted: Question::level, else the scale's midpoint.
 double fitted_level(const Question& question);
 
 /// The 16 symptoms of the Simulator Sickness Questionnaire, each 0 (none) to 3 (severe), in the order of
@@ -79,8 +80,8 @@ std::vector<Question> ssq_questions(const std::string& language);
 /// "fms": the Fast Motion Sickness scale, 0 (no sickness) to 20 (severe): Keshavarz and Hecht 2011.
 Question fms_question(const std::string& language, std::optional<int> stop_at);
 
-/// Ids of questions whose answers the program obeys, in a consent block with answers 0 = no and 1 = yes: may
-/// gaze be recorded; may the data be in public exports.
+/// Ids of two questions in a consent block whose answers (0 = no, 1 = yes) the program obeys: may gaze and
+/// head movement be recorded, and may public exports contain the data.
 inline constexpr const char* gaze_question = "gaze_kept";
 inline constexpr const char* sharing_question = "data_shared";
 
@@ -96,15 +97,16 @@ enum class AnswerInput {
   Mouse,
   Gamepad,
   Ray,      ///< a hand controller's ray and select
-  Stick,    ///< a controller's thumbstick
-  Dwell,    ///< selected by looking at it for a while
+  Stick,    ///< the thumbstick of a hand controller
+  Dwell,    ///< the participant looked at the answer until it was selected
   Observer  ///< a simulated participant
 };
 
 struct TimedAnswer {
   Answer answer;
-  double response_time_s = 0;  ///< from the page's showing to the last change of this answer
-  /// Input of the last change of this answer, or of the confirmation if it was left empty; none: not known.
+  double response_time_s = 0;  ///< from the first display of the page to the last change of this answer
+  /// Device that last changed this answer; for an empty answer, the device that confirmed the page; none: not
+  /// known.
   std::optional<AnswerInput> input{};
 };
 

@@ -47,10 +47,10 @@ class StepReader {
 
   int interval() {
     std::string which;
-    if (!pairs_) return 0;  // the caller refuses the rest of the line
+    if (!pairs_) return 0;  // read() refuses any further word
     words_ >> which;
     if (which != "first" && which != "second") {
-      fail("does not say which of the pair",
+      fail("does not say which stimulus of the pair",
            "write \"stimulus first\" and \"stimulus second\", as the design shows pairs");
     }
     return which == "second" ? 1 : 0;
@@ -89,10 +89,10 @@ void check_steps(const base::TomlTable& table, const std::vector<TrialStep>& ste
   if (seen != wanted)
     table.fail("steps", "show too few stimuli",
                pairs ? "add \"stimulus first\" and \"stimulus second\"" : "add \"stimulus\"");
-  if (!asked) table.fail("steps", "ask nothing", "add \"ask ID\"");
+  if (!asked) table.fail("steps", "ask no question", "add \"ask ID\"");
 }
 
-/// The steps of each trial of a block.
+/// Reads and checks the steps of each trial of a block.
 std::vector<TrialStep> read_steps(const base::TomlTable& block, bool pairs) {
   const auto texts = block.strings("steps");
   std::vector<TrialStep> out;
@@ -137,7 +137,7 @@ bool any_of(BlockKind kind, std::initializer_list<BlockKind> kinds) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-/// Reads a page's content and duration.
+/// Reads title, text and duration of a block.
 void read_page(const base::TomlTable& table, Block& block) {
   if (block.kind == BlockKind::GazeValidation) return;
   if (block.kind != BlockKind::Black) block.title = table.string_or("title", "");
@@ -167,7 +167,7 @@ void read_block_questions(const base::TomlTable& table, Block& block, const std:
     return;
   block.questions = read_questions(table, block.kind, language);
   if (block.questions.empty())
-    table.fail("", "asks nothing", "add [[block.question]], or use kind = \"instructions\"");
+    table.fail("", "has no question", "add [[block.question]], or use kind = \"instructions\"");
   const bool decides = std::any_of(block.questions.begin(), block.questions.end(),
                                    [](const Question& question) { return question.accept.has_value(); });
   if (block.kind == BlockKind::Consent && !decides) {
@@ -188,7 +188,7 @@ void read_trials(const base::TomlTable& table, const Design& design, Block& bloc
   block.between_groups_s = table.number_or("between_groups_s", 0, pause_range);
   block.on_interruption = read_interruption(table);
   if (block.between_groups_s > 0 && design.groups == 1) {
-    table.fail("between_groups_s", "has no effect: a participant meets one group",
+    table.fail("between_groups_s", "has no effect: a participant sees only one group",
                "remove it, or raise design.groups");
   }
 }

@@ -1,4 +1,5 @@
-/// Reads the cells of a design: factors and moments.
+/// Reads the cells of a design: levels of the factors, and moments (mean and standard deviation) of the frame
+/// rate.
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -34,7 +35,7 @@ using Moments = std::pair<double, double>;  // mean, standard deviation, frames/
 std::string too_small(double sd) { return "= " + shown(sd) + " is too small to be distinguished from 0"; }
 std::string use_more() { return "use 0, or at least " + shown(least_sd_fps); }
 
-/// Every mean with every smaller standard deviation.
+/// Pairs every mean with every smaller standard deviation.
 std::vector<Moments> read_moments(const base::TomlTable& table) {
   const auto means = distinct_numbers(table, "mean_fps", fps_range);
   const auto sds = distinct_numbers(table, "sd_fps", {0, fps_range.max});
@@ -52,7 +53,7 @@ std::vector<Moments> read_moments(const base::TomlTable& table) {
   return out;
 }
 
-/// The factors of the cells besides their moments.
+/// Levels of the factors of the cells; the moments of the frame rate are read separately.
 struct Factors {
   std::vector<std::string> scenes, sizes, methods;
 };
@@ -66,7 +67,8 @@ void check_level(const base::TomlTable& row, std::string_view key, const std::st
   }
 }
 
-/// [[design.moments]]: one for each cell, independent of effects.
+/// Moments of the frame rate from [[design.moments]], by scene, n_* and method. All levels of effects share
+/// them.
 class PublishedMoments {
  public:
   PublishedMoments(const base::TomlTable& design, const Factors& factors) : design_(design) {
@@ -104,7 +106,7 @@ class PublishedMoments {
   std::map<std::tuple<std::string, std::string, std::string>, Moments> moments_;
 };
 
-/// Refuses keys that this source of moments does not read.
+/// Refuses keys without effect: mean_fps and sd_fps under Native and Table2, moments under Settings.
 void refuse_idle_keys(const base::TomlTable& table, TimingSource timing) {
   const bool reads_lists = timing == TimingSource::Settings || timing == TimingSource::Equal;
   for (const char* key : {"mean_fps", "sd_fps"}) {

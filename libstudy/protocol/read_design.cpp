@@ -36,7 +36,8 @@ std::vector<std::string> read_levels(const base::TomlTable& design) {
   return levels;
 }
 
-/// An effect's table as in a scene file, as words: "foam emission_per_s = 0.3". libsim checks its keys.
+/// Describes an effect's table in words, such as "foam emission_per_s = 0.3". libsim checks the keys of the
+/// table.
 std::string read_effect(const base::TomlTable& table, const std::string& kind) {
   std::string words = kind;
   for (const std::string& key : table.keys()) {
@@ -65,7 +66,7 @@ EffectSet read_set(const base::TomlTable& table, const std::string& name) {
   return set;
 }
 
-/// Reads [[design.effect_set]]; `effects` must name each.
+/// Reads every [[design.effect_set]]; its name must be one of `levels`.
 std::vector<EffectSet> read_tables(const base::TomlTable& design, const std::vector<std::string>& levels) {
   std::vector<EffectSet> out;
   for (const auto& table : design.tables("effect_set")) {
@@ -147,7 +148,8 @@ std::size_t distinct_levels(const Design& design, Level level) {
   return levels.size();
 }
 
-/// Number of sequences of groups with different scenes, before selecting those that spread n_* evenly.
+/// Upper bound on the number of sequences of groups: counts all sequences with different scenes, also those
+/// that spread n_* unevenly.
 double sequences_at_most(const Design& design) {
   if (!design.factors.empty()) return static_cast<double>(cell_groups(design).size());
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
@@ -168,7 +170,7 @@ void check_groups(const base::TomlTable& table, const Design& design) {
   const double sequences = sequences_at_most(design);
   if (sequences > most_sequences) {
     table.fail(table.has("groups") ? "groups" : "scene",
-               "can be met in " + shown(sequences) + " orders of scenes and n_*",
+               "gives " + shown(sequences) + " sequences of scenes and n_*",
                "name fewer scenes, n_* or groups, for at most " + shown(most_sequences));
   }
 }
@@ -186,13 +188,13 @@ void check_trial_count(const base::TomlTable& table, const Design& design) {
   }
 }
 
-/// Limits the number of slots, because the assignment counts the uses of each.
+/// Limits the number of slots in the assignment, because the assignment counts the uses of each slot.
 void check_places(const base::TomlTable& table, const Design& design) {
   const bool rows = design.order == TrialOrder::Latin || design.order == TrialOrder::Williams;
   const double places =
       sequences_at_most(design) * (rows ? 2 * trials_of_group(design) : 1) * (design.pairs ? 64 : 1);
   if (places > most_places) {
-    table.fail("order", "and the sequences of groups make up to " + shown(places) + " places to balance",
+    table.fail("order", "and the sequences of groups give up to " + shown(places) + " slots to balance",
                "use order = \"shuffle\", or name fewer scenes, n_* or cells");
   }
 }
@@ -206,7 +208,8 @@ std::string level_of(const Design& design, const Cell& cell, const std::string& 
   return shown(factor == "mean_fps" ? cell.setting.mean : cell.setting.sd);
 }
 
-/// If more than half of the trials share a level, every order has equal neighbours.
+/// Refuses a factor if more than half of a group's trials share a level: every order then has neighbours with
+/// this level.
 void check_never_adjacent(const base::TomlTable& table, const Design& design) {
   const auto group = cell_groups(design).front();
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {

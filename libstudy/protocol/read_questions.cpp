@@ -8,7 +8,7 @@ namespace study {
 
 namespace {
 
-/// {1 = "poor", 7 = "good"}: words by score.
+/// Reads the words of scores, such as {1 = "poor", 7 = "good"}.
 std::vector<std::pair<int, std::string>> read_anchors(const base::TomlTable& question, int least, int most) {
   std::vector<std::pair<int, std::string>> out;
   if (!question.has("anchors")) return out;
@@ -84,7 +84,7 @@ std::optional<int> read_score(const base::TomlTable& table, std::string_view key
   return score;
 }
 
-/// Reads `accept`: the answers that let the participant go on.
+/// Reads `accept`: the range of answers with which the session continues.
 void read_accept(const base::TomlTable& table, BlockKind block, Question& question) {
   if (!table.has("accept")) return;
   if (block != BlockKind::Screening && block != BlockKind::Consent && block != BlockKind::Demographics) {
@@ -151,7 +151,7 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
 /// Why the program cannot obey the answers to a question; empty if it can.
 std::string why_not_obeyed(BlockKind block, const Question& question) {
   if (block != BlockKind::Consent) return "is in a block of kind " + block_kind_name(block);
-  // As the database's views of permissions ask.
+  // The views of permissions in the database read only choices of 0 and 1.
   if (question.kind != AnswerKind::Choice) return "is not of kind choice";
   if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
     return "has other answers than 0 and 1";

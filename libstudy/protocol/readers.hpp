@@ -1,5 +1,5 @@
 #pragma once
-/// Readers of the parts of a protocol file. Errors as parse_protocol().
+/// Readers of the parts of a protocol file. They throw the errors of parse_protocol().
 
 #include <functional>
 #include <string>
@@ -19,12 +19,13 @@ inline constexpr base::Range pause_range{0, 3600};
 std::string text_of(const base::TomlTable& table, std::string_view key);
 /// Reads an id that is valid in steps and data tables: a letter, then letters, digits and '_', at most 64.
 std::string id_of(const base::TomlTable& table, std::string_view key);
-/// True if `word` is such an id.
+/// True if `word` has the form of an id; see id_of().
 bool is_id(std::string_view word);
-/// A number as text for messages.
+/// Text of a number for messages.
 std::string shown(double value);
 
-/// Reads all fields but `text`. Does not finish `root`, so that its asked keys can still be listed.
+/// Reads all fields except place, text and sha256. Does not refuse unknown keys (TomlTable::finish), so that
+/// a test can list the keys that the readers ask for.
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
 /// Reads [design] of formats 1 and 2.
@@ -50,22 +51,22 @@ inline constexpr std::size_t most_cells = 1000;
 /// Every combination of the factors, ordered by scene, n_*, method, effects and moments.
 std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
                              const std::vector<EffectSet>& effects);
-/// A list of words without empty or repeated ones.
+/// Reads a list of words; refuses empty and repeated words.
 std::vector<std::string> distinct_words(const base::TomlTable& table, std::string_view key);
 std::vector<Block> read_blocks(const base::TomlTable& root, const Design& design, const std::string& language,
                                ProtocolUse use);
 /// Checks that gaze_question and sharing_question are asked in a form that the program can obey. tables: the
 /// blocks' TOML tables.
 void check_obeyed_questions(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
-/// Checks that methods are in method_names() and that n_star holds particle counts.
+/// Checks that methods are in method_names() and that the words of n_star are numbers of particles.
 void check_design_names(const base::TomlTable& design);
 /// Checks that no id is a misspelling of one of known_question_ids() that the protocol lacks.
 void check_question_ids(const std::vector<base::TomlTable>& tables, const std::vector<Block>& blocks);
-/// The questions of a block of this kind.
+/// Reads the questions of a block of this kind.
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);
-/// Checks across all blocks: ids, and the names in `like` and `ask`. Copies steps to blocks with `like`.
-/// tables: the blocks' TOML tables.
+/// Checks what involves several blocks: unique ids, and the ids in `like` and `ask`. Copies steps to blocks
+/// with `like`. tables: the blocks' TOML tables.
 void join_blocks(const std::vector<base::TomlTable>& tables, const Design& design,
                  std::vector<Block>& blocks);
 

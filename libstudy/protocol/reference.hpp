@@ -1,5 +1,6 @@
 #pragma once
-/// Reference of all keys of a protocol file. A test compares it with the keys that the readers ask for.
+/// Reference of all keys of a protocol file. A test compares this list with the keys that the readers ask
+/// for.
 
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ using base::KeyReference;
 
 const std::vector<KeyReference>& protocol_reference();
 
-/// The reference as a page of Markdown: docs/protocol.md.
+/// The reference as a Markdown page, which is stored as docs/protocol.md.
 std::string protocol_reference_page();
 
 }  // namespace study

@@ -18,21 +18,21 @@ constexpr double left = 62, right_margin = 14, group_gap = 46, least_step = 74, 
 constexpr double plot_height = 270, bracket_step = 24, below = 78;
 constexpr const char* ink = "stroke=\"#000000\" stroke-width=\"1.4\" fill=\"none\"";
 
-/// A bracket over the boxes of a pair that differs.
+/// A bracket with stars over the boxes of two methods whose scores differ.
 struct Bracket {
   std::size_t first = 0, last = 0;  ///< indices of the boxes within the group
   Field stars;
-  bool survives = false;  ///< true if significant after Holm
-  std::size_t layer = 0;  ///< 0 = lowest
+  bool survives = false;  ///< true if significant after Holm's correction
+  std::size_t layer = 0;  ///< height of the bracket; 0 is the lowest
 };
 
 struct Group {
   Field n_star;
-  std::vector<Field> cells;  ///< in the order of the methods
+  std::vector<Field> cells;  ///< one for each method, in the order of the methods
   std::vector<Bracket> brackets;
 };
 
-/// Distance from one box to the next, with room for the longest name of a method.
+/// Distance from one box to the next in pixels, wide enough for the longest name of a method.
 double step_of(const std::vector<Group>& groups) {
   std::vector<std::string> names;
   for (const Group& group : groups)
@@ -40,7 +40,8 @@ double step_of(const std::vector<Group>& groups) {
   return std::max(least_step, room_for(names) + 10);
 }
 
-/// Stacks the brackets: short ones lowest, and overlapping ones above each other.
+/// Sets the layers of the brackets such that overlapping brackets have different layers and short ones are
+/// lowest.
 void stack(std::vector<Bracket>& brackets) {
   std::stable_sort(brackets.begin(), brackets.end(),
                    [](const Bracket& p, const Bracket& q) { return p.last - p.first < q.last - q.first; });
@@ -77,7 +78,7 @@ std::vector<Group> groups_of(const Field& task1, const std::string& score) {
   return groups;
 }
 
-/// Vertical axis of the scores.
+/// Vertical axis: converts scores to pixels.
 struct Axis {
   double min = 1, max = 7, top = 0;
   double y(double value) const { return top + plot_height * (max - value) / (max - min); }

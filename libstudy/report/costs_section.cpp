@@ -23,7 +23,7 @@ bool any(const Rows& rows, Holds holds) {
   return std::any_of(rows.begin(), rows.end(), holds);
 }
 
-/// A score's mean, or the share of pairs in which it was chosen.
+/// The answers to a stimulus: its mean score, or in Task 2 the share of pairs in which it was chosen.
 std::string said(const Field& row, bool pairs) {
   return (pairs ? percent(row["said"]) : fixed(row["said"], 2)) +
          (row["said"].is_number() ? " (<i>n</i> = " + count(row["answers"]) + ")" : "");
@@ -81,7 +81,8 @@ std::string notes(const Rows& rows, const char* title) {
   return "<p class=\"note\">" + out + "</p>\n";
 }
 
-/// One table for each machine and program, which are never mixed.
+/// One table for each combination of machine, program, picture, reference and run length. Values of different
+/// machines or programs are not comparable.
 std::string sweep_tables_of(const Field& root, const Rows& rows, const char* title, bool pairs) {
   using Origin = std::tuple<std::string, std::string, std::string, double, double>;
   std::map<Origin, std::vector<std::pair<Field, Field>>> by_origin;  // row, price

@@ -5,7 +5,8 @@ namespace study::report {
 
 namespace {
 
-/// "effects: foam over none"; for a difference with a minus sign.
+/// The two levels of a comparison: "effects: foam over none". `between`: " over ", or a minus sign for a
+/// difference.
 std::string level_name(const Field& line, const char* between) {
   std::string out = words(line["factor"]) + ": " + words(line["a"]) + between + words(line["b"]);
   if (line["test"].words() == "exact sign test")

@@ -10,7 +10,7 @@ namespace study::report {
 
 namespace {
 
-const Json nothing;
+const Json nothing{};
 
 std::string pointer_token(const std::string& key) {
   std::string out = "/";
@@ -22,7 +22,7 @@ std::string span(const Field& field, const std::string& text) {
   return "<span" + data_field(field) + ">" + svg::escaped(text) + "</span>";
 }
 
-/// A number, kept on one line.
+/// A number as HTML that the browser does not break across lines.
 std::string number_span(const Field& field, const std::string& text) {
   return "<span class=\"number\"" + data_field(field) + ">" + svg::escaped(text) + "</span>";
 }
@@ -33,8 +33,8 @@ std::string dash(const Field& field) {
          ">\xE2\x80\x93</span>";
 }
 
-/// APA style omits the 0 before the point if a number cannot exceed 1.
-std::string without_zero(std::string text) { return text.starts_with("0.") ? text.substr(1) : text; }
+/// Removes the 0 before the decimal point. APA style omits it if a number cannot exceed 1.
+std::string without_zero(const std::string& text) { return text.starts_with("0.") ? text.substr(1) : text; }
 
 std::string end_of(const Field& end, int decimals) {
   if (end.is_number()) return fixed(end, decimals);

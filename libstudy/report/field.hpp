@@ -1,6 +1,7 @@
 #pragma once
-/// Values of the results' JSON with their pointers, and how they are printed. Every number of the page is
-/// printed here, with its JSON pointer as data-field, so that page and JSON can be compared.
+/// Values of the results' JSON with their JSON pointers, and functions that print them as HTML. All numbers
+/// of the page are printed by these functions. They add the JSON pointer as attribute data-field, so that
+/// page and JSON can be compared.
 
 #include <string>
 #include <vector>
@@ -24,16 +25,16 @@ class Field {
   const std::string& pointer() const { return pointer_; }
   /// True if the value is neither absent, null nor refused.
   bool exists() const;
-  /// Why there is no value: its own "refused", its "..._reason" or the "reason" beside it; empty if none is
-  /// given.
+  /// The reason why the value does not exist: its member "refused", or in the object that contains it
+  /// "NAME_reason", "reason" or "refused". Empty if the value exists or no reason is given.
   std::string reason() const;
   /// Entries of a list; empty for other values.
   std::vector<Field> entries() const;
   /// Members of an object, with their names; empty for other values.
   std::vector<std::pair<std::string, Field>> members() const;
   bool is_number() const { return value_->is_number(); }
-  double number() const;      ///< 0 if it is not a number
-  std::string words() const;  ///< "" if it is not text
+  double number() const;      ///< the value; 0 if it is no number
+  std::string words() const;  ///< the value; "" if it is no text
   bool yes() const;           ///< true only for the JSON value true
 
  private:
@@ -45,45 +46,48 @@ class Field {
   const Json* parent_ = nullptr;
 };
 
-/// A number as text, with a true minus sign.
+/// A number as text, with the typographic minus sign.
 std::string decimal(double value, int decimals);
-/// A p value in APA style: ".029", "< .001", "1.000" as "> .999".
+/// A p value in APA style: ".029", or "< .001" below .001, or "> .999" above .9995.
 std::string p_value(double p);
 
-/// Typesets the formulas in texts of the results ("n_*", "mu(delta)", "+-3 %"): italics and typographic
-/// signs. `html`: already escaped.
+/// Replaces formulas in a text of the results ("n_*", "mu(delta)", "+-3 %") by HTML with italics and
+/// typographic signs. `html`: the text, already escaped.
 std::string typeset(std::string html);
 
-/// The paper's symbol for the number of particles if all are coarsest.
+/// The paper's symbol n_*: number of particles if all are of the coarsest level.
 inline const std::string n_star_sign = "<i>n</i><sub>*</sub>";
 
-/// mu(delta) = a e^(b delta), the curve of the pilot.
+/// Formula of the pilot's curve: mu(delta) = a e^(b delta).
 inline const std::string pilot_curve =
     "<i>\xCE\xBC</i>(<i>\xCE\xB4</i>) = <i>a</i>\xE2\x80\x89"
     "e<sup><i>b</i>\xE2\x80\x89<i>\xCE\xB4</i></sup>";
 
-// The following return HTML with data-field. An absent value is a dash that says why.
+// The following functions return HTML with the attribute data-field. An absent value is printed as a dash
+// whose title is the reason.
 std::string fixed(const Field& field, int decimals);
 std::string count(const Field& field);
-/// A share in [0, 1] as per cent, followed by the sign.
+/// A share between 0 and 1 as a percentage, such as "35 %".
 std::string percent(const Field& field, int decimals = 0);
-/// p(): "= .029" or "< .001", for running text. p_bare(): without "=", for tables.
+/// A p value. p(): "= .029" or "< .001", for sentences. p_bare(): ".029" or "< .001", for tables.
 std::string p(const Field& field);
 std::string p_bare(const Field& field);
-/// "[0.12, 0.34]"; open ends as infinity.
+/// An interval: "[0.12, 0.34]". A missing bound is printed as infinity.
 std::string interval(const Field& field, int decimals);
-/// As interval(), for frame rates: prints "no upper bound" if the upper end is above 1000 frames/s.
+/// The interval of a frame rate. An upper end above highest_rate (1000 frames/s) is printed as "no upper
+/// bound".
 std::string rate_interval(const Field& field);
-/// A text with its formulas typeset.
+/// A text of the results with formulas by typeset().
 std::string words(const Field& field);
 /// "yes" or "no".
 std::string yes_no(const Field& field);
-/// An object of counts as "tracked: 26, mouse: 3". An empty name is "not said"; without counts "none".
+/// An object of counts as "tracked: 26, mouse: 3", without counts of 0. An empty name is printed as "not
+/// said". "none" if no count remains.
 std::string counts(const Field& object);
-/// The reason why `field` is absent, as a sentence; "" if it is present.
+/// A paragraph with the reason why `field` does not exist; "" if it exists.
 std::string why_not(const Field& field);
 
-/// The data-field attribute, e.g. for SVG text.
+/// The attribute data-field with the field's JSON pointer, for HTML and SVG elements.
 std::string data_field(const Field& field);
 
 }  // namespace study::report

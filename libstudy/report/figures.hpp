@@ -1,5 +1,5 @@
 #pragma once
-/// The page's figures, each from a part of the results.
+/// Draws the figures of the page from parts of the results.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,8 +11,9 @@
 
 namespace study::report {
 
-/// Width in pixels to reserve for the longest of these names, at a font size of 13 pixels. Only the browser
-/// knows the true width; 8 pixels a letter exceed the average of sans-serif fonts.
+/// Width in pixels that is reserved for the longest of the names, at a font size of 13 pixels. It assumes 8
+/// pixels for each letter, more than the average of sans-serif fonts, since only the browser knows the true
+/// width.
 inline double room_for(const std::vector<std::string>& names) {
   std::ptrdiff_t longest = 0;
   for (const std::string& name : names)
@@ -22,43 +23,47 @@ inline double room_for(const std::vector<std::string>& names) {
   return 8.0 * static_cast<double>(longest);
 }
 
-/// Elements of a picture, moved to the right by `px`.
+/// Elements of a picture, moved to the right by `px` pixels.
 inline std::string moved_right(const std::string& elements, double px) {
   return "<g transform=\"translate(" + svg::number(px, 0) + " 0)\">\n" + elements + "</g>\n";
 }
 
-/// One score of Task 1 as in the paper's Fig. 9: within each n_* a box for each method with an X at its mean,
-/// and brackets with stars over pairs that differ. `score`: an entry of task1.scores.
+/// One score of Task 1 as in the paper's Fig. 9. For each n_* and method it has a box with an X at the mean.
+/// Brackets with stars connect methods that differ. `score`: an entry of task1.scores.
 svg::Picture box_plot(const Field& task1, const Field& score);
 
-/// One score of Task 1: a line for each participant over the methods, within each n_*, and the mean.
+/// One score of Task 1: for each n_*, a line over the methods for each participant, and a line of means.
 svg::Picture person_lines(const Field& task1, const Field& score);
 
-/// One score of Task 1: the mean of each method in each scene, with its interval, within each n_*.
+/// One score of Task 1: for each n_* and scene, a line of the methods' means with confidence intervals.
 svg::Picture scene_lines(const Field& task1, const Field& score);
 
-/// A bar for each entry of a list of distributions: how often each score was given. `names`: of the bars.
+/// A bar for each distribution in `entries`, divided by the shares of the scores. `names`: names of the bars.
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title);
 
-/// The share that a pair's test is about: of answers, or over people if they answered several times.
+/// The share that a pair's test compares with one half: of the answers, or over people if some answered the
+/// pair several times.
 inline Field tested_share(const Field& pair) {
   return pair["by_person"].exists() ? pair["by_person"]["share"] : pair["share"];
 }
 
-/// Task 2 as in the paper's Fig. 10: how often each of a pair was chosen, with the interval of the share.
+/// Task 2 as in the paper's Fig. 10: for each pair, the share of choices of each method, with a confidence
+/// interval.
 svg::Picture preference_bars(const Field& pairs);
 
-/// Timing verdicts of each method's showings, over scenes, if one was degraded or failed.
+/// Shares of timing verdicts over the showings of each method at each n_* (pilot: of each frame-rate
+/// setting), for those with a degraded or failed showing.
 svg::Picture timing_chart(const Field& timing, const std::string& task);
 
 /// Flow chart of participants in CONSORT style. `flow`: flow.task1 or flow.task2.
 svg::Picture flow_chart(const Field& flow, const std::string& id, const std::string& task);
 
-/// FMS at each time of asking: quartiles, median, mean and largest. `fms`: "fms" of an entry of sickness.
+/// FMS scores at the first, second, ... time of asking: quartiles, median, mean and largest. `fms`: member
+/// "fms" of an entry of "sickness".
 svg::Picture fms_chart(const Field& fms, const std::string& id);
 
-/// The pilot's heat map (paper Fig. 6). `pilot`: as written by fit-ptpe; its estimates must be present.
+/// The pilot's heat map (paper Fig. 6). `pilot`: the entry "pilot" of the results, with estimates.
 svg::Picture pilot_map(const Field& pilot);
 
 }  // namespace study::report

@@ -11,7 +11,7 @@ using svg::text;
 
 constexpr double main_x = 16, main_width = 270, side_x = 350, side_width = 300, line_px = 20, pad = 10;
 
-/// A count with its description.
+/// A line of a box: a count and its description.
 struct Entry {
   const char* words;
   Field n;
@@ -36,7 +36,8 @@ Box box(double x, double y, double width, const std::vector<Entry>& entries) {
   return out;
 }
 
-/// An arrow, drawn without an SVG marker, whose id would have to be unique for each chart.
+/// An arrow. It is drawn by lines, since the id of an SVG marker would have to differ between the charts of a
+/// page.
 std::string arrow(svg::Point from, svg::Point to) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const double dx = (to.x - from.x) / length, dy = (to.y - from.y) / length;
@@ -47,7 +48,7 @@ std::string arrow(svg::Point from, svg::Point to) {
                    "fill=\"#000000\"");
 }
 
-/// Entries whose number is not 0.
+/// The entries with a count above 0.
 std::vector<Entry> those_with_some(const std::vector<Entry>& all) {
   std::vector<Entry> out;
   for (const auto& entry : all)
@@ -95,7 +96,8 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
     double next = y + main.height + 34;
     if (!gone.empty()) {
       picture.width = side_x + side_width + 12;
-      // The side box is beside the arrow to the next step, or beside the last box itself.
+      // The side box is to the right of the arrow to the next step, or for the last step to the right of its
+      // box.
       const bool last = i + 1 == steps.size();
       const Box side = box(side_x, last ? y : y + main.height + 12, side_width, gone);
       picture.body += side.drawn;

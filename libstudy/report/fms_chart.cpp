@@ -12,7 +12,7 @@ constexpr double left = 52, top = 40, width = 560, plot_height = 220, scale_max 
 
 double y_of(double score) { return top + plot_height * (1 - score / scale_max); }
 
-/// Horizontal positions of the times of asking.
+/// Horizontal positions, in pixels, of the `n` times of asking.
 struct Places {
   std::size_t n = 1;
   double x(std::size_t i) const {

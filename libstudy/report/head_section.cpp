@@ -7,7 +7,7 @@ namespace study::report {
 
 namespace {
 
-/// Protocols of all parts for which `holds` is true, each once: "Pilot (ptpe_pilot, version 1.0)".
+/// Names of the protocols for which `holds` is true, each once, as "Pilot (ptpe_pilot, version 1.0)".
 template <class Holds>
 std::vector<std::string> parts_where(const Field& root, Holds holds) {
   std::vector<std::string> out, seen;
@@ -23,7 +23,7 @@ std::vector<std::string> parts_where(const Field& root, Holds holds) {
   return out;
 }
 
-/// Observer models of all parts, each once.
+/// Names of the observer models of all documents, each once.
 std::string observers(const Field& root) {
   std::string out;
   std::vector<std::string> seen;
@@ -54,7 +54,7 @@ std::vector<Field> documents(const Field& root) {
 
 namespace {
 
-/// Warnings before any number: incomplete, test or simulated data.
+/// Warnings at the top of the page: the data are incomplete, test data or simulated.
 std::string banners(const Field& root) {
   const Field study = root["study"];
   std::string out;

@@ -16,7 +16,7 @@ using html::subsection;
 using html::Table;
 using html::whole_page;
 
-/// "Preregistered" or "Exploratory": a word, never a colour alone.
+/// A label with the word "Preregistered" or "Exploratory", so that colour is not needed to distinguish them.
 inline std::string badge(bool preregistered) {
   return preregistered ? "<span class=\"badge\">Preregistered</span>"
                        : "<span class=\"badge exploratory\">Exploratory</span>";

@@ -7,7 +7,7 @@ namespace {
 
 const std::string minus = "\xE2\x88\x92";
 
-/// "90 % CI [0.06, 1.25]", with its level, since the intervals of a page differ in level.
+/// "90 % CI [0.06, 1.25]". The confidence level is printed because it differs between intervals of the page.
 std::string interval_of(const Field& test) {
   return (test["ci"].entries().empty() ? "" : percent(test["ci_confidence"]) + " ") + "CI " +
          interval(test["ci"], 2);
@@ -15,10 +15,10 @@ std::string interval_of(const Field& test) {
 
 bool is_sign_test(const Field& test) { return test["method"].words() == "exact sign test"; }
 
-/// True if the test is by the mixed model, whose (Satterthwaite's) degrees of freedom are not whole.
+/// True if the test uses the mixed model. Its degrees of freedom (Satterthwaite) are no whole numbers.
 bool by_model(const Field& test) { return test["method"].words() == "t test of the mixed model"; }
 
-/// "0.46, 90 % CI [0.06, 1.25]" for a difference or a share.
+/// The estimated difference or share with its interval: "0.46, 90 % CI [0.06, 1.25]".
 std::string estimate(const Field& test) {
   if (!test["estimate"].is_number()) return fixed(test["estimate"], 2);
   if (is_sign_test(test))
@@ -67,8 +67,8 @@ std::string apa(const Field& test, bool preference) {
   return out + ", <i>p</i> " + p(test["p"]) + ", <i>p</i><sub>Holm</sub> " + p(test["p_holm"]);
 }
 
-/// p of preferences after Holm over the paper's five pairs and over all ten, since the result depends on the
-/// family.
+/// A table of p values of preferences after Holm's correction over the hypothesis, over the paper's five
+/// pairs and over all ten pairs, since the result depends on the family.
 std::string families(const Field& hypothesis) {
   Table table("The same <i>p</i> in larger families",
               {"Test", "<i>p</i>", "Holm over this family", "Holm over the five of the paper's figure",
@@ -81,7 +81,7 @@ std::string families(const Field& hypothesis) {
   return table.empty() ? "" : table.html();
 }
 
-/// The paired tests, given beside those of the mixed model.
+/// The paired tests of a hypothesis that is decided by the mixed model; "" for other hypotheses.
 std::string paired(const Field& hypothesis) {
   const Field beside = hypothesis["paired"];
   if (!beside.exists()) return "";
@@ -90,8 +90,8 @@ std::string paired(const Field& hypothesis) {
          tests_table(hypothesis, beside["tests"], "paired tests beside").html();
 }
 
-/// A note if the share test replaced the binomial test of the rule, which was fixed before it was known how
-/// often people would answer a pair.
+/// A note if a test of participants' shares replaced the binomial test that the rule names. It replaces it
+/// for pairs that a person answered more than once.
 std::string other_test(const Field& hypothesis) {
   for (const Field& test : hypothesis["tests"].entries())
     if (hypothesis["kind"].words() == "preference" && test["p"].is_number() &&

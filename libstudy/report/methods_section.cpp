@@ -69,7 +69,8 @@ std::string people_text(const Field& flow) {
   return out;
 }
 
-/// The rules of the plan that can have an effect, in words; "" if there are none.
+/// The plan's exclusion rules in words, without those that cannot have an effect. `acting`: keys of the rules
+/// that can have an effect.
 std::string rules_text(const Field& rules, const std::vector<std::string>& acting) {
   const auto acts = [&](const char* rule) {
     return std::find(acting.begin(), acting.end(), rule) != acting.end();
@@ -99,7 +100,7 @@ std::string rules_text(const Field& rules, const std::vector<std::string>& actin
   return out;
 }
 
-/// The exclusion rules that could have an effect, in words; parts with the same rules are combined.
+/// The exclusion rules in words for each part of the study. Parts with the same rules share one sentence.
 std::string exclusion_rules(const Field& root) {
   const Field rules = root["plan"]["exclusions"];
   if (!rules.exists()) return "";
@@ -145,7 +146,7 @@ std::string tests_of_task1(const Field& root) {
              : "H1 to H3 were tested by paired <i>t</i> tests. ";
 }
 
-/// Describes the tests that were made.
+/// A sentence on the tests of Task 2's pairs.
 std::string tests_of_task2(const Field& pairs) {
   bool binomial = false, shares = false;
   for (const Field& pair : pairs.entries()) {
@@ -167,7 +168,7 @@ std::string factors_text(const Field& root) {
          "<i>t</i> tests, and by exact sign tests where all participants are alike. ";
 }
 
-/// Margins of the scores whose items were asked.
+/// The plan's margins in words, without that of cybersickness if its items were not asked.
 std::string margins_text(const Field& root) {
   const Field margins = root["plan"]["margins"];
   const auto scores = root["task1"]["scores"].entries();
@@ -189,7 +190,8 @@ std::string task1_text(const Field& root) {
          " resamples with seed " + count(plan["seed"]) + ". " + tests_of_task1(root);
 }
 
-/// "two-sided", "one-sided", or which of H1 to H6 are one-sided.
+/// Words on the direction of the tests: "two-sided", "one-sided, ...", or "two-sided, but one-sided for H2,
+/// H3 and H6".
 std::string sides(const Field& directional) {
   if (!directional.words().empty()) return "two-sided, but one-sided for " + words(directional);
   return directional.yes() ? "one-sided, in the direction claimed" : "two-sided";

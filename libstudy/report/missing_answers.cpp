@@ -16,7 +16,7 @@ std::string score_label(const Field& task1, const Field& entry) {
   return words(entry["score"]);
 }
 
-/// Notes on pairs with different participants.
+/// Notes on scores whose pairs of methods were judged by different participants.
 std::string people_notes(const Field& task1) {
   std::vector<std::string> lines;
   for (const Field& one : task1["people"].entries()) {
@@ -31,7 +31,8 @@ std::string people_notes(const Field& task1) {
          "</div>";
 }
 
-/// Adds a row made by `row` for each `wanted` comparison, under the name of its score and n_*.
+/// Calls `row` for each comparison for which `wanted` is true. Before the first of a score and n_*, adds a
+/// heading with both to the table.
 template <class Wanted, class Row>
 void by_score(Table& table, const Field& task1, Wanted wanted, Row row) {
   std::string last;

@@ -32,7 +32,8 @@ constexpr Section sections[] = {
     {"provenance", "Provenance", provenance_section},
 };
 
-/// Inserts "Table 3. " or "Figure 2. " after each start tag, in the order of the page.
+/// Numbers the tables or figures: inserts `name` and a running number, such as "Table 3. ", after each `tag`
+/// in `body`.
 std::string numbered(std::string body, const std::string& tag, const std::string& name) {
   int n = 0;
   for (auto at = body.find(tag); at != std::string::npos; at = body.find(tag, at)) {
@@ -42,8 +43,8 @@ std::string numbered(std::string body, const std::string& tag, const std::string
   return body;
 }
 
-/// Puts `prefix` before every id of the page and every reference to one, so that parts of the same form can
-/// be on one page. Texts contain no quotes (svg::escaped).
+/// Puts `prefix` before each id in `html` and each reference to an id. Documents with equal ids can then be
+/// on one page. Texts of the page contain no quotes (svg::escaped), so they are not changed.
 std::string with_prefix(std::string html, const std::string& prefix) {
   for (const std::string mark : {" id=\"", "href=\"#", "url(#", "aria-labelledby=\""}) {
     for (auto at = html.find(mark); at != std::string::npos; at = html.find(mark, at)) {
@@ -62,7 +63,8 @@ struct Rendered {
   std::string contents, body;
 };
 
-/// Renders the sections that the results have. `name` distinguishes those of a document in "apart".
+/// Renders those sections for which the results have content. `prefix` and `name` distinguish the ids and
+/// headings of a document in "apart".
 Rendered rendered(const Field& results, const std::string& prefix, const std::string& name) {
   Rendered out;
   for (const Section& part : sections) {
@@ -77,7 +79,8 @@ Rendered rendered(const Field& results, const std::string& prefix, const std::st
   return out;
 }
 
-/// "apart 1, Task 1, task1 1.1" or "apart 1, Pilot, ptpe_pilot_lab 1.0, question smoothness".
+/// Name of a document in "apart": "apart 1, Task 1, task1 1.1" or "apart 1, Pilot, ptpe_pilot_lab 1.0,
+/// question smoothness".
 std::string document_name(const Field& results) {
   const Field protocol = results["study"]["protocols"][0];
   std::string out = words(results["section"]) + ", " + words(protocol["title"]) + ", " +

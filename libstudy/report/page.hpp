@@ -1,5 +1,5 @@
 #pragma once
-/// The report: one HTML page of a study's results.
+/// Writes the report, an HTML page with a study's results.
 
 #include <string>
 
@@ -7,8 +7,9 @@
 
 namespace study::report {
 
-/// Renders a document of schema vip-results/1 (docs/report.md), and only that, as a page: no script, no
-/// outside resource, a style sheet for screen and print. base::Error for another schema.
+/// Renders a JSON document of schema vip-results/1 (docs/report.md) as one HTML page, from this document
+/// alone. The page has no script, loads nothing, and has a style sheet for screen and print. base::Error for
+/// another schema.
 std::string results_page(const base::Json& results);
 
 }  // namespace study::report

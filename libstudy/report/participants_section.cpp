@@ -25,13 +25,13 @@ std::string exclusions_table(const Field& root) {
          (one_trial ? " Trials are counted from nought, in the order of showing." : "") + "</p>\n";
 }
 
-/// A sentence on the parts without exclusions.
+/// A sentence that names the parts without exclusions; "" if there are none.
 std::string untouched(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts) {
     bool touched = !root["flow"][key].exists();
     for (const Field& e : root["exclusions"].entries()) touched = touched || e["task"].words() == key;
-    if (!touched) parts.push_back(title);
+    if (!touched) parts.emplace_back(title);
   }
   return parts.empty() ? ""
                        : paragraph("Nothing of " + enumerated(parts) + " was left out by rule or by hand.");
@@ -49,7 +49,8 @@ bool any_unjudged(const Field& timing) {
   return false;
 }
 
-/// Every session of the database, by protocol, with the section that analyses it.
+/// A table of the database's protocols: counts of participants and sessions, and the sections that analyse
+/// the protocol.
 std::string roster(const Field& roster) {
   if (!roster.exists()) return "";
   Table table("Everybody in the database", {"Protocol", "Version", "SHA-256", "Participants", "Sessions",
@@ -69,8 +70,8 @@ std::string roster(const Field& roster) {
          (table.empty() ? "" : table.html());
 }
 
-/// A cell's distribution. Scores that were never given are omitted, so that scales of many points have short
-/// lines.
+/// A cell's distribution as "answer: count; ...". Scores that were never given are omitted, which keeps the
+/// line of a long scale short.
 std::string distribution(const Field& cell) {
   std::string out;
   for (const Field& one : cell["distribution"].entries()) {
@@ -84,7 +85,8 @@ std::string distribution(const Field& cell) {
 
 bool flawed(const Field& cell) { return cell["degraded"].number() + cell["fail"].number() > 0; }
 
-/// True if a cell of the part has a number under `key`.
+/// True if a cell of the timing table has a number under `key`. `total`: the entry of timing_totals for the
+/// task.
 bool measured(const Field& timing, const Field& total, const char* key) {
   const auto cells = timing.entries();
   return std::any_of(cells.begin(), cells.end(), [&](const Field& one) {
@@ -92,7 +94,8 @@ bool measured(const Field& timing, const Field& total, const char* key) {
   });
 }
 
-/// Cells of a part, or only those in which a showing was degraded or failed.
+/// The timing table of a task. With `only_flawed`, it has only cells in which a showing was degraded or
+/// failed.
 std::string certificate(const Field& root, const Field& total, const std::string& caption, bool only_flawed) {
   const bool solved = measured(root["timing"], total, "active_fraction"),
              tau = measured(root["timing"], total, "tau_fps");
@@ -109,8 +112,8 @@ std::string certificate(const Field& root, const Field& total, const std::string
                                    "Realised rate: mean, SD (frames/s)",
                                    "Longest (ms)",
                                    "Late frames"};
-  if (solved) columns.push_back("Solved");
-  if (tau) columns.push_back("Tau (frames/s)");
+  if (solved) columns.emplace_back("Solved");
+  if (tau) columns.emplace_back("Tau (frames/s)");
   Table table(caption, columns);
   for (const Field& c : root["timing"].entries()) {
     if (c["task"].words() != total["task"].words() || (only_flawed && !flawed(c))) continue;
@@ -139,7 +142,8 @@ std::string certificate(const Field& root, const Field& total, const std::string
                  : "<p class=\"note\">No showing measured the share of particles that was solved.</p>\n");
 }
 
-/// Shows flawed cells in full, and all cells in a table that can be opened.
+/// The timing of a task: a summary, a table of the cells with degraded or failed showings, and a table of all
+/// cells that the reader can open.
 std::string timing_of(const Field& root, const Field& total) {
   const std::string key = total["task"].words();
   std::string title = key;

@@ -11,7 +11,7 @@ namespace study::report {
 
 namespace {
 
-/// The grid from which the list of cells was written.
+/// The score grid that the results' list of cells describes.
 stats::ScoreGrid grid_of(const Field& cells) {
   std::set<double> mu, delta;
   for (const Field& cell : cells.entries()) {
@@ -47,7 +47,7 @@ void estimate_row(Table& table, const std::string& name, const Field& e) {
   table.row({name, a_with_interval(e), b_with_interval(e)});
 }
 
-/// The model of the direct estimate.
+/// A paragraph with the formula of the direct estimate's model.
 std::string model_of(const Field& pilot) {
   if (pilot["estimator"].words().empty()) return "";
   const std::string mu = typeset("mu"), delta = typeset("delta"), u = "<i>u</i>";
@@ -64,7 +64,8 @@ std::string model_of(const Field& pilot) {
 std::string estimates(const Field& pilot) {
   Table table("Estimates of " + pilot_curve + ", intervals over participants",
               {"Estimate", "<i>a</i> [CI], frames/s", "<i>b</i> [CI], s/frame"});
-  // The solver's interval may be wider than that of its estimate.
+  // This interval is the solver's. It can be wider than the interval of the direct estimate, which is in the
+  // list of estimators.
   if (pilot["a"].is_number())
     table.row({"<strong>" + for_solver(pilot) + "</strong>, level " + fixed(pilot["level"], 1),
                a_with_interval(pilot), b_with_interval(pilot)});
@@ -73,7 +74,8 @@ std::string estimates(const Field& pilot) {
                  words(e["label"]) + ", level " + fixed(e["level"], 1) +
                      (e["main"].yes() ? ", with its own interval" : ""),
                  e);
-  const bool listed = !pilot["estimators"].entries().empty();  // with the harmonic mean
+  // The list of estimators already holds the estimates with the harmonic mean.
+  const bool listed = !pilot["estimators"].entries().empty();
   for (const char* mean : {"harmonic", "arithmetic"}) {
     if (listed && std::string(mean) == "harmonic") continue;
     for (const Field& e : pilot["means"][mean].entries())
@@ -99,7 +101,8 @@ std::string bands(const Field& pilot) {
   return table.empty() ? "" : table.html();
 }
 
-/// The test that the curve is an exponential, and the free curve beside it.
+/// The test that the curve is an exponential. If the test rejects, a table of the curve fitted without this
+/// assumption follows.
 std::string form(const Field& pilot) {
   const Field test = pilot["form"];
   if (!test.exists()) return "";
@@ -114,7 +117,7 @@ std::string form(const Field& pilot) {
   return out + table.html();
 }
 
-/// Reverse coders, drift and lapses.
+/// Paragraphs on how participants used the scale: reverse coders, drift and lapses.
 std::string raters(const Field& pilot) {
   std::string out;
   const Field all = pilot["raters"];
@@ -149,7 +152,8 @@ svg::Picture pilot_map(const Field& pilot) {
   for (const Field& e : pilot["means"]["harmonic"].entries()) {
     const double level = e["level"].number();
     map.levels.push_back(level);
-    // The points are the contour's; if there are other estimators, the curve was not fitted to them.
+    // The contour's points are drawn only if the curve was fitted to them. If the results list several
+    // estimators, the curve is the direct estimate.
     if (level != pilot["level"].number() || !pilot["estimators"].entries().empty()) continue;
     for (const Field& point : e["contour"]["points_delta_mu"].entries())
       map.points.push_back({point[0].number(), point[1].number()});

@@ -10,11 +10,11 @@ using svg::Point;
 using svg::text;
 
 constexpr double left = 118, width = 480, right_label = 104, row = 40, bar = 22, top = 62;
-constexpr double gap = 8;  ///< gap between a bar and the names beside it
+constexpr double gap = 8;  ///< distance between a bar and the names beside it, in pixels
 
 double x_of(double share) { return left + width * share; }
 
-/// The interval of the share, across the middle of its bar.
+/// Draws the confidence interval of a share as a line across its bar.
 std::string interval_line(double low, double high, double y) {
   std::string moves = svg::move('M', {x_of(low), y}) + svg::move('L', {x_of(high), y});
   for (const double end : {x_of(low), x_of(high)})
@@ -23,7 +23,7 @@ std::string interval_line(double low, double high, double y) {
          svg::path(moves, "stroke=\"#000000\" stroke-width=\"1.8\" fill=\"none\"");
 }
 
-/// Stars of the uncorrected test, then a slash and the stars after Holm.
+/// Stars of the uncorrected test, a slash, and stars after Holm's correction: "** / *".
 std::string stars_of(const Field& pair) {
   const std::string plain = pair["stars"].words(), holm = pair["stars_holm"].words();
   if (plain.empty()) return "";

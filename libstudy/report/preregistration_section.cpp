@@ -25,15 +25,15 @@ std::string bundle_text(const Field& bundle) {
   return body;
 }
 
-/// "tables and tests of Task 1, ordinal models, ...": the page's contents besides the hypotheses.
+/// Names the contents of the page that are not hypotheses: "tables and tests of Task 1, ordinal models, ...".
 std::string everything_else(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts)
     if (root[key].exists()) parts.push_back(std::string("tables and tests of ") + title);
-  if (!root["descriptives"].entries().empty()) parts.push_back("answers by cell");
-  if (!root["task1"]["ordinal"].entries().empty()) parts.push_back("ordinal models");
-  if (root["task2"]["bradley_terry"].exists()) parts.push_back("the Bradley-Terry model");
-  if (!root["sensitivity"].entries().empty()) parts.push_back("sensitivity");
+  if (!root["descriptives"].entries().empty()) parts.emplace_back("answers by cell");
+  if (!root["task1"]["ordinal"].entries().empty()) parts.emplace_back("ordinal models");
+  if (root["task2"]["bradley_terry"].exists()) parts.emplace_back("the Bradley-Terry model");
+  if (!root["sensitivity"].entries().empty()) parts.emplace_back("sensitivity");
   return enumerated(parts);
 }
 

@@ -13,8 +13,9 @@ using svg::text;
 
 constexpr double left = 190, width = 330, row = 24, bar = 18, top = 70;
 
-/// From blue at the lowest score through light grey to orange at the highest: distinguishable with all common
-/// types of colour vision, and by lightness in greyscale.
+/// Colour of a score: from blue for the lowest through light grey to orange for the highest. The colours are
+/// distinguishable with all common types of colour vision. In greyscale, scores on each side of the middle
+/// differ in lightness.
 struct Shade {
   std::array<double, 3> rgb{};
   std::string fill() const {
@@ -77,7 +78,7 @@ std::string drawn(const Field& entry, const std::string& name, double y) {
 
 svg::Picture rating_bars(const std::vector<Field>& entries, const std::vector<std::string>& names,
                          const std::string& id, const std::string& title) {
-  // With short names the picture is narrow, so that it fits a narrow screen.
+  // The left margin follows the longest name: with short names the picture fits a narrow screen.
   const double more = std::max(room_for(names), room_for({"score"})) + 8 - left;
   svg::Picture picture{.width = more + left + width + 20, .id = id};
   picture.title = title;

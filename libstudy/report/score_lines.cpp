@@ -17,11 +17,11 @@ using svg::text;
 constexpr double left = 52, least_step = 84, gap = 34, plot_height = 240, top = 34, below = 64;
 constexpr const char* ink = "stroke=\"#000000\" stroke-width=\"1.2\" fill=\"none\"";
 
-/// Panels side by side, one for each n_*, with the methods along x and the score along y.
+/// Layout of the panels side by side: one for each n_*, with methods along x and scores along y.
 struct Panels {
   std::vector<Field> n_stars, methods;
   double min = 1, max = 7;
-  double step = least_step;  ///< from one method to the next
+  double step = least_step;  ///< distance from one method to the next, in pixels
 
   double width() const { return step * static_cast<double>(methods.size()); }
   double origin(std::size_t panel) const { return left + static_cast<double>(panel) * (width() + gap); }
@@ -69,7 +69,7 @@ std::string frame(const Panels& panels) {
   return out;
 }
 
-/// A polyline through the points, with a gap at each missing one.
+/// A polyline through the points, interrupted at each missing point.
 std::string polyline(const std::vector<std::optional<Point>>& points, const std::string& attributes) {
   std::string moves;
   bool drawing = false;
@@ -86,14 +86,14 @@ std::size_t place(const std::vector<Field>& list, const std::string& word) {
       list.begin());
 }
 
-/// Scores of one participant or scene, by panel and method.
+/// Scores of one participant or scene: first index panel, second index method.
 using Line = std::vector<std::vector<std::optional<double>>>;
 
 Line empty_line(const Panels& panels) {
   return Line(panels.n_stars.size(), std::vector<std::optional<double>>(panels.methods.size()));
 }
 
-/// A picture with the score's name and the axes.
+/// An empty picture with the score's name and the axes of the panels.
 svg::Picture picture_of(const Panels& panels, const Field& score, const std::string& id) {
   svg::Picture picture{.width = std::max(panels.right() + 12, 420.0), .height = panels.bottom() + below};
   picture.id = id + "-" + score["code"].words();
@@ -103,7 +103,7 @@ svg::Picture picture_of(const Panels& panels, const Field& score, const std::str
   return picture;
 }
 
-/// Calls `take` with each cell of the score in a panel, and the index of its method.
+/// Calls `take` for each cell of the score in a panel, with the cell and the index of its method.
 template <class Take>
 void each_cell(const Panels& panels, const Field& cells, const Field& score, std::size_t panel, Take take) {
   for (const Field& cell : cells.entries()) {
@@ -152,7 +152,7 @@ svg::Picture person_lines(const Field& task1, const Field& score) {
   for (std::size_t p = 0; p < panels.n_stars.size(); ++p) {
     std::size_t person = 0;
     for (const auto& [participant, means] : people) {
-      // Shifted sideways a little, so that equal scores do not overlap.
+      // Points are shifted sideways by participant, so that equal scores do not overlap.
       const double aside = 0.30 * panels.step *
                            ((static_cast<double>(person++) + 0.5) / static_cast<double>(people.size()) - 0.5);
       std::vector<std::optional<Point>> points(panels.methods.size());
@@ -177,7 +177,8 @@ svg::Picture person_lines(const Field& task1, const Field& score) {
 svg::Picture scene_lines(const Field& task1, const Field& score) {
   const Panels panels = panels_of(task1, score);
   const std::vector<Field> scenes = task1["scenes"].entries();
-  const double column = std::max(190.0, 50 + room_for(words_of(scenes)));  // of the legend
+  // Width of a column of the legend, in pixels.
+  const double column = std::max(190.0, 50 + room_for(words_of(scenes)));
   svg::Picture picture = picture_of(panels, score, "scene-lines");
   picture.title = score["label"].words() + " by scene";
   picture.description =

@@ -13,7 +13,7 @@ std::string quartiles(const Field& summary) {
   return fixed(summary["q1"], 1) + " to " + fixed(summary["q3"], 1);
 }
 
-/// n, median, quartiles, mean and largest, as cells.
+/// Table cells: n, median, quartiles, mean and largest value.
 std::vector<std::string> described(const Field& summary) {
   return {count(summary["n"]), fixed(summary["median"], 1), quartiles(summary), fixed(summary["mean"], 2),
           fixed(summary["max"], 1)};
@@ -81,7 +81,7 @@ std::string fms(const Field& fms, const std::string& id) {
   };
   part("Whole session", fms);
   for (const Field& block : fms["blocks"].entries()) part("Block " + words(block["block"]), block);
-  // Models have no answering times.
+  // Answers of observer models have no times; without times the table has no column of minutes.
   const auto asked = fms["times"].entries();
   const bool timed =
       std::any_of(asked.begin(), asked.end(), [](const Field& time) { return time["minutes"].is_number(); });

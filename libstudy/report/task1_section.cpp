@@ -16,7 +16,7 @@ bool of(const Field& entry, const std::string& score, const std::string& n_star)
   return entry["score"].words() == score && entry["n_star"].words() == n_star;
 }
 
-/// One row for each n_* and entry of `list` that has this score.
+/// The table with a row by `row` for each entry of task1's list `list` that has this score, grouped by n_*.
 template <class Row>
 std::string by_n_star(Table table, const Field& task1, const std::string& list, const std::string& score,
                       Row row) {
@@ -32,7 +32,7 @@ std::string by_n_star(Table table, const Field& task1, const std::string& list, 
   return any ? table.html() : "";
 }
 
-/// "none", or each value.
+/// The values of a list, separated by semicolons; "none" for an empty list.
 std::string listed(const Field& values) {
   std::string out;
   for (const Field& value : values.entries()) out += (out.empty() ? "" : "; ") + fixed(value, 2);
@@ -51,7 +51,7 @@ std::string cells_table(const Field& task1, const Field& score) {
   });
 }
 
-/// True for a pair without spread, which is marked behind its name.
+/// True if a pair was tested by the exact sign test, since all its differences are equal.
 bool by_sign(const Field& pair) { return pair["test"].words() == "exact sign test"; }
 
 std::string sign_test(const Field& pair) {
@@ -105,7 +105,7 @@ std::string other_tests(const Field& task1, const Field& score) {
   return table_html.empty() ? "" : table_html + note;
 }
 
-/// t tests with an uncorrected p below .05, as sentences.
+/// Sentences in APA style on the t tests with an uncorrected p below .05.
 std::string score_apa_lines(const Field& task1, const std::string& score) {
   std::vector<std::string> lines;
   bool any_tested = false;
@@ -195,7 +195,7 @@ std::string ordinal(const Field& task1) {
   return table.empty() ? "" : subsection("Ordinal models", table.html() + note);
 }
 
-/// True if the figure by scene cuts off an interval that exceeds the scale.
+/// True if the figure by scene cuts off an interval at an end of the scale.
 bool cut_intervals(const Field& task1, const Field& score) {
   for (const Field& cell : task1["by_scene"].entries())
     if (cell["score"].words() == score["code"].words() && cell["ci"].entries().size() == 2 &&

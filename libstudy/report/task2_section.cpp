@@ -10,7 +10,7 @@ namespace {
 
 std::string preferred_pair(const Field& pair) { return words(pair["a"]) + " over " + words(pair["b"]); }
 
-/// True if a pair has the binomial test's Wilson interval.
+/// True if some pair has a Wilson interval, which accompanies the binomial test.
 bool has_wilson(const Field& pairs) {
   const auto all = pairs.entries();
   return std::any_of(all.begin(), all.end(), [](const Field& pair) {
@@ -18,7 +18,7 @@ bool has_wilson(const Field& pairs) {
   });
 }
 
-/// The names of the intervals on the bars.
+/// Names of the kinds of intervals that the figure's bars show.
 std::string interval_names(const Field& pairs) {
   std::vector<std::string> names, seen;
   for (const Field& pair : pairs.entries()) {
@@ -34,7 +34,7 @@ std::string interval_names(const Field& pairs) {
   return out;
 }
 
-/// The tests behind the stars, each once.
+/// Names of the tests to which the figure's stars refer, each once.
 std::string test_names(const Field& pairs) {
   std::string out, binomial, shares;
   for (const Field& pair : pairs.entries()) {
@@ -52,7 +52,7 @@ std::string bars_caption(const Field& pairs) {
   return tests.empty() ? out : out + " Stars: " + tests + ", uncorrected / after Holm over all pairs.";
 }
 
-/// A note shown once, not for each pair.
+/// A note on participants who answered a pair more than once.
 std::string several_answers(const Field& several) {
   if (!(several["participants"].number() > 0)) return "";
   return paragraph(count(several["participants"]) + " of " + count(several["of"]) +

@@ -37,21 +37,22 @@ std::string patterns(const std::string& id) {
                  "stroke=\"#a03d00\" stroke-width=\"1.6\"");
 }
 
-/// The fill: a colour, or a pattern of the picture `id`.
+/// SVG attributes of a verdict's bar: a colour, or a pattern that is defined in the picture `id`.
 std::string fill_of(const Verdict& verdict, const std::string& id) {
   const std::string fill = verdict.fill;
   return svg::attribute("fill", fill.front() == '#' ? fill : "url(#" + id + "-" + fill + ")") +
          " stroke=\"#000000\"";
 }
 
-/// "50, SD 20" for a pilot's setting, "Ours, 32k" for a method.
+/// Name of a cell's bar: "50, SD 20" (frames/s) for a setting of a pilot, "Ours, 32k" for a method at one
+/// n_*.
 std::string name_of(const Field& cell) {
   if (cell["task"].words() != "pilot") return cell["method"].words() + ", " + cell["n_star"].words();
   return svg::number(cell["nominal_mean_fps"].number(), 0) + ", SD " +
          svg::number(cell["nominal_sd_fps"].number(), 0);
 }
 
-/// Counts of showings of a method at one n_*, over scenes, or of a setting.
+/// Counts of showings by verdict, for one bar.
 struct Line {
   std::array<double, 4> n{};
   double all() const { return n[0] + n[1] + n[2] + n[3]; }
@@ -92,7 +93,7 @@ svg::Picture timing_chart(const Field& timing, const std::string& task) {
     if (fresh) order.push_back(name);
     for (std::size_t i = 0; i < verdicts.size(); ++i) at->second.n[i] += cell[verdicts[i].key].number();
   }
-  // No bar if all showings passed.
+  // A bar is left out if no showing was degraded or failed.
   std::erase_if(order, [&](const std::string& name) { return lines[name].n[1] + lines[name].n[2] <= 0; });
   const double more = std::max(0.0, room_for(order) + 8 - left);
   svg::Picture picture{.width = more + left + width + 20, .id = "timing-" + task};

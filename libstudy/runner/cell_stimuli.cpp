@@ -14,7 +14,7 @@ namespace study {
 
 namespace {
 
-/// Checks names before the session begins, not at the cell's first trial.
+/// Checks methods, n_* and effects before the session begins, so that no wrong name stops a trial.
 void check_words(const Protocol& protocol) {
   for (const Cell& cell : protocol.design.cells) {
     sim::parse_method(cell.stimulus.method);
@@ -58,7 +58,8 @@ CellStimuli::CellStimuli(const RunOptions& options, const Protocol& protocol, co
   description_ = describe(protocol);
 }
 
-/// A bake has its own setting, and without a display there is nothing to set.
+/// Refuses a solver setting for a cell that is not computed live: a bake contains its setting, and --display
+/// none computes nothing.
 void CellStimuli::check_settings_live(const Protocol& protocol) const {
   for (const Cell& cell : protocol.design.cells) {
     const sim::SettingFile* setting = settings_.empty() ? nullptr : settings_.of(cell.stimulus);
@@ -74,7 +75,8 @@ void CellStimuli::check_settings_live(const Protocol& protocol) const {
   }
 }
 
-/// A single bake for all cells, or the empty stimulus, describes itself.
+/// Describes the stimuli of all cells. The text of a single bake for all cells, or of the empty stimulus, is
+/// its description().
 std::string CellStimuli::describe(const Protocol& protocol) {
   const bool live = shown_ && !bakes_.whole();
   const std::string bakes = bakes_.description();

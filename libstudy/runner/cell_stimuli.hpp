@@ -12,29 +12,29 @@
 
 namespace study {
 
-/// A bake if there is one for the cell, else live fluid, or nothing with --display none. Makes a new stimulus
-/// only if a cell needs another one than the last cell.
+/// Shows a cell from its bake if one exists, else as live fluid; with --display none, as an empty stimulus.
+/// Uses the stimulus of the last cell again if the next cell needs the same stimulus.
 class CellStimuli final : public StimulusSource {
  public:
-  /// base::Error if a setting is for a cell that is not computed live.
+  /// base::Error if a solver setting is for a cell that is not computed live.
   CellStimuli(const RunOptions& options, const Protocol& protocol, const stats::PtpeModel& model,
               Viewing viewing, SessionBakes bakes = {}, SessionSettings settings = {});
 
   Stimulus& stimulus(const Cell& cell) override;
   /// True if the cell is computed while it is shown.
   bool is_live(const Cell& cell) const { return shown_ && !bakes_.of(cell); }
-  /// Description of all cells, for the record; independent of which were shown.
+  /// Description of the stimuli of all cells, for the record, whether or not a cell was shown.
   std::string description() const { return description_; }
-  /// Of all live fluid that was computed.
+  /// Guard counts summed over all live fluid that was computed.
   sim::GuardCounts guards() const;
   const SessionBakes& bakes() const { return bakes_; }
   const SessionSettings& settings() const { return settings_; }
-  /// The choice from which the live fluid of a cell is made.
+  /// The parameters of the live fluid of a cell.
   StimulusChoice choice_of(const Cell& cell) const;
 
  private:
-  /// Key of the current stimulus. The frame rate is set only for methods with temporal acceleration; for a
-  /// bake only its path counts.
+  /// Identifies the current stimulus. `rate` is set only for methods with temporal acceleration; `bake` alone
+  /// identifies a bake.
   struct Made {
     StimulusSpec what;
     std::optional<sim::FrameRate> rate;
@@ -54,7 +54,7 @@ class CellStimuli final : public StimulusSource {
   std::string description_;
   std::optional<Made> made_;
   std::unique_ptr<Stimulus> stimulus_;
-  sim::GuardCounts former_guards_;  ///< of the stimuli before
+  sim::GuardCounts former_guards_;  ///< summed over the earlier stimuli
 };
 
 }  // namespace study

@@ -46,7 +46,7 @@ sim::Image draw_fluid(const FramedScene& framed, bool paint_temperature) {
   return target.read();
 }
 
-/// Draws a dot of 3 x 3 pixels at a position in px from the lower left corner.
+/// Draws a dot of 3 x 3 pixels. (x, y): its middle, px from the lower left corner.
 void dot(sim::Image& image, double x, double y, const Colour& colour) {
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -58,7 +58,8 @@ void dot(sim::Image& image, double x, double y, const Colour& colour) {
   }
 }
 
-/// Draws the box's twelve edges as dots, which touch unless the box is much larger than the picture.
+/// Draws the twelve edges of a box as rows of dots. The dots touch each other unless the box is much larger
+/// than the picture.
 void outline(sim::Image& image, const FramedScene& framed, const sim::VisibleBox& box) {
   const auto corners = corners_of(box);
   const bool cut = std::find(framed.cut.begin(), framed.cut.end(), box.name) != framed.cut.end();
@@ -77,7 +78,8 @@ void outline(sim::Image& image, const FramedScene& framed, const sim::VisibleBox
   }
 }
 
-/// Draws the fovea's rim for a gaze on the middle, by the visual angle if it is known, else the camera's.
+/// Draws the rim of the fovea for a gaze at the middle. Its radius follows from the visual angle of the
+/// picture, or from the camera's angle if the visual angle is unknown.
 void circle(sim::Image& image, const Framing& framing) {
   constexpr double degree = std::numbers::pi / 180;
   const double angle = framing.visual_deg.value_or(framing.camera_deg);

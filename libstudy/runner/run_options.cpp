@@ -19,7 +19,8 @@ std::optional<double> optional_number(const base::Json& json) {
 }
 
 [[noreturn]] void unreadable(const std::string& place) {
-  throw base::Error(place, "options of its run cannot be read", "restore a backup of it");
+  throw base::Error(place, "contains options of its run that cannot be read",
+                    "restore a backup of the database");
 }
 
 /// Width or height of a display, px; 0: the whole monitor.
@@ -32,14 +33,15 @@ int side_of(const base::Json& json, const std::string& place) {
 int monitor_of(const base::Json& json, const std::string& place) {
   const auto found = json.find("monitor");
   if (found == json.end()) return 0;
-  // Other numbers would convert to int silently or with undefined behaviour.
+  // Refuses numbers whose conversion to int would round or be undefined.
   if (!found->is_number_integer() || found->get<double>() < 0 ||
       found->get<double>() > std::numeric_limits<int>::max())
     unreadable(place);
   return found->get<int>();
 }
 
-/// Reads the settings; base::Error for a damaged record, which would run other settings than recorded.
+/// Reads the solver settings; base::Error if a text does not match its recorded SHA-256, because the session
+/// would then use other settings than recorded.
 std::vector<std::string> settings_of(const base::Json& json, const std::string& place) {
   std::vector<std::string> out;
   const auto found = json.find("settings");
@@ -78,8 +80,8 @@ RunOptions parse_run_options(const std::string& text, const std::string& place) 
   try {
     const auto json = base::parse_json(text);
     if (json.at("format") != format_version) {
-      throw base::Error(place, "options of another format",
-                        "finish it with the version of vip-study that wrote it");
+      throw base::Error(place, "contains run options of another format",
+                        "resume it with the version of vip-study that wrote it");
     }
     RunOptions options;
     options.observer = json.at("observer");

@@ -21,7 +21,7 @@ bool follows_gaze(const std::string& method) { return sim::traits_of(sim::parse_
 
 bool differ(double a, double b) { return std::abs(a - b) > same_angle_deg; }
 
-/// Departure of a bake whose levels followed another visual angle than the present one.
+/// Departure of a bake whose levels followed another visual angle than that of this session; empty: none.
 std::string levels_departure(const sim::BakeHeader& bake, const FramedScene& framed) {
   const auto &baked = bake.view.visual_angle_deg, &seen = framed.framing.visual_deg;
   if (!follows_gaze(bake.method)) return "";
@@ -53,7 +53,7 @@ FramedScene frame_live(const sim::Scene& scene, const Viewing& viewing, base::Pi
   return out;
 }
 
-/// Baked pictures retain their camera and are scaled into the display.
+/// Framing of baked pictures: they keep the camera of the bake and are scaled to fit the display.
 FramedScene frame_pictures(const sim::Scene& scene, const sim::BakeHeader& bake, const Viewing& viewing,
                            base::PictureSize display) {
   const int width = bake.picture_width_px, height = bake.picture_height_px;
@@ -65,7 +65,8 @@ FramedScene frame_pictures(const sim::Scene& scene, const sim::BakeHeader& bake,
   out.view = sim::make_view(camera, width, height);
   out.shown = {to.x1 - to.x0, to.y1 - to.y0};
   out.framing.camera_deg = camera.vertical_fov_deg;
-  // The display has the width of the measured screen.
+  // The measured width of the screen is the width of the display, so the picture's angle follows from
+  // display.width.
   if (viewing.visual_angle_deg)
     out.framing.visual_deg = viewing.visual_angle_deg(display.width, out.shown.height);
   out.renderer = bake.view.renderer;
@@ -89,7 +90,7 @@ bool alike(const FramedScene& a, const FramedScene& b) {
          !differ(a.framing.camera_deg, b.framing.camera_deg);
 }
 
-/// How two framings of the same scene differ.
+/// Describes the differences between two framings of the same scene.
 std::string difference(const FramedScene& a, const FramedScene& b) {
   std::vector<std::string> all;
   const auto &one = a.view.viewport, &other = b.view.viewport;
@@ -119,7 +120,7 @@ Viewing screen_viewing(std::optional<double> width_mm, std::optional<double> dis
   viewing.visual_angle_deg = [width = *width_mm, distance = *distance_mm](int width_px, int height_px) {
     return vertical_fov_deg(picture_height_mm(width, width_px, height_px), distance);
   };
-  viewing.visual_angle_deg(16, 9);  // throws now rather than later
+  viewing.visual_angle_deg(16, 9);  // throws for values out of range, before any picture is framed
   return viewing;
 }
 
@@ -127,7 +128,7 @@ std::vector<FramedScene> frame_scenes(const Protocol& protocol, const Viewing& v
                                       base::PictureSize display, const SessionBakes& bakes,
                                       const std::string& renderer) {
   std::vector<FramedScene> out;
-  std::map<std::string, FramedScene> live;  // by file, which is read once
+  std::map<std::string, FramedScene> live;  // live scenes by file; each file is read once
   for (std::size_t i = 0; i < protocol.design.cells.size(); ++i) {
     const Cell& cell = protocol.design.cells[i];
     const std::string& file = cell.stimulus.scene;
@@ -174,11 +175,12 @@ void check_visible(const std::vector<FramedScene>& scenes) {
   for (const FramedScene& one : scenes) {
     if (one.cut.empty()) continue;
     const auto& to = one.view.viewport;
-    throw base::Error(one.file,
-                      one.cut.front() + " leaves the picture of " + base::size_words({to.width, to.height}) +
-                          " px at the camera's " + degrees(one.framing.camera_deg),
-                      "with camera_angle = \"true\" sit nearer or make the picture larger, otherwise make it "
-                      "wider; vip-study check --preview shows it");
+    throw base::Error(
+        one.file,
+        one.cut.front() + " leaves the picture of " + base::size_words({to.width, to.height}) +
+            " px at the camera's " + degrees(one.framing.camera_deg),
+        "with camera_angle = \"true\" sit nearer or make the picture larger, otherwise make the "
+        "picture wider; vip-study check --preview shows the scene");
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-/// How a display frames the scenes of a protocol: stored by a session, reported by `vip-study check`.
+/// How a display frames the scenes of a protocol. Sessions store the framing, and `vip-study check` reports
+/// it.
 
 #include <filesystem>
 #include <optional>
@@ -15,50 +16,51 @@
 
 namespace study {
 
-/// One scene on a display: its live fluid and baked particles, or the pictures of bakes. A scene has several
-/// entries if its cells differ in renderer, size or angle.
+/// One scene as a display shows it: drawn from live fluid or baked particles, or copied from the pictures of
+/// bakes. A scene has several entries if its cells differ in renderer, picture size or camera angle.
 struct FramedScene {
-  std::string file;         ///< as the protocol names it
-  std::vector<int> cells;   ///< cells framed like this: indices into Design::cells
-  std::string renderer;     ///< that draws it or drew the pictures; empty: not known
-  std::vector<int> copied;  ///< of these, the cells whose pictures come from a bake
+  std::string file;         ///< path of the scene file as in the protocol
+  std::vector<int> cells;   ///< indices of the cells with this framing in Design::cells
+  std::string renderer;     ///< renderer that draws the scene or drew the bakes' pictures; empty: not known
+  std::vector<int> copied;  ///< those of `cells` whose pictures come from a bake
   sim::Scene scene;
-  sim::View view;           ///< of the drawn picture
-  base::PictureSize shown;  ///< the picture on the display
+  sim::View view;           ///< camera view of the drawn picture
+  base::PictureSize shown;  ///< size of the picture on the display
   Framing framing;
-  std::vector<std::string> cut;  ///< required visible parts that leave the picture, even partly
-  /// How a bake departs from the protocol's and the display's framing; empty: not at all, or no bake.
+  std::vector<std::string> cut;  ///< parts that must stay visible, but leave the picture at least partly
+  /// Differences between a bake's framing and the framing by protocol and display; empty: none, or no bake.
   std::string departure;
 };
 
-/// The visual angle of a picture of this width at this distance. base::Error if only one is given, one is out
-/// of range, or true_angle has neither.
+/// Viewing with the visual angle of pictures on a screen of this width at this distance. base::Error if only
+/// one of width and distance is given, if one is out of range, or if true_angle is set without them.
 Viewing screen_viewing(std::optional<double> width_mm, std::optional<double> distance_mm, bool true_angle);
 
-/// The scenes of a protocol in the order of its cells, shown live or from `bakes`; renderer: the display's.
-/// base::Error for files that cannot be read.
+/// The scenes of a protocol in the order of its cells, shown live or from `bakes`. renderer: name of the
+/// renderer that the display uses. base::Error for files that cannot be read.
 std::vector<FramedScene> frame_scenes(const Protocol& protocol, const Viewing& viewing,
                                       base::PictureSize display, const SessionBakes& bakes = {},
                                       const std::string& renderer = {});
 
-/// Differences between compared pictures of a scene, such as "data/scenes/faucet.toml: size 640x360 and
-/// 1280x720"; empty: none.
+/// Differences between pictures of the same scene, which participants compare, such as
+/// "data/scenes/faucet.toml: size 640x360 and 1280x720"; empty: none.
 std::string mixed_pictures(const std::vector<FramedScene>& scenes);
 
-/// base::Error naming mixed_pictures(), unless there are none or the protocol accepts them.
+/// Throws a base::Error with mixed_pictures(), unless the text is empty or the protocol accepts mixed
+/// pictures.
 void check_one_picture(const Protocol& protocol, const std::vector<FramedScene>& scenes);
 
-/// base::Error naming the first scene with a required part outside the picture.
+/// Throws a base::Error for the first scene in which the picture cuts off a part that must stay visible.
 void check_visible(const std::vector<FramedScene>& scenes);
 
 /// The framing for the session's record.
 std::vector<SceneFraming> framing_record(const std::vector<FramedScene>& scenes);
 
-/// "Faucet, 1920x1080: camera 75 deg, 27.4 deg of the eye's view (ratio 0.37)".
+/// One line such as "Faucet, 1920x1080: camera 75 deg, 27.4 deg of the eye's view (ratio 0.37)".
 std::string describe_framing(const FramedScene& scene);
 
-/// Notes for the experimenter before the first participant, one line each: unknown angles although a method
-/// follows the gaze, and scaled pictures.
+/// Notes for the experimenter before the first participant, one line each: mixed_pictures() that the protocol
+/// accepts, an unknown visual angle although a method follows the gaze, and scaled pictures.
 std::vector<std::string> framing_notes(const Protocol& protocol, const std::vector<FramedScene>& scenes);
 
 }  // namespace study

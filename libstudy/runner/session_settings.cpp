@@ -32,8 +32,8 @@ void check_shown(const sim::SolverSetting& setting, const Protocol& protocol, co
   throw base::Error(
       place,
       "is a setting of " + named(setting) + ", which no cell of protocol '" + protocol.name + "' shows",
-      "choose one of the protocol's (vip-bench accuracy --budget … --of-method, --of-n-star), or leave it "
-      "out");
+      "choose a setting for a method and n_* of the protocol (vip-bench accuracy --budget … --of-method, "
+      "--of-n-star), or leave it out");
 }
 
 void check_step(const sim::SolverSetting& setting, const Protocol& protocol, const std::string& place) {
@@ -44,8 +44,8 @@ void check_step(const sim::SolverSetting& setting, const Protocol& protocol, con
       fmt::format("was chosen for frames of content {:.6g} s apart (frames_per_s = {:.6g}), and "
                   "the protocol's content step is {:.6g} s",
                   step_s, setting[sim::SolverKnob::Rate], asked_s),
-      "choose one of that rate (vip-bench accuracy --budget … --of-rate), or change the protocol's "
-      "content_step_s");
+      "choose a setting for the protocol's content step (vip-bench accuracy --budget … --of-rate), or change "
+      "content_step_s of the protocol");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// The solver settings of `vip-study run --setting`, by live cell.
+/// The solver settings that `vip-study run --setting` gives to live cells.
 
 #include <string>
 #include <vector>
@@ -9,22 +9,24 @@
 
 namespace study {
 
-/// A setting applies to every cell of its method and n_* in all scenes, so that a method is the same in all
-/// scenes of a study. Other cells use the default setting.
+/// A setting applies to every cell with its method and n_*, in all scenes, so that a method has the same
+/// setting in all scenes of a study. Other cells use the default setting.
 class SessionSettings {
  public:
   SessionSettings() = default;
-  /// `texts`: setting files in full; `place` names them in errors. base::Error: a file that cannot be read,
-  /// whose method and n_* match no cell or another file, or whose content step differs from the protocol's.
+  /// `texts`: the full texts of setting files; `place` names them in errors. base::Error for a text that is
+  /// no setting file, whose method and n_* match no cell, whose method and n_* equal those of another text,
+  /// or whose content step differs from the protocol's.
   SessionSettings(const std::vector<std::string>& texts, const Protocol& protocol, const std::string& place);
 
-  /// Null: the cell has the default setting.
+  /// The setting of this stimulus; null: the default setting.
   const sim::SettingFile* of(const StimulusSpec& stimulus) const;
   bool empty() const { return settings_.empty(); }
-  /// For the record: "; at setting SHA-256 (Ours n_star=16384 ...)" for each; empty: none.
+  /// Text for the record: "; at setting SHA-256 (Ours n_star=16384 ...)" for each setting; empty without
+  /// settings.
   std::string description() const;
-  /// Lines for each setting: its content and measured cost, scenes that differ from the measured one, and
-  /// whether tau is fixed.
+  /// Lines for each setting: its content and measured cost, scenes other than the measured scene, and a tau
+  /// that follows the setting instead of the frame rate.
   std::vector<std::string> notes(const Protocol& protocol) const;
 
  private:

@@ -62,7 +62,7 @@ std::unique_ptr<Display> make_display(const RunOptions& options) {
   return std::make_unique<HeadlessDisplay>(options.width_px, options.height_px, shows_pictures(choice));
 }
 
-/// Refuses bakes with pictures; called before anything is written.
+/// Refuses bakes with pictures, which would look flat in a headset. Called before anything is written.
 void refuse_pictures(const SessionBakes& bakes, const Protocol& protocol) {
   for (const Cell& cell : protocol.design.cells) {
     const FoundBake* bake = bakes.of(cell);
@@ -73,8 +73,8 @@ void refuse_pictures(const SessionBakes& bakes, const Protocol& protocol) {
   }
 }
 
-/// Requests the eye tracker for --gaze tracked; it is not read before a participant allows it. Its validation
-/// targets need a page.
+/// Requests the eye tracker for --gaze tracked; the tracker is not read before a participant allows
+/// recording. Adds a page if none is chosen, because the tracker's validation targets are drawn on a page.
 HeadsetChoice with_gaze(HeadsetChoice choice, const RunOptions& options) {
   constexpr int target_px = 128;
   if (options.gaze != "tracked") return choice;
@@ -99,7 +99,7 @@ void record_headset(const RunOptions& options, HeadsetDisplay& display, SessionS
   viewing.ray = [recorder] { return recorder->ray(); };
 }
 
-/// Sets up the headset as display; its slots drive the clock.
+/// Sets up the headset as display. The frame slots of the headset drive the clock.
 void take_headset(const RunOptions& options, const Protocol& protocol, SessionSetup& setup,
                   Viewing& viewing) {
   const bool person = options.observer.empty();
@@ -115,9 +115,11 @@ void take_headset(const RunOptions& options, const Protocol& protocol, SessionSe
     display->clear();
     do {
       if (others() == Request::Stop) return Request::Stop;
-      display->turn();  // at least once: a frame may be reported unseen before its cause
+      // At least once, because the headset may report an unseen frame before the event that caused it.
+      display->turn();
     } while (!display->focused());
-    if (const auto more = display->take_spoilt()) note_cut(spoilt, *more);  // with nothing shown
+    // Further cuts in the loop, where nothing was shown.
+    if (const auto more = display->take_spoilt()) note_cut(spoilt, *more);
     return *spoilt;
   };
   if (person) {
@@ -133,7 +135,8 @@ void take_headset(const RunOptions& options, const Protocol& protocol, SessionSe
   setup.display = std::move(headset);
 }
 
-/// Measures live pictures before the session; without live pictures, uses the table.
+/// Picture features for the frames observer: measured on live pictures before the session, or taken from the
+/// table if the session shows no live pictures.
 std::unique_ptr<FeatureSource> make_features(const RunOptions& options, const Protocol& protocol,
                                              const CellStimuli& stimuli) {
   const bool looks = options.observer.find("frames") != std::string::npos;
@@ -144,7 +147,8 @@ std::unique_ptr<FeatureSource> make_features(const RunOptions& options, const Pr
   return features;
 }
 
-/// The tau of a scheduled cell uses the protocol's kind of mean, so the model must have the same kind.
+/// Reads the PTPE model. The tau of a scheduled cell uses the protocol's kind of mean, so the model must be
+/// fitted to the same kind of mean.
 stats::PtpeModel model_of(const std::optional<std::string>& ptpe, const std::string& place,
                           const Protocol& protocol) {
   if (!ptpe) return {};

@@ -15,7 +15,8 @@
 
 namespace study {
 
-/// Owns the parts. Stimuli are destroyed before the display whose GL context they draw in.
+/// Owns the parts of a session. The stimuli are destroyed before the display, because they draw in its GL
+/// context.
 struct SessionSetup {
   bool virtual_clock = false;
   std::unique_ptr<Clock> clock;
@@ -23,30 +24,33 @@ struct SessionSetup {
   std::unique_ptr<FeatureSource> features;  ///< for the frames observer
   std::unique_ptr<Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
-  std::shared_ptr<GazeSource> gaze;             ///< the recorded gaze source; null: no gaze is recorded
-  std::shared_ptr<SlotSource> slots;            ///< of a headset, or null
-  std::unique_ptr<GazeTargets> targets;         ///< of an eye tracker, or null
-  WindowRequest request;                        ///< of the window or the headset, or empty
-  std::function<std::optional<double>()> idle;  ///< of the window or the headset, or empty
-  std::function<void()> listen;  ///< makes the terminal's keys answer a headset's pages, or empty
-  std::function<void(bool reveal)> open_mirror;  ///< of the window or the headset, or empty
-  std::function<void()> poll;                    ///< of the window, or empty
-  std::optional<ScreenFacts> screen;             ///< of the window, or none
-  std::vector<FramedScene> scenes;               ///< as the display frames them; none: nothing is drawn
-  std::vector<std::string> warnings;  ///< of clock and database (warn_of_station), for console and log
-  MeasuredReport rates;               ///< of live cells on this station; none: nothing was measured
+  std::shared_ptr<GazeSource> gaze;      ///< the recorded gaze source; null: no gaze is recorded
+  std::shared_ptr<SlotSource> slots;     ///< source of a headset's frame slots; null: no headset
+  std::unique_ptr<GazeTargets> targets;  ///< targets that validate an eye tracker; null: no eye tracker
+  WindowRequest request;                 ///< polls the requests at the window or headset, or empty
+  /// Seconds since the last input at the window or headset; empty without window and headset.
+  std::function<std::optional<double>()> idle;
+  /// Makes the terminal's keys answer the pages in a headset; empty without a headset.
+  std::function<void()> listen;
+  /// Opens the experimenter's second window; empty without window and headset.
+  std::function<void(bool reveal)> open_mirror;
+  std::function<void()> poll;         ///< handles events of the window; empty: no window
+  std::optional<ScreenFacts> screen;  ///< facts of the window's screen; none: no window
+  std::vector<FramedScene> scenes;    ///< scenes as framed; empty for openxr and none
+  std::vector<std::string> warnings;  ///< warnings about clock and database (warn_of_station())
+  MeasuredReport rates;               ///< measured rates of live cells; none: nothing was measured
 
-  /// How bakes depart from the protocol and the display; empty: not at all. Data of such sessions are test
-  /// data.
+  /// Differences between the bakes and what protocol and display require; empty: none. Data of such sessions
+  /// are test data.
   std::string departure() const;
 };
 
 /// True if participants are asked for permission to record gaze.
 bool asks_gaze(const Protocol& protocol);
 
-/// `ptpe` is the text of the PTPE file, which errors call `ptpe_place`; none: the paper's model drives
-/// temporal acceleration. `setting_place` names the options' settings in errors. base::Error naming a
-/// missing, wrong or inconsistent part.
+/// `ptpe`: text of the PTPE file for temporal acceleration; none: the paper's model. `ptpe_place` names this
+/// file in errors, `setting_place` the options' solver settings. base::Error naming a missing, wrong or
+/// inconsistent part.
 SessionSetup make_session_setup(const RunOptions& options, const Protocol& protocol,
                                 const std::optional<std::string>& ptpe, const std::string& ptpe_place,
                                 const std::string& setting_place = "--setting");

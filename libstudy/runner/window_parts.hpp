@@ -18,31 +18,32 @@ namespace study {
 
 class HeadsetDisplay;
 
-/// The request at the window, given those of others; see SessionHooks::request.
+/// Combines the requests at the window with the requests of `others`; see SessionHooks::request.
 using WindowRequest = std::function<Request(const std::function<Request()>& others)>;
 
-/// Each part keeps the window alive.
+/// The parts of --display window. The window stays open while any part exists.
 struct WindowParts {
   std::unique_ptr<Display> display;
-  std::unique_ptr<Participant> person;  ///< answers if no observer was named
+  std::unique_ptr<Participant> person;  ///< the person at the window; unused if a simulated observer answers
   /// Viewing::gaze for --gaze mouse.
   std::function<std::optional<std::pair<double, double>>(int, int)> gaze;
-  std::unique_ptr<GazeSource> mouse;  ///< the same, for the record
+  std::unique_ptr<GazeSource> mouse;  ///< the mouse as the recorded gaze
   WindowRequest request;
-  std::function<void(bool reveal)> open_mirror;  ///< for the experimenter; base::Error if there is no room
+  /// Opens the experimenter's second window; base::Error if it cannot be opened.
+  std::function<void(bool reveal)> open_mirror;
   /// Seconds since the last key, button or movement of the mouse at the window.
   std::function<std::optional<double>()> idle;
   /// Processes window events while nothing is shown, so that the window does not count as unresponsive.
   std::function<void()> poll;
   ScreenFacts screen;
-  base::PictureSize size;  ///< of the window
+  base::PictureSize size;  ///< size of the window
 };
 
-/// Both functions throw base::Error if there is no window.
+/// make_window_parts() and open_headset_mirror() throw base::Error if no window can be opened.
 WindowParts make_window_parts(const RunOptions& options, const Protocol& protocol);
 
-/// The experimenter's window on the headset's view, open during the returned object's lifetime; see
-/// HeadsetMirror.
+/// Opens a window in which the experimenter sees the headset's picture; see HeadsetMirror. The window stays
+/// open as long as the returned object exists.
 std::shared_ptr<void> open_headset_mirror(HeadsetDisplay& display, bool reveal);
 
 }  // namespace study

@@ -8,7 +8,8 @@ namespace study {
 
 namespace {
 
-// Least rest after stimuli were shown, s; participants stay until they feel well.
+// Shortest rest after a stop if stimuli were shown, s. The page then asks participants to stay until they
+// feel well.
 constexpr double stop_rest_s = 60;
 
 class Farewell {
@@ -33,7 +34,7 @@ class Farewell {
  private:
   bool offer(Offer what) { return run_.parts.participant.offer(what, run_.parts.clock, check_); }
 
-  /// All items are optional, so that nobody who feels unwell must stay.
+  /// Offers the SSQ. Every item is optional, so that participants who feel unwell can leave at once.
   void ask_how_they_feel(std::span<const OpenUnit> left) {
     const auto last = std::find_if(left.rbegin(), left.rend(), [this](const OpenUnit& unit) {
       return run_.block(unit).kind == BlockKind::Ssq;
@@ -67,7 +68,7 @@ void say_farewell(const Running& run, Questioning& questioning, const Ending& en
       case EarlyEnd::DroppedOut:
         return;
     }
-  } catch (const Stopped&) {  // the session has ended anyway
+  } catch (const Stopped&) {  // skips the remaining pages; the end of the session is already stored
   }
 }
 

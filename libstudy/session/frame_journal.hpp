@@ -1,5 +1,5 @@
 #pragma once
-/// Buffers the frames of a running trial and their recordings, so that the session's thread never waits for
+/// Buffers the frames of a running trial with gaze and slots, so that the session's thread never waits for
 /// the disk between two frames.
 
 #include <atomic>
@@ -17,7 +17,7 @@
 
 namespace study {
 
-/// Records that are not in the store yet.
+/// Buffered records that are not in the store yet.
 struct Unwritten {
   std::vector<FrameRecord> frames;
   std::vector<GazeSample> gaze;
@@ -25,14 +25,15 @@ struct Unwritten {
   std::vector<IpdChange> ipds;
 };
 
-/// The session and presentation that a journal writes for.
+/// The session and the presentation whose records a journal writes.
 struct JournalPlace {
   std::int64_t session = 0, presentation = 0;
-  std::int64_t start_ns = 0;  ///< of the presentation
+  std::int64_t start_ns = 0;  ///< start of the presentation
 };
 
-/// In the background, a thread commits the buffered records every half second, so that a killed program loses
-/// less than that; only that thread uses the store until finish(). Otherwise all is buffered until finish().
+/// With in_background, a thread commits the buffered records every half second, so that a killed program
+/// loses at most half a second; only this thread uses the store until finish(). Without in_background, all
+/// records stay in memory until finish().
 class FrameJournal {
  public:
   /// origin: source of the gaze samples passed to add().
@@ -41,8 +42,8 @@ class FrameJournal {
   FrameJournal(const FrameJournal&) = delete;
   FrameJournal& operator=(const FrameJournal&) = delete;
 
-  /// Buffers one frame and the recordings up to it in memory. Rethrows the error that stopped the thread,
-  /// such as a full disk.
+  /// Buffers one frame, and the gaze and slots recorded up to this frame. Rethrows the error that stopped the
+  /// thread, such as a full disk.
   void add(const FrameRecord& frame, const Recorded& recorded);
   /// Ends the thread, commits the rest of the recordings and `last`, and returns the frames that are not yet
   /// in the store.
@@ -61,7 +62,7 @@ class FrameJournal {
   std::mutex mutex_;
   std::condition_variable wake_;
   Unwritten pending_;
-  std::vector<std::int64_t> onsets_ns_;  ///< predicted onsets of the frames so far
+  std::vector<std::int64_t> onsets_ns_;  ///< predicted onset of each added frame
   bool stopping_ = false;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;

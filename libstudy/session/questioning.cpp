@@ -44,7 +44,7 @@ std::optional<Ending> ending(const Block& block, std::span<const Question> quest
 
 bool refused(const std::optional<Ending>& ends) { return ends && ends->how == EarlyEnd::Refused; }
 
-/// A choice as its words, any other score as a number.
+/// The answer as text: a choice as its words, any other score as a number.
 std::string in_words(const Question& question, const Answer& answer) {
   if (!answer.score) return answer.words;
   for (const auto& [score, words] : question.anchors) {
@@ -93,7 +93,8 @@ void Questioning::keep(const OpenUnit& unit, int attempt, std::span<const Questi
     }
   }
   if (!personal.empty()) {
-    // Personal answers are in another file and not asked again: commit the ending they cause before them.
+    // Personal answers are in another file, and a stored personal answer is not asked again. So first commit
+    // the ending that the answers cause.
     if (ending) run_.parts.store.end_session(run_.session.id, *ending, run_.now_ns());
     run_.parts.personal->keep(personal);
   }
@@ -115,7 +116,8 @@ std::optional<Ending> Questioning::ask(const OpenUnit& unit, int attempt,
     answers = run_.parts.participant.ask(block, asked, occasion, run_.parts.clock, check);
     check_answers(asked, answers);
     ends = ending(block, asked, answers);
-    // Confirm a refusal, so that a mistaken key press does not end the session.
+    // Asks to confirm a refusal, so that a mistaken key press does not end the session. Without confirmation
+    // the page is asked again.
     meant = !refused(ends) || run_.parts.participant.offer(Offer::StayOut, run_.parts.clock, check);
   }
   if (refused(ends))

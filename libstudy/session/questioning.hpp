@@ -9,19 +9,21 @@
 
 namespace study {
 
-/// True if the score is on the scale, one of the choices, or left out where allowed. Only Text has words.
+/// True if the score is on the scale, one of the choices, or left out where allowed. Only answers of kind
+/// Text have words.
 bool is_valid(const Question& question, const Answer& answer);
 
 class Questioning {
  public:
   explicit Questioning(const Running& run) : run_(run) {}
 
-  /// Asks the `questions` without an answer in `unit` yet, on one page, and commits the answers together.
-  /// Personal answers go to the personal file; questions that it already answers are skipped. With `last` the
-  /// unit is then done. attempt: showing of the trial that is judged, 0: a page. Returns how the answers end
-  /// the session, if they do. The ending is committed with the answers, but before personal ones, so that an
-  /// excluded person sees no more if the program ends in between. Refused consent stores no answers.
-  /// base::Error for an invalid answer: nothing of that page is stored.
+  /// Asks those of `questions` that have no answer in `unit` yet, on one page, and commits the answers
+  /// together. Personal answers go to the personal file; a personal question with an answer in the file is
+  /// not asked again. With `last`, the unit is then done. attempt: the judged showing of the trial, from 1; 0
+  /// for a page. Returns the ending if an answer ends the session. The ending is committed together with the
+  /// answers, but before personal answers: if the program is killed in between, an excluded person is still
+  /// excluded. Refused consent stores no answers. base::Error for an invalid answer; then no answer of the
+  /// page is stored.
   std::optional<Ending> ask(const OpenUnit& unit, int attempt, const std::vector<Question>& questions,
                             const Occasion& occasion, bool last, const Check& check);
 

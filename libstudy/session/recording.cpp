@@ -12,7 +12,7 @@ constexpr double look_again_s = 0.02;
 
 bool allowed(const Running& run) { return run.parts.store.allows_gaze(run.session.id); }
 
-/// Buffers samples during its lifetime.
+/// Lets the gaze source buffer samples during the lifetime of this object.
 class Listening {
  public:
   explicit Listening(GazeSource& gaze) : gaze_(gaze) { gaze_.start(); }

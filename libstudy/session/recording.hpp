@@ -1,5 +1,6 @@
 #pragma once
-/// Records gaze and head poses (if the participant allows it) and headset slots during a presentation.
+/// Records a presentation: the headset's slots, and gaze and head poses if the participant allows gaze
+/// recording.
 
 #include <cstdint>
 #include <optional>
@@ -10,10 +11,10 @@
 
 namespace study {
 
-/// The trial is cut and shown again if the tracker's samples show no eyes for longer than this, ns.
+/// The trial is cut and shown again if the eye tracker gives no valid sample for longer than this, ns.
 inline constexpr std::int64_t longest_gaze_gap_ns = 100'000'000;
 
-/// A change of the distance between the eyes.
+/// A change of the interpupillary distance (IPD).
 struct IpdChange {
   std::int64_t clock_ns = 0;
   double ipd_mm = 0;
@@ -25,7 +26,8 @@ struct Recorded {
   std::vector<IpdChange> ipds{};
 };
 
-/// Records one presentation for its lifetime. Checks anew each time whether the participant allows gaze.
+/// Records one presentation from construction to destruction. The constructor reads whether the participant
+/// allows gaze.
 class Recording {
  public:
   explicit Recording(const Running& run);
@@ -33,15 +35,16 @@ class Recording {
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
-  /// Source of the recorded gaze.
+  /// Kind of source of the recorded gaze.
   GazeOrigin origin() const { return gaze_ ? gaze_->origin() : GazeOrigin::Mouse; }
-  /// Returns the records since the last call.
+  /// Returns the gaze, slots and changes of the IPD recorded since the last call.
   Recorded take();
-  /// Throws TrialAgain if the records taken show that an eye tracker lost the eyes for too long.
+  /// Throws TrialAgain if the samples of an eye tracker that take() returned had no eyes for longer than
+  /// longest_gaze_gap_ns.
   void require_gaze() const;
 
-  /// The gaze source that the fluid follows now. A tracker that may not be recorded is not read either: the
-  /// head ("head") or the middle of the picture ("fixed") replaces it.
+  /// Name of the gaze source that the fluid follows now. An eye tracker without permission to record is not
+  /// read: the fluid then follows the head ("head") or the middle of the picture ("fixed").
   static std::string followed(const Running& run);
 
  private:
@@ -54,16 +57,15 @@ class Recording {
   std::optional<double> ipd_mm_;
 };
 
-/// True if an eye tracker gives a valid sample within this time; the display is black meanwhile. Also true if
-/// no tracker is recorded: there is none, or the participant does not allow it.
+/// True if an eye tracker gives a valid sample within `within_s`; the display is black meanwhile. Also true
+/// without an eye tracker, and if the participant does not allow recording.
 bool sees_eyes(const Running& run, double within_s, const Check& check);
 
-/// Stores the headset's facts and the distance between the eyes, e.g. at the start of a session.
+/// Stores the headset's facts and the interpupillary distance. Does nothing without a headset.
 void record_headset(const Running& run);
 
-/// Logs the headset's events since the last call. If there were any, stores the headset's current facts.
-/// Stores the headset's new events and returns their names, separated by ", ". The text is empty if nothing
-/// happened or there is no headset.
+/// Logs the headset's events since the last call and returns their names, separated by ", ". If there were
+/// any, also stores the headset's current facts. Returns an empty text without events or without a headset.
 std::string log_news(const Running& run);
 
 }  // namespace study

@@ -30,14 +30,14 @@ struct Running {
 /// Thrown to cut a trial and show it again.
 struct TrialAgain {
   CutCause cause;
-  std::string news{};  ///< further events of the headset; may be empty
+  std::string news{};  ///< names of further events of the headset; may be empty
 
-  /// For notes and the log.
+  /// Text of the cause for notes and the log.
   std::string reason() const { return words_of(cause).happened + (news.empty() ? news : ": " + news); }
 };
 
-/// Acts on the current wish: throws Stopped or Ending, and TrialAgain if `in_trial`. Logs headset events
-/// first.
+/// Acts on the current request: Stop throws Stopped, EndSession throws Ending, Cut throws TrialAgain if
+/// `in_trial`. Before that, logs the headset's events.
 void poll_requests(const Running& run, bool in_trial);
 
 }  // namespace study

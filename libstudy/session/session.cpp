@@ -15,10 +15,11 @@ namespace study {
 
 namespace {
 
-/// Time for a saccade and for the eyes to settle, then for the samples.
+/// At each target: time for a saccade and for the eyes to settle, then time in which samples count, s.
 constexpr double settle_s = 0.8, sample_s = 1;
 
-/// Targets on a grid from -1 to 1, the middle first, then neighbours: jumps between corners take longer.
+/// Positions (x, y) of the targets, from -1 to 1: first the middle, then each next to the last. Long jumps
+/// between corners would take longer.
 constexpr std::array<std::array<int, 2>, 9> grid{
     {{0, 0}, {-1, 1}, {0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}}};
 
@@ -54,7 +55,7 @@ std::vector<ValidatedPoint> look_at_all(const Running& run, const Block& block, 
   return points;
 }
 
-/// None if a target had no valid sample.
+/// Mean error over the targets, degrees; none if a target had no valid sample.
 std::optional<double> mean_accuracy(const std::vector<ValidatedPoint>& points) {
   double sum = 0;
   for (const ValidatedPoint& point : points) {
@@ -70,10 +71,10 @@ std::string in_degrees(const char* form, double value) {
   return text.data();
 }
 
-/// Shows the block's nine targets and stores the eye tracker's accuracy and precision at each. Repeats this,
-/// up to the block's number of tries, while the mean accuracy is beyond its bound or a target had no valid
-/// sample. Without a tracker or permission to record gaze, shows nothing and logs that. base::Error, with all
-/// tries stored and the unit open, if the last try fails too.
+/// Shows nine targets and stores the eye tracker's accuracy and precision at each target. A try fails if the
+/// mean error exceeds Block::max_accuracy_deg or a target had no valid sample; then it is repeated, up to
+/// Block::count tries. Without a tracker or permission to record gaze, shows nothing and logs the reason.
+/// base::Error if the last try fails too; all tries are then stored and the unit stays open.
 void validate_gaze(const Running& run, const Block& block, const Check& check) {
   Store& store = run.parts.store;
   if (!run.parts.targets || !store.allows_gaze(run.session.id)) {
@@ -96,12 +97,13 @@ void validate_gaze(const Running& run, const Block& block, const Check& check) {
                     "calibrate it in the headset's software and continue with vip-study resume");
 }
 
-/// A running session.
+/// Runs the units of one session.
 class SessionRun {
  public:
   explicit SessionRun(const Running& run) : run_(run), questioning_(run), trials_(run, questioning_) {}
 
-  /// Returns how the session ended early, if it did; the end is committed.
+  /// Runs all units that are not done. Returns the ending if the session ended early; the ending is then
+  /// committed.
   std::optional<Ending> go() {
     try {
       return units();
@@ -180,7 +182,7 @@ class SessionRun {
   const Running& run_;
   Questioning questioning_;
   TrialPlayer trials_;
-  std::size_t under_way_ = 0;  ///< index of the unit
+  std::size_t under_way_ = 0;  ///< index of the current unit
 };
 
 void check_personal(const Running& run) {
@@ -210,7 +212,7 @@ std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& s
 
 namespace {
 
-/// Converts hold counts to nanoseconds without accumulating rounding errors.
+/// Converts counts of display periods to intervals in nanoseconds without accumulating rounding errors.
 std::vector<std::int64_t> holds_ns(const std::vector<int>& holds, double refresh_hz) {
   std::vector<std::int64_t> intervals;
   std::int64_t periods = 0, before = 0;

@@ -1,5 +1,6 @@
 #pragma once
-/// Runs one participant's plan: pages, schedules, trials, verdicts, questions, answers.
+/// Runs one participant's session: shows the pages and trials of the plan, judges their timing and stores the
+/// answers.
 
 #include <cstddef>
 #include <functional>
@@ -21,33 +22,33 @@
 
 namespace study {
 
-/// Provides the stimulus of a cell, ready to start; it is valid until the next call.
+/// Provides the stimulus of a cell. The reference is valid until the next call.
 class StimulusSource {
  public:
   virtual ~StimulusSource() = default;
   virtual Stimulus& stimulus(const Cell& cell) = 0;
 };
 
-/// The parts that a session uses; it owns none of them.
+/// The parts that a session uses. The session owns none of them.
 struct SessionParts {
   Clock& clock;
   Display& display;
   StimulusSource& stimuli;
   Participant& participant;
   Store& store;
-  PersonalFile* personal = nullptr;  ///< required if the protocol asks a personal question
+  PersonalFile* personal = nullptr;  ///< file of personal answers; required if the protocol asks for them
   bool virtual_clock = false;
-  /// Recorded during stimuli if the participant allows it. Null: no gaze is recorded.
+  /// Gaze source, recorded during stimuli if the participant allows gaze. Null: no gaze is recorded.
   GazeSource* gaze = nullptr;
-  SlotSource* slots = nullptr;     ///< the headset, or null
-  GazeTargets* targets = nullptr;  ///< for validating the eye tracker, or null
+  SlotSource* slots = nullptr;     ///< source of the headset's frame slots; null without a headset
+  GazeTargets* targets = nullptr;  ///< targets that validate the eye tracker, or null
 };
 
-/// Reports a finished unit once it is committed. It holds no answers.
+/// Report of a finished, committed unit. It contains no answers.
 struct UnitDone {
   std::string participant;
   PlannedUnit unit;
-  int attempt = 0;                      ///< of a trial, from 1
+  int attempt = 0;                      ///< number of the showing of the trial, from 1; 0 for a page
   std::vector<TimingVerdict> verdicts;  ///< one for each stimulus of a trial
 };
 
@@ -56,54 +57,57 @@ struct Request {
   enum Kind {
     GoOn,
     Stop,        ///< end the program; the session can be resumed
-    EndSession,  ///< a rest, then no further unit (Store::end_session)
-    Cut,         ///< cut this trial, for this cause, and show it again
-    Pause        ///< wait before the next unit until the wish changes
+    EndSession,  ///< end the session for good (Store::end_session), then show the farewell
+    Cut,         ///< cut this trial for `cause` and show it again
+    Pause        ///< wait before the next unit until the request changes
   };
   Request(Kind what) : kind(what) {}
   Request(CutCause why) : kind(Cut), cause(why) {}
   bool operator==(const Request&) const = default;
 
   Kind kind;
-  CutCause cause{};  ///< of Cut
+  CutCause cause{};  ///< only for Cut
 };
 
-/// A problem that prevents a trial.
+/// A problem that prevents a trial and pauses the session.
 struct Trouble {
-  std::string what, mend;  ///< for the experimenter
+  std::string what, mend;  ///< the problem and its remedy, for the experimenter
 };
 
 struct SessionHooks {
   std::function<void(const OpenUnit&)> begins;
   std::function<void(const FrameRecord&)> shown;
   std::function<void(const UnitDone&)> done;
-  std::function<void(const Ending&)> ends;  ///< an early end is committed; say_farewell() comes next
+  std::function<void(const Ending&)> ends;  ///< called when an early end is committed, before say_farewell()
   std::function<Request()> request;
-  /// Tells the experimenter why the session pauses. True: the experimenter ends the pause, and request() is
-  /// Pause until then. False, or no hook: the participant's page has a button to go on.
+  /// Reports to the experimenter why the session pauses. Returns true if the experimenter ends the pause,
+  /// which lasts until request() is GoOn. False, or no hook: the participant's page has a button that ends
+  /// the pause.
   std::function<bool(const Trouble&)> trouble;
 };
 
-/// The session was asked to stop. Everything up to then is in the store.
+/// Thrown if the session is stopped on request. The store then has all data up to the stop.
 class Stopped : public std::runtime_error {
  public:
   Stopped() : std::runtime_error("stopped") {}
 };
 
-/// The frame intervals of a setting on this display, nanoseconds. base::Error if it cannot be shown there: no
-/// schedule has these moments, or a fixed refresh misses them and the protocol does not accept that.
+/// The frame intervals of a setting on this display, nanoseconds. base::Error if no schedule has the
+/// setting's mean and standard deviation, or if the display's refresh rate only approximates them and the
+/// protocol does not accept approximate settings.
 std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSetting& setting,
                                           const Display& display, std::uint64_t schedule_seed);
 
-/// Throws if trial_intervals() would for any setting of the protocol. Call before anything is written.
+/// Throws the base::Error of trial_intervals() if a setting of the protocol cannot be shown. Call before
+/// anything is written.
 void check_settings(const Protocol& protocol, const Display& display);
 
-/// Goes through the units of `session` that are not done, in their order. A trial that was cut is shown again
-/// from its start, as a new attempt, as often as repeats.hpp allows. Pages that were answered are not asked
-/// again. An answer outside a question's accept range ends the session (EarlyEnd::Refused on a consent page,
-/// after confirmation, else EarlyEnd::NotEligible); so does one at its stop_at (EarlyEnd::Stopped). Returns
-/// how the session ended early, if it did, after say_farewell(). Throws Stopped, or the first failure of a
-/// part; the store then holds all answers given.
+/// Runs the units of `session` that are not done, in their order. A trial that was cut is shown again from
+/// its start, as a new attempt, as often as repeats.hpp allows. Answered questions are not asked again. An
+/// answer outside Question::accept ends the session: EarlyEnd::Refused on a consent page, after confirmation,
+/// else EarlyEnd::NotEligible. An answer of Question::stop_at or more ends it as EarlyEnd::Stopped. If the
+/// session ended early, returns the ending after say_farewell(). Throws Stopped, or the first error of a
+/// part; the store then has all given answers.
 std::optional<Ending> run_session(const Protocol& protocol, const OpenSession& session,
                                   const SessionParts& parts, const SessionHooks& hooks);
 

@@ -14,7 +14,8 @@ int cell_index(const PlannedTrial& trial, int interval) {
   return interval == 0 ? trial.first : trial.second.value();
 }
 
-/// Simulated time elapsed between frames divided by display time; rewinds do not count.
+/// Simulated time between the first and the last frame, divided by their display time. Steps back in
+/// simulated time do not count.
 double play_speed(const PlayedTrial& played, TimingGrade grade) {
   double simulated_s = 0;
   for (std::size_t i = 1; i < played.frames.size(); ++i) {
@@ -65,7 +66,7 @@ std::vector<Question> questions_of(const Protocol& protocol, const std::vector<s
   return out;
 }
 
-/// Why the current exception cuts a showing, for the log.
+/// Describes, for the log, why the current exception cuts a showing.
 std::string reason_of_cut() {
   try {
     throw;
@@ -80,7 +81,7 @@ std::string reason_of_cut() {
   }
 }
 
-/// Clears the display at the end of its lifetime.
+/// Clears the display when this object is destroyed.
 class Cleared {
  public:
   explicit Cleared(Display& display) : display_(display) {}
@@ -142,7 +143,7 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
   for (std::size_t i = 0; i < block.steps.size(); ++i) {
     const TrialStep& step = block.steps[i];
     check();
-    // Computed at the first step, because after a cut the display may have another rate.
+    // Computed again for each showing, because the refresh rate of the display may change at a cut.
     if (i == 0) showing.intervals = intervals_of(*showing.unit.trial);
     switch (step.kind) {
       case StepKind::Black:
@@ -163,7 +164,8 @@ std::optional<Ending> TrialPlayer::play_steps(Showing& showing) {
   return {};
 }
 
-/// Prepares a slow stimulus while the screen is black.
+/// Shows a black screen for `seconds`. If a stimulus follows, prepares it meanwhile, because this may be
+/// slow.
 void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows) {
   const Check check = [this] { poll_requests(run_, true); };
   const std::int64_t begun_ns = run_.now_ns();
@@ -175,7 +177,7 @@ void TrialPlayer::black(Showing& showing, double seconds, bool stimulus_follows)
   run_.parts.participant.pause({PauseKind::Black, std::max(0.0, seconds - gone_s)}, run_.parts.clock, check);
 }
 
-/// Announces which stimulus of a pair follows, outside the picture.
+/// Announces by a word whether the first or the second stimulus of a pair follows.
 void TrialPlayer::announce(int interval) {
   const PauseKind word = interval == 0 ? PauseKind::First : PauseKind::Second;
   run_.parts.participant.pause({word, word_s}, run_.parts.clock, [this] { poll_requests(run_, true); });
@@ -246,8 +248,8 @@ TimingVerdict TrialPlayer::present(std::int64_t presentation, std::int64_t start
     shown.play_speed = play_speed(played, verdict.grade);
     return verdict;
   } catch (...) {
-    // Reports the exception that cut it. If storing the rest fails too, the next opening marks the cut. Drops
-    // gaze after the last frame, which belongs to the cut.
+    // Stores the rest of the frames and the reason of the cut. If this fails too, the next opening of the
+    // database marks the cut. Gaze after the last frame is dropped.
     const std::string reason = reason_of_cut();
     try {
       parts.store.add_frames(presentation, start_ns, journal.finish({}));

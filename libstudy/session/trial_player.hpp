@@ -1,5 +1,5 @@
 #pragma once
-/// Plays one trial: its steps in order, again after each cut (repeats.hpp).
+/// Plays one trial: its steps in order, and all steps again after each cut (repeats.hpp).
 
 #include <array>
 #include <vector>
@@ -14,8 +14,8 @@ class TrialPlayer {
   TrialPlayer(const Running& run, Questioning& questioning)
       : run_(run), questioning_(questioning), repeats_(run) {}
 
-  /// Plays all steps; TrialAgain starts over with a new attempt, which asks all questions anew. Returns how
-  /// an answer ends the session, if it does.
+  /// Plays all steps. TrialAgain starts a new attempt, which asks all questions again. Returns the ending if
+  /// an answer ends the session.
   std::optional<Ending> play(OpenUnit unit);
 
  private:
@@ -24,9 +24,10 @@ class TrialPlayer {
     OpenUnit& unit;
     int attempt = 1;
     Occasion occasion;
-    std::array<std::vector<std::int64_t>, 2> intervals;  ///< of the first and the second stimulus
+    /// Frame intervals of the first and the second stimulus, ns.
+    std::array<std::vector<std::int64_t>, 2> intervals;
     std::vector<TimingVerdict> verdicts;
-    Stimulus* ready = nullptr;  ///< rewound for the next stimulus step
+    Stimulus* ready = nullptr;  ///< the started stimulus of the next stimulus step; null: not started
     int next_interval = 0;
   };
 

@@ -26,10 +26,11 @@ MeasuredPicture to_measure(const sim::Image& image, const std::vector<float>& de
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   for (std::size_t y = 0; y < height; ++y) {
     for (std::size_t x = 0; x < width; ++x) {
-      // Rec. 709 weights of the coded values: measures visible detail, not physical luminance.
+      // Rec. 709 weights applied to the gamma-coded values, because this measures visible detail and not
+      // physical luminance.
       const std::uint8_t* c = &image.rgba[4 * (y * width + x)];
       out.luminance[y * width + x] = (0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2]) / 255;
-      // The image starts with its top row, depth with its bottom row.
+      // The image starts with its top row, the depth with its bottom row.
       out.fluid[y * width + x] = std::isfinite(depth[(height - 1 - y) * width + x]);
     }
   }
@@ -57,9 +58,9 @@ PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
   fluid.start(start_frame);
   for (std::int64_t step = 0; step <= steps + 1; ++step) {
     fluid.prepare(start_frame + step);
-    const std::int64_t phase = (step + 1) % between;  // 0, 1, 2: three pictures in a row
+    const std::int64_t phase = (step + 1) % between;  // 0, 1, 2: the three successive pictures
     const bool measured = step + 1 >= between && phase <= 2;
-    // Methods that follow the picture need the first one.
+    // Methods that follow the picture need the picture of the first step.
     if (measured || step == 0 || fluid.follows_picture())
       fluid.draw({target.framebuffer(), width_px, height_px});
     if (!measured) continue;
@@ -73,7 +74,7 @@ PictureFeatures run_cell(LiveFluid& fluid, std::int64_t start_frame) {
     ++count;
   }
   if (count == 0)
-    throw base::Error(fluid.description(), "shows no fluid to measure", "look at it with vip-view");
+    throw base::Error(fluid.description(), "shows no fluid to measure", "check the scene with vip-view");
   return {sum.granularity_px / count, sum.flicker / count};
 }
 
@@ -83,7 +84,7 @@ std::string to_json(const std::string& key, const PictureFeatures& features) {
          "\n";
 }
 
-/// None if the file is missing, damaged or of another key.
+/// The features cached in a file; none if the file is missing, damaged or has another key.
 std::optional<PictureFeatures> read_features(const std::filesystem::path& path, const std::string& key) {
   if (!std::filesystem::exists(path)) return {};
   const auto json = base::parse_json(base::read_file(path, 1 << 16));

@@ -11,17 +11,17 @@
 
 namespace study {
 
-/// Each cell is run live for 240 content steps from start_frame, its pictures drawn at 640 x 360 and measured
-/// three in a row at every 30th; features are the means. Results are cached in `folder`, one file per cell,
-/// keyed by cell, stimulus and program version. The gaze is at the middle of the visible fluid. Needs a GL
-/// context if a cell is not cached.
+/// Runs each cell live for 240 content steps from start_frame and draws it at 640 x 360 px. At every 30th
+/// step it measures three successive pictures; the features are the means. The gaze is at the mean position
+/// of the visible fluid. Results are cached in `folder`, one file per stimulus, start_frame, content step,
+/// tau and program version. Needs a GL context if a cell is not cached.
 class CellFeatures final : public FeatureSource {
  public:
   /// choice_of: returns the live stimulus of a cell.
   CellFeatures(std::filesystem::path folder, std::function<StimulusChoice(const Cell&)> choice_of)
       : folder_(std::move(folder)), choice_of_(std::move(choice_of)) {}
 
-  /// Measures all cells of a protocol, with a progress bar, so that the session need not measure.
+  /// Measures all cells of a protocol before the session, with a progress bar.
   void measure(const Protocol& protocol);
   /// base::Error for a cell that measure() did not measure.
   PictureFeatures of(const StimulusSpec& stimulus) override;
@@ -34,7 +34,7 @@ class CellFeatures final : public FeatureSource {
   std::map<std::string, PictureFeatures> known_;
 };
 
-/// "scene, method, n_*", with ", effects foam" if effects are a factor: names a cell's stimulus.
+/// Name of a cell's stimulus: "scene, method, n_*", with ", effects foam" if the design varies effects.
 std::string stimulus_words(const StimulusSpec& stimulus);
 
 }  // namespace study

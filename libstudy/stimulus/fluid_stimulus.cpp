@@ -36,7 +36,7 @@ std::string describe(const sim::BakeReader& bake, const char* what) {
          baked_effects(h);
 }
 
-/// The temperature scale, if painting is asked for and the scene has heat.
+/// The temperature scale if `paint` is true and the scene has heat; otherwise none.
 std::optional<sim::TemperatureScale> painted(const sim::Scene& scene, bool paint) {
   const sim::TemperatureScale scale(scene);
   if (!paint || !scale.heat()) return {};
@@ -47,7 +47,8 @@ std::string painted_words(const std::optional<sim::TemperatureScale>& scale) {
   return scale ? ", painted " + scale->words() : "";
 }
 
-/// Where an eye's axis meets its picture, px from the lower left: a headset's frusta are off-centre.
+/// Point at which the forward axis of an eye meets its picture, px from the lower left. It is not the middle,
+/// because a headset's frusta are off-centre.
 std::pair<double, double> straight_ahead(const sim::View& view) {
   const sim::PixelRays rays = sim::pixel_rays(view);
   return {static_cast<double>(-rays.offset_x / rays.scale_x),
@@ -68,7 +69,7 @@ std::unique_ptr<Stimulus> from_bake(const StimulusChoice& choice) {
                                           choice.paint_temperature);
 }
 
-/// The effects as text, if there are any or the choice overrides them.
+/// The effects as text, if the scene has any or `choice` overrides them.
 std::string live_effects(const StimulusChoice& choice, const sim::Scene& scene) {
   const std::string water = sim::effects_in_words(scene.effects);
   const std::string picture = sim::picture_effects_in_words(scene.picture_effects);
@@ -230,7 +231,8 @@ void LiveFluid::advance() {
   if (const auto& met = simulation_->account().guards) guards_ = sim::sum(guards_, *met);
 }
 
-/// Before the first picture a method looks along the axis of the scene's camera.
+/// Gives the method the last picture and the gaze in it. Before the first picture, the method uses the axis
+/// of the scene's camera.
 void LiveFluid::look() {
   if (!picture_ || !view_) return;
   const int width = view_->viewport.width, height = view_->viewport.height;
@@ -287,7 +289,7 @@ std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
                                   sim::backend_name(options.backend) + ", scene " + scene.sha256 +
                                   live_effects(choice, scene) +
                                   (choice.setting ? ", at " + sim::to_text(*choice.setting) : "");
-  // Settled once; each rewind starts from that state.
+  // The first call settles the fluid; each later call starts from the settled state.
   const auto make = [scene, options]() mutable {
     auto simulation = sim::make_simulation(scene, options);
     if (!options.start) options.start = simulation->read_state();

@@ -1,8 +1,8 @@
 #pragma once
 /// Fluids as implementations of study::Stimulus: baked pictures, baked particles or a running simulation.
 ///
-/// All draw in the GL context that is current at the first draw() and hold GL objects of it afterwards:
-/// destroy them before the display. A content step is one frame of the scene.
+/// Each stimulus creates GL objects in the context that is current at its first draw(). So destroy stimuli
+/// before the display that owns this context. A content step is one frame of the scene.
 
 #include <chrono>
 #include <filesystem>
@@ -24,8 +24,8 @@
 
 namespace study {
 
-/// Plays the pictures of a bake, decoded ahead. draw() uploads and copies one; a framebuffer of another size
-/// gets the whole picture, scaled, between black bars.
+/// Plays the pictures of a bake, which another thread decodes ahead. draw() uploads a picture and copies it
+/// to the framebuffer. A framebuffer of another size gets the whole picture, scaled, between black bars.
 class BakedPictures final : public Stimulus {
  public:
   explicit BakedPictures(std::unique_ptr<sim::BakeReader> bake);
@@ -33,22 +33,23 @@ class BakedPictures final : public Stimulus {
 
   std::string description() const override;
   std::int64_t length() const override { return bake_->header().frame_count; }
-  /// Waits until pictures are decoded ahead; returns at once if the loop continues at start_step anyway.
+  /// Waits until pictures from start_step on are decoded; returns at once if decoding already continues at
+  /// start_step.
   void start(std::int64_t start_step) override;
   FrameFacts prepare(std::int64_t step) override;
   void draw(const Canvas& canvas) override;
-  /// How often a picture was not decoded in time since start().
+  /// Number of pictures since start() that were not decoded in time.
   std::int64_t waits() const { return ring_.waits(); }
 
  private:
   std::unique_ptr<sim::BakeReader> bake_;
   sim::PictureRing ring_;
   const sim::BakePicture* picture_ = nullptr;
-  unsigned texture_ = 0, source_ = 0;  ///< the picture, and the framebuffer it is copied from
+  unsigned texture_ = 0, source_ = 0;  ///< GL names of the picture's texture and of its framebuffer
 };
 
-/// Renders the particle frames of a bake with their foam. Paints temperatures over them if asked to and the
-/// bake holds them.
+/// Renders the particle frames of a bake with their foam. With paint_temperature, paints temperatures over
+/// the water if the bake stores temperatures.
 class BakedParticles final : public Stimulus {
  public:
   explicit BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing viewing = {},
@@ -71,7 +72,8 @@ class BakedParticles final : public Stimulus {
   sim::ParticleBuffer particles_, foam_;
 };
 
-/// A simulation that advances one frame per content step and gets the picture that its viewer saw last.
+/// A running simulation. It advances one frame per content step, and its method gets the picture that the
+/// viewer saw last.
 class LiveFluid final : public Stimulus {
  public:
   /// Makes the simulation at frame 0; called again for each rewind.
@@ -83,14 +85,15 @@ class LiveFluid final : public Stimulus {
 
   std::string description() const override { return description_; }
   std::int64_t length() const override { return 0; }
-  /// Does nothing if the fluid was already started at this step: a session starts it before it plays it.
+  /// Brings the fluid to start_step. Does nothing if the fluid was already started at this step, because a
+  /// session calls start() before the showing and again in it.
   void start(std::int64_t start_step) override;
-  /// A step before the current one restarts the simulation.
+  /// Advances the fluid to `step`. Restarts the simulation if `step` is before the current step.
   FrameFacts prepare(std::int64_t step) override;
   void draw(const Canvas& canvas) override;
   /// The simulation at the prepared step; exists from the first start() or prepare() on.
   sim::Simulation& simulation() { return *simulation_; }
-  /// Of all frames since the stimulus was made, also those before a rewind.
+  /// Guard counts over all frames since the stimulus was made, including frames before a rewind.
   const sim::GuardCounts& guards() const { return guards_; }
   /// True if the method uses the picture of the last frame, so that every frame must be drawn.
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
@@ -115,17 +118,18 @@ class LiveFluid final : public Stimulus {
   std::unique_ptr<sim::Simulation> simulation_;
   sim::GuardCounts guards_;
   std::int64_t step_ = 0;
-  bool started_ = false;  ///< start() was called, and no step was prepared since
+  bool started_ = false;  ///< start() was called, and prepare() was not called since
   std::optional<std::chrono::steady_clock::time_point> prepared_;
   std::unique_ptr<sim::FluidPicture> picture_;
-  std::optional<sim::View> view_;  ///< of the last picture; in stereo, of the left eye
-  bool stereo_ = false;            ///< the last picture has two eyes
+  std::optional<sim::View> view_;  ///< view of the last picture; in stereo, of the left eye
+  bool stereo_ = false;            ///< true: the last picture was drawn for two eyes
   std::optional<sim::TemperatureScale> painted_;
-  std::vector<float> temperature_k_;  ///< temperatures above the reference in the current picture
-  double visual_scale_ = 1;           ///< of the last picture, as sim::EyeLook::visual_scale
+  /// Temperatures above the reference of the particles in the last picture, K.
+  std::vector<float> temperature_k_;
+  double visual_scale_ = 1;  ///< sim::EyeLook::visual_scale of the last picture
 };
 
-/// What `vip-study run` shows: a bake if one is named, otherwise a live simulation.
+/// Parameters of a stimulus: a bake if `bake` is set, otherwise a live simulation.
 struct StimulusChoice {
   std::filesystem::path bake;
   std::filesystem::path scene;
@@ -133,18 +137,19 @@ struct StimulusChoice {
   std::string n_star = "32k";
   std::string backend = "auto";
   double content_step_s = 0;  ///< fluid time per content step; 0 = that of the scene or the bake
-  /// Live fluid only: frame rate from which temporal acceleration computes tau. None = the measured rate.
+  /// Live fluid only: frame rate from which temporal acceleration computes tau. None = the measured frame
+  /// rate.
   std::optional<sim::FrameRate> fixed_rate;
-  /// Live fluid only: all knobs of the solver, for this method and n_*; tau then follows from its beta and
-  /// not from a frame rate. None = the default knobs.
+  /// Live fluid only: all numbers of the solver, for this method and n_*. tau then follows from the setting's
+  /// beta instead of a frame rate. None = the default numbers.
   std::optional<sim::SolverSetting> setting = {};
   stats::PtpeModel model;
-  /// Live fluid only: effects that replace those of the scene's file. None = the file's.
+  /// Live fluid only: effects that replace the effects of the scene's file. None = the effects of the file.
   std::optional<std::vector<sim::Effect>> effects = {};
-  std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< likewise
-  bool paint_temperature = false;  ///< paints temperatures over the water; not in a bake with pictures
+  std::optional<std::vector<sim::PictureEffect>> picture_effects = {};  ///< live fluid only: as `effects`
+  bool paint_temperature = false;  ///< paints temperatures over the water; ignored for a bake with pictures
   Viewing viewing;                 ///< ignored for a bake with pictures
-  bool overview = false;           ///< live fluid only: uses the scene's camera for figures
+  bool overview = false;           ///< live fluid only: uses the camera Scene::overview
   sim::RenderOptions render = {};  ///< live fluid only
 };
 
@@ -152,11 +157,11 @@ struct StimulusChoice {
 /// content_step_s.
 std::unique_ptr<Stimulus> make_stimulus(const StimulusChoice& choice);
 
-/// As make_stimulus(), always live. settling: see SimulationOptions::settling.
+/// Makes the live fluid of a choice and ignores its `bake`. settling: see SimulationOptions::settling.
 std::unique_ptr<LiveFluid> make_live_fluid(const StimulusChoice& choice,
                                            const std::function<void(int, int)>& settling = {});
 
-/// True if the choice is a bake with pictures; HeadlessDisplay's only_copies is then enough.
+/// True if the choice is a bake with pictures. HeadlessDisplay may then set only_copies.
 bool shows_pictures(const StimulusChoice& choice);
 
 /// Converts the solver's account of a frame into the facts that the frame's record stores.

@@ -11,7 +11,7 @@ namespace study {
 
 namespace {
 
-/// Slope from the middle of a picture to its upper edge.
+/// Slope of the ray through the upper edge of a picture with this vertical angle: tan(angle / 2).
 double slope(double vertical_deg) { return std::tan(vertical_deg * std::numbers::pi / 360); }
 
 bool sees_point(const sim::View& view, const sim::Vec3d& point_m) {
@@ -44,7 +44,7 @@ sim::View framed_view(sim::Camera camera, const Viewing& viewing, int width_px, 
 
 namespace {
 
-/// From the scene to the space in which a headset's eyes are positioned.
+/// Transforms scene coordinates to the space in which EyeView positions a headset's eyes.
 sim::Mat4 to_room(const sim::Camera& camera) {
   return sim::look_at(camera.eye_m, {camera.target_m[0], camera.eye_m[1], camera.target_m[2]});
 }
@@ -96,7 +96,7 @@ std::optional<std::pair<double, double>> place_in(const sim::View& view, const s
     clip[row] = static_cast<double>(m[12 + row]);
     for (std::size_t k = 0; k < 3; ++k) clip[row] += static_cast<double>(m[4 * k + row]) * point_m[k];
   }
-  if (!(clip[3] > view.near_m)) return {};  // depth along the axis
+  if (!(clip[3] > view.near_m)) return {};  // clip[3]: depth along the view's axis, m
   return std::pair(0.5 * view.viewport.width * (clip[0] / clip[3] + 1),
                    0.5 * view.viewport.height * (clip[1] / clip[3] + 1));
 }
@@ -113,7 +113,7 @@ std::vector<std::string> cut_off(const sim::Scene& scene, const sim::View& view)
   std::vector<std::string> out;
   for (const auto& box : scene.visible) {
     const auto corners = corners_of(box);
-    // The box and the view are convex, so testing the corners is enough.
+    // The box and the view frustum are convex, so the box is visible if all its corners are.
     if (!std::all_of(corners.begin(), corners.end(),
                      [&](const auto& corner) { return sees_point(view, corner); }))
       out.push_back(box.name);

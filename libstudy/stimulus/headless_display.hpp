@@ -1,5 +1,5 @@
 #pragma once
-/// A display without a screen: draws real frames into framebuffers of a headless GL context.
+/// A display without a screen: it draws every frame into framebuffers of a headless GL context.
 
 #include <array>
 
@@ -9,20 +9,20 @@
 
 namespace study {
 
-/// Double buffered. Use it on the thread that made it; first destroy stimuli that drew on it.
+/// Double buffered. Use it only on the thread that made it. Destroy the stimuli that drew on it first.
 class HeadlessDisplay final : public Display {
  public:
-  /// With only_copies, software GL draws on the calling thread alone: this is enough for baked pictures, and
-  /// no frame waits until a helper thread wakes up. Mesa's $LP_NUM_THREADS, when set, has priority.
-  /// base::Error for no OpenGL 4.5 or a size out of range.
+  /// With only_copies, software GL draws on the calling thread alone, so that no frame waits for a helper
+  /// thread. This is fast enough for baked pictures. If the environment sets Mesa's LP_NUM_THREADS, that
+  /// value is used instead. base::Error for no OpenGL 4.5 or a size out of range.
   HeadlessDisplay(int width_px, int height_px, bool only_copies = false);
 
   std::string description() const override;
   TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
   double refresh_hz() const override { return 0; }
-  /// Draws into the back buffer and waits until the device has finished.
+  /// Draws into the back buffer and waits until the GPU has finished.
   void render(Stimulus& stimulus) override;
-  /// Swaps the buffers. No drawing is pending, so submitted and done times differ only by the check.
+  /// Swaps the buffers. No drawing is pending, so the times gpu_done and submitted are almost equal.
   PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override;
 
   /// The picture in the front buffer.

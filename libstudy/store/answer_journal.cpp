@@ -41,8 +41,8 @@ void AnswerJournal::follow() {
       database_.handle(), [](void* self) { static_cast<AnswerJournal*>(self)->changed_.clear(); }, this);
 }
 
-/// If the journal is missing or was written by another program, begins a new one with the rows about to be
-/// committed; it gets all other rows after the commit.
+/// If another program removed or changed the journal, sets the changed file aside and begins a new journal.
+/// The next write() adds the rows to be committed; kept() adds all other rows after the commit.
 void AnswerJournal::look_after_file() {
   const std::string trouble = file_.trouble();
   if (trouble.empty()) return;
@@ -64,7 +64,8 @@ void AnswerJournal::write() {
     const std::vector<std::int64_t> ids(rows.begin(), rows.end());
     journal::each_row(database_, *table, ids, add);
     if (table->name != std::string("protocol")) continue;
-    // Rows of tables without row numbers are written with their protocol.
+    // `ask` and `cell` have no row numbers, so their changes are not recorded: write them with their
+    // protocol.
     for (const std::int64_t protocol : ids) {
       for (const char* part : {"ask", "cell"})
         journal::each_row_of_protocol(database_, *journal::find_table(part), protocol, add);
@@ -79,7 +80,9 @@ void AnswerJournal::write() {
 }
 
 void AnswerJournal::kept() {
-  changed_.clear();  // rows not kept are in the next batch again, because only the last batch is redone
+  // Cleared only here: rows whose commit failed are written again with the next batch, because settle()
+  // commits only the last batch.
+  changed_.clear();
   if (waiting_) blank_ = false;
   unmarked_ = unmarked_ || anew_ || waiting_;
   waiting_ = false;
@@ -94,7 +97,8 @@ void AnswerJournal::write_mark() {
   anew_ = false;
 }
 
-/// False if the journal still lacks committed rows.
+/// Writes the mark of the last commit, or the whole journal if it was begun anew. Returns false if that
+/// fails.
 bool AnswerJournal::try_mark() {
   try {
     write_mark();
@@ -126,7 +130,7 @@ void AnswerJournal::remove_if_blank() noexcept {
   try {
     if (blank_) replace_journal(file_.path(), "");
   } catch (const base::Error&) {
-    // The remaining file holds no kept row.
+    // The file that stays contains no row marked as kept, so it does no harm.
   }
 }
 

@@ -2,22 +2,23 @@
 /// "<database>.answers.jsonl": a readable copy of all answers beside the database, from which `vip-study
 /// salvage` rebuilds them when the database is damaged or gone. Mode 0600; links are not followed.
 ///
-/// One JSON object per line: a table row after a commit (journal_rows.hpp). Of several lines of a row, the
-/// last one is valid. It holds answers and all that decides which answers count (plans, exclusions, endings,
-/// notes, permissions, the log), but no frames, slots and gaze, which are too many. Personal answers are only
-/// in the personal file.
+/// Each line is a JSON object: a table row as it is after a commit (journal_rows.hpp). If a row has several
+/// lines, the last one is valid. The journal contains the answers and all data that decide which answers
+/// count: plans, exclusions, endings, notes, permissions and the event log. It omits frames, slots, head
+/// poses and gaze because they have too many rows. Personal answers are in the personal file only.
 ///
-/// Order for each commit: append the rows and {"ready": n}, flushed to disk if the batch has answers; commit;
-/// append {"kept": n}. So every acknowledged row is in both files. A last batch that is ready but not kept
-/// was under way when the program ended: the next AnswerJournal commits it, so that its answers are neither
-/// lost nor asked again. A truncated last line is ignored. Kept rows that are not in the database show that
-/// it is not the database that was written: opening it for writing is then an error that names salvage.
+/// Order of writing for each commit: append the rows and the line {"ready": n}, flushed to disk if the batch
+/// contains answers; commit; append the line {"kept": n}. So every acknowledged row is in both files. If the
+/// last batch has "ready" but no "kept", the program ended during its commit. The next AnswerJournal commits
+/// this batch, so its answers are neither lost nor asked again. A truncated last line is ignored. If the
+/// database lacks a row marked as kept, the file is not the database that was written: opening it for writing
+/// is then an error that names vip-study salvage.
 ///
 /// For code that writes the database:
-/// - Store::commit() does all this; a method of Store that changes rows must end with it.
-/// - If a change can no longer be committed, because the file was replaced or is locked: call write() but not
-///   kept(), then end the session. The journal then holds the answers until the database can take them.
-/// - Commands that change many rows without a Store (withdraw, merge): call prepare_rewrite() before their
+/// - Store::commit() writes the journal too; every method of Store that changes rows must end with it.
+/// - If a change can no longer be committed because the file was replaced or is locked, call write() but not
+///   kept(), then end the session. The journal then contains the answers until the database can take them.
+/// - A command that changes many rows without a Store (withdraw, merge) calls prepare_rewrite() before its
 ///   transaction and rewrite_journal() after it.
 
 #include <cstdint>
@@ -34,28 +35,28 @@
 
 namespace study {
 
-/// Records the changes of one connection. Construct it while holding the writer's lock; destroy it before the
-/// connection.
+/// Records the row changes of one connection in the journal. Construct it while holding the WriterLock;
+/// destroy it before the connection.
 class AnswerJournal {
  public:
-  /// Reconciles journal and database as described above. base::Error if the journal holds more than the
-  /// database or cannot be written.
+  /// Reconciles journal and database (settle()). base::Error if the journal contains rows that the database
+  /// lacks, or if the journal cannot be written.
   explicit AnswerJournal(sqlite::Connection& database);
   ~AnswerJournal();
   AnswerJournal(const AnswerJournal&) = delete;
   AnswerJournal& operator=(const AnswerJournal&) = delete;
 
-  /// Call before the commit: appends the rows that the open transaction changed. base::Error, with the file
-  /// unchanged, if it cannot be written.
+  /// Call before the commit: appends the rows that the open transaction changed. base::Error, with the
+  /// journal unchanged, if the journal cannot be written.
   void write();
-  /// Call after the commit. Reports a failed write; the next write(), require_written() and the destructor
-  /// retry it.
+  /// Call after the commit: marks the batch of the last write() as kept. If the mark cannot be written, gives
+  /// a warning; the next write(), require_written() and the destructor try again.
   void kept();
-  /// base::Error if the journal still lacks committed rows.
+  /// base::Error if the journal still lacks committed rows or their mark, after one more try to write them.
   void require_written();
   /// Sets the receiver of one-line warnings about the journal; default: stderr.
   void tell_with(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
-  /// Removes the file if nothing in it was ever kept.
+  /// Removes the journal if the database never held a run and no batch was ever committed.
   void remove_if_blank() noexcept;
 
  private:
@@ -68,20 +69,20 @@ class AnswerJournal {
   sqlite::Connection& database_;
   JournalFile file_;
   std::function<void(const std::string&)> tell_;
-  std::map<const journal::Table*, std::set<std::int64_t>> changed_;  // row numbers
-  std::int64_t number_ = 0;                                          // of the last rows written
-  bool waiting_ = false;                                             // rows were written but not yet kept
-  bool unmarked_ = false;  // committed, but the journal lacks the "kept" mark
-  bool anew_ = false;      // the file was lost and begun anew: it holds only a part of the database's rows
+  std::map<const journal::Table*, std::set<std::int64_t>> changed_;  // numbers of changed rows, by table
+  std::int64_t number_ = 0;                                          // number of the last batch written
+  bool waiting_ = false;   // a batch was written, and its commit has not been confirmed by kept()
+  bool unmarked_ = false;  // a batch was committed, but the journal lacks its "kept" mark
+  bool anew_ = false;      // the journal was lost and begun anew: it lacks the earlier rows
   std::string trouble_;    // why the last mark could not be written; already reported
-  bool blank_ = true;
+  bool blank_ = true;      // the database has no run, and no batch was committed
 };
 
-/// Marks in the journal that the whole database is about to change and that these people are withdrawn. From
-/// then on a journal that does not match is rewritten, and salvage omits these people. base::Error as
-/// AnswerJournal().
+/// Call before a transaction that changes the whole database. Appends to the journal a line that announces
+/// the change and names the `persons` who withdraw. After that line, a journal that does not match the
+/// database is rewritten instead of refused, and salvage omits these people. base::Error as AnswerJournal().
 void prepare_rewrite(sqlite::Connection& database, const std::vector<std::string>& persons = {});
-/// Rewrites the journal from the database's current rows and overwrites the old bytes.
+/// Replaces the journal by one with the database's current rows, and overwrites the old journal's bytes.
 void rewrite_journal(sqlite::Connection& database);
 
 }  // namespace study

@@ -17,11 +17,11 @@ using sqlite::Transaction;
 
 namespace {
 
-/// One row, or all renames of a batch.
+/// One row of the table `chore`, or all rows of kind rename in a batch, which are done together.
 struct Chore {
   std::vector<std::int64_t> rows;
   std::string kind, batch, person, participant;
-  std::map<std::string, std::string> codes;  ///< new by old
+  std::map<std::string, std::string> codes;  ///< new participant code by old code
 };
 
 std::vector<Chore> pending(Connection& database) {
@@ -46,7 +46,7 @@ std::vector<Chore> pending(Connection& database) {
   return chores;
 }
 
-/// Deletes the chore's rows. Their bytes remain in the file, so a rewrite is planned.
+/// Deletes the rows of a finished chore, and plans a rewrite of the file, which still contains their bytes.
 void strike_out(Connection& database, const Chore& chore) {
   Transaction transaction(database);
   for (const std::int64_t row : chore.rows)
@@ -55,7 +55,7 @@ void strike_out(Connection& database, const Chore& chore) {
   transaction.commit();
 }
 
-/// Cleans each backup on its own: a failure does not stop the others.
+/// Deletes a person from all backups. If one backup fails, goes on with the next. True if all succeeded.
 bool clean_backups(const fs::path& database, const std::string& person, CleanUp& done) {
   bool all = true;
   for (const fs::path& backup : backups_of(database)) {
@@ -82,7 +82,7 @@ void clean_personal(const fs::path& database, const Chore& chore, CleanUp& done)
 
 void do_chores(Connection& database, CleanUp& done) {
   const fs::path path = database.path();
-  bool personal_waits = false;  // its chores must run in order
+  bool personal_waits = false;  // a chore on the personal file failed; later ones must run after it
   for (const Chore& chore : pending(database)) {
     try {
       if (chore.kind == "backups") {
@@ -102,8 +102,8 @@ void do_chores(Connection& database, CleanUp& done) {
 void empty_log(Connection& database) {
   if (database.integer("PRAGMA wal_checkpoint(TRUNCATE)") == 0) return;
   throw base::Error(database.path().string(),
-                    "its log, which holds what was deleted, cannot be emptied: another program reads it",
-                    "close that program and do this again");
+                    "its -wal file still contains the deleted data: another program reads the database",
+                    "close that program and give the command again");
 }
 
 void rewrite_file(Connection& database) {
@@ -133,7 +133,8 @@ void check_nothing_left(const fs::path& database, const std::vector<std::string>
   throw base::Error(database.string(),
                     left.size() == 1 ? "one clean-up named above is left"
                                      : std::to_string(left.size()) + " clean-ups named above are left",
-                    "mend each as it says; the next vip-study run, resume, withdraw or merge finishes them");
+                    "do what each line says; the next vip-study run, resume, withdraw or merge then finishes "
+                    "the clean-up");
 }
 
 ChorePlan::ChorePlan(Connection& database)

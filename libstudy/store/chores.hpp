@@ -1,7 +1,8 @@
 #pragma once
-/// Work in other files that a withdrawal, a refusal of gaze or a merge requires. It is committed in the table
-/// `chore` with the change, done afterwards, and then deleted. Work that a kill or a full disk left over is
-/// done when the database is next opened for writing.
+/// Chores: clean-up work outside the database's rows, required by a withdrawal, a refusal of gaze or a merge.
+/// A chore is a row of the table `chore`, committed together with the change that requires it. The program
+/// does the chore afterwards and then deletes its row. A chore that a kill or a full disk left undone is done
+/// when the database is next opened for writing.
 
 #include <filesystem>
 #include <map>
@@ -15,25 +16,28 @@ namespace study {
 /// The result of a clean-up.
 struct CleanUp {
   std::vector<std::filesystem::path> cleaned;  ///< backups and personal files changed, exports deleted
-  /// Files that still hold a withdrawn person or an old code: each with place, reason and remedy.
+  /// Files that still contain data of a withdrawn person or an old code, each with path, reason and remedy.
   std::vector<std::string> left;
 };
 
-/// base::Error with the number of lines in `left`, if there are any. Show the lines before.
+/// base::Error with the number of lines in `left` (CleanUp::left), if there are any. Show the lines to the
+/// user first, because the error refers to them.
 void check_nothing_left(const std::filesystem::path& database, const std::vector<std::string>& left);
 
-/// Adds rows to `chore` within the caller's transaction.
+/// Adds rows to the table `chore` within the caller's transaction.
 class ChorePlan {
  public:
   explicit ChorePlan(sqlite::Connection& database);
-  /// Deletes a person from the files beside the database, where `participant` is the code.
+  /// Plans to delete a person from the backups and the personal file beside the database. `participant` is
+  /// the person's code in the personal file.
   void forget(const std::string& person, const std::string& participant);
-  /// Changes codes in the files beside the database, all at once.
+  /// Plans to change participant codes in the personal file beside the database, all at once. `people`: by
+  /// person.
   struct Rename {
     std::string before, now;
   };
   void rename(const std::map<std::string, Rename>& people);
-  /// Rewrites the database file, so that it holds no bytes of deleted rows.
+  /// Plans to rewrite the database file, so that it contains no bytes of deleted rows.
   void rewrite();
 
  private:
@@ -44,15 +48,16 @@ class ChorePlan {
   std::string batch_;
 };
 
-/// True if clean_up() has anything to do.
+/// True if clean_up() has work: a chore, or an export on this computer with data of a withdrawn person.
 bool is_anything_left(sqlite::Connection& database);
 
-/// Does all chores of a database that is open for writing under its WriterLock, deletes the exports of those
-/// who withdrew (export_register.hpp), and rewrites the file when anything changed. Compare the database with
-/// its journal first (AnswerJournal), so that no chores are done for a file put in its place. Does not throw
-/// for failed chores: they are in `left`.
+/// Does all chores of a database that is open for writing under its WriterLock. Deletes the exports that
+/// contain withdrawn people (export_register.hpp), and rewrites the database file if a chore requires it.
+/// Compare the database with its journal first (AnswerJournal), so that no chores are done for another
+/// database at the same path. Does not throw if a chore fails: the result lists it in `left`.
 CleanUp clean_up(sqlite::Connection& database);
-/// The same, and rewrites the journal of answers as announced by prepare_rewrite() (answer_journal.hpp).
+/// Does clean_up(), then rewrites the journal of answers, which prepare_rewrite() (answer_journal.hpp)
+/// announced.
 CleanUp clean_up_all(sqlite::Connection& database);
 
 }  // namespace study

@@ -26,7 +26,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Assigns labels. Labels that differ only in case would be one file on many computers.
+/// Assigns distinct labels. Two labels must differ in more than case, because many file systems ignore case.
 class Giving {
  public:
   bool has(const std::string& kind, const std::string& owner) const {
@@ -35,7 +35,7 @@ class Giving {
   bool is_taken(const std::string& kind, const std::string& label) const {
     return taken_.contains({kind, lower(label)});
   }
-  /// Assigns the label, with the suffix x2 and so on if it is taken.
+  /// Assigns the wished label to the owner; if the label is taken, adds the suffix x2, x3 and so on.
   void give(const std::string& kind, const std::string& owner, const std::string& wished) {
     const std::string start = wished.empty() ? "x" : wished;
     std::string label = start;
@@ -57,7 +57,7 @@ Giving stored_labels(Connection& database) {
   Giving labels;
   for (Statement row(database, "SELECT kind, owner, label FROM label ORDER BY kind, owner"); row.step();)
     labels.give(row.text(0), row.text(1), row.text(2));
-  // A published label is not reused after a withdrawal.
+  // Labels of people who withdrew may be published, so they are not assigned again.
   for (Statement row(database, "SELECT participant FROM tombstone"); row.step();)
     labels.reserve("person", letters_of(row.text(0)));
   return labels;
@@ -76,14 +76,15 @@ const std::string& Labels::of(const std::string& text) {
 
 std::vector<GivenLabel> labels_of(Connection& database) {
   Giving labels = stored_labels(database);
-  // The order in which versions without stored labels assigned them at each export.
+  // Assigns labels in the same order as earlier versions, which stored no labels and assigned them anew at
+  // each export. So labels that these versions published stay the same.
   Statement row(database,
                 "SELECT s.person, s.participant, p.sha256, p.name FROM session s JOIN protocol p USING "
                 "(protocol_id) ORDER BY s.participant, s.session_id");
   while (row.step()) {
     if (!labels.has("person", row.text(0))) labels.give("person", row.text(0), letters_of(row.text(1)));
     if (labels.has("protocol", row.text(2))) continue;
-    const std::string name = letters_of(row.text(3));  // two texts under one name are two data sets
+    const std::string name = letters_of(row.text(3));  // protocols may share a name
     labels.give("protocol", row.text(2),
                 labels.is_taken("protocol", name) ? name + letters_of(row.text(2)).substr(0, 6) : name);
   }

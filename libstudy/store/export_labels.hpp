@@ -1,6 +1,7 @@
 #pragma once
-/// Labels for BIDS and Psych-DS, which allow only letters and digits. Labels of people and protocols are
-/// assigned once and stored in the table `label`, so that no later participant gets a published label.
+/// Labels for exports in BIDS and Psych-DS, whose names allow only letters and digits. A label of a person or
+/// a protocol is assigned once and stored in the table `label`. So a label that was published is never given
+/// to a later participant.
 
 #include <cstdint>
 #include <map>
@@ -12,7 +13,7 @@
 
 namespace study {
 
-/// Maps each text to a label of letters and digits that no other text has.
+/// Assigns each text a label of letters and digits; different texts get different labels.
 class Labels {
  public:
   const std::string& of(const std::string& text);
@@ -22,17 +23,19 @@ class Labels {
   std::set<std::string> taken_;
 };
 
-/// A row of `label`.
+/// A row of the table `label`. kind: "person" or "protocol"; owner: session.person, or the SHA-256 of the
+/// protocol.
 struct GivenLabel {
   std::string kind, owner, label;
 };
 
-/// The labels of a database: the stored ones, then new ones for those without, in the order of codes.
+/// All labels of a database: the stored ones, then new labels for people and protocols that have none. New
+/// labels are assigned in the order of participant codes. Does not store them.
 std::vector<GivenLabel> labels_of(sqlite::Connection& database);
 /// Stores the new labels of labels_of() within the caller's transaction.
 void give_labels(sqlite::Connection& database);
-/// Joins the labels of several databases. Those of `first` stay unchanged. Those of `others` are added in
-/// turn for owners without one; a label that is taken gets the suffix "x2" and so on.
+/// Joins the labels of several databases. Labels in `first` stay unchanged. Labels in `others` are added in
+/// turn if their owner has none yet; a label that another owner has gets the suffix "x2", "x3" and so on.
 std::vector<GivenLabel> joined_labels(const std::vector<GivenLabel>& first,
                                       const std::vector<GivenLabel>& others);
 void store_labels(sqlite::Connection& database, const std::vector<GivenLabel>& labels);
@@ -40,16 +43,16 @@ void store_labels(sqlite::Connection& database, const std::vector<GivenLabel>& l
 /// A session with its labels for exports.
 struct LabelledSession {
   std::int64_t id = 0;
-  std::string person;                      ///< as in session
-  std::string participant;                 ///< code
-  std::string subject, session, protocol;  ///< labels; session: protocol and visit
+  std::string person;                      ///< session.person
+  std::string participant;                 ///< participant code
+  std::string subject, session, protocol;  ///< labels; session: "<protocol label>v<visit>"
 };
 
-/// The sessions allowed in a public export, by participant, then in the order of planning. A participant who
-/// refused in one session, or was asked and has not answered, is left out with all sessions. base::Error if
-/// one has no label (give_labels).
+/// The sessions allowed in a public export, by participant code, then in the order of planning. If a
+/// participant refused sharing in any session, or was asked and has not answered, all sessions of the
+/// participant are omitted. base::Error if a person or a protocol has no stored label (give_labels()).
 std::vector<LabelledSession> shared_sessions(sqlite::Connection& database);
-/// The persons of these sessions (session.person).
+/// The persons (session.person) of these sessions.
 std::set<std::string> people_of(const std::vector<LabelledSession>& sessions);
 
 }  // namespace study

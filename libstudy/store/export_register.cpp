@@ -46,7 +46,8 @@ void check_writable(const fs::path& file) {
       "ask somebody to export who may write to the database and its folder");
 }
 
-/// Opens the database for a short write, even during a session; upgrades an older one first.
+/// Opens the database for a short write to its register; upgrades an older schema first. Works without a
+/// WriterLock while a session is running.
 std::unique_ptr<Connection> open_register(const fs::path& database) {
   const fs::path file = real_file(database);
   check_writable(file);
@@ -62,7 +63,7 @@ std::unique_ptr<Connection> open_register(const fs::path& database) {
   return connection;
 }
 
-/// Adds an export, or people to it; returns its row.
+/// Adds an export and its people to the register, or people to an export with the same path; returns its id.
 std::int64_t enter(Connection& database, const std::string& kind, const fs::path& path,
                    const std::set<std::string>& people) {
   Statement insert(
@@ -78,7 +79,7 @@ std::int64_t enter(Connection& database, const std::string& kind, const fs::path
   return id;
 }
 
-/// Removes replaced exports and unfinished earlier ones at the same path from the register.
+/// Removes earlier exports at the path of `by` from this installation's register, unless their draft exists.
 void forget_replaced(const OwnExport& by) {
   try {
     std::set<std::string> replaced;
@@ -89,7 +90,7 @@ void forget_replaced(const OwnExport& by) {
     }
     forget_own_exports(replaced);
   } catch (const base::Error&) {
-    // Entries of missing exports do no harm.
+    // An entry of an export that no longer exists does no harm.
   }
 }
 
@@ -150,7 +151,7 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
   keep_own();
   Transaction transaction(*file);
   enter(*file, own_.kind, own_.path, own_.people);
-  // Does not reuse the numbers of rows that only the journal holds, from an interrupted or lost commit.
+  // The journal may contain events of a lost or interrupted commit, so the new event_id must exceed theirs.
   Statement(*file,
             "INSERT INTO event (event_id, utc, kind, detail) SELECT max(coalesce(max(event_id), 0), ?) + 1, "
             "?, 'export', ? FROM event")
@@ -159,7 +160,8 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
   transaction.commit();
 }
 
-/// If this fails, the export is made all the same, and a withdrawal names it.
+/// Enters the export in this installation's register. If that fails, the export is made nevertheless: a
+/// withdrawal then lists the export instead of deleting it.
 void RegisteredExport::keep_own() {
   try {
     keep_own_export(own_);
@@ -182,7 +184,7 @@ RegisteredExport::~RegisteredExport() {
     std::error_code ignored;
     if (!fs::exists(own_.draft, ignored)) forget_own_exports({own_.id});
   } catch (const std::exception&) {
-    // The row of a missing export does no harm.
+    // The row stays in the register; a row of an export that does not exist does no harm.
   }
 }
 
@@ -197,7 +199,8 @@ void RegisteredExport::will_be(const std::string& sha256) {
   named_ = true;
 }
 
-// Either a withdrawal sees the export in place, or this sees the withdrawal.
+// The transaction checks for tombstones after the rename. So a withdrawal either finds the export at its
+// path, or is found here.
 void RegisteredExport::is_in_place() {
   base::sync_folder_of(own_.path);
   const auto file = open_register(database_);
@@ -237,7 +240,7 @@ void RegisteredFiles::write(const std::string& kind, const fs::path& path, const
   record.is_in_place();
 }
 
-// A kill between mkdir and the registration leaves an empty folder, which holds no data.
+// A kill between mkdir() and the registration leaves an unregistered folder, which is empty and so harmless.
 void RegisteredFiles::make_folder(const fs::path& folder) const {
   const fs::path path = without_links(folder);
   std::error_code ignored;
@@ -256,7 +259,7 @@ void RegisteredFiles::make_folder(const fs::path& folder) const {
                      .draft = {},
                      .sha256 = {},
                      .people = {}});
-  } catch (const base::Error&) {  // then it is not removed when it is empty
+  } catch (const base::Error&) {  // a withdrawal then does not remove the empty folder
   }
   const auto file = open_register(database_);
   Statement(*file,

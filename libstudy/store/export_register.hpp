@@ -1,6 +1,6 @@
 #pragma once
-/// Register of files and folders outside the database and the people whose data they hold. An entry is
-/// written before the first byte of a file, so that a withdrawal finds it.
+/// Register of exported files and folders and of the people whose data they contain. The entry of a file is
+/// written before the file's first byte, so that a withdrawal finds every file.
 
 #include <filesystem>
 #include <memory>
@@ -14,49 +14,49 @@
 
 namespace study {
 
-/// session.person of all people in a database.
+/// The persons (session.person) of all sessions in a database.
 std::set<std::string> everybody(sqlite::Connection& database);
 
-/// Stores missing labels (export_labels.hpp) before the data of a public export are read. Writes the database
-/// briefly; base::Error as RegisteredExport.
+/// Stores missing labels (export_labels.hpp) in a short write to the database. Call it before reading the
+/// data of a public export. base::Error as RegisteredExport().
 void label_everybody(const std::filesystem::path& database);
 
-/// Opens a study for reading while its export is registered. Switches a database without a log, as other
-/// programs may leave it, to WAL mode; otherwise it could not be written while it is read. base::Error as
-/// RegisteredExport.
+/// Opens a study for reading in a way that lets its export be registered at the same time. A database that is
+/// not in WAL mode is switched to it: in other modes a database cannot be written while it is read.
+/// base::Error as RegisteredExport().
 std::unique_ptr<sqlite::Connection> open_to_export(const StudyFile& study);
 
-/// Registers one export while it is made; `people` are the people in it.
+/// Registers one export while it is made. `people`: the persons (session.person) whose data it contains.
 ///
 ///   RegisteredExport record(database, "csv", folder, people);  // before the first byte
 ///   ... write record.draft() ...
-///   record.will_be(sha256);                                     // whole, beside its place
+///   record.will_be(sha256);                                     // the draft is complete
 ///   ... rename ...
 ///   record.is_in_place();
 ///
-/// The export is entered in two registers: the database's, where a withdrawal looks, and this installation's
-/// (own_exports.hpp), without which nothing is deleted. Each step writes the database briefly and upgrades an
-/// older schema. base::Error if the database cannot be written, because the export could then not be found
-/// again. If the second register cannot be written, the export is made all the same.
+/// The export is entered in two registers. A withdrawal searches the register in the database, but deletes an
+/// export only if it is also in the register of this installation (own_exports.hpp). Each call writes the
+/// database briefly and upgrades an older schema. base::Error if the database cannot be written, because a
+/// withdrawal could then not find the export. An installation's register that cannot be written is no error.
 class RegisteredExport {
  public:
-  /// draft: path that is written first; empty: a generated name, see draft().
+  /// draft: path to which the export is written before it is renamed to `path`; empty: a generated name.
   RegisteredExport(const std::filesystem::path& database, const std::string& kind,
                    const std::filesystem::path& path, const std::set<std::string>& people,
                    const std::filesystem::path& draft = {});
-  /// Removes the entry unless will_be() was called, after which the export may be in place.
+  /// Removes the entry unless will_be() was called; after will_be(), the export may be at its path.
   ~RegisteredExport();
   RegisteredExport(const RegisteredExport&) = delete;
   RegisteredExport& operator=(const RegisteredExport&) = delete;
 
   const std::string& id() const { return own_.id; }
-  /// Path that is written first: beside the target, under a name that cannot be guessed.
+  /// Path to which the export is written first: in the same folder, by default with a random name.
   const std::filesystem::path& draft() const { return own_.draft; }
-  /// Declares the content that is put in place next; a withdrawal deletes nothing else at that path. sha256:
-  /// of a file's bytes, or of a folder's list_of_files().
+  /// Declares the content of the export. Call it before the rename: a withdrawal deletes the file or folder
+  /// at the path only if it has this content. sha256: of a file's bytes, or of a folder's list_of_files().
   void will_be(const std::string& sha256);
-  /// Call after the rename; flushes it to disk. base::Error, with the export deleted, if one of its people
-  /// withdrew in the meantime.
+  /// Call after the rename; flushes the rename to disk. base::Error, with the export deleted, if a person in
+  /// the export withdrew in the meantime.
   void is_in_place();
 
  private:
@@ -67,13 +67,15 @@ class RegisteredExport {
   bool named_ = false;
 };
 
-/// Writes single files with people's data, such as a report. Construct it before the data are read.
+/// Writes and registers single files with people's data, such as reports. Construct it before the data are
+/// read.
 class RegisteredFiles {
  public:
   explicit RegisteredFiles(const StudyFile& study);
-  /// Makes a missing folder for write(), 0700, and its parents. A withdrawal that empties it removes it.
+  /// Makes a missing folder for write(), and its missing parents, with mode 0700. A withdrawal that deletes
+  /// the last file in the folder removes the folder.
   void make_folder(const std::filesystem::path& folder) const;
-  /// Puts a file in place, mode 0600 whatever the umask, replacing an earlier one.
+  /// Writes a file completely or not at all, with mode 0600 whatever the umask; replaces an earlier file.
   void write(const std::string& kind, const std::filesystem::path& path, const std::string& bytes) const;
 
  private:
@@ -81,21 +83,24 @@ class RegisteredFiles {
   std::set<std::string> people_;
 };
 
-/// True if a registered export holds somebody who withdrew and can be handled on this computer.
+/// True if a registered export contains data of a person who withdrew, and the export was made on this
+/// computer or on an unknown one.
 bool holds_withdrawn(sqlite::Connection& database);
 
-/// Deletes every registered export that holds somebody who withdrew, with drafts that a kill left beside it,
-/// and then the empty folders made for exports. Each deletion is on disk before its row is deleted.
+/// Deletes every registered export that contains a person who withdrew, and drafts that a kill left beside
+/// the export. Then removes empty folders that were made for exports. A deletion is on disk before the
+/// register's row is deleted.
 ///
-/// Deletes only exports in the register of this installation with unchanged content and with somebody who
-/// withdrew. Lists in done.left: exports on another computer, not registered by this installation, changed,
-/// or not deletable; and once, missing ones, since they may have been moved.
+/// Deletes an export only if it is in the register of this installation and its content is unchanged. Lists
+/// in done.left the exports that it does not delete: on another computer, not registered by this
+/// installation, changed, or not deletable. A missing export is listed once, since it may have been moved.
 void delete_exports_of_withdrawn(sqlite::Connection& database, CleanUp& done);
 
-/// Rows of the table `export`, shared by the register and the deletion of exports.
+/// Functions on rows of the table `export`, used by the register and by the deletion of exports.
 namespace export_rows {
 
-/// Kind of a folder made for registered files. It holds no people itself and is removed when it is empty.
+/// Column `kind` of a folder made for registered files. Such a row lists no people; the folder is removed
+/// once it is empty.
 inline constexpr const char* folder_kind = "folder";
 
 /// Name of this computer; empty if it has none.

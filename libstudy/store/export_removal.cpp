@@ -1,4 +1,4 @@
-/// Deletes registered exports that hold somebody who withdrew.
+/// Deletes registered exports that contain people who withdrew.
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,7 +25,8 @@ namespace {
 
 constexpr std::size_t longest_path = 4096;
 
-/// Removes what a kill left of exports or of begun deletions, under draft names that this installation chose.
+/// Removes drafts that a kill left, while an export was written or deleted. Only removes paths that this
+/// installation chose as draft names.
 void remove_drafts(const std::vector<OwnExport>& made) {
   for (const OwnExport& one : made) {
     if (!base::is_draft_name(one.draft.string(), one.path.string())) continue;
@@ -34,7 +35,8 @@ void remove_drafts(const std::vector<OwnExport>& made) {
   }
 }
 
-/// Moves it aside first, so that the path never has a partial export, which would not be recognised.
+/// Deletes an export. Renames a folder to its draft path first: a kill then leaves no partly deleted export
+/// at made.path, which stands_unchanged() would not recognise.
 void remove_whole(const OwnExport& made) {
   const bool is_folder = !marker_of(made.kind).empty();
   if (is_folder && !base::rename_durably(made.path, made.draft))
@@ -43,7 +45,7 @@ void remove_whole(const OwnExport& made) {
   base::remove_durably(is_folder ? made.draft : made.path);
 }
 
-/// A row of `export` that holds somebody who withdrew.
+/// A row of the table `export` whose export contains a person who withdrew.
 struct Leftover {
   std::int64_t id = 0;
   std::string kind, host, sha256;
@@ -83,7 +85,8 @@ void forget(const std::vector<OwnExport>& made) {
   forget_own_exports(ids);
 }
 
-/// Of missing exports, the register keeps only those that this program deleted.
+/// Updates this installation's register for exports that no longer exist: finishes the entries of exports
+/// that this program deleted, and removes the other entries.
 void settle_gone(const std::vector<OwnExport>& made) {
   std::vector<OwnExport> moved;
   for (const OwnExport& one : made) {
@@ -95,8 +98,8 @@ void settle_gone(const std::vector<OwnExport>& made) {
   forget(moved);
 }
 
-/// True if this database may decide on exports that this installation made at a path: one has a person who
-/// withdrew here, or was made from this very file.
+/// True if this database may delete the exports `made`, which this installation made at one path: at least
+/// one of them was made from this database file, or contains a person who withdrew from it.
 bool concerns(Connection& database, const std::vector<OwnExport>& made) {
   const fs::path here = fs::weakly_canonical(database.path());
   return std::any_of(made.begin(), made.end(), [&](const OwnExport& one) {
@@ -104,12 +107,13 @@ bool concerns(Connection& database, const std::vector<OwnExport>& made) {
   });
 }
 
-/// Why the file or folder at its path is not deleted; empty: it is deleted, or holds nobody who withdrew.
+/// Deletes the export at the path of `one` if it is registered, unchanged and contains a person who withdrew.
+/// Returns the reason why it stays; empty if it was deleted, or if another export without such a person is
+/// there and the export of `one` is known to be replaced or deleted.
 std::string remove_standing(Connection& database, const Leftover& one, const std::vector<OwnExport>& made) {
   if (made.empty())
     return "was not registered by this installation (" + own_exports_file().string() +
-           "), so that nothing there is deleted\n  mend: look at it; delete it by hand if it is an export of "
-           "this study";
+           "), so it was not deleted\n  mend: check it; delete it by hand if it is an export of this study";
   const auto here = std::find_if(made.begin(), made.end(), stands_unchanged);
   if (here == made.end())
     return "is not as it was written: it was changed, or files were added\n  mend: delete it by hand";
@@ -117,7 +121,7 @@ std::string remove_standing(Connection& database, const Leftover& one, const std
     if (one.tackled || here->database == fs::weakly_canonical(database.path()) ||
         was_deleted_here(one.path, one.sha256))
       return "";
-    return "is no longer there: another export stands in its place\n  mend: delete it where it was moved or "
+    return "is no longer there: another export is now at its path\n  mend: delete it where it was moved or "
            "copied to";
   }
   mark_tackled(database, one);
@@ -128,7 +132,8 @@ std::string remove_standing(Connection& database, const Leftover& one, const std
   return "";
 }
 
-/// Why it is not deleted; empty if it is gone.
+/// Deletes the export of `one`, and drafts beside it. Returns the reason if it cannot be deleted; empty if it
+/// no longer exists. An export that was moved gives a reason once.
 std::string remove_leftover(Connection& database, const Leftover& one) {
   if (one.host != this_host() && !one.host.empty()) {
     return "is on the computer '" + base::shortened(one.host) +
@@ -148,7 +153,7 @@ std::string remove_leftover(Connection& database, const Leftover& one) {
   return "is no longer there\n  mend: delete it where it was moved or copied to";
 }
 
-/// Removes only folders that this installation made.
+/// Removes folders made for exports that are empty and in this installation's register.
 void remove_empty_folders(Connection& database) {
   std::vector<std::pair<std::int64_t, fs::path>> folders;
   Statement row(database,

@@ -7,13 +7,13 @@
 
 namespace study {
 
-/// Events after which the experimenter was not blind to a session.
+/// Event kinds: the experimenter opened a setting or the mirror, and is no longer blind to the session.
 inline constexpr const char* revealed_event = "setting revealed";
 inline constexpr const char* mirror_event = "mirror opened";
-/// The experimenter saw the pages but no stimulus, and stayed blind.
+/// Event kind: the mirror showed pages but no stimulus, so the experimenter stayed blind to the session.
 inline constexpr const char* pages_mirror_event = "pages mirrored";
 
-/// The inverse of verdict_name(); other names, which the schema's CHECK excludes, give Fail.
+/// The inverse of verdict_name(). Returns Fail for any other name; the schema's CHECK excludes other names.
 inline Verdict verdict_of(const std::string& name) {
   if (name == "pass") return Verdict::Pass;
   return name == "degraded" ? Verdict::Degraded : Verdict::Fail;

@@ -1,4 +1,4 @@
-/// Store: reads the open runs and sessions; repeats and excludes their trials.
+/// Functions of Store that read open runs and sessions, and that repeat or exclude trials.
 #include "libstudy/store/store.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/error.hpp"
@@ -228,7 +228,7 @@ void Store::leave_out_trial(std::int64_t session, const OpenUnit& unit, const st
   Transaction transaction(*database_);
   mark_excluded(session, unit.trial_id, reason);
   mark_done(session, unit.id, base::utc_now(), {});
-  // The unit is done, but the trial has no answer.
+  // mark_done() also marks the trial as answered: reset the state if no answer counts.
   Statement(*database_,
             "UPDATE trial SET state = 'planned' WHERE trial_id = ?1 AND NOT EXISTS (SELECT 1 FROM response "
             "r JOIN unit u USING (unit_id) WHERE u.trial_id = ?1 AND r.attempt > trial.set_aside)")

@@ -27,7 +27,7 @@ bool stands(Connection& database, const Row& row) {
   return now && now->line == row.line;
 }
 
-/// Persons with sessions in the database who withdrew according to the journal.
+/// Persons who withdrew according to the journal but still have sessions in the database.
 std::vector<std::string> withdrawn(Connection& database, const JournalContent& content) {
   std::set<std::string> named;
   for (const JournalRows* rows : {&content.kept, &content.pending}) {
@@ -45,8 +45,8 @@ std::vector<std::string> withdrawn(Connection& database, const JournalContent& c
   return here;
 }
 
-/// Takes permission changes and consent answers that are missing or different in the database. Rows without a
-/// parent are skipped: then there is no data to withhold.
+/// Writes into `copy` the journal's permission changes and consent answers that the database lacks or has
+/// otherwise. Skips a row whose parent is missing: its session, and so the data to withhold, are missing too.
 void take_decisions(Connection& copy, const JournalRows& rows) {
   Statement asks(copy,
                  "SELECT 1 FROM question WHERE question_id = ? AND code IN ('gaze_kept', 'data_shared')");
@@ -60,11 +60,11 @@ void take_decisions(Connection& copy, const JournalRows& rows) {
   }
 }
 
-/// Comparison of a consistent state of a database with its journal.
+/// Differences between a database and its journal of answers.
 struct Findings {
-  bool ahead = false;   ///< the journal holds more than the database
-  bool begun = false;   ///< a commit was under way
-  std::string lacking;  ///< in words
+  bool ahead = false;   ///< the journal contains rows that the database lacks (is_ahead())
+  bool begun = false;   ///< the journal contains rows of an interrupted commit
+  std::string lacking;  ///< the missing rows in words (words_of())
   std::vector<std::string> withdrawn;
 };
 
@@ -72,7 +72,7 @@ Findings look(Connection& database, const JournalContent& content) {
   Findings found;
   if (!content.exists) return found;
   found.withdrawn = withdrawn(database, content);
-  if (content.rewriting) return found;  // its rows are older
+  if (content.rewriting) return found;  // the journal's rows are older than the database: do not compare
   const Comparison comparison = compare(database, content.kept);
   found.ahead = is_ahead(comparison, content, database);
   if (found.ahead) found.lacking = words_of(comparison);
@@ -81,7 +81,7 @@ Findings look(Connection& database, const JournalContent& content) {
   return found;
 }
 
-/// The state that a writer would make from database and journal.
+/// A temporary copy in the state that settle() would give the database.
 std::unique_ptr<Connection> as_settled(Connection& database, const JournalContent& content,
                                        const Findings& found) {
   auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
@@ -116,13 +116,13 @@ std::unique_ptr<Connection> as_settled(Connection& database, const JournalConten
 OpenedStudy open_study(const StudyFile& study) {
   const fs::path path = real_file(study.path);
   for (int round = 1;; ++round) {
-    // Read the journal first: rows that it marks as kept are then in the database.
+    // Read the journal before the database: the database then has all rows that the journal marks as kept.
     const JournalContent content = read_journal(journal_beside(path));
     auto database = open_database(path, Open::Read, read_schema_steps());
     database->execute("BEGIN");
     const Findings found = look(*database, content);
     if (found.ahead && round < rounds) {
-      // Read again if the journal changed meanwhile, e.g. by a withdrawal.
+      // Read both again if the journal changed in the meantime, e.g. by a withdrawal.
       const JournalContent now = read_journal(journal_beside(path));
       if (now.rewriting || now.end != content.end) continue;
     }

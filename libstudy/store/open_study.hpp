@@ -1,5 +1,5 @@
 #pragma once
-/// Opens a study for reading, so that every reader sees the same data as a writer would.
+/// Opens a study for reading: every reader gets the data that a writer would get.
 
 #include <memory>
 #include <string>
@@ -12,21 +12,24 @@ namespace study {
 /// A database that is open for reading.
 struct OpenedStudy {
   std::unique_ptr<sqlite::Connection> database;
-  /// Rows that only its journal holds: "3 answers and 9 other rows stand in the journal alone"; empty: none.
+  /// Rows that only its journal contains, in words: "3 answers and 9 other rows are in the journal only";
+  /// empty: none.
   std::string lacking;
 };
 
-/// Opens a database as open_database() does for reading, and compares it with the journal beside it.
+/// Opens a database for reading (open_database()) and compares it with the journal of answers beside it.
 ///
-/// base::Error if the journal holds more than the database: its log was lost, or a backup was restored. With
-/// StudyFile::incomplete it is opened nevertheless, and `lacking` says what is missing.
+/// base::Error if the journal contains rows that the database lacks, because the database's log was lost or a
+/// backup was restored. With StudyFile::incomplete such a database is opened, and `lacking` describes the
+/// missing rows.
 ///
-/// A reader sees the state that the next opening for writing would produce, in a temporary copy if the file
-/// differs. That state has a commit that a kill interrupted, but no people with a tombstone in the journal or
-/// in an unfinished withdrawal, and no gaze that is refused. The same holds for an incomplete study.
+/// The result has the state that the next opening for writing would produce; it is a temporary copy if the
+/// file differs from this state. The state includes a commit that a kill interrupted. It excludes people with
+/// a tombstone in the journal or in an unfinished withdrawal, and gaze that is refused. The same rules apply
+/// to an incomplete study.
 OpenedStudy open_study(const StudyFile& study);
 
-/// OpenedStudy::lacking of a study; does not fail for an incomplete one.
+/// OpenedStudy::lacking of a database; an incomplete database is no error.
 std::string lacking_of(const std::filesystem::path& database);
 
 }  // namespace study

@@ -66,7 +66,7 @@ std::optional<OwnExport> read_line(const std::string& line) {
   }
 }
 
-/// Another user who can write the register could have any file deleted.
+/// base::Error if another user may write the register: that user could make this program delete any file.
 void check_owner(const fs::path& file) {
   struct stat found {};
   if (::lstat(file.c_str(), &found) != 0) return;
@@ -86,7 +86,8 @@ std::vector<OwnExport> read_all(const fs::path& file) {
   return all;
 }
 
-/// The folder is made 0700, because the paths of exports are private too.
+/// Changes the list of registered exports by `how` and replaces the file. Makes a missing folder with mode
+/// 0700, because the paths of exports are private too.
 void change(const std::function<void(std::vector<OwnExport>&)>& how) {
   const fs::path file = own_exports_file();
   if (file.empty()) {
@@ -176,7 +177,7 @@ bool was_deleted_here(const fs::path& path, const std::string& sha256) {
 }
 
 std::string marker_of(const std::string& kind) {
-  // Paths where the standards allow other files.
+  // BIDS and Psych-DS allow files that they do not define only in the folders code and materials.
   static const std::map<std::string, std::string> names{
       {"csv", "export.sha256"}, {"bids", "code/export.sha256"}, {"psych-ds", "materials/export.sha256"}};
   const auto name = names.find(kind);

@@ -1,11 +1,11 @@
 #pragma once
-/// The register of exports that this installation made, in the user's state folder. A database lists its
-/// exports, but only exports that are also in this register are ever deleted. So a foreign database, which
-/// may name any path, deletes nothing.
+/// The register of exports that this installation made, in the user's state folder. Each database also lists
+/// its exports, but a withdrawal deletes an export only if this register has it too. So a database from
+/// elsewhere, which may list any path, cannot make the program delete other files.
 ///
-/// "<state folder>/exports.jsonl", mode 0600, one JSON object a line. The state folder is $VIP_STATE_DIR,
-/// else vip-lab in $XDG_STATE_HOME or in ~/.local/state. If there is none or it cannot be written, exports
-/// are made all the same, and a withdrawal names them instead of deleting them.
+/// The register is the file "<state folder>/exports.jsonl", mode 0600, with one JSON object per line. The
+/// state folder is $VIP_STATE_DIR if set, else vip-lab in $XDG_STATE_HOME or in ~/.local/state. If there is
+/// no state folder, or it cannot be written, exports are still made, but a withdrawal only lists their paths.
 
 #include <filesystem>
 #include <optional>
@@ -17,46 +17,49 @@ namespace study {
 
 /// A registered export.
 struct OwnExport {
-  std::string id;  ///< random; also in the export itself if it is a folder
+  std::string id;  ///< new_export_id(); a folder also contains it, in its list of files
   std::string host, kind;
   std::filesystem::path database, path;
-  std::filesystem::path draft;   ///< its path before it is in place and during deletion
-  std::string sha256;            ///< of a file, or of a folder's list of files; empty: incomplete
-  std::set<std::string> people;  ///< session.person of the people in it
-  bool deleted = false;          ///< by this program, or about to be
+  std::filesystem::path draft;   ///< path of the export while it is written and while it is deleted
+  std::string sha256;            ///< of the file, or of the folder's list_of_files(); empty: incomplete
+  std::set<std::string> people;  ///< persons (session.person) whose data the export contains
+  bool deleted = false;          ///< this program deleted the export, or is about to delete it
 };
 
-/// 32 random hexadecimal digits.
+/// A new id of an export: 32 random hexadecimal digits.
 std::string new_export_id();
 
-/// The register's file; empty if there is no state folder.
+/// Path of the register; empty if there is no state folder.
 std::filesystem::path own_exports_file();
-/// The reason that this computer cannot register exports; none if it can.
+/// Error text of why the register cannot be written; none if it can be written.
 std::optional<std::string> why_not_registered();
 
-/// The exports registered at a path of this computer, newest last. Unreadable lines are ignored. base::Error:
-/// the file cannot be read, or others may write it.
+/// The exports registered at a path of this computer, newest last. Ignores lines of the register that cannot
+/// be parsed. base::Error if the register cannot be read, or if other users may write it.
 std::vector<OwnExport> own_exports_at(const std::filesystem::path& path);
-/// Adds an export, or replaces the one with its id. base::Error if the register cannot be written.
+/// Adds an export to the register, or replaces the export with the same id. base::Error if the register
+/// cannot be written.
 void keep_own_export(const OwnExport& made);
-/// Removes exports from the register, if present.
+/// Removes the exports with these ids from the register; ignores ids that are not in it.
 void forget_own_exports(const std::set<std::string>& ids);
 
-/// Notes that this program is about to delete an export.
+/// Notes in the register that this program is about to delete an export.
 void will_delete_own_export(OwnExport made);
-/// Call after the deletion: the register then stores only a digest of path and content.
+/// Call after the deletion: replaces the export's path, content and people in the register by one digest.
 void has_deleted_own_export(const OwnExport& made);
-/// True if this installation deleted the export that a database lists at a path. Another database, merged
-/// before, may still list it.
+/// True if this installation deleted the export with this path and SHA-256. A database that was merged before
+/// the deletion may still list such an export.
 bool was_deleted_here(const std::filesystem::path& path, const std::string& sha256);
 
-/// The list of a folder's files, "<SHA-256> <name>" a line as sha256sum -c reads it, below a line with
-/// the export's id. It is stored in the folder itself as marker_of(kind) and lists all other files.
+/// Text that lists the files of an exported folder: a line with the export's id, then one line per file,
+/// "<SHA-256>  <name>", which sha256sum -c can check. The folder stores this text in the file
+/// marker_of(kind), which the list omits.
 std::string list_of_files(const std::filesystem::path& folder, const std::string& kind,
                           const std::string& id);
-/// Path of the list of hashes in an exported folder of this kind; empty if this kind is a single file.
+/// Path, within an exported folder of this kind, of the file with list_of_files(); empty if exports of this
+/// kind are single files.
 std::string marker_of(const std::string& kind);
-/// True if the file or folder at its path is this export, complete, unchanged and without other files.
+/// True if the file or folder at made.path is this export: complete, unchanged and without other files.
 bool stands_unchanged(const OwnExport& made);
 
 }  // namespace study

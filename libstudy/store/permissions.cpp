@@ -60,7 +60,7 @@ void write_changes(Connection& database, const std::string& person, const Permis
   journal.require_written();
 }
 
-/// Public exports with a person.
+/// Paths of registered public exports, and of exports of unknown kind, that contain a person.
 std::vector<std::string> public_exports_of(Connection& database, const std::string& person) {
   Statement row(database,
                 "SELECT path || iif(host = '', '', ' on ' || host) FROM export JOIN export_person USING "
@@ -136,7 +136,8 @@ void record_permission(Connection& database, std::int64_t session, const std::st
 }
 
 SharingCount count_sharing(Connection& database) {
-  // People left out refused in some session, or were asked without answering.
+  // Omitted people refused in at least one session, or were asked and did not answer. `said` separates the
+  // two.
   Statement row(
       database,
       "SELECT count(*) FILTER (WHERE h.granted = 1), count(*) FILTER (WHERE h.granted IS NULL), "

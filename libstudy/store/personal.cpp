@@ -20,7 +20,8 @@ using sqlite::Transaction;
 
 namespace {
 
-// A rollback journal instead of a log is deleted with each commit, so no file beside it holds deleted data.
+// Uses a rollback journal instead of a write-ahead log: SQLite deletes the journal at each commit, so no file
+// beside the personal file contains deleted data.
 constexpr const char* opening =
     "PRAGMA journal_mode = DELETE; PRAGMA secure_delete = ON; PRAGMA synchronous = EXTRA";
 constexpr std::array<const char*, 2> tables{
@@ -28,7 +29,7 @@ constexpr std::array<const char*, 2> tables{
     "answer TEXT NOT NULL, PRIMARY KEY (participant, question)) STRICT",
     "renaming (batch TEXT PRIMARY KEY) STRICT"};
 
-/// Makes the file, or takes over an existing one, without rights for others before anything is written.
+/// Makes the file if it is missing, and sets its mode to 0600 before any data are written.
 void make_private(const fs::path& path) {
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   const bool done = fd >= 0 && ::fchmod(fd, 0600) == 0;
@@ -45,7 +46,8 @@ void make_private(const fs::path& path) {
                     "restore a backup of it, or move it elsewhere: it holds personal answers only");
 }
 
-/// A trigger or another table layout could leave data that is reported as deleted.
+/// base::Error if the file has other tables, columns or triggers than vip-study makes: these could preserve
+/// data that vip-study reports as deleted.
 void check_schema(sqlite::Connection& file) {
   file.distrust();
   {
@@ -108,7 +110,7 @@ void PersonalFile::rename(const std::string& batch, const std::map<std::string, 
   const bool again = !done.bind_all(batch).step();
   done.reset();
   if (again) return;
-  // In two steps, because one new code may be another's old code.
+  // Renames first to " <new code>", then removes the space: one person's new code may be another's old code.
   Statement aside(*file_, "UPDATE personal SET participant = ' ' || ? WHERE participant = ?");
   for (const auto& [before, now] : codes) aside.bind_all(now, before).run();
   file_->execute("UPDATE personal SET participant = substr(participant, 2) WHERE participant LIKE ' %'");

@@ -1,5 +1,5 @@
 #pragma once
-/// Personal data, stored apart from the study's database and linked to it only by the participant code.
+/// Personal data, stored in a separate file. Only the participant code links them to the study's database.
 
 #include <filesystem>
 #include <map>
@@ -16,21 +16,21 @@ struct PersonalEntry {
   std::string participant, question, wording, answer;
 };
 
-/// All entries of the personal file beside a database, ordered by participant and question; empty if there is
-/// no such file. Changes nothing. base::Error: it cannot be read.
+/// All entries of the personal file beside a database, ordered by participant and question; empty if the file
+/// does not exist. Does not change the file. base::Error if the file cannot be read.
 std::vector<PersonalEntry> read_personal(const std::filesystem::path& database);
 
-/// "<database>.personal": a SQLite file of its own, readable by its owner only. Deleting it loses no study
-/// data.
+/// The file "<database>.personal", a separate SQLite database that only its owner can read. Deleting the file
+/// loses no study data.
 class PersonalFile {
  public:
   explicit PersonalFile(const std::filesystem::path& database);
 
-  /// Stores and commits entries; an answer to the same question replaces the former one.
+  /// Stores and commits entries; a participant's new answer to a question replaces the earlier one.
   void keep(const std::vector<PersonalEntry>& entries);
   std::vector<PersonalEntry> read(const std::string& participant);
-  /// Renames participants (new code by old code), all at once. A `batch` that was done is not repeated,
-  /// because the new code of one may be the old code of another.
+  /// Renames participants in one transaction; `codes`: new code by old code. Does nothing if `batch` was done
+  /// before: one participant's new code may be another's old code, so a second renaming would be wrong.
   void rename(const std::string& batch, const std::map<std::string, std::string>& codes);
   /// Deletes the entries of a participant and overwrites their bytes.
   void forget(const std::string& participant);

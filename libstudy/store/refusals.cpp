@@ -18,7 +18,8 @@ namespace {
 constexpr std::array of_showings{"gaze", "head"};
 constexpr std::array all_tables{"gaze", "head", "gaze_validation"};
 
-/// SQL condition on the rows of one of the tables: their session is in `from`.
+/// SQL condition on the rows of `table` (gaze, head or gaze_validation): their session_id is in `from`, an
+/// SQL table with an optional WHERE clause.
 std::string of_sessions(const std::string& table, const std::string& from) {
   const std::string sessions = "session_id IN (SELECT session_id FROM " + from + ")";
   if (table == "gaze_validation") return sessions;
@@ -39,7 +40,7 @@ std::set<std::string> persons(Connection& database, const std::string& sql) {
   return found;
 }
 
-/// People with gaze in the sessions of a table or condition.
+/// Persons with gaze data in the sessions of `condition`, an SQL table with an optional WHERE clause.
 std::set<std::string> people_with_gaze_in(Connection& database, const std::string& condition) {
   std::set<std::string> found;
   for (const std::string table : all_tables) {
@@ -59,7 +60,7 @@ bool any_row(Connection& database, const std::string& rows, const std::string& p
   return row.bind_all(person).step();
 }
 
-/// The backup may be of any schema.
+/// True if a backup, which may have any schema version, contains gaze data of a person.
 bool holds_gaze(const fs::path& path, const std::string& person) {
   Connection backup(path, Open::Read);
   Statement there(backup, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?");
@@ -71,7 +72,7 @@ bool holds_gaze(const fs::path& path, const std::string& person) {
   return false;
 }
 
-/// A backup that cannot be read may hold gaze.
+/// Paths of the backups with gaze of a person, including backups that cannot be read.
 std::vector<std::string> backups_with_gaze(const fs::path& database, const std::string& person) {
   std::vector<std::string> found;
   for (const fs::path& backup : backups_of(database)) {
@@ -96,7 +97,8 @@ std::set<std::string> delete_refused_gaze(Connection& database) {
 
 void drop_unallowed_gaze(Connection& database) {
   for (const char* table : all_tables) database.execute("DELETE FROM " + rows_of(table, refused_now));
-  // A refusal applies to the showings that had begun when it was recorded: the first n of the session.
+  // A refusal applies to the showings that had begun when it was recorded. These are the session's first n
+  // showings; n is permission_change.showings.
   for (const std::string table : of_showings) {
     database.execute(
         "DELETE FROM " + table +
@@ -105,7 +107,7 @@ void drop_unallowed_gaze(Connection& database) {
         "JOIN trial USING (trial_id)) p JOIN permission_change c USING (session_id) WHERE c.what = 'gaze' "
         "AND c.granted = 0 AND coalesce(c.showings, p.place) >= p.place)");
   }
-  // Validations have no showing: a refusal in any copy deletes them.
+  // A validation belongs to no showing, so any refusal in the session deletes all validations.
   database.execute("DELETE FROM " +
                    rows_of("gaze_validation", "permission_change WHERE what = 'gaze' AND granted = 0"));
 }

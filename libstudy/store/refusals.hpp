@@ -1,7 +1,7 @@
 #pragma once
-/// Deletes gaze data after a refusal: gaze samples, head poses and validations of the eye tracker. The rows
-/// to delete follow from the stored permissions (permissions.hpp), not from the command that recorded them,
-/// so that a kill cannot leave gaze of somebody who refused.
+/// Deletes gaze data of sessions in which gaze is refused: gaze samples, head poses and validations of the
+/// eye tracker. The stored permissions (permissions.hpp) determine the rows to delete. So if a kill
+/// interrupts the command that recorded a refusal, the next opening for writing still deletes the rows.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,32 +14,35 @@
 namespace study {
 
 /// Deletes gaze data of sessions in which gaze is not allowed now, and plans a rewrite of the file
-/// (chores.hpp). Call it when a database is opened for writing, and in the transaction of each answer or
-/// change. Returns the persons whose gaze was deleted.
+/// (chores.hpp). Call it when a database is opened for writing, and in each transaction that changes a
+/// permission. Returns the persons whose gaze was deleted.
 std::set<std::string> delete_refused_gaze(sqlite::Connection& database);
 
-/// The same for a union of databases. Also deletes gaze recorded before a refusal that was later withdrawn,
-/// because that gaze may come from a copy that has neither change.
+/// Deletes gaze data that is not allowed from a union of databases. Also deletes gaze recorded before a
+/// refusal, even if gaze was allowed again later: such gaze may come from a copy of the database that
+/// contains neither the refusal nor the later permission.
 void drop_unallowed_gaze(sqlite::Connection& database);
 
-/// SQL condition on rows of gaze, head or gaze_validation: gaze is allowed now in their session. Exports
-/// apply it too and do not rely on earlier deletions.
+/// SQL condition that selects the rows of `table` (gaze, head or gaze_validation) whose session allows gaze
+/// now. Exports use this condition too, so they do not depend on earlier deletions.
 std::string gaze_allowed_sql(const std::string& table);
 /// True if gaze is allowed now in a session.
 bool is_gaze_allowed(sqlite::Connection& database, std::int64_t session);
 
 std::int64_t count_gaze(sqlite::Connection& database, const std::string& person);
 std::set<std::string> people_with_gaze(sqlite::Connection& database);
-/// Persons with a session in which gaze is refused now.
+/// The persons who refuse gaze now in at least one session.
 std::set<std::string> people_without_gaze(sqlite::Connection& database);
 
-/// Files that may still hold gaze of a person and that no program deletes.
+/// Files outside the database that may still contain gaze of a person. The experimenter must delete them: no
+/// command does it.
 struct GazeElsewhere {
-  std::vector<std::string> backups;  ///< beside the database
-  std::vector<std::string> exports;  ///< all with the person: the register does not say which have gaze
+  std::vector<std::string> backups;  ///< backups beside the database
+  std::vector<std::string> exports;  ///< all exports with the person, as the register does not record gaze
 };
 GazeElsewhere find_gaze_elsewhere(sqlite::Connection& database, const std::string& person);
-/// The same for several persons, as lines for the experimenter, who must delete them.
+/// Files that may still contain gaze of these persons, as lines of text that ask the experimenter to delete
+/// the files.
 std::vector<std::string> name_gaze_elsewhere(sqlite::Connection& database,
                                              const std::set<std::string>& persons);
 

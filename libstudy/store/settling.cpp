@@ -20,7 +20,7 @@ namespace {
 
 std::int64_t schema_number(Connection& database) { return database.integer("PRAGMA user_version"); }
 
-/// The rows as one kept batch.
+/// Journal lines of a batch with these rows that is marked as kept.
 std::string batch(const std::string& rows, std::int64_t number) {
   return rows + ready_line(number) + kept_line(number);
 }
@@ -36,7 +36,8 @@ bool is_response(const Row& row) { return row.table->name == std::string("respon
           " --into NEW.db puts both together; if the journal is of another study, move it away");
 }
 
-/// True for the end of a showing whose last frames were lost with the program: the journal has no frames.
+/// True if `row` marks a presentation as played to its end, but the database lacks some of its frames. These
+/// frames were lost with the program, because the journal contains no frames.
 bool lacks_frames(Connection& database, const Row& row) {
   if (row.table->name != std::string("presentation") || journal::column(row, "state") != "played")
     return false;
@@ -46,8 +47,8 @@ bool lacks_frames(Connection& database, const Row& row) {
   return lacks.bind_all(row.key, journal::column(row, "frames")).step() && lacks.integer(0) == 1;
 }
 
-/// Commits rows that were under way when the program ended. A showing without its frames is left unchanged
-/// and later marked as cut.
+/// Writes the rows of an interrupted commit into the database. Omits the row of a presentation whose frames
+/// were lost: the presentation is later marked as interrupted.
 void take_over(Connection& database, const JournalRows& pending) {
   for (const auto& [key, row] : pending) {
     const auto now = journal::stands_as(database, row);
@@ -55,12 +56,13 @@ void take_over(Connection& database, const JournalRows& pending) {
     if (journal::put(database, row, journal::Put::Replace)) continue;
     throw base::Error(
         database.path().string(),
-        "cannot take over what its journal holds of the last commit: " + row.line.substr(0, 200),
-        "vip-study salvage --db " + database.path().string() + " --into NEW.db");
+        "the last commit cannot be finished with this row of the journal of answers: " +
+            row.line.substr(0, 200),
+        "make a sound copy: vip-study salvage --db " + database.path().string() + " --into NEW.db");
   }
 }
 
-/// Withdrawals are announced in the journal before their commit.
+/// Finishes withdrawals that the journal announces, whose commit may not have happened.
 void finish_withdrawals(Connection& database, const std::vector<std::string>& persons) {
   Statement row(database, "SELECT participant FROM session WHERE person = ? LIMIT 1");
   for (const std::string& person : persons) {
@@ -114,7 +116,7 @@ std::string words_of(const Comparison& found) {
 }
 
 std::set<std::string> finish_what_was_begun(Connection& database, const JournalContent& content) {
-  // A torn batch was not completely flushed before a power cut, so its commit had not begun.
+  // A torn batch was not completely on disk at a power cut, so its commit had not begun: ignore it.
   if (!content.rewriting && !content.torn) take_over(database, content.pending);
   if (content.rewriting) finish_withdrawals(database, content.forgotten);
   return delete_refused_gaze(database);
@@ -152,7 +154,7 @@ Settled bring_together(Connection& database, JournalFile& file) {
 Settled settle(Connection& database, JournalFile& file) {
   Settled settled = bring_together(database, file);
   remove_journal_draft(file.path());
-  database.keep_log(false);  // all its rows are in the journal too
+  database.keep_log(false);  // the journal has all rows of SQLite's log, so the log may change
   return settled;
 }
 

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using sqlite::Statement;
 using sqlite::Transaction;
 
-/// The prepared statements of a Store that run for every frame, showing or answer.
+/// The SQL statements of a Store that run for every frame, event, showing or answer, prepared once.
 struct Store::Statements {
   explicit Statements(sqlite::Connection& database)
       : frame(database,
@@ -71,7 +71,7 @@ std::optional<std::string> words_of(const Answer& answer) {
   return answer.words;
 }
 
-/// A time relative to another; none if it is not known.
+/// A time relative to origin_ns; none if the time is not known (negative).
 std::optional<std::int64_t> after(std::int64_t time_ns, std::int64_t origin_ns) {
   if (time_ns < 0) return {};
   return time_ns - origin_ns;
@@ -84,7 +84,7 @@ std::optional<std::string> particles_text(const std::vector<std::int64_t>& parti
   return text;
 }
 
-/// A member of an optional part of a frame; none if the frame lacks the part.
+/// The member of an optional group of a frame's facts; none if the frame lacks the group.
 template <class Part, class Value>
 std::optional<Value> part(const std::optional<Part>& whole, Value Part::*member) {
   if (!whole) return {};
@@ -110,12 +110,12 @@ Store::Store(const fs::path& path, sqlite::Open how, std::int64_t max_pages, con
   }
   statements_ = std::make_unique<Statements>(*database_);
   journal_ = std::make_unique<AnswerJournal>(*database_);
-  // A new database may already have a plan, taken from the journal: its commit was under way when an earlier
-  // database was abandoned.
+  // A new database may already have a run: settle() inserted it from the journal that an earlier database at
+  // this path left.
   if (!lock_->made() || database_->integer("SELECT EXISTS (SELECT 1 FROM run)") == 1) keep_file();
 }
 
-// Members are destroyed in reverse order, so the lock is released after SQLite has closed the file.
+// C++ destroys members in reverse order, so lock_ is released after SQLite has closed the file.
 Store::~Store() {
   if (lock_ && lock_->made()) journal_->remove_if_blank();
 }

@@ -1,12 +1,12 @@
 #pragma once
-/// The study that a reader opens, and whether it may be incomplete.
+/// The study that a reader opens, with a flag for accepting an incomplete database.
 
 #include <concepts>
 #include <filesystem>
 
 namespace study {
 
-/// The study that a reader opens. A path alone converts to a study that must be complete.
+/// The database that a reader opens. A path converts to a StudyFile that must be complete.
 struct StudyFile {
   template <class Path>
   requires std::convertible_to<const Path&, std::filesystem::path> StudyFile(const Path& database,
@@ -14,7 +14,7 @@ struct StudyFile {
       : path(database), incomplete(go_on) {}
 
   std::filesystem::path path;
-  bool incomplete = false;  ///< accept a database with fewer rows than its journal
+  bool incomplete = false;  ///< true: accepts a database that lacks rows of its journal of answers
 };
 
 }  // namespace study

@@ -20,7 +20,7 @@ using sqlite::Statement;
 
 namespace {
 
-/// The person with a code; none if the code was never used. A code belongs to one person.
+/// The person with a participant code, also one who withdrew; none if the code was never used.
 std::optional<std::string> known_person(Connection& database, const std::string& participant) {
   Statement row(database,
                 "SELECT person FROM session WHERE participant = ?1 UNION "
@@ -73,7 +73,7 @@ Withdrawal withdraw(Connection& database, const std::string& participant) {
   const auto person = known_person(database, participant);
   if (!person) {
     { const AnswerJournal compared(database); }
-    clean_up(database);  // of other people
+    clean_up(database);  // does the chores that other people's withdrawals left over
     throw base::Error(database.path().string(), "knows no participant " + participant,
                       "vip-study status lists the codes");
   }
@@ -97,7 +97,7 @@ Withdrawal withdraw(const fs::path& given, const std::string& participant) {
   JournalFile journal(journal_beside(path));
   const std::set<std::string> gaze_deleted = settle(*database, journal).gaze_deleted;
   Withdrawal done = withdraw(*database, participant);
-  const auto named = name_gaze_elsewhere(*database, gaze_deleted);  // of people who are still in it
+  const auto named = name_gaze_elsewhere(*database, gaze_deleted);  // omits the person who withdrew just now
   done.beside.left.insert(done.beside.left.end(), named.begin(), named.end());
   return done;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Withdrawal of a participant: deletes their data wherever they can be reached.
+/// Withdrawal of a participant: deletes their data from the database and the files that the program knows.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,33 +12,34 @@
 
 namespace study {
 
-/// The data of a person in a database.
+/// Amount of a person's data in a database.
 struct Stock {
   std::int64_t sessions = 0, answers = 0, frames = 0;
-  std::vector<std::string> stations;  ///< that recorded the sessions: their own databases are not reached
+  std::vector<std::string> stations;  ///< stations that recorded the sessions; their databases are untouched
 };
 
-/// The result of a withdrawal, and the work left to the experimenter.
+/// The result of a withdrawal, with the files that the experimenter must handle.
 struct Withdrawal {
-  Stock deleted;   ///< from the database
-  CleanUp beside;  ///< backups, personal data and exports
+  Stock deleted;   ///< data deleted from the database
+  CleanUp beside;  ///< clean-up of backups, personal data and exports
 };
 
-/// Kind of the event of a session whose participant asked at its end to delete all data. The withdrawal
-/// deletes the event too: if it exists, the withdrawal is still to be done. A Store does it when it is
-/// opened.
+/// Kind of the event for a participant who asked at the end of a session to delete all data. The withdrawal
+/// deletes the event, so an existing event means that the withdrawal is still to be done. Store's constructor
+/// does the withdrawal.
 inline constexpr const char* withdrawal_request = "withdrawal wished";
 
-/// Participants with an event withdrawal_request. base::Error as read_tasks().
+/// Codes of the participants with an event withdrawal_request. base::Error as read_tasks().
 std::vector<std::string> requested_withdrawals(const StudyFile& study);
 std::vector<std::string> requested_withdrawals(sqlite::Connection& database);
 
-/// Deletes all rows of a participant but a tombstone from `database`, its log, its backups, the personal file
-/// beside it and every registered export, and overwrites their bytes; their slot in the assignment is free
-/// again. If a kill interrupts it, repeat it or open the database for writing. May be repeated to finish the
-/// rest. base::Error: no such participant, or the database is in use.
+/// Deletes a participant's data from `database`, its log, its backups, the personal file and every registered
+/// export, and overwrites the bytes. Only a tombstone stays: a row that says who withdrew. The participant's
+/// slot in the assignment is free again. If a kill interrupts the withdrawal, repeat it or open the database
+/// for writing. Repeating also retries clean-ups that failed. base::Error if the participant is unknown or
+/// the database is in use.
 Withdrawal withdraw(const std::filesystem::path& database, const std::string& participant);
-/// The same for a database that is open for writing under its WriterLock.
+/// withdraw() for a database that is already open for writing under its WriterLock.
 Withdrawal withdraw(sqlite::Connection& database, const std::string& participant);
 
 Stock take_stock(sqlite::Connection& database, const std::string& person);

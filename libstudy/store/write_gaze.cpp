@@ -1,5 +1,5 @@
-/// Store: writes permissions of participants, gaze if it is allowed, and the facts and recordings of a
-/// headset.
+/// Functions of Store that write participants' permissions, gaze if it is allowed, and the facts and
+/// recordings of a headset.
 #include <array>
 #include <tuple>
 
@@ -14,7 +14,7 @@ using sqlite::Transaction;
 
 bool Store::allows_gaze(std::int64_t session) { return is_gaze_allowed(*database_, session); }
 
-/// The session of a running presentation.
+/// Returns the session id of a presentation.
 std::int64_t Store::session_of(std::int64_t presentation) {
   Statement row(*database_,
                 "SELECT session_id FROM presentation JOIN trial USING (trial_id) WHERE presentation_id = ?");
@@ -23,8 +23,8 @@ std::int64_t Store::session_of(std::int64_t presentation) {
 
 void Store::require_gaze_allowed(std::int64_t session) {
   if (allows_gaze(session)) return;
-  throw base::Error(path_.string(), "takes no gaze of a participant who has not allowed it",
-                    "ask gaze_kept on a page of kind consent");
+  throw base::Error(path_.string(), "stores no gaze of a participant who has not allowed it",
+                    "ask the question gaze_kept in a block of kind consent of the protocol");
 }
 
 void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,
@@ -54,8 +54,8 @@ void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigi
   commit(transaction);
 }
 
-/// A consent answer given after the experimenter changed a permission overrides that change. A refusal
-/// deletes earlier recordings.
+/// Applies a consent answer about gaze or sharing. If the experimenter changed this permission before, the
+/// answer overrides the change. If gaze is now refused, deletes gaze recorded earlier.
 void Store::answer_over_change(std::int64_t session, const std::string& question, const std::string& now) {
   if (question != gaze_question && question != sharing_question) return;
   const std::string what = question == gaze_question ? "gaze" : "sharing";
@@ -85,7 +85,7 @@ void insert_head(Statement& insert, std::int64_t presentation, std::int64_t slot
 
 }  // namespace
 
-/// Inserts a row unless the session's last row is equal.
+/// The comparison with the last row omits measured values, which vary slightly between equal headsets.
 void Store::add_headset(std::int64_t session, const HeadsetFacts& headset) {
   const auto& [left, right] = headset.eyes;
   Transaction transaction(*database_);

@@ -1,4 +1,5 @@
-/// Store: writes a run (protocol, sessions, units and trials) before the first trial is shown.
+/// Functions of Store that write a run (protocol, sessions, units and trials) before the first trial is
+/// shown.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -30,7 +31,7 @@ std::string folded(const std::string& code) {
   return letters;
 }
 
-/// The text with leading zeros removed from each number in it.
+/// The code without the leading zeros of each number in it.
 std::string without_zeros(const std::string& code) {
   std::string out;
   for (std::size_t i = 0; i < code.size(); ++i) {
@@ -42,8 +43,8 @@ std::string without_zeros(const std::string& code) {
   return out;
 }
 
-/// True if R, pandas, spreadsheets or BIDS read a code as "no value": NA, n-a, NaN, null, none, nil, missing,
-/// undefined, in upper or lower case.
+/// True if R, pandas, spreadsheets or BIDS would read the code as a missing value: NA, n-a, NaN, null, none,
+/// nil, missing or undefined, in upper or lower case.
 bool reads_as_missing(const std::string& code) {
   constexpr std::array words{"na", "nan", "null", "none", "nil", "missing", "undefined"};
   return std::find(words.begin(), words.end(), folded(code)) != words.end();
@@ -54,8 +55,8 @@ bool are_alike(const std::string& one, const std::string& other) {
   return folded(one) == folded(other) || folded(without_zeros(one)) == folded(without_zeros(other));
 }
 
-/// base::Error, with a remedy, unless a code is in the database or may be added: it must not read as a
-/// missing value or be alike to a code in the database or of a withdrawn person.
+/// base::Error if a new code reads as a missing value, or is alike (are_alike()) to another code in the
+/// database, also to that of a withdrawn person. A code that is in the database already is accepted.
 void check_new_code(sqlite::Connection& database, const std::string& code) {
   sqlite::Statement known(database, "SELECT 1 FROM session WHERE participant = ?");
   if (known.bind_all(code).step()) return;
@@ -91,7 +92,7 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   Statement insert(database,
                    "INSERT INTO question (protocol_id, code, wording, language, kind, scale_min, scale_max, "
                    "anchors, personal) VALUES (?,?,?,?,?,?,?,?,?)");
-  std::set<std::string> written;  // a questionnaire asked twice is one set of questions
+  std::set<std::string> written;  // ids of written questions: blocks that ask the same ones share them
   for (const auto& [block, question] : all_questions(protocol)) {
     if (!written.insert(question->id).second) continue;
     insert
@@ -102,7 +103,7 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   }
 }
 
-/// Ids of the questions that a block asks: in the steps of its trials, or on its page.
+/// Ids of the questions that a block asks, in the steps of its trials or on its page.
 std::vector<std::string> asked_by(const Block& block) {
   std::vector<std::string> ids;
   for (const TrialStep& step : block.steps) ids.insert(ids.end(), step.asks.begin(), step.asks.end());
@@ -148,7 +149,7 @@ void add_cells(sqlite::Connection& database, std::int64_t protocol_id, const Pro
   }
 }
 
-/// Inserts the trials; returns their row numbers by position.
+/// Inserts the trials of a plan; returns their row numbers in the order of the trials' positions.
 std::vector<std::int64_t> add_trials(sqlite::Connection& database, std::int64_t session, const Plan& plan) {
   Statement insert(database,
                    "INSERT INTO trial (session_id, position, group_index, first_cell, second_cell, "
@@ -182,8 +183,8 @@ std::string listed(const std::vector<int>& cells) {
   return out;
 }
 
-/// Inserts a framing unless the last row of its cells is equal. Its cells are framed alike, so the first cell
-/// identifies that row.
+/// Inserts each framing unless the session's last row for its cells is equal. All cells of a framing share a
+/// row, so the last row with the first cell is the row to compare.
 void insert_framing(sqlite::Connection& database, std::int64_t session,
                     const std::vector<SceneFraming>& framing) {
   Statement insert(

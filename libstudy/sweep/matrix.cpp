@@ -12,12 +12,12 @@ namespace {
 
 sim::SolverSetting start_of(const SweepPlan& plan, sim::MethodKind method) {
   auto out = sim::usual_setting(plan.scene, method, plan.n_star);
-  // At tau = -6 frames/s, as in Table 2.
+  // The threshold beta is fixed at its value for tau = -6 frames/s, as in the paper's Table 2.
   if (sim::traits_of(method).temporal) out[sim::SolverKnob::Beta] = stats::activation_floor({}, -6);
   return out;
 }
 
-/// A knob's value in a setting.
+/// Converts one of SolverKnobTraits::others to the knob's value: for Size it is a multiple of n_*.
 double value_of(const sim::SolverKnobTraits& traits, double value, const SweepPlan& plan) {
   return traits.knob == sim::SolverKnob::Size ? std::round(value * static_cast<double>(plan.n_star)) : value;
 }

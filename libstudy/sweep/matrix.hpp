@@ -1,5 +1,5 @@
 #pragma once
-/// The cells of a sweep.
+/// Lists the cells of a sweep. A cell is one run: a solver setting from one start.
 
 #include <string>
 #include <vector>
@@ -10,38 +10,44 @@ namespace study {
 
 struct SweepCell {
   sim::SolverSetting setting;
-  int seed = 1;           ///< 1 = the settled state itself; others perturb it by an ulp
-  double seconds = 2;     ///< of content, from the opening of the gate
-  std::string size = {};  ///< size of the timed pictures, which the method sees; empty = none
-  std::string kept = {};  ///< size of the pictures for comparison, not timed; empty = none
+  /// Start of the run. 1: the settled state. 2, 3, ...: the settled state, perturbed by one unit in the last
+  /// place.
+  int seed = 1;
+  double seconds = 2;  ///< simulated time from the opening of the gate
+  /// Size of the pictures whose drawing is timed; a method that depends on the picture receives them. Empty:
+  /// none.
+  std::string size = {};
+  /// Size of the pictures that are stored for comparison, outside the timing. Empty: none.
+  std::string kept = {};
   bool operator==(const SweepCell&) const = default;
 };
 
-/// All that determines a run, except scene file, program and machine.
+/// The cell as text. With scene file, program and machine it determines the run.
 std::string to_text(const SweepCell& cell);
-/// 16 hexadecimal digits that identify the cell of this program and scene file, on any machine.
+/// 16 hexadecimal digits: a hash of cell, scene file and program. It does not depend on the machine.
 std::string key_of(const SweepCell& cell, const std::string& scene_sha256, const std::string& program);
 
-/// The request for a sweep.
+/// The user's request for a sweep.
 struct SweepPlan {
   std::string scene = "SingleDam";
   std::int64_t n_star = 4096;
   double seconds = 2;
   int seeds = 2;
-  std::string size = {};  ///< size of the timed pictures; empty = none
-  std::string kept = {};  ///< size of the pictures stored for comparison; empty = none
-  bool quick = false;     ///< few cells
+  std::string size = {};  ///< SweepCell::size of all cells
+  std::string kept = {};  ///< SweepCell::kept of all cells
+  bool quick = false;     ///< true: only a few cells
 };
 
-/// HiRes with 32 projections and four substeps: the reference of all comparisons.
+/// The setting with which all others are compared: HiRes with 32 projections and four substeps.
 sim::SolverSetting reference_setting(const std::string& scene, std::int64_t n_star);
-/// The reference with twice the projections, substeps or particles.
+/// Three settings: the reference with twice the projections, with twice the substeps, and with twice the
+/// particles.
 std::vector<sim::SolverSetting> finer_references(const sim::SolverSetting& reference);
 
-/// References first, with two seeds of the first; then each method at each size; then each knob alone around
-/// HiRes and Ours; then a quarter of the factorial of size, projections, substeps and levels under Ours,
-/// which has each combination of the first three once and each number of levels equally often. No cell occurs
-/// twice.
+/// The cells in this order. First the reference with two seeds and the finer references. Then each method at
+/// each size. Then HiRes and Ours with one knob changed. Last a quarter of the factorial of size,
+/// projections, substeps and levels under Ours: each combination of size, projections and substeps once, each
+/// number of levels equally often. No cell occurs twice.
 std::vector<SweepCell> cells_of(const SweepPlan& plan);
 
 }  // namespace study

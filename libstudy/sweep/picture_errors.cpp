@@ -22,8 +22,9 @@ constexpr std::size_t fewest_mask_pixels = 100;
 constexpr double parting_share = 1.0 / 3;
 
 [[noreturn]] void refuse_pictures() {
-  throw base::Error("the sweep", "has pictures that were taken at other instants or sizes, or are damaged",
-                    "run its cells anew");
+  throw base::Error("the sweep",
+                    "has pictures that are damaged, or that differ from the reference's in time or size",
+                    "run the sweep again into a new file");
 }
 
 using Mask = std::vector<std::uint8_t>;
@@ -32,14 +33,15 @@ sim::Picture decoded(const KeptPicture& kept) {
   return sim::without_alpha(sim::png_of(kept.png, "a picture of the sweep"));
 }
 
-/// Pictures come in pairs 1/30 s apart: the first is compared alone, both by their change.
+/// True for the first picture of a pair (1/30 s apart). Errors of single pictures use the first picture. The
+/// error of the change within 1/30 s uses both pictures of the pair.
 bool first_of_pair(std::size_t i) { return i % 2 == 0; }
 
-/// The reference run, decoded.
+/// The reference run with decoded pictures and masks.
 struct Reference {
   std::vector<double> times_s = {};
   std::vector<sim::Picture> pictures = {};
-  std::vector<Mask> fovea = {}, salient = {};  ///< empty if there is no mask that is large enough
+  std::vector<Mask> fovea = {}, salient = {};  ///< for each picture; empty without a mask of enough pixels
   double pixels_per_degree = 0;
 };
 
@@ -76,7 +78,7 @@ class Mean {
 
 double rms_pct(const Mean& squares) { return 100 * std::sqrt(squares.value()) / 255; }
 
-/// Differences of one run from the reference per instant; NaN if there is nothing to compare.
+/// Differences of one run from the reference for each stored picture; NaN where a difference is not defined.
 struct Trace {
   std::vector<double> square = {}, fovea = {}, salient = {}, structure = {}, change = {};
 };
@@ -108,7 +110,8 @@ Trace trace_of(const CellRun& run, const Reference& reference) {
   return out;
 }
 
-/// Runs `job(i)` for each i on all cores, and rethrows the first error.
+/// Calls `job(i)` for each i below `count` on all cores. Rethrows the first exception when all calls are
+/// done.
 template <class Job>
 void for_all(std::size_t count, const Job& job) {
   std::exception_ptr problem;

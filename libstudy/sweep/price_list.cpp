@@ -15,7 +15,7 @@ namespace study {
 
 namespace {
 
-using Group = std::vector<const StoredCell*>;  // the seeds of one setting
+using Group = std::vector<const StoredCell*>;  // cells of one setting with different seeds
 
 double centre_distance(const WaterSample& a, const WaterSample& b) {
   return std::hypot(a.centre_m[0] - b.centre_m[0], a.centre_m[1] - b.centre_m[1],
@@ -53,7 +53,8 @@ double tau_of(const Group& group) {
                              : stats::ptpe_tolerance({}, stats::fps_moments(intervals_s));
 }
 
-/// For each frame of `from`, the difference to the frame of `to` at the same fraction of the content.
+/// Time of a frame of `to` minus time of the frame of `from` at the same fraction of the run, in ms, for each
+/// frame of `from`.
 std::vector<double> paired_differences(const Group& from, const Group& to) {
   std::vector<double> out;
   for (std::size_t seed = 0; seed < std::min(from.size(), to.size()); ++seed) {
@@ -84,7 +85,8 @@ struct Sweep {
   }
 };
 
-/// How other cells of this scene were run: ", of MACHINE, program P, ...; it holds 24 cells of ...".
+/// A text on cells of the scene that were run on another machine, program or plan: " of MACHINE, program P,
+/// ...; it holds 24 cells of ...". Empty if there are none.
 std::string others_in_words(const std::vector<StoredCell>& cells, const SweepPlan& plan,
                             const SweepOrigin& origin) {
   const auto named = [](const SweepOrigin& from, double seconds, const std::string& size,
@@ -104,7 +106,8 @@ std::string others_in_words(const std::vector<StoredCell>& cells, const SweepPla
   return out.empty() ? out : " of " + own + out;
 }
 
-/// Computes the errors of all runs, each once.
+/// Computes the errors of all runs and stores them in errors_of. `twin`: the reference from a perturbed
+/// start.
 void measure(Sweep& sweep, const CellRun& twin) {
   std::vector<const CellRun*> runs;
   for (const auto& group : sweep.groups)
@@ -137,7 +140,7 @@ Sweep sweep_of(const std::vector<StoredCell>& cells, const SweepPlan& plan, cons
   if (!reference || reference->size() < 2 || reference->front()->cell.seed != 1) {
     throw base::Error("the sweep of " + plan.scene,
                       "has no finished reference with two seeds yet" + others_in_words(cells, plan, origin),
-                      "let its first two cells run, or give the plan that it was run with");
+                      "run its first two cells, or give the options with which the sweep was run");
   }
   out.reference = &reference->front()->run;
   measure(out, (*reference)[1]->run);
@@ -173,7 +176,7 @@ SettingResult result_of(const Sweep& sweep, const Group& group) {
   return out;
 }
 
-/// The one knob in which two settings differ; none if none or several differ.
+/// The knob in which two settings of one method differ; empty unless they differ in exactly one knob.
 std::optional<sim::SolverKnob> turned(const sim::SolverSetting& a, const sim::SolverSetting& b) {
   std::optional<sim::SolverKnob> out;
   if (a.method != b.method) return {};
@@ -209,7 +212,8 @@ double most_kinetic(const CellRun& run) {
   return out;
 }
 
-/// For runs that get finer; steps are relative to the first one.
+/// Order of convergence of `runs`, which are sorted from coarse to fine. `steps`: step of each run over that
+/// of the first.
 ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>& runs,
                        const std::vector<double>& steps, double tank_length_m) {
   ObservedOrder out{of, steps, {}};
@@ -218,7 +222,8 @@ ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>&
     for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
       const double log_step = std::log(steps[i]);
       double distance = water_errors(*runs[i], *runs[i + 1], tank_length_m)[e];
-      // The error in energy is relative to the finer run's maximum, which differs between runs.
+      // The kinetic error is a share of the finer run's maximum, which differs between runs. The product is
+      // an absolute error.
       if (e == static_cast<std::size_t>(SweepError::Kinetic)) distance *= most_kinetic(*runs[i + 1]);
       const double log_distance = std::log(distance);
       count += 1;
@@ -233,7 +238,8 @@ ObservedOrder order_of(const std::string& of, const std::vector<const CellRun*>&
   return out;
 }
 
-/// The first seeds of HiRes' default setting with these values of a knob; empty if one was not run.
+/// Runs with seed 1 of HiRes' usual setting, with the knob at each of these values. Empty if one of them was
+/// not run.
 std::vector<const CellRun*> refined(const Sweep& sweep, const SweepPlan& plan, sim::SolverKnob knob,
                                     const std::vector<double>& values) {
   std::vector<const CellRun*> out;
@@ -266,12 +272,13 @@ std::vector<ObservedOrder> observed_orders(const Sweep& sweep, const SweepPlan& 
 WaterErrors water_errors(const CellRun& run, const CellRun& reference, double tank_length_m) {
   const auto &a = run.samples, &b = reference.samples;
   if (a.size() != b.size() || a.empty())
-    throw base::Error("the sweep", "has cells of different length",
-                      "give --seconds as the cells ran with it");
+    throw base::Error("the sweep", "has cells of different duration",
+                      "give the --seconds with which the cells were run");
   double front = 0, centre = 0, kinetic = 0, density = 0, most_kinetic = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (std::abs(a[i].time_s - b[i].time_s) > 1e-9)
-      throw base::Error("the sweep", "has cells that were sampled at other instants", "run them anew");
+      throw base::Error("the sweep", "has cells that were sampled at different times",
+                        "run the sweep again into a new file");
     front += std::pow(a[i].front_m - b[i].front_m, 2);
     centre += std::pow(centre_distance(a[i], b[i]), 2);
     kinetic += std::pow(a[i].kinetic_j_kg - b[i].kinetic_j_kg, 2);

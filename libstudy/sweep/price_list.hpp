@@ -1,5 +1,5 @@
 #pragma once
-/// Evaluates the cells of a sweep: error and milliseconds of each setting, and the effect of turning each
+/// Evaluates the cells of a sweep: errors and time per frame of each setting, and the effect of changing each
 /// knob.
 
 #include <array>
@@ -15,12 +15,11 @@ namespace study {
 
 /// Errors that a sweep reports, each in per cent; smaller is better.
 enum class SweepError {
-  Front,    ///< E1: root mean square over the instants of the front's distance from the reference's, over the
-            ///< tank's length
-  Centre,   ///< E3: the same for the centre of mass
-  Kinetic,  ///< E4: the same for the kinetic energy, over the reference's maximum
+  Front,    ///< E1: root mean square distance between the water's fronts, over the tank's length
+  Centre,   ///< E3: root mean square distance between the centres of mass, over the tank's length
+  Kinetic,  ///< E4: root mean square difference in kinetic energy, over the reference's maximum
   Density,  ///< E2: mean over the instants of max(rho / rho_0 - 1, 0); needs no reference
-  Picture,  ///< this and all below: see PictureError; NaN if the sweep stored no pictures
+  Picture,  ///< this error and those below: see PictureError
   Fovea,
   Salient,
   Ssim,
@@ -28,7 +27,7 @@ enum class SweepError {
   Film,
   Flicker
 };
-/// The errors of the water come first.
+/// Number of errors of the water, which are the first enumerators of SweepError.
 inline constexpr std::size_t water_error_count = 4;
 inline constexpr std::size_t sweep_error_count = water_error_count + picture_error_count;
 inline constexpr std::array<const char*, sweep_error_count> sweep_error_columns{
@@ -49,99 +48,105 @@ static_assert(static_cast<std::size_t>(SweepError::Flicker) + 1 == sweep_error_c
 using SweepErrors = std::array<double, sweep_error_count>;
 using WaterErrors = std::array<double, water_error_count>;
 
-/// base::Error unless both were sampled at the same instants.
+/// Errors E1 to E4 of one run. base::Error unless both runs were sampled at the same instants.
 WaterErrors water_errors(const CellRun& run, const CellRun& reference, double tank_length_m);
 
-/// Mean, smallest and largest over the seeds.
+/// Mean, smallest and largest value over the seeds of a setting.
 struct Spread {
   double mean = 0, low = 0, high = 0;
 };
 
-/// "1.2 [1.1, 1.3]": mean, smallest and largest.
+/// The spread in words, "1.2 [1.1, 1.3]": mean, smallest and largest.
 std::string in_words(const Spread& spread);
 
-/// A setting over all its seeds.
+/// Time and errors of one setting over all its seeds.
 struct SettingResult {
   sim::SolverSetting setting;
   int seeds = 0;
   double particles = 0, substeps = 0;
-  double ms_mean = 0, ms_low_quartile = 0, ms_median = 0, ms_high_quartile = 0, ms_p95 = 0;  ///< whole frames
-  double draw_ms_mean = 0;  ///< part of ms_mean; NaN without pictures
-  /// E8: Eq. 11 with the paper's a and b, for the frames as a display at the setting's rate shows them: no
-  /// interval is shorter than its period. Frames/s.
+  /// Time of a frame in ms, over the frames of all seeds.
+  double ms_mean = 0, ms_low_quartile = 0, ms_median = 0, ms_high_quartile = 0, ms_p95 = 0;
+  double draw_ms_mean = 0;  ///< mean time of drawing, contained in ms_mean; NaN without pictures
+  /// E8: tau of Eq. 11 in frames/s, with the paper's a and b. Its frame intervals are the times of the
+  /// frames, but no shorter than the period of a display at the setting's frame rate.
   double tau = 0;
   std::array<Spread, sweep_error_count> errors = {};
 };
 
-/// The effect of turning one knob away from the usual setting.
+/// The effect of changing one knob of a method's usual setting.
 struct Price {
   sim::MethodKind method{};
   sim::SolverKnob knob{};
   double from = 0, to = 0;
-  double ms = 0;                                      ///< change of the mean frame
-  double ms_low_quartile = 0, ms_high_quartile = 0;   ///< over the changes of frames at the same instants
-  std::array<Spread, sweep_error_count> errors = {};  ///< change; low and high over all pairs of seeds
-  /// True if zero lies between the quartiles: the change is within the variation of the frames.
+  double ms = 0;  ///< change of the mean time of a frame
+  /// Quartiles of the change in time between frames at the same instant, in ms.
+  double ms_low_quartile = 0, ms_high_quartile = 0;
+  /// Change of each error, over all pairs of a seed before and a seed after.
+  std::array<Spread, sweep_error_count> errors = {};
+  /// True if 0 lies between the two quartiles: the change of time is within the variation between frames.
   bool free() const { return ms_low_quartile <= 0 && ms_high_quartile >= 0; }
 };
 
-/// How fast HiRes converges under refinement: slope of log(distance of each run from the next finer one) over
+/// Observed order of convergence of HiRes: slope of log(difference between a run and the next finer one) over
 /// log(step), by least squares.
 struct ObservedOrder {
   std::string of;                    ///< "particle spacing" or "time step"
-  std::vector<double> steps;         ///< relative to the first one
-  std::array<double, 3> order = {};  ///< of Front, Centre and Kinetic; NaN if two runs are equal
+  std::vector<double> steps;         ///< step of each run over the first run's
+  std::array<double, 3> order = {};  ///< for Front, Centre and Kinetic; NaN if two runs are equal
 };
 
 struct PriceList {
   SweepOrigin origin;
   std::string scene;
-  SweepErrors floor{};  ///< errors of a reference perturbed by an ulp: smaller errors are meaningless
-  /// The reference with twice the projections, substeps and particles; empty if not run.
+  SweepErrors floor{};  ///< errors of the reference from a start perturbed by one unit in the last place (0
+                        ///< for Density): smaller errors are meaningless
+  /// Results of those of finer_references() that were run.
   std::vector<SettingResult> finer = {};
   std::vector<SettingResult> settings = {};
   std::vector<Price> prices = {};
-  /// True for each error if all three finer references differ from the reference by less than a third of the
-  /// smallest listed error above the floor.
+  /// For each error, true if the reference counts as converged: all three finer references were run and
+  /// differ from it by less than a third of the smallest error above the floor in `settings`.
   std::array<bool, sweep_error_count> converged{};
-  std::vector<ObservedOrder> orders = {};  ///< of the refinements that were run
-  double parting_s = 0;                    ///< as PictureScores::parting_s
+  std::vector<ObservedOrder> orders = {};  ///< for particle spacing and time step, as far as the runs exist
+  double parting_s = 0;                    ///< see PictureScores::parting_s
   bool pictures() const { return !std::isnan(parting_s); }
 };
 
-/// Evaluates the cells of one machine, program and scene against this plan's reference. base::Error without
-/// the reference and its second seed.
+/// Evaluates those of `cells` that were run by `plan` on the machine, program and scene file of `origin`.
+/// base::Error if the plan's reference is missing or has fewer than two seeds.
 PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan, const SweepOrigin& origin,
                      double tank_length_m);
 
-/// Indices in `settings` of those that no other one beats in both mean milliseconds and this error, the
-/// fastest first.
+/// The Pareto front: indices of the settings for which no other setting has both a smaller mean time and a
+/// smaller error. Fastest first.
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
 
-/// Cells with seeds 1 to `seeds` of each setting on the front of any error, in the sweep's order.
+/// Cells with seeds 1 to `seeds` of each setting that is on the Pareto front of some error, in the order of
+/// the sweep.
 std::vector<SweepCell> more_seeds_of_fronts(const PriceList& list, const SweepPlan& plan, int seeds);
 
-/// The values in which a setting differs from its method's default, and n_*: "n_* 512, projections 8".
+/// A setting in words: n_* and each knob that differs from its usual value: "n_* 512, projections 8".
 std::string in_words(const sim::SolverSetting& setting);
-/// "counts as converged" and the like, for the reference of an error.
+/// Words on the reference for this error, such as "counts as converged".
 std::string convergence(const PriceList& list, SweepError error);
 
-/// "HiRes' order in the time step (1.00, 0.50, 0.25): front 1.02, ...".
+/// The order in words: "HiRes' order in the time step (1.00, 0.50, 0.25): front 1.02, ...".
 std::string in_words(const ObservedOrder& order);
-/// A sentence on when the pictures of the reference and of its second seed part; needs list.pictures().
+/// A sentence on parting_s: the time at which the pictures of the reference and of its second seed diverge.
+/// Requires list.pictures().
 std::string parting_in_words(const PriceList& list);
 
-/// Why an error of pictures is NaN in all rows.
+/// The reason why an error of pictures is NaN for all settings.
 std::string why_no_price(const PriceList& list);
 
-/// Tables for programs.
+/// Complete tables for other programs, with machine-readable column names.
 figures::TextTable setting_table(const PriceList& list);
 figures::TextTable price_table(const PriceList& list);
-/// Tables for readers: errors of the water or of the pictures.
+/// Choice of the errors in a table for people: of the water, or of the pictures.
 enum class ErrorPart { Water, Pictures };
 figures::TextTable settings_to_read(const PriceList& list, ErrorPart part);
 figures::TextTable prices_to_read(const PriceList& list, ErrorPart part);
-/// The tables for readers, with the errors' floors and the references' convergence.
+/// The tables for people as Markdown, with each error's floor and the convergence of the reference.
 std::string to_markdown(const PriceList& list);
 
 }  // namespace study

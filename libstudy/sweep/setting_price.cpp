@@ -13,8 +13,8 @@ namespace study {
 
 namespace {
 
-/// Properties that the cells of a table share: machine, program, hash of the scene file, scene, seconds,
-/// timed picture, stored pictures.
+/// Properties that are equal for all cells of a table: machine, program, SHA-256 of the scene file, scene,
+/// seconds, size of timed pictures, size of stored pictures.
 using Kind = std::tuple<std::string, std::string, std::string, std::string, double, std::string, std::string>;
 
 Kind kind_of(const StoredCell& cell) {
@@ -23,7 +23,7 @@ Kind kind_of(const StoredCell& cell) {
           cell.cell.seconds, cell.cell.size, cell.cell.kept};
 }
 
-/// n_* of each reference that was run from two starts.
+/// n_* of each reference that was run from at least two starts.
 std::vector<std::int64_t> references_in(const std::vector<const StoredCell*>& cells) {
   std::map<std::int64_t, int> starts;
   for (const auto* cell : cells) {
@@ -37,11 +37,11 @@ std::vector<std::int64_t> references_in(const std::vector<const StoredCell*>& ce
   return out;
 }
 
-/// Tank length in the current scene file. base::Error if the sweep used another file.
+/// Length of the tank in the current scene file. base::Error if the sweep ran another version of the file.
 double tank_length_m(const std::string& scene, const std::string& sha256) {
   const sim::Scene file = sim::scenes_of(scene).front().scene;
   if (file.sha256 != sha256)
-    throw base::Error("scene " + scene, "has another file than when the sweep ran", "sweep it anew");
+    throw base::Error("scene " + scene, "has changed since the sweep was run", "run the sweep again");
   return file.tank_size_m[0];
 }
 
@@ -64,7 +64,8 @@ std::string value_or_rate(sim::SolverKnob knob, double value) {
   return std::isnan(value) ? "following the frame rate" : sim::value_words(knob, value);
 }
 
-/// Says in which knobs the nearest row of the method differs.
+/// A text that names the knobs in which the most similar row of the setting's method differs from the
+/// setting.
 std::string why_no_row(const std::vector<const SweepTable*>& tables, const sim::SolverSetting& setting) {
   const SettingResult* nearest = nullptr;
   std::vector<sim::SolverKnob> least;

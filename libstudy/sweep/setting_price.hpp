@@ -1,5 +1,5 @@
 #pragma once
-/// Looks up one setting in a sweep file: for programs that run it, and for pages that report on it.
+/// Looks up the time and errors of one setting in a sweep file.
 
 #include <filesystem>
 #include <string>
@@ -9,44 +9,44 @@
 
 namespace study {
 
-/// Cells of one machine, program and scene file, with one length and picture size, compared with one
+/// The evaluation of cells with equal machine, program, scene file, run length and picture sizes against one
 /// reference.
 struct SweepTable {
   SweepPlan plan;
   PriceList list;
 };
 
-/// All tables of a sweep file; cells that are not comparable are in different tables.
+/// All tables of a sweep file. Cells that are not comparable are in different tables.
 struct SweepTables {
   std::vector<SweepTable> tables;
-  /// Why cells are in no table, a sentence each: no finished reference, a scene file that changed.
+  /// Sentences that say why cells are in no table: the reference is missing, or the scene file has changed.
   std::vector<std::string> left_out;
 };
 SweepTables sweep_tables(const std::vector<StoredCell>& cells);
-/// base::Error: see SweepFile.
+/// Evaluates all cells of the sweep file. base::Error if SweepFile cannot open the file.
 SweepTables read_sweep_tables(const std::filesystem::path& path);
 
-/// A setting's row in one of the tables, which must outlive it.
+/// A setting's row in one of the tables. The tables must outlive this object.
 struct SettingPrice {
   const SweepTable* sweep = nullptr;
   const SettingResult* row = nullptr;
-  const SettingResult* hires = nullptr;  ///< default HiRes at the same n_*; null: not in the table
+  const SettingResult* hires = nullptr;  ///< usual setting of HiRes at the same n_*; null: not in the table
 };
 
 struct SettingPrices {
-  std::vector<SettingPrice> found;  ///< one per table that holds the setting
-  std::string why_none;             ///< empty if there are some
+  std::vector<SettingPrice> found;  ///< one entry for each table that has a row of the setting
+  std::string why_none;             ///< the reason if `found` is empty
 };
-/// Finds exactly this setting for this scene file; the setting's `scene` is ignored. A knob of the setting
-/// that is NaN is chosen anew for each frame from the frame rate, so that no row matches.
+/// Finds the rows of exactly this setting in the tables of this scene file; the setting's `scene` is ignored.
+/// A knob that is NaN follows the frame rate from frame to frame. No row has such a knob.
 SettingPrices prices_of(const SweepTables& tables, sim::SolverSetting setting,
                         const std::string& scene_sha256);
 
-/// "centre_pct 0.25 [0.2, 0.3], ..."; omits errors that were not measured.
+/// The errors in words, "centre_pct 0.25 [0.2, 0.3], ...", without those that were not measured.
 std::string errors_in_words(const std::array<Spread, sweep_error_count>& errors);
-/// Lines with time and errors, and both compared with HiRes if it was measured.
+/// Lines of text: time and errors of the row, a comparison of both with HiRes, and machine and reference.
 std::vector<std::string> in_words(const SettingPrice& price);
-/// The same for all rows found, or why there are none.
+/// Lines of text on all rows found, or the reason why none was found.
 std::vector<std::string> in_words(const SettingPrices& prices);
 
 }  // namespace study

@@ -28,7 +28,7 @@ std::string knob_columns(const char* after) {
   return out;
 }
 
-/// Columns of a cell without its id, in the order in which they are bound and read.
+/// Columns of the table `cell` except its id, in the order in which they are bound and read.
 std::string cell_columns() {
   return "key, machine, program, scene_sha256, scene, method, " + knob_columns("") +
          "seed, seconds, picture, kept, particles_mean, substeps_mean, braked, pixels_per_degree";
@@ -59,8 +59,8 @@ std::string schema() {
                     "name the file that it wrote, or a new one");
 }
 
-/// Checks the file's header (sqlite.org/fileformat.html, section 1.3), before SQLite touches another
-/// program's file.
+/// Checks in the file's header (sqlite.org/fileformat.html, section 1.3) that it is a sweep file of this
+/// version. This precedes any work of SQLite, so that another program's file is not changed.
 void recognise(Connection& database, Open how) {
   constexpr std::size_t header_bytes = 100, version_at = 60, application_at = 68;
   const std::string head = database.header();
@@ -75,7 +75,7 @@ void recognise(Connection& database, Open how) {
                                   version, schema_version),
                       "use the newer vip-bench; the file was left as it is");
   }
-  // Cells of different programs are never compared, so an older file has nothing to convert.
+  // An older file is not converted, since cells of different programs are never compared.
   if (version > 0 && version < schema_version) {
     throw base::Error(database.path().string(),
                       fmt::format("was written by an older program (schema {}, this program writes {})",
@@ -84,7 +84,7 @@ void recognise(Connection& database, Open how) {
   }
 }
 
-/// Salvage is not offered, because a sweep can be computed again.
+/// The text does not offer to salvage the file, since a sweep can be computed again.
 [[noreturn]] void refuse_damaged(const std::filesystem::path& path) {
   throw base::Error(path.string(), "is damaged or cut short", "name another file; its cells can be run anew");
 }
@@ -132,7 +132,8 @@ void read_run(Connection& database, std::int64_t id, CellRun& run) {
     run.pictures.push_back({pictures.real(0), pictures.blob(1), pictures.blob(2), pictures.blob(3)});
 }
 
-/// Call it within a transaction. Returns false if the machine has a row for this key.
+/// Inserts the cell; must be called within a transaction. Returns false, without an insertion, if the table
+/// has a row with this key and machine.
 bool insert(Connection& database, const StoredCell& stored) {
   Statement there(database, "SELECT 1 FROM cell WHERE key = ? AND machine = ?");
   there.bind_all(stored.key(), stored.origin.machine);
@@ -190,12 +191,13 @@ SweepFile::SweepFile(const std::filesystem::path& path, Open how) {
   try {
     database_->check_integrity();
   } catch (const sqlite::LockedOut&) {
-    throw;  // locked by another program, but intact
+    throw;  // the file is locked by another program, which is no damage
   } catch (const base::Error&) {
     refuse_damaged(path);
   }
   database_->execute("PRAGMA foreign_keys = ON");
-  // A kill may have left an unfinished first transaction, which SQLite has just rolled back.
+  // user_version is 0 if the program that created the file was killed in its first transaction, which SQLite
+  // has now rolled back.
   if (how == Open::Read && database_->integer("PRAGMA user_version") == 0) refuse(path);
   if (how == Open::Read) return;
   database_->execute("PRAGMA synchronous = FULL");

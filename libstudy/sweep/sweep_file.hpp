@@ -1,6 +1,6 @@
 #pragma once
-/// The SQLite file of an accuracy sweep: one row per cell with the state of its water and the times of its
-/// frames. Errors are not stored; they are computed from the rows when a table is made.
+/// The SQLite file of an accuracy sweep. It has a row for each cell, and stores the cell's states of the
+/// water, times of frames and pictures. Errors are not stored; they are computed when a table is made.
 
 #include <filesystem>
 #include <memory>
@@ -14,13 +14,14 @@
 
 namespace study {
 
-/// SQLite's application_id of these files: "ViPS".
+/// SQLite's application_id of sweep files: "ViPS" in ASCII.
 inline constexpr std::int64_t sweep_application_id = 0x56695053;
 
-/// The circumstances of a cell's run. Only cells with equal machine, program and scene file are compared.
+/// Machine, program and scene file with which a cell was run. Only cells in which all three are equal are
+/// compared.
 struct SweepOrigin {
   std::string machine;  ///< processor, cores, device and threads
-  std::string program;  ///< version and digest of the program's binary
+  std::string program;  ///< version of the program and digest of its binary
   std::string scene_sha256;
   auto operator<=>(const SweepOrigin&) const = default;
 };
@@ -34,17 +35,17 @@ struct StoredCell {
 
 class SweepFile {
  public:
-  /// Open::Create makes a missing or empty file. base::Error, without changing the file, if it belongs to
-  /// another program or to another version of this one, or is damaged.
+  /// Opens the file. Open::Create also creates a missing file or fills an empty one. base::Error, and the
+  /// file is not changed, if it is no sweep file, has another schema version or is damaged.
   SweepFile(const std::filesystem::path& path, sqlite::Open how);
 
-  /// Adds the cell in one transaction; does nothing if the machine has a row for this key.
+  /// Adds the cell in one transaction. Does nothing if the file has a row with its key and machine.
   void add(const StoredCell& cell);
-  /// Keys of the cells that this machine has run.
+  /// Keys of the cells that were run on this machine.
   std::set<std::string> keys(const std::string& machine);
-  /// Ordered by origin, scene, setting and seed, never by time of run.
+  /// All cells, ordered by origin, scene, setting and seed. The order does not depend on when they were run.
   std::vector<StoredCell> cells();
-  /// Adds the cells of another sweep file that are missing here, in one transaction; returns their number.
+  /// Adds the cells of the sweep file `shard` that this file lacks, in one transaction. Returns their number.
   std::int64_t merge(const std::filesystem::path& shard);
 
  private:

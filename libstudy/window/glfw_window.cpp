@@ -1,6 +1,6 @@
 #include "libstudy/window/glfw_window.hpp"
 
-// epoxy first: GLFW then does not include GL's headers.
+// epoxy must come before GLFW: GLFW then does not include OpenGL's headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -12,7 +12,7 @@
 
 #include "stats/base/error.hpp"
 
-// GLFW/glfw3native.h would also need the headers of Xrandr.
+// Declared here, because GLFW/glfw3native.h would also need the headers of Xrandr.
 extern "C" Display* glfwGetX11Display(void);
 
 namespace study {
@@ -25,7 +25,7 @@ std::int64_t steady_ns() {
       .count();
 }
 
-/// Set if the connection to the X server breaks.
+/// True once the connection to the X server broke.
 std::atomic<bool> display_lost = false;
 
 [[noreturn]] void fail(const std::string& problem, const std::string& mend) {
@@ -34,7 +34,8 @@ std::atomic<bool> display_lost = false;
   throw base::Error("window", problem + (told ? std::string(": ") + told : std::string()), mend);
 }
 
-/// Xlib ends the program when its connection breaks, unless both handlers return.
+/// Keeps the program running when the connection to the X server breaks. Xlib would end it, unless an error
+/// handler and an error exit handler are set and both return.
 void survive_a_lost_display() {
   display_lost = false;
   Display* display = glfwGetX11Display();
@@ -51,7 +52,8 @@ GLFWmonitor* find_monitor(int index, const std::string& mend) {
   int count = 0;
   GLFWmonitor** all = glfwGetMonitors(&count);
   if (index < 0 || index >= count) {
-    fail("monitor " + std::to_string(index) + " is not there; monitors found: " + std::to_string(count),
+    fail("there is no monitor " + std::to_string(index) +
+             "; monitors, counted from 0: " + std::to_string(count),
          mend);
   }
   return all[index];
@@ -125,7 +127,7 @@ void GlfwWindow::note_input() { last_input_ns_ = steady_ns(); }
 double GlfwWindow::idle_s() const { return 1e-9 * static_cast<double>(steady_ns() - last_input_ns_); }
 
 GlfwWindow::~GlfwWindow() {
-  if (display_lost) return;  // every call would go to a server that is gone
+  if (display_lost) return;  // no GLFW calls: the X server is gone
   glfwDestroyWindow(window_);
   glfwTerminate();
 }
@@ -171,7 +173,7 @@ Monitor GlfwWindow::monitor() const {
 bool GlfwWindow::display_is_gone() { return display_lost; }
 
 Compositor find_compositor() {
-  if (std::getenv("WAYLAND_DISPLAY")) return Compositor::Running;  // Wayland always composites
+  if (std::getenv("WAYLAND_DISPLAY")) return Compositor::Running;  // Wayland always has a compositor
   Display* display = glfwGetX11Display();
   if (!display || display_lost) return Compositor::Unknown;
   const std::string selection = "_NET_WM_CM_S" + std::to_string(DefaultScreen(display));

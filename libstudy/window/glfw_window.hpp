@@ -15,10 +15,10 @@ namespace study {
 
 struct WindowChoice {
   std::string title;
-  int width_px = 0, height_px = 0;  ///< 0: all of `monitor`
-  int monitor = 0;                  ///< 0: the primary one
-  std::string mend{};               ///< remedy for messages if there is no display
-  bool in_background = false;       ///< does not take the keyboard focus when it opens
+  int width_px = 0, height_px = 0;  ///< 0: the window fills `monitor`
+  int monitor = 0;                  ///< index; 0: the primary monitor
+  std::string mend{};               ///< remedy in the error text if no window can be opened
+  bool in_background = false;       ///< true: opens without taking the keyboard focus
 };
 
 /// A monitor as the system describes it.
@@ -31,7 +31,7 @@ struct Monitor {
 
 class GlfwWindow {
  public:
-  /// base::Error if there is no display, no such monitor, or no such context.
+  /// base::Error if there is no display, no such monitor, or no OpenGL 4.5.
   explicit GlfwWindow(const WindowChoice& choice);
   ~GlfwWindow();
   GlfwWindow(const GlfwWindow&) = delete;
@@ -48,19 +48,22 @@ class GlfwWindow {
   using Place = std::optional<std::pair<double, double>>;
   /// Position of the mouse; none outside the window.
   Place mouse_place() const;
-  /// Sets the function to call when the mouse moves, with its position, or none when it leaves the window.
+  /// Sets the function that is called when the mouse moves. Its argument is the position of the mouse, or
+  /// none when the mouse leaves the window.
   void on_mouse(std::function<void(const Place&)> moved) { mouse_moved_ = std::move(moved); }
-  /// Position of the mouse in px of the framebuffer from its lower left corner; false if it is outside.
+  /// Writes the position of the mouse, px from the lower left corner of the framebuffer. Returns false if the
+  /// mouse is outside the window.
   bool mouse(double& x_px, double& y_px) const;
-  /// GLFW key codes pressed since the last call; none is lost when frames are slow. A key held down counts
-  /// once.
+  /// GLFW codes of the keys pressed since the last call, also of short presses during a slow frame. A key
+  /// held down counts once.
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
   /// Seconds since the last key, button or movement of the mouse, or since the window was opened. Any thread.
   double idle_s() const;
-  /// True if it is minimised, or was at any time since the last call: what was drawn then was not seen.
+  /// True if the window is minimised, or was minimised at any time since the last call: the participant could
+  /// not see it then.
   bool take_minimised();
   bool minimised() const;
-  /// The monitor that it fills or, if it is a window, the primary one.
+  /// The monitor that a full-screen window fills; the primary monitor if the window is not full-screen.
   Monitor monitor() const;
   /// True if the connection to the display is lost: nothing can be drawn any more.
   static bool display_is_gone();
@@ -77,7 +80,7 @@ class GlfwWindow {
   std::atomic<std::int64_t> last_input_ns_;  ///< steady clock
 };
 
-/// Whether a compositor is between windows and the screen. find_compositor() needs an open window.
+/// State of a compositor between windows and the screen. find_compositor() needs an open window.
 enum class Compositor { Unknown, Absent, Running };
 Compositor find_compositor();
 

@@ -1,6 +1,6 @@
 #include "libstudy/window/headset_mirror.hpp"
 
-// epoxy first: GLFW then does not include GL's headers.
+// epoxy must come before GLFW: GLFW then does not include OpenGL's headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -21,7 +21,7 @@ namespace study {
 namespace {
 
 constexpr std::chrono::milliseconds between_pictures{100};
-/// Pictures take at most 1 / most_share of the time: software OpenGL uses cores that others need.
+/// The mirror draws for at most 1 / most_share of the time: software OpenGL takes CPU cores from the session.
 constexpr int most_share = 4;
 
 WindowChoice choice_of(bool reveal) {
@@ -33,8 +33,9 @@ WindowChoice choice_of(bool reveal) {
   return choice;
 }
 
-/// Takes pictures in the shared context, which is current only meanwhile: a thread has one current context,
-/// and the window's may be of another kind.
+/// Draws the mirror's pictures in the context that shares the headset's pictures. Makes this context current
+/// only while it draws: a thread has one current context, and the window needs its own, perhaps of another
+/// kind (GLX, EGL).
 class PictureTaker {
  public:
   explicit PictureTaker(sim::GlContext& gl) : gl_(gl) {
@@ -50,7 +51,7 @@ class PictureTaker {
   PictureTaker(const PictureTaker&) = delete;
   PictureTaker& operator=(const PictureTaker&) = delete;
 
-  /// None if all is black.
+  /// Returns the picture; none if all of it is black.
   std::optional<sim::Image> take(HeadsetDisplay& display, bool reveal) {
     gl_.make_current();
     std::optional<sim::Image> image;
@@ -65,7 +66,7 @@ class PictureTaker {
   std::unique_ptr<MirrorPicture> picture_;
 };
 
-/// Shows pictures; its context is current only meanwhile.
+/// The mirror's window. Its context is current only while it shows a picture.
 class PictureWindow {
  public:
   explicit PictureWindow(bool reveal) : window_(choice_of(reveal)) {
@@ -77,12 +78,12 @@ class PictureWindow {
     glCreateFramebuffers(1, &source_);
     glNamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, texture_, 0);
   }
-  /// Its GL objects are destroyed with its context.
+  /// The window's context destroys the OpenGL objects.
   ~PictureWindow() = default;
   PictureWindow(const PictureWindow&) = delete;
   PictureWindow& operator=(const PictureWindow&) = delete;
 
-  /// None: black. Returns false once the window was closed, or its screen is gone.
+  /// Shows the image; none: black. Returns false once the window was closed or its screen is gone.
   bool show(const std::optional<sim::Image>& image) {
     glfwPollEvents();
     if (GlfwWindow::display_is_gone() || window_.asked_to_close()) return false;
@@ -101,7 +102,7 @@ class PictureWindow {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTextureSubImage2D(texture_, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
                         image.rgba.data());
-    // Flipped, because an image begins with its top row.
+    // Flips the picture, because an image begins with its top row.
     glBlitNamedFramebuffer(source_, 0, 0, image.height, image.width, 0, to.x0, to.y0, to.x1, to.y1,
                            GL_COLOR_BUFFER_BIT, GL_LINEAR);
   }
@@ -141,13 +142,13 @@ HeadsetMirror::~HeadsetMirror() {
   thread_.join();
 }
 
-/// Returns false when the thread must end.
+/// Waits for `time`. Returns false, at once, when the thread must end.
 bool HeadsetMirror::wait(std::chrono::steady_clock::duration time) {
   std::unique_lock lock(mutex_);
   return !changed_.wait_for(lock, time, [this] { return over_; });
 }
 
-/// All GLFW calls come from this thread; X does not require the program's main thread.
+/// Body of the mirror's thread. All GLFW calls come from it: X does not require the program's main thread.
 void HeadsetMirror::run(std::promise<void> opened) {
   std::unique_ptr<PictureWindow> window;
   std::unique_ptr<PictureTaker> taker;

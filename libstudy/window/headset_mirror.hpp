@@ -11,14 +11,14 @@
 
 namespace study {
 
-/// Shows the middle of the left eye's view, about ten times a second, or less often if drawing is slow. Its
-/// own thread draws it in a context that shares the headset's pictures, reads it back and shows it: the
-/// window has a separate context, because the headset's OpenGL may be on another display or device. Slots and
-/// the session's thread never wait for it.
+/// Shows the middle of the left eye's view, about ten times a second, or less often if drawing is slow. A
+/// separate thread draws the view in a context that shares the headset's pictures, reads the pixels back and
+/// shows them in the window. The window has another context, because the headset's OpenGL may be on another
+/// display or device. The headset's slots and the session's thread never wait for the mirror.
 class HeadsetMirror {
  public:
-  /// Call it on the display's thread; the display must outlive it. reveal: shows stimuli too; otherwise they
-  /// are black. base::Error if no window can be opened.
+  /// Call it on the display's thread; the display must outlive the mirror. reveal: shows stimuli too;
+  /// otherwise stimuli are black. base::Error if no window can be opened.
   HeadsetMirror(HeadsetDisplay& display, bool reveal);
   ~HeadsetMirror();
   HeadsetMirror(const HeadsetMirror&) = delete;

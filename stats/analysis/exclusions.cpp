@@ -42,7 +42,8 @@ std::map<VisitKey, Visit> by_visit(std::span<const TrialRecord> trials,
   return visits;
 }
 
-/// The reason if too few catch pages were answered correctly; empty if the rule does not apply.
+/// The reason if too few catch pages were answered correctly; empty if enough were, or if the rule does not
+/// apply.
 std::string fails_catches(const Visit& visit, const ExclusionRules& rules) {
   if (!rules.min_catch_correct || visit.catches == 0) return {};
   if (visit.correct >= *rules.min_catch_correct * visit.catches) return {};
@@ -103,7 +104,7 @@ std::string is_incomplete(const Visit& visit, const ExclusionRules& rules) {
          " %";
 }
 
-/// The first rule that excludes the whole visit, and its reason.
+/// The first rule that excludes the whole visit, and its reason. The reason is empty if no rule does.
 std::pair<std::string, std::string> visit_rule(const Visit& visit, const ExclusionRules& rules, bool pairs) {
   std::string reason = fails_catches(visit, rules);
   if (!reason.empty()) return {"catch", reason};
@@ -156,7 +157,7 @@ std::vector<Exclusion> find_exclusions(std::span<const TrialRecord> trials,
     exclude_trials(out, visit, rules);
     auto [rule, reason] = visit_rule(visit, rules, pairs);
     if (reason.empty()) continue;
-    int left = visit.answers;  // without those of trials that were excluded singly
+    int left = visit.answers;  // answers that no exclusion of a single trial has counted
     for (const Exclusion& one : out) {
       if (one.participant == key.first && one.visit == key.second) left -= one.answers;
     }

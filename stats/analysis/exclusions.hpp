@@ -1,6 +1,6 @@
 #pragma once
-/// Exclusions by rules fixed beforehand. The rules see neither method, scene nor n_*, so they cannot depend
-/// on a contrast of interest.
+/// Exclusions by rules fixed beforehand. The rules do not read the method, scene or n_* (size of the water)
+/// of a trial, so they cannot depend on the differences that the study tests.
 
 #include <limits>
 #include <span>
@@ -13,20 +13,21 @@ namespace stats {
 
 enum class TrialTiming { Unjudged, Pass, Degraded, Fail };
 
-/// The part of a planned trial that the rules may use.
+/// The data of a planned trial that the rules may read.
 struct TrialRecord {
   static constexpr double unanswered = std::numeric_limits<double>::quiet_NaN();
 
   std::string participant;
   int visit = 1;
-  int position = 0;                            ///< 0-based
-  TrialTiming timing = TrialTiming::Unjudged;  ///< for a pair, the worse of its two intervals
-  std::string timing_reason;                   ///< why the verdict is not Pass
-  bool interrupted = false;                    ///< excluded by the protocol's interruption policy
-  std::string by_experimenter;                 ///< the experimenter's reason; empty: not excluded by hand
-  double answer = unanswered;                  ///< main rating, or 1 / 2 for the interval chosen
-  int answers = 0;                             ///< questions answered in this trial
-  int repeats = -1;  ///< position of the original trial that this one repeats; -1: not a repeat
+  int position = 0;  ///< 0-based
+  /// Verdict on the frame timing; for a pair, the worse of its two intervals.
+  TrialTiming timing = TrialTiming::Unjudged;
+  std::string timing_reason;    ///< why the verdict is not Pass
+  bool interrupted = false;     ///< excluded by the protocol's interruption policy
+  std::string by_experimenter;  ///< the experimenter's reason; empty: not excluded by hand
+  double answer = unanswered;   ///< main rating, or 1 / 2 for the interval chosen
+  int answers = 0;              ///< questions answered in this trial
+  int repeats = -1;             ///< position of the original trial that this one repeats; -1: not a repeat
 };
 
 /// One answered catch page.
@@ -39,10 +40,10 @@ struct CatchRecord {
 struct Exclusion {
   std::string participant;
   int visit = 1;
-  int position = -1;   ///< of the trial; -1: the whole visit
+  int position = -1;   ///< position of the excluded trial; -1: the whole visit is excluded
   std::string rule;    ///< "experimenter", "interruption", "timing", "catch", "repeat", "straight_lining" or
                        ///< "incomplete"
-  std::string reason;  ///< in words, with the figures that triggered the rule
+  std::string reason;  ///< the reason in words, with the numbers that triggered the rule
   int answers = 0;     ///< number of answers excluded
 
   bool by_hand() const { return rule == "experimenter"; }

@@ -22,7 +22,7 @@ std::optional<double> p_of(const Result<OneSampleTTest>& test, const std::option
   return {};
 }
 
-/// Holm over a family; a refused test counts as not significant.
+/// Sets p after Holm over a family of tests; a refused test counts as not significant.
 template <class Test>
 void correct(std::span<Test> family) {
   std::vector<double> p;
@@ -58,7 +58,7 @@ LevelPreference prefer(std::span<const PairChoice> choices, std::span<const Fact
   return out;
 }
 
-/// The sum over a common denominator, if an int can hold it.
+/// The sum x + y over a common denominator if an int can hold the denominator, else as a double.
 ExactMean sum_of(const ExactMean& x, const ExactMean& y) {
   const auto common = std::lcm(std::int64_t{x.count}, std::int64_t{y.count});
   if (common > most_count) return {x.value() + y.value(), 1};
@@ -79,7 +79,8 @@ std::vector<ExactMean> sums_of(const ScoreTable& table, std::span<const FactorPl
   return out;
 }
 
-/// a - b of each participant who judged all treatments of both levels, averaged over the other factors.
+/// The difference level a - level b of each participant who judged all treatments of both levels, averaged
+/// over the other factors.
 Result<ExactDifferences> differences_of(const ScoreTable& table, std::span<const FactorPlace> places,
                                         int n_star, int a, int b) {
   const auto sums = exact_differences(sums_of(table, places, n_star, a), sums_of(table, places, n_star, b));

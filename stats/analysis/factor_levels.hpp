@@ -15,8 +15,8 @@
 
 namespace stats {
 
-/// Place of a treatment (called a method in tables and choices) in a factorial design: its level of the
-/// factor, and the index of its combination of all other factors.
+/// Position of a treatment in a factorial design (tables and choices call a treatment a method): its level of
+/// the factor, and the index of its combination of all other factors.
 struct FactorPlace {
   int level = 0, rest = 0;
 };
@@ -28,8 +28,9 @@ struct LevelPreference {
   int participants = 0;
   /// t test of each participant's share of choices of a against one half.
   Result<OneSampleTTest> shares = Refusal{"not computed"};
-  std::optional<Unanimous> all_alike;  ///< if all shares are equal: the exact test in place of t
-  std::optional<double> p_holm;        ///< over the pairs of levels of the factor
+  /// Set if all shares are equal: the exact test that replaces the t test.
+  std::optional<Unanimous> all_alike;
+  std::optional<double> p_holm;  ///< p after Holm over the pairs of levels of the factor
 
   std::optional<double> p() const;
 };
@@ -41,12 +42,12 @@ struct LevelDifference {
   /// t test against zero of each participant's difference, averaged over the other factors.
   Result<OneSampleTTest> difference = Refusal{"not computed"};
   std::optional<Unanimous> all_alike;
-  std::optional<double> p_holm;  ///< over the pairs of levels at this n_*
+  std::optional<double> p_holm;  ///< p after Holm over the pairs of levels at this n_*
 
   std::optional<double> p() const;
 };
 
-/// places: one for each treatment. Returns every pair of levels, a before b.
+/// Compares every pair of levels, a before b. `places` has one entry for each treatment.
 std::vector<LevelPreference> level_preferences(std::span<const PairChoice> choices,
                                                std::span<const FactorPlace> places, int levels,
                                                const AnalysisPlan& plan);

@@ -20,24 +20,24 @@ namespace {
 // Each test of H1 to H3 compares two methods at one size n_* of the water, by a paired t test (an exact sign
 // test if all differences are equal) or by the mixed model.
 
-/// a - b with its standard error.
+/// Difference of two methods' mean scores, a - b, with its standard error.
 struct ScoreDifference {
   double estimate = 0, se = 0, df = 0;
   double t(double null = 0) const { return (estimate - null) / se; }
   double p(Alternative side, double null = 0) const;
 };
 
-/// The input of a test.
+/// The data of one test of H1 to H3.
 struct ScoreContrast {
-  HypothesisTest test;  ///< fields that need no difference, and the reason if there is none
+  HypothesisTest test;  ///< label, methods and n; its reason says why there is no difference
   std::optional<ScoreDifference> difference;
-  std::optional<Unanimous> unanimous;  ///< if all paired differences are equal: the exact sign test
+  std::optional<Unanimous> unanimous;  ///< set if all paired differences are equal, for the exact sign test
   bool higher_is_better = true;
   double margin = 0;
 };
 
-/// Omits the intervals of effect sizes, on which t_test_paired would spend most of its time; power
-/// simulations call this often.
+/// Takes the difference from a paired t test. Omits the intervals of effect sizes, which would take most of
+/// the time: power simulations call this function often.
 void take_pairs(ScoreContrast& contrast, const ScoreTable& table, int n_star, int a, int b) {
   HypothesisTest& test = contrast.test;
   const auto pairs = complete_pairs(table.column(n_star, a), table.column(n_star, b));
@@ -63,7 +63,8 @@ void take_model(ScoreContrast& contrast, const Result<MixedScores>& model, int n
   if (difference) contrast.difference = {difference->estimate, difference->se, difference->df};
 }
 
-/// The exact test for differences that are all equal, which have no t. `p`: of that test.
+/// The exact sign test, for differences that are all equal and so have no t. `p` is the p-value of the sign
+/// test.
 FamilyTest sign_test(const ScoreContrast& contrast, double p, bool right = true) {
   FamilyTest out{contrast.test, right};
   out.test.method = "exact sign test";
@@ -100,7 +101,8 @@ bool paper_differs(const ScoreContrast& contrast, const Family& family) {
 
 double ScoreDifference::p(Alternative side, double null) const { return student_p(t(null), df, side); }
 
-/// `model`: the mixed model of all answers of the table; null: paired test.
+/// The contrast of methods a and b at one n_*. `model` is the mixed model of all answers of the table; null
+/// means a paired test.
 ScoreContrast score_contrast(const ScoreTable& table, const Result<MixedScores>* model, int n_star,
                              const std::string& a, const std::string& b) {
   const std::string& block = table.n_stars()[static_cast<std::size_t>(n_star)];
@@ -197,7 +199,8 @@ FamilyTest non_inferiority(ScoreContrast contrast, const Family& family) {
 struct Scores {
   const AnalysisPlan& plan;
   const ScoreTable &realism, &sickness;
-  std::vector<Result<MixedScores>> models;  ///< of both scores, if the plan uses the mixed model
+  /// Models of both scores, if the plan uses the mixed model; else empty.
+  std::vector<Result<MixedScores>> models;
 };
 
 Scores scores_of(const ScoreTable& realism, const ScoreTable& sickness, const AnalysisPlan& plan) {
@@ -266,7 +269,8 @@ Hypothesis test_h3(const Scores& scores) {
   return finish(std::move(family));
 }
 
-/// Adds the paired verdict to one by the mixed model; the paper's own procedure uses paired tests.
+/// Adds the verdict of the paired tests to a hypothesis that the mixed model decides, and the verdict of the
+/// paper's procedure, which uses paired tests.
 void put_beside(Hypothesis& out, Hypothesis paired) {
   for (std::size_t i = 0; i < out.tests.size(); ++i) {
     out.tests[i].paper_p = paired.tests[i].paper_p;
@@ -293,8 +297,8 @@ std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreT
 
 namespace {
 
-/// The level below which a test's uncorrected p holds, given the other tests: alpha, or under Holm alpha
-/// divided by the number of tests that Holm does not reject without this one.
+/// The level below which a test's uncorrected p must lie for the test to hold, given the other tests: alpha,
+/// or under Holm alpha divided by the number of tests that Holm does not reject if this test has p = 1.
 double level_of(const Hypothesis& hypothesis, std::size_t index) {
   if (hypothesis.decision != DecisionRule::Holm) return hypothesis.alpha;
   std::vector<double> p;
@@ -306,7 +310,7 @@ double level_of(const Hypothesis& hypothesis, std::size_t index) {
   return hypothesis.alpha / static_cast<double>(static_cast<std::ptrdiff_t>(p.size()) - rejected);
 }
 
-/// Range of estimates for which the test holds, with its error unchanged.
+/// Range of estimates for which the test holds, with its standard error unchanged.
 DecisionRange range_of(const Hypothesis& hypothesis, const HypothesisTest& test, double level,
                        bool higher_is_better) {
   constexpr double open = std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 #pragma once
-/// H1 to H6 of the paper (5.3.1) as confirmatory tests. Each claim has its own family of tests, decided by
-/// the plan's rule. The verdict of the paper's own, uncorrected procedure on the same data is given beside
-/// it.
+/// H1 to H6 of the paper (section 5.3.1) as confirmatory tests. Each claim has its own family of tests,
+/// decided by the plan's rule. Each result also gives the verdict of the paper's procedure, without
+/// correction, on the same data.
 
 #include <array>
 #include <optional>
@@ -20,7 +20,7 @@ enum class HypothesisStatus {
   Supported,        ///< every test of the family holds under the plan's rule
   PartlySupported,  ///< some tests hold after Holm
   NotSupported,     ///< no test holds after Holm
-  NotTestable,      ///< the study cannot test it, whatever its figures
+  NotTestable,      ///< the study's conditions do not allow the test
   NoData,           ///< no test could be computed
 };
 /// "supported", "partly supported", ...
@@ -35,8 +35,8 @@ struct HypothesisTest {
   std::string method;         ///< "paired t test", "t test of the mixed model", ...
   std::string score, n_star;  ///< Task 1 only
   std::string a, b;           ///< methods
-  std::size_t n = 0;          ///< participants with both methods, or in the mixed model; for Task 2 answers
-  std::optional<int> k;       ///< Task 2: number of choices of a
+  std::size_t n = 0;     ///< Task 1: participants with both methods, or in the mixed model; Task 2: answers
+  std::optional<int> k;  ///< Task 2: number of choices of a
   std::optional<double> estimate;  ///< mean difference a - b, or share of choices of a
   std::optional<std::array<double, 2>> ci;
   double ci_confidence = 0.95;
@@ -44,24 +44,26 @@ struct HypothesisTest {
   /// Task 1: the t statistic that p belongs to (of two one-sided tests the one nearer to zero), and the
   /// paired effect size, which is empty for the mixed model.
   std::optional<double> t, df, d_z;
-  std::optional<double> se;  ///< of the estimate
+  std::optional<double> se;  ///< standard error of the estimate
   std::optional<double> p, p_holm;
   bool holds_alone = false;       ///< p < alpha in the direction claimed
   bool holds_holm = false;        ///< p_holm < alpha in the direction claimed
-  bool holds = false;             ///< the one of these two that the plan's rule uses
+  bool holds = false;             ///< holds_holm or holds_alone, whichever the plan's rule uses
   bool against = false;           ///< p_holm < alpha in the other direction (two-sided tests)
   std::string reason;             ///< why there is no p, which then counts as 1 in the family
-  std::optional<double> paper_p;  ///< two-sided, uncorrected
+  std::optional<double> paper_p;  ///< p of the paper's procedure: two-sided, uncorrected
   bool paper_holds = false;
-  /// Of a two-sided test of preference: p after Holm over the five pairs of the paper's Fig. 10 and over all
-  /// ten pairs. The result depends on the choice of the family, so both are shown.
+  /// For a preference: p of the two-sided test after Holm over the five pairs of the paper's Fig. 10, and
+  /// over all ten pairs. The result depends on the choice of the family, so both are shown.
   std::optional<double> p_holm_of_five, p_holm_of_ten;
-  std::optional<Result<TippingPoint>> tipping;  ///< for `holds`; see add_tipping_points
+  /// Shift of missing answers that would change `holds`; see add_tipping_points.
+  std::optional<Result<TippingPoint>> tipping;
 };
 
 /// The verdict of the paired tests when the plan decides by the mixed model.
 struct PairedVerdict {
-  HypothesisStatus status = HypothesisStatus::NoData;  ///< status if the hypothesis were testable
+  /// Status that the tests give, even if the study cannot test the hypothesis.
+  HypothesisStatus status = HypothesisStatus::NoData;
   int confirmed = 0;
   std::vector<HypothesisTest> tests;
 };
@@ -77,11 +79,11 @@ struct Hypothesis {
   std::string rule;
   HypothesisStatus status = HypothesisStatus::NoData;
   HypothesisStatus status_if_testable = HypothesisStatus::NoData;
-  std::string status_text;  ///< one sentence
-  int confirmed = 0;        ///< tests that hold
-  int confirmed_holm = 0;   ///< tests that hold after Holm
+  std::string status_text;  ///< the verdict in one sentence
+  int confirmed = 0;        ///< number of tests that hold
+  int confirmed_holm = 0;   ///< number of tests that hold after Holm
   /// p of the whole claim: the largest p of its tests (after Holm if the plan decides by Holm); 1 if a test
-  /// is refused or points the other way. Empty without any test.
+  /// is refused or its estimate lies in the other direction. Empty without any test.
   std::optional<double> p_claim;
   std::optional<double> p_claim_of_six;  ///< see correct_over_claims
   std::vector<HypothesisTest> tests;
@@ -92,16 +94,16 @@ struct Hypothesis {
 };
 
 /// Tests H1 to H3 within each n_*: by paired t tests over participants, or by the mixed model of each score
-/// with the paired tests beside it, two-sided or one-sided, as the plan says. `untestable`: why H1 cannot be
-/// tested, such as gaze that was not tracked; empty if it can. Two-sided, the p of H2 is twice the larger
-/// one-sided p, the p of H3 is the two-sided p against its margin, and both give the interval of 1 - alpha.
-/// The paper's rule is always applied to the paired tests.
+/// (the results then include the paired tests), two-sided or one-sided, as the plan says. `untestable`: why
+/// H1 cannot be tested, such as gaze that was not tracked; empty if it can. Two-sided, the p of H2 is twice
+/// the larger one-sided p, the p of H3 is the two-sided p against its margin, and both give the interval of 1
+/// - alpha. The paper's rule is always applied to the paired tests.
 std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
                                          const AnalysisPlan& plan, const std::string& untestable);
 
 /// Tipping points of the tests of H1 to H3: by how many points missing answers must be worse before the
-/// plan's decision on the test (`holds`) changes, if the other tests and the error of this one stay as they
-/// are. `tables` must include those that the tests were computed from.
+/// plan's decision on the test (`holds`) changes, if the other tests and the standard error of this test stay
+/// as they are. `tables` must include those that the tests were computed from.
 void add_tipping_points(std::span<Hypothesis> hypotheses, std::span<const ScoreTable> tables);
 
 /// Tests H4 to H6 by exact binomial tests, or by share_test if PairPreference::shares is set. `untestable`:
@@ -110,7 +112,7 @@ std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,
                                          const std::string& untestable);
 
-/// The hypotheses whose methods a protocol shows, and why each other one is left out.
+/// The hypotheses whose methods a protocol shows, and the reason why each other hypothesis is left out.
 struct ShownClaims {
   struct LeftOut {
     std::string id;      ///< "H1"
@@ -122,8 +124,8 @@ struct ShownClaims {
 /// Leaves out each hypothesis with a test of a method that is not among `methods`.
 ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::string>& methods);
 
-/// Corrects p_claim by Holm over the claims H1 to H6; absent or untestable claims count as p = 1. Shown
-/// beside the decisions, which use alpha for each claim.
+/// Corrects p_claim by Holm over the claims H1 to H6; absent or untestable claims count as p = 1. The result
+/// is only displayed; the decisions use alpha for each claim.
 void correct_over_claims(std::span<Hypothesis> claims);
 
 /// True for the pairs in the paper's Fig. 10.

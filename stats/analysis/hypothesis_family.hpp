@@ -18,14 +18,15 @@ inline constexpr const char* hi_res = "HiRes";
 
 struct FamilyTest {
   HypothesisTest test;
-  /// The estimate lies in the claimed direction. Always true for tests with a built-in direction.
+  /// True if the estimate lies in the claimed direction. Always true for tests of equivalence and one-sided
+  /// tests of H1 and H3, which include the direction.
   bool right = true;
 };
 
 struct Family {
   const AnalysisPlan& plan;
   std::string untestable;  ///< why the hypothesis cannot be tested; empty if it can
-  Hypothesis out;          ///< its id, title and rules are set; finish() sets the rest
+  Hypothesis out;          ///< begin_family() and the caller set id, title and rules; finish() sets the rest
   std::vector<FamilyTest> tests;
 };
 
@@ -45,7 +46,8 @@ std::string rule_text(const Hypothesis& hypothesis, const RuleWords& words, std:
 /// sentences.
 Hypothesis finish(Family family);
 
-/// Holm over the pairs for which `chosen` is true; empty for other pairs and for refused tests.
+/// p of each pair after Holm over the pairs for which `chosen` is true; empty for other pairs and for refused
+/// tests.
 std::vector<std::optional<double>> holm_over_pairs(
     std::span<const PairPreference> pairs, const std::vector<std::string>& methods,
     const std::function<bool(const std::string&, const std::string&)>& chosen);

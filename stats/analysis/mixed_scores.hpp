@@ -1,7 +1,8 @@
 #pragma once
-/// A linear mixed model of all answers of one score, given beside the paired tests, which drop participants
-/// who lack one of the two methods. It assumes that missing answers depend only on the answers given and the
-/// model's terms (missing at random); tipping.hpp treats missing answers that depend on their own value.
+/// A linear mixed model of all answers of one score, reported with the paired tests. Paired tests drop
+/// participants who lack one of the two methods. The mixed model assumes that missing answers depend only on
+/// the answers given and the model's terms (missing at random); tipping.hpp treats missing answers that
+/// depend on their own value.
 
 #include <span>
 #include <string>
@@ -23,11 +24,11 @@ std::vector<int> periods_of(std::span<const int> blocks);
 struct MixedScores {
   LinearMixedFit fit;
 
-  /// Method a - method b at one n_*. Refused if one of them has no answers there.
+  /// Method a - method b at one n_*. Refused if a or b has no answers at this n_*.
   Result<MixedContrast> difference(int n_star, int a, int b, double confidence) const;
 };
 
-/// Refused if fit_linear_mixed() refuses.
+/// Fits the mixed model to all answers of the table. Refused if fit_linear_mixed() refuses.
 Result<MixedScores> fit_mixed_scores(const ScoreTable& table);
 
 }  // namespace stats

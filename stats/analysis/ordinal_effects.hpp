@@ -28,17 +28,18 @@ struct MethodEffect {
 struct OrdinalEffects {
   MixedOrdinalFit fit;
   int reference = 0;
-  std::vector<MethodEffect> effects;  ///< of the methods with answers, without the reference
+  std::vector<MethodEffect> effects;  ///< one effect for each method with answers except the reference
   /// Likelihood-ratio test against the same model without methods, from the maximised likelihoods (for a
   /// penalised fit as in Heinze and Schemper 2002, Stat. Med. 21, 2409-2419). Refused if that model cannot be
   /// fitted.
   Result<LikelihoodRatio> overall = Refusal{"not computed"};
 };
 
-/// Logit link, adaptive quadrature. `scores`: single answers, all of one n_*. Separated answers are fitted
-/// with a penalty: fit.why_penalised names the columns as "method" + index. Refused: no answer about the
-/// reference or about another method, and all refusals of fit_cumulative_link_mixed. `methods`: number of
-/// methods in the study, including any without answers. confidence in (0, 1).
+/// Fits the model with the logit link and adaptive quadrature. `scores`: single answers, all of one n_*.
+/// Separated answers are fitted with a penalty: fit.why_penalised names the columns as "method" + index.
+/// Refused: no answer about the reference or about another method, and all refusals of
+/// fit_cumulative_link_mixed. `methods`: number of methods in the study, including any without answers.
+/// confidence in (0, 1).
 Result<OrdinalEffects> ordinal_effects(std::span<const MethodScore> scores, int reference, int methods,
                                        double confidence);
 

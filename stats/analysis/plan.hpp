@@ -1,6 +1,6 @@
 #pragma once
 /// The analysis plan, fixed before the data are seen: margins, alpha, exclusion rules, seed. Preregistration
-/// freezes it.
+/// freezes the plan.
 
 #include <cstdint>
 #include <map>
@@ -11,12 +11,13 @@
 
 namespace stats {
 
-/// Which trials to exclude by timing verdict (for a pair, the worse of two). Degraded trials stay by default:
-/// their realised timing is known and close to the requested one.
+/// Which trials to exclude by timing verdict (for a pair, the worse of two). Degraded trials are included by
+/// default: their realised timing is known and close to the requested one.
 enum class TimingRule { None, Fail, Degraded };
 
-/// How to test a pair that a participant answered more than once. Such answers are not independent, as the
-/// binomial test assumes (pooled blocks: 9.6 % false alarms at 5 %).
+/// How to test a pair that a participant answered more than once. The binomial test assumes independent
+/// answers; several answers of one person are dependent (pooling blocks gave 9.6 % false alarms at a level of
+/// 5 %).
 enum class RepeatedPairs {
   Refuse,
   Warn,   ///< run the binomial test with a warning
@@ -33,8 +34,8 @@ struct ExclusionRules {
   /// no such rule. On seven points random answers differ by 2.3 on average, so 3 excludes only answers that
   /// are worse than random.
   std::optional<double> max_repeat_difference = 3.0;
-  /// Smallest share of repeated pairs answered alike, in [0, 1]. Empty by default, since a single repeat says
-  /// nothing.
+  /// Smallest share of repeated pairs answered alike, in [0, 1]. Empty by default: there is no such rule,
+  /// since one repeated pair is too few to judge a person by.
   std::optional<double> min_repeat_agreement;
   /// Excludes a visit with the same answer to every trial (main rating or chosen interval), if it has at
   /// least this many answers; 0: no such rule. Off by default: a person who sees no difference also gives
@@ -46,10 +47,10 @@ struct ExclusionRules {
 
 /// How the tests of a hypothesis decide its verdict.
 enum class DecisionRule {
-  /// The claim needs all of its tests, each at alpha, uncorrected; its error is then at most alpha (Berger
-  /// 1982). "At least one test holds" is claimed after Holm.
+  /// The claim needs all of its tests, each at alpha, uncorrected; the claim's error is then at most alpha
+  /// (Berger 1982). The weaker claim that at least one test holds is made after Holm.
   IntersectionUnion,
-  Holm,  ///< every test after Holm: the rule of bundles frozen before this key existed
+  Holm,  ///< each test must hold after Holm; bundles frozen before the key `decision` existed use this rule
 };
 
 /// The kind of tests for H1 to H3.
@@ -61,21 +62,21 @@ enum class ScoreTests {
 /// Which hypotheses are tested one-sided. Every hypothesis claims a direction.
 enum class Directional {
   None,    ///< two-sided: the interval of 1 - alpha must lie wholly in the claimed range
-  All,     ///< one-sided: the interval of 1 - 2 alpha must lie there
-  H2H3H6,  ///< H2, H3 and H6 one-sided: the rule of bundles frozen before this key existed
+  All,     ///< one-sided: the interval of 1 - 2 alpha must lie in the claimed range
+  H2H3H6,  ///< H2, H3 and H6 one-sided; bundles frozen before the key `directional` existed use this rule
 };
 
 struct AnalysisPlan {
-  double alpha = 0.05;  ///< for each claim, in (0, 0.5)
+  double alpha = 0.05;  ///< level of the tests of each claim, in (0, 0.5)
   DecisionRule decision = DecisionRule::IntersectionUnion;
   Directional directional = Directional::None;
   ScoreTests tests = ScoreTests::Paired;
-  double confidence = 0.95;       ///< of intervals, in (0, 1)
+  double confidence = 0.95;       ///< confidence of intervals, in (0, 1)
   double margin_realism = 0.5;    ///< points on 1 to 7, > 0
   double margin_sickness = 0.25;  ///< points on 0 to 3, > 0
   ExclusionRules exclusions;
   RepeatedPairs repeated_pairs = RepeatedPairs::Share;
-  int resamples = 10000;  ///< for BCa intervals
+  int resamples = 10000;  ///< number of resamples for BCa intervals
   std::uint64_t seed = 1;
   /// Scores at which a pilot's curve is fitted, by question id. For other questions the protocol gives the
   /// score.

@@ -58,7 +58,7 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
   return {test};
 }
 
-/// Adds p after Holm over larger families of pairs.
+/// Adds p after Holm over two larger families: the five pairs of the paper's Fig. 10, and all pairs.
 void add_larger_families(Hypothesis& hypothesis, std::span<const PairPreference> pairs,
                          const std::vector<std::string>& methods) {
   const auto five = holm_over_pairs(pairs, methods, in_paper_figure_10);

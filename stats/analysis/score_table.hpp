@@ -13,9 +13,9 @@ namespace stats {
 /// One report. Indices count from 0. Its score is the mean of `items` answers.
 struct MethodScore {
   int participant = 0, scene = 0, n_star = 0, method = 0;
-  double sum = 0;  ///< sum of the answers; NaN = planned, but not all answered
+  double sum = 0;  ///< sum of the answers; NaN: the report was planned, but an answer is missing
   int items = 1;
-  int position = 0;  ///< of the trial in its visit
+  int position = 0;  ///< position of the trial in its visit
   int period = 0;    ///< period of the session; see periods_of() in mixed_scores.hpp
 
   double value() const { return sum / items; }
@@ -24,12 +24,12 @@ struct MethodScore {
 /// A score: its name, scale, direction and margin.
 struct ScoreScale {
   std::string code;   ///< "realism", "sickness", ...
-  std::string label;  ///< for display
+  std::string label;  ///< name for display
   bool primary = true;
   double min = 1, max = 7;
   bool higher_is_better = true;
-  std::vector<std::string> items;  ///< ids of the questions whose mean it is
-  double margin = 0.5;             ///< for equivalence and non-inferiority, points
+  std::vector<std::string> items;  ///< ids of the questions whose mean is the score
+  double margin = 0.5;             ///< margin of equivalence and non-inferiority, in points of the score
 };
 
 /// One mean for each participant, n_* and method.
@@ -44,9 +44,9 @@ class ScoreTable {
   int participants() const { return participants_; }
   const std::vector<std::string>& n_stars() const { return n_stars_; }
   const std::vector<std::string>& methods() const { return methods_; }
-  /// One value for each participant; NaN if missing.
+  /// Mean score of each participant; NaN if missing.
   std::span<const double> column(int n_star, int method) const;
-  /// The same as sum and count, for code that compares differences of means.
+  /// The same means as sums and counts, for code that compares differences of means.
   std::span<const ExactMean> means(int n_star, int method) const;
   /// Participants by methods, row after row, of all participants with an answer at this n_*; NaN = missing.
   std::vector<double> rows(int n_star) const;
@@ -54,7 +54,7 @@ class ScoreTable {
   std::span<const char> planned(int n_star, int method) const;
   /// Single reports, without those that lack an answer.
   const std::vector<MethodScore>& answers() const { return answers_; }
-  /// Index, or -1.
+  /// Index of a size n_* or a method by its name; -1 if there is none.
   int n_star_index(const std::string& n_star) const;
   int method_index(const std::string& method) const;
 
@@ -65,7 +65,7 @@ class ScoreTable {
   std::size_t first_of(int n_star, int method) const;
 
   std::vector<ExactMean> means_;  ///< [n_star][method][participant]
-  std::vector<double> values_;    ///< of means_
+  std::vector<double> values_;    ///< the values of means_ as doubles
   std::vector<char> planned_;     ///< indexed as means_
   std::vector<MethodScore> answers_;
 };

@@ -15,18 +15,18 @@ namespace stats {
 
 /// A score before and after, one value each per participant; differences are after - before.
 struct SicknessChange {
-  std::size_t n = 0;          ///< participants with both
-  std::size_t n_missing = 0;  ///< participants with only one of them
-  Result<Description> before = Refusal{"not computed"}, after = Refusal{"not computed"};  ///< of all values
+  std::size_t n = 0;          ///< participants with both values
+  std::size_t n_missing = 0;  ///< participants with only one of both values
+  /// Summaries of all values.
+  Result<Description> before = Refusal{"not computed"}, after = Refusal{"not computed"};
   Result<Description> change = Refusal{"not computed"};
-  Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< of the mean change
-  Result<SignedRank> ranks = Refusal{"not computed"};             ///< of the changes
+  Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< interval of the mean change
+  Result<SignedRank> ranks = Refusal{"not computed"};             ///< signed-rank test of the changes
 };
 
-/// `before` and `after` are sums of items with one entry per participant (NaN: missing). A score is `weight`
-/// times the entry's mean, and all results are in units of the score, except the ranks: these compare the
-/// sums themselves, so that equal changes tie. Of `ranks`, only the location and its interval are in units of
-/// the score.
+/// `before` and `after` have one entry per participant: the sum and number of item answers (NaN: missing). A
+/// score is `weight` times the entry's mean. All results are in units of the score; of `ranks`, only the
+/// location and its interval. The ranks are computed from the entries themselves, so that equal changes tie.
 SicknessChange compare_sickness(std::span<const ExactMean> before, std::span<const ExactMean> after,
                                 double weight, const AnalysisPlan& plan);
 

@@ -25,42 +25,43 @@ namespace stats {
 struct MethodCell {
   int n_star = 0, method = 0;
   std::vector<double> values;    ///< participants' means, without missing ones
-  std::vector<double> outliers;  ///< beyond 1.5 interquartile ranges: drawn, never dropped
+  std::vector<double> outliers;  ///< values more than 1.5 interquartile ranges from the box: drawn in the
+                                 ///< plot and included in all statistics
   Result<Description> summary = Refusal{"not computed"};
   Result<BoxPlot> box = Refusal{"not computed"};
-  Result<OneSampleTTest> mean = Refusal{"not computed"};  ///< for the interval of the mean
+  Result<OneSampleTTest> mean = Refusal{"not computed"};  ///< gives the interval of the mean
   Result<BootstrapInterval> bootstrap = Refusal{"not computed"};
   Result<ShapiroWilk> normality = Refusal{"not computed"};
 };
 
-/// Comparison of two methods at one n_*: difference a - b over participants with both.
+/// Comparison of two methods at one n_*: difference a - b over participants who judged both.
 struct MethodComparison {
   int n_star = 0, a = 0, b = 0;
   std::size_t n = 0;                     ///< participants with both
   std::size_t n_missing = 0;             ///< participants with only one
-  std::optional<double> mean_a, mean_b;  ///< of participants with both
+  std::optional<double> mean_a, mean_b;  ///< means of the participants with both methods
   Result<PairedTTest> t = Refusal{"not computed"};
-  std::optional<Unanimous> unanimous;  ///< if all differences are equal: the exact test in place of t
-  Result<IndependentTTest> welch = Refusal{"not computed"};  ///< as if the groups were independent
+  std::optional<Unanimous> unanimous;  ///< set if all differences are equal: the exact test that replaces `t`
+  Result<IndependentTTest> welch = Refusal{"not computed"};  ///< treats the pairs as independent groups
   Result<SignedRank> wilcoxon = Refusal{"not computed"};
   Result<EquivalenceTest> equivalence = Refusal{"not computed"};
-  Result<ShapiroWilk> normality = Refusal{"not computed"};        ///< of the differences
-  Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< of the mean difference
+  Result<ShapiroWilk> normality = Refusal{"not computed"};        ///< test of the differences' normality
+  Result<BootstrapInterval> bootstrap = Refusal{"not computed"};  ///< interval of the mean difference
   Result<MixedContrast> mixed = Refusal{"not computed"};  ///< from the mixed model of all answers of the
                                                           ///< score
-  /// p of t, or of the exact sign test in its place.
+  /// p of `t`, or of the exact sign test that replaces it.
   std::optional<double> p() const;
   /// Corrected over the pairs of this score and n_*; a refused test counts as not significant.
   std::optional<double> p_holm, p_bh, wilcoxon_p_holm, wilcoxon_p_bh, mixed_p_holm, mixed_p_bh;
 };
 
-/// How many participants the pairs of one n_* are based on.
+/// Numbers of participants on which the comparisons of two methods at one n_* are based.
 struct PairPeople {
   int n_star = 0;
   std::size_t planned = 0;           ///< participants who were planned to judge a method
   std::size_t any = 0, all = 0;      ///< participants who judged any method, and every method
   std::size_t fewest = 0, most = 0;  ///< smallest and largest number with both methods of a pair
-  bool differ = false;               ///< a participant counts in one pair and not in another
+  bool differ = false;               ///< true if a participant counts in one pair and not in another
 };
 
 struct Omnibus {
@@ -72,10 +73,10 @@ struct Omnibus {
 };
 
 struct ScoreAnalysis {
-  std::vector<MethodCell> cells;              ///< n_* by method
-  std::vector<MethodComparison> comparisons;  ///< n_* by pair, a before b
+  std::vector<MethodCell> cells;              ///< ordered by n_*, then by method
+  std::vector<MethodComparison> comparisons;  ///< ordered by n_*, then by pair, a before b
   std::vector<Omnibus> omnibus;
-  std::vector<PairPeople> people;  ///< by n_*
+  std::vector<PairPeople> people;  ///< ordered by n_*
   Result<MixedScores> mixed = Refusal{"not computed"};
 };
 

@@ -190,7 +190,7 @@ bool answered_twice(const std::vector<PairChoice>& own) {
   });
 }
 
-/// The reason, for people none of whom answered every pair exactly once.
+/// The reason why there are no triads, if no participant answered every pair exactly once.
 std::string why_no_triads(const ChoicesByPerson& people, int methods) {
   if (people.empty()) return "no answers";
   if (methods < 3) return "fewer than three methods have no triad";

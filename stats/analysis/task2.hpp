@@ -24,7 +24,7 @@ struct PersonChoices {
   int k = 0, n = 0;
 };
 
-/// Name for display, like "exact binomial test".
+/// Name of share_test() for display.
 inline constexpr const char* share_test_name = "exact permutation test of people's shares";
 
 struct ShareTest {
@@ -32,16 +32,16 @@ struct ShareTest {
   double share = 0.5;          ///< mean of the shares
   std::array<double, 2> ci{};  ///< Student's t of the shares, within 0 to 1; Clopper-Pearson if all always
                                ///< chose alike; [0, 1] if the shares are equal otherwise
-  std::string ci_name;         ///< which interval it is, for display
+  std::string ci_name;         ///< name of the interval in `ci`, for display
   double p = 1;                ///< exact
 };
 
-/// Test of a preference that people answered more than once: each person's share of choices of one method
-/// against one half. Answers of one person need not be independent.
+/// Test of a preference between two methods if people answered more than once: each person's share of choices
+/// of one method against one half. Answers of one person need not be independent.
 ///
-/// The exact permutation test that flips the sign of each person's share minus one half. It equals the exact
-/// binomial test if everybody answered once. Refused: no people, and counts of answers whose common
-/// denominator is too large.
+/// Computes the exact permutation test that flips the sign of each person's share minus one half. It equals
+/// the exact binomial test if each person answered once. Refused: no people, and counts of answers whose
+/// common denominator is too large.
 Result<ShareTest> share_test(std::span<const PersonChoices> people, Alternative alternative,
                              double confidence);
 
@@ -57,31 +57,35 @@ struct PairChoice {
 struct PairPreference {
   int a = 0, b = 0;
   int n = 0;             ///< answers
-  int participants = 0;  ///< participants who gave them
+  int participants = 0;  ///< participants who gave these answers
   int k = 0;             ///< how often a was chosen
   int a_first = 0;       ///< how often a was shown first
-  int first_chosen = 0;  ///< how often the first interval was chosen, whichever method it held
+  int first_chosen = 0;  ///< how often the first interval was chosen, whichever method it showed
   int max_per_participant = 0;
-  int several = 0;                    ///< participants who answered it more than once
+  int several = 0;                    ///< participants who answered this pair more than once
   std::string warning;                ///< why the test may not be valid; empty if it is
   std::vector<PersonChoices> people;  ///< one entry for each participant: choices of a, and answers
   /// Exact, two-sided. Refused without answers, and if a participant answered more than once under
   /// RepeatedPairs::Refuse or Share.
   Result<BinomialTest> test = Refusal{"not computed"};
-  /// Two-sided, in place of `test` if a participant answered more than once under RepeatedPairs::Share.
+  /// Two-sided test that replaces `test` if a participant answered more than once under RepeatedPairs::Share.
   std::optional<ShareTest> shares;
-  std::optional<double> p_holm, p_bh;  ///< over all pairs; a refused test counts as not significant
+  /// p corrected over all pairs; a refused test counts as not significant.
+  std::optional<double> p_holm, p_bh;
 
-  std::optional<double> p() const;  ///< p of the test that decides
+  std::optional<double> p() const;  ///< p of `shares` if set, else of `test`; empty if that is refused
 };
 
-/// Bias to the first interval, whichever method it held.
+/// Bias towards choosing the first interval, whichever method it showed.
 struct IntervalBias {
   int n = 0, first_chosen = 0;
-  Result<BinomialTest> test = Refusal{"not computed"};  ///< as if all answers were independent
-  /// Each participant's share against one half: valid even if the answers of a participant are dependent.
+  /// Test of first_chosen against n / 2; treats all answers as independent.
+  Result<BinomialTest> test = Refusal{"not computed"};
+  /// t test of each participant's share of choices of the first interval against one half. It is valid even
+  /// if the answers of a participant are dependent.
   Result<OneSampleTTest> by_participant = Refusal{"not computed"};
-  std::optional<Unanimous> all_alike;  ///< if all shares are equal: the exact test in place of t
+  /// Set if all shares are equal: the exact test that replaces the t test.
+  std::optional<Unanimous> all_alike;
   Result<OrderBias> model = Refusal{"not computed"};  ///< within the Bradley-Terry model
 };
 
@@ -94,15 +98,16 @@ struct PreferenceAnalysis {
   std::vector<PairPreference> pairs;  ///< every pair, including those without answers
   IntervalBias interval;
   Result<BradleyTerry> bradley_terry = Refusal{"not computed"};
-  std::vector<ParticipantTriads> triads;  ///< of participants with any answer
+  std::vector<ParticipantTriads> triads;  ///< circular triads of each participant with an answer
   Result<GroupTriads> group_triads = Refusal{"not computed"};
 };
 
-/// `methods`: number of methods. std::invalid_argument for a method out of range or compared with itself.
+/// Computes all results of Task 2. `methods`: number of methods. std::invalid_argument for a method out of
+/// range or compared with itself.
 PreferenceAnalysis analyse_preferences(std::span<const PairChoice> choices, int methods,
                                        const AnalysisPlan& plan);
 
-/// Only the pairs of analyse_preferences().
+/// Computes only the `pairs` of analyse_preferences().
 std::vector<PairPreference> count_preferences(std::span<const PairChoice> choices, int methods,
                                               const AnalysisPlan& plan);
 

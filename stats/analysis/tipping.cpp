@@ -38,7 +38,7 @@ double room_of(const ScoreScale& scale, double mean) {
   return scale.higher_is_better ? mean - scale.min : scale.max - mean;
 }
 
-/// How far an estimate can decrease before it crosses into, or out of, the range.
+/// Decrease at which an estimate enters the range from above or leaves it below. Empty if no decrease does.
 std::optional<double> way_down(double estimate, DecisionRange holds) {
   const double edge = estimate > holds.high ? holds.high : holds.low;
   if (estimate < holds.low || std::isinf(edge) || holds.low >= holds.high) return {};
@@ -55,7 +55,7 @@ std::optional<double> shift_of(std::optional<double> way, std::size_t missing, s
 Result<TippingPoint> tipping_point(const ScoreTable& table, int n_star, int a, int b, double estimate,
                                    DecisionRange holds) {
   const Seen seen = count(table, n_star, a, b);
-  if (seen.both == 0) return Refusal{"nobody judged both"};
+  if (seen.both == 0) return Refusal{"no participant judged both methods"};
   TippingPoint out;
   out.planned = seen.planned;
   out.holds = estimate >= holds.low && estimate <= holds.high;
@@ -84,7 +84,7 @@ Result<TippingPoint> no_tipping_point(const ScoreTable& table, int n_star, int a
   if (!counted) return counted;
   TippingPoint out = *counted;
   out.holds = holds;
-  out.reason = "all differences are equal, so they have no error to hold a shift against";
+  out.reason = "all differences are equal, so their standard error is zero and no shift can be computed";
   return out;
 }
 

@@ -2,8 +2,8 @@
 /// Tipping-point analysis: how much worse than expected missing answers must be before a decision changes. It
 /// uses a pattern mixture (Little 1994; Ratitch, O'Kelly and Tosiello 2013). Participants who were planned to
 /// judge both methods but lack one are assumed to differ like the others, except that their answers to one
-/// method are worse by `shift` points. The mean difference over all participants then moves by shift times
-/// their share; its standard error stays that of the observed answers.
+/// method are worse by `shift` points. The mean difference over all participants then changes by `shift`
+/// times the share of those participants; its standard error stays that of the observed answers.
 
 #include <limits>
 #include <optional>
@@ -16,9 +16,10 @@ namespace stats {
 
 /// Missing answers to one method of a pair.
 struct MissingAnswers {
-  std::size_t missing = 0;      ///< participants who lack it, of those planned to judge both
-  double room = 0;              ///< points by which their expected answers can be worse within the scale
-  std::optional<double> shift;  ///< points by which they must be worse; empty: no shift suffices, or unknown
+  std::size_t missing = 0;  ///< participants without answers to the method, of those planned to judge both
+  double room = 0;          ///< points by which their expected answers can be worse within the scale
+  std::optional<double> shift;  ///< points by which these answers must be worse than expected to change the
+                                ///< decision; empty: no shift does, or unknown
   bool within_scale() const { return shift && *shift <= room; }
 };
 
@@ -34,17 +35,18 @@ struct DecisionRange {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
 };
 
-/// Shifts at which the estimate of a - b enters or leaves the range in which the decision holds. `a` and `b`
-/// are method indices of the table. Refused if no participant judged both.
+/// The shifts of missing answers at which the estimate of a - b enters or leaves the range in which the
+/// decision holds. `a` and `b` are method indices of the table. Refused if no participant judged both.
 Result<TippingPoint> tipping_point(const ScoreTable& table, int n_star, int a, int b, double estimate,
                                    DecisionRange holds);
 
-/// The same for a two-sided test against zero: the shifts at which the difference becomes significant, or
-/// stops being so. `half` is the half width of the interval of 1 - alpha about the estimate.
+/// Shifts for a two-sided test against zero, at which the difference becomes significant or stops being
+/// significant. `half` is the half width of the interval of 1 - alpha about the estimate.
 Result<TippingPoint> tipping_point_two_sided(const ScoreTable& table, int n_star, int a, int b,
                                              double estimate, double half);
 
-/// For differences that are all equal and so have no error: counts the missing answers and gives no shift.
+/// Counts the missing answers and gives no shift; for differences that are all equal and so have no standard
+/// error.
 Result<TippingPoint> no_tipping_point(const ScoreTable& table, int n_star, int a, int b, bool holds);
 
 }  // namespace stats

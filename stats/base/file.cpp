@@ -29,14 +29,14 @@ Descriptor::~Descriptor() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-// O_NONBLOCK, since opening a pipe would otherwise block.
+// Opens with O_NONBLOCK: opening a named pipe that has no writer would otherwise block.
 std::string read_file(const fs::path& path, std::size_t max_bytes) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0)
     throw Error(path.string(), "cannot be read: " + reason(), "check the path and its permissions");
   struct stat status {};
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw Error(path.string(), "is not a regular file", "name a file");
+    throw Error(path.string(), "is not a regular file", "give the path of a file");
   }
   const auto size = static_cast<std::size_t>(status.st_size);
   if (size > max_bytes) {

@@ -9,7 +9,7 @@
 
 namespace base {
 
-/// A file descriptor that closes itself; below 0: none.
+/// Owns a file descriptor and closes it on destruction. A negative descriptor means that no file is open.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -38,7 +38,7 @@ void make_folder(const std::filesystem::path& folder);
 std::filesystem::path resource(const std::string& relative);
 
 /// Returns a user's path as given if it exists, else resource(path) if that exists. Otherwise an error that
-/// names both.
+/// names both paths.
 std::filesystem::path find_input(const std::filesystem::path& path);
 
 /// SHA-256 as 64 hexadecimal digits.
@@ -50,7 +50,8 @@ std::string version();
 /// Now in UTC as ISO 8601 with seconds, e.g. "2026-01-31T12:00:00Z".
 std::string utc_now();
 
-/// SHA-256 of a file's bytes as 64 hexadecimal digits, read part by part. base::Error when it cannot be read.
+/// SHA-256 of a file's bytes as 64 hexadecimal digits, read part by part. base::Error if the file cannot be
+/// read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace base

@@ -25,7 +25,7 @@ std::vector<std::string> steps_of(std::string_view text) {
   return steps;
 }
 
-/// The array index that a pointer's step names; -1 if it is not an index.
+/// The array index that one step of a JSON pointer names; -1 if the step is not an index.
 std::ptrdiff_t index_of(const std::string& step) {
   if (step.empty() || step.size() > 9 || step.find_first_not_of("0123456789") != std::string::npos) return -1;
   return std::stol(step);

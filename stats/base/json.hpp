@@ -31,10 +31,11 @@ class JsonError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Deepest nesting of brackets and braces that is accepted; no file of these programs reaches it.
+/// Deepest nesting of brackets and braces that is accepted. The JSON files of these programs are nested less
+/// deeply.
 inline constexpr int most_json_levels = 32;
 
-/// A path to a value within a JSON value, as in RFC 6901: "/task1/mixed/0". The empty text is the value
+/// A path to a value within a JSON value, as in RFC 6901: "/task1/mixed/0". The empty path names the value
 /// itself.
 class JsonPointer {
  public:
@@ -48,8 +49,9 @@ class JsonPointer {
 };
 
 /// Null, a boolean, a number, a string, an array, or an object whose members keep the order in which they
-/// were added. A list in braces is an object if each of its elements is a pair that begins with a string, as
-/// in {{"n", 3}, {"mean", 2.5}}; otherwise it is an array. Numbers that are not finite are printed as null.
+/// were added. A C++ initializer list becomes an object if each of its elements is a pair that begins with a
+/// string, as in {{"n", 3}, {"mean", 2.5}}; otherwise it becomes an array. Numbers that are not finite are
+/// printed as null.
 class Json {
  public:
   using exception = JsonError;
@@ -77,7 +79,7 @@ class Json {
   Json(const std::optional<T>& value) {
     if (value) *this = Json(*value);
   }
-  /// Deleted: other pointers would convert to booleans.
+  /// Deleted: pointers other than const char* would convert to booleans.
   template <class T>
   Json(const T*) = delete;
   /// An array, from a vector, array, set or span.
@@ -107,8 +109,8 @@ class Json {
   /// `most_json_levels`.
   static Json parse(std::string_view text);
   static Json parse(std::istream& text);
-  /// On one line if `indent` is negative. Bytes that are not UTF-8 become U+FFFD, since a database may hold
-  /// any bytes.
+  /// Prints the value as JSON, on one line if `indent` is negative, else with `indent` spaces per level.
+  /// Bytes that are not UTF-8 become U+FFFD, since strings from a database may hold any bytes.
   std::string dump(int indent = -1) const;
 
   bool is_null() const { return type_ == Type::Null; }
@@ -121,7 +123,7 @@ class Json {
   bool is_object() const { return type_ == Type::Object; }
   bool is_structured() const { return is_array() || is_object(); }
 
-  /// Elements or members; 0 for null, 1 for every other value.
+  /// Number of elements or members; 0 for null, 1 for every other value.
   std::size_t size() const;
   bool empty() const { return size() == 0; }
   Json* begin() { return items_.data(); }
@@ -172,7 +174,7 @@ class Json {
 
   /// A null value becomes an array. Throws JsonError for other kinds of values.
   void push_back(Json value);
-  /// Adds the members of `object`; existing members get its values.
+  /// Adds the members of `object`. Members that exist already get the value that they have in `object`.
   void update(const Json& object);
   /// Returns the number of members removed, 0 or 1.
   std::size_t erase(std::string_view key);
@@ -208,7 +210,7 @@ class Json {
     out.clear();
     for (const Json& value : elements()) out.insert(value.get<T>());
   }
-  /// As get(), implicitly. Code that compares or computes calls get<T>().
+  /// Converts implicitly, with the result of get<T>(). Code that compares or computes calls get<T>() itself.
   template <class T>
   requires(std::same_as<T, std::string> || std::same_as<T, double> || std::same_as<T, int> ||
            std::same_as<T, std::vector<double>> || std::same_as<T, std::set<std::string>>)
@@ -217,8 +219,8 @@ class Json {
   }
   /// Throws JsonError if the value is not a string.
   const std::string& text() const;
-  /// The member's value, or `otherwise` if there is no such member. Throws JsonError if it is of another
-  /// kind.
+  /// The member's value, or `otherwise` if there is no such member. Throws JsonError if the value is of
+  /// another kind than T.
   template <class T>
   T value(std::string_view key, T otherwise) const {
     const Json* found = find(key);
@@ -234,12 +236,12 @@ class Json {
   template <class T>
   requires std::is_arithmetic_v<T>
   friend bool operator==(const Json& a, T b) { return a == Json(b); }
-  /// Numbers are ordered among themselves, and so are strings; all else is unordered.
+  /// Two numbers are ordered by value and two strings by their bytes; all other pairs are unordered.
   friend std::partial_ordering operator<=>(const Json& a, const Json& b);
   template <class T>
   requires std::is_arithmetic_v<T>
   friend std::partial_ordering operator<=>(const Json& a, T b) { return a <=> Json(b); }
-  /// For the messages of tests.
+  /// Prints the value as JSON on one line; for the messages of tests.
   friend std::ostream& operator<<(std::ostream& out, const Json& value);
 
  private:
@@ -259,7 +261,8 @@ class Json {
     double double_;
   };
   std::string text_;
-  /// Elements of an array, or values of an object's members, whose keys are `keys_`.
+  /// Elements of an array, or values of an object's members. `keys_` holds the members' keys in the same
+  /// order.
   std::vector<Json> items_;
   std::vector<std::string> keys_;
 };

@@ -10,7 +10,7 @@ namespace base {
 
 using Library = nlohmann::ordered_json;
 
-/// Converts to and from the library's values.
+/// Converts between base::Json and nlohmann's values.
 struct JsonLibrary {
   static Json from(const Library& value) {
     switch (value.type()) {
@@ -65,7 +65,8 @@ struct JsonLibrary {
         return out;
       }
       case Json::Type::Object: {
-        // Keys are already unique; emplacing each one would search for it.
+        // Appends to the underlying vector, because ordered_json's own emplace would search for each key. The
+        // keys are already unique.
         Library::object_t out;
         out.reserve(value.items_.size());
         for (std::size_t i = 0; i < value.items_.size(); ++i)

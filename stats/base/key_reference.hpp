@@ -1,6 +1,6 @@
 #pragma once
-/// References of the keys of file formats, as pages of Markdown. Tests compare them with the keys that the
-/// readers ask for (tests/common/asked_keys.hpp).
+/// Reference pages in Markdown that list the keys of a file format. Tests compare the lists with the keys
+/// that the readers of the format look up (tests/common/asked_keys.hpp).
 
 #include <string>
 #include <vector>
@@ -8,16 +8,16 @@
 namespace base {
 
 struct KeyReference {
-  std::string table;  ///< "", "design", "block.question": the [table] or [[tables]] that holds it
+  std::string table;  ///< "", "design", "block.question": the [table] or [[tables]] that holds the key
   std::string key;
-  std::string type;      ///< as AskedKey::type; several with " or "
+  std::string type;      ///< one of the texts of AskedKey::type, or several joined by " or "
   std::string values;    ///< range or choices; empty: any
   std::string fallback;  ///< value of an absent key; empty: the key is required
   std::string meaning;
-  std::string unit = {};  ///< empty: none, or the page's introduction says it
+  std::string unit = {};  ///< empty: no unit, or the unit is in the page's introduction
 };
 
-/// Fallback of keys that only some files need.
+/// KeyReference::fallback of a key that only some files need; the column "meaning" says which.
 inline constexpr const char* where_needed = "see right";
 
 /// Heading and text above the keys of a table.
@@ -27,7 +27,8 @@ struct TableReference {
   std::string text;
 };
 
-/// A section for each table with its keys. A column of units stands there if any key has one.
+/// Markdown with a section for each table, which lists its keys. The column of units is omitted if no key has
+/// a unit.
 std::string reference_sections(const std::vector<TableReference>& tables,
                                const std::vector<KeyReference>& keys);
 

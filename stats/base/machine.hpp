@@ -1,5 +1,5 @@
 #pragma once
-/// The station's description for a session's record.
+/// Description of the computer for the record of a session.
 
 #include <string>
 

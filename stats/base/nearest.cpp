@@ -13,7 +13,8 @@ constexpr std::size_t longest_compared = 100;  // bytes; the work is quadratic i
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Rows of the table of distances between the first i letters of a and the first j letters of b.
+  // `before`, `last` and `row` are rows i - 2, i - 1 and i of the table of distances. Column j holds the
+  // distance between the first i letters of a and the first j letters of b.
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -34,7 +35,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known) {
   std::string nearest;
   if (word.empty() || word.size() > longest_compared) return nearest;
-  std::size_t least = word.size() / 3 + 1;  // beyond this it is a different word
+  std::size_t least = word.size() / 3 + 1;  // from this distance on the word counts as a different one
   for (const auto& one : known) {
     if (one.size() > longest_compared) continue;
     const std::size_t distance = edit_distance(word, one);

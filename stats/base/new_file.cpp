@@ -56,7 +56,7 @@ void remove_stale_drafts(const fs::path& path) {
 
 namespace {
 
-/// base::Error naming `output` unless the folder is writable or can be created.
+/// Throws base::Error, which names `output`, unless the folder is writable or can be created.
 void check_writable(fs::path folder, const fs::path& output) {
   struct stat above {};
   while (::stat(folder.c_str(), &above) != 0 && errno == ENOENT) folder = folder_of(folder);
@@ -71,7 +71,7 @@ void check_output(const fs::path& path) {
   struct stat standing {};
   if (::stat(path.c_str(), &standing) == 0 && !S_ISREG(standing.st_mode))
     throw Error(path.string(), "is a folder, a device or a pipe, and cannot be replaced by a file",
-                "name a file");
+                "give the path of a file");
   check_writable(folder_of(path), path);
 }
 
@@ -94,7 +94,8 @@ NewFile::NewFile(const fs::path& path, Readers readers) : path_(path), readers_(
   }
 }
 
-/// False if remove_stale_drafts() locked or deleted the file before it was locked here.
+/// Creates and locks the temporary file. Returns false if remove_stale_drafts() of another process locked or
+/// deleted the file first.
 bool NewFile::make_draft() {
   const fs::path draft = draft_name(path_);
   const mode_t rights = readers_ == Readers::Owner ? 0600 : 0666;
@@ -102,7 +103,8 @@ bool NewFile::make_draft() {
   if (fd_ < 0) fail("cannot be created");
   draft_ = draft;
   struct stat made {};
-  // On a file system without locks, stale drafts are not removed either.
+  // A file system without locks reports another error than EWOULDBLOCK. The file is then used unlocked:
+  // remove_stale_drafts() cannot lock and delete it either.
   const bool taken = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   if (!taken && ::fstat(fd_, &made) == 0 && made.st_nlink > 0) return true;
   ::close(std::exchange(fd_, -1));

@@ -27,17 +27,19 @@ void remove_stale_drafts(const std::filesystem::path& path);
 /// pipe or folder is refused), and its folder is writable or can be created. Creates nothing.
 void check_output(const std::filesystem::path& path);
 
-/// The same check for files in a folder that exists or will be created.
+/// base::Error unless files can be written to `folder`: the folder is writable or can be created. Creates
+/// nothing.
 void check_output_folder(const std::filesystem::path& folder);
 
 /// Creates the folder of `path` and its missing parents. Returns the topmost folder created; empty if none
 /// was. base::Error names `path`.
 std::filesystem::path make_folder_of(const std::filesystem::path& path);
 
-/// A new file beside `path`. It is created exclusively: an existing file or link is never written through.
-/// Unless put_in_place() was called, the destructor deletes the file and the folders created for it. The file
-/// is locked (flock) as long as the object lives. Errors are base::Error and name `path`. The constructor
-/// calls check_output() first.
+/// A new file under a temporary name in the folder of `path`; put_in_place() renames it to `path`. It is
+/// created exclusively (O_EXCL), so no existing file or link is overwritten by write(). If put_in_place() was
+/// not called, the destructor deletes the file and the folders created for it. The file is locked (flock) as
+/// long as the object lives. Errors are base::Error and name `path`. The constructor calls check_output()
+/// first.
 class NewFile {
  public:
   explicit NewFile(const std::filesystem::path& path, Readers readers = Readers::AsUmask);
@@ -65,8 +67,9 @@ class NewFile {
   int fd_ = -1;
 };
 
-/// Waits for and holds a lock for the file at `path`, for files that several programs read and replace. The
-/// lock is a file beside it, `path` + ".lock", which is not deleted. Errors are base::Error.
+/// An exclusive lock for a file that several programs read and replace. The constructor waits until the lock
+/// is free; the destructor releases it. The locked file is `path` + ".lock", which is never deleted. Errors
+/// are base::Error.
 class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& path);

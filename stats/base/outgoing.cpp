@@ -32,9 +32,10 @@ void check_file_name(const std::string& name, const std::string& place) {
   bool good = !name.empty() && name.back() != '/';
   for (std::string part; std::getline(parts, part, '/');) good = good && is_file_name(part);
   if (good) return;
-  throw Error(place, "would hold a file '" + shortened(name) + "', which is not an allowed file name",
-              "the database or protocol that asks for that name is damaged or not to be trusted; nothing was "
-              "written");
+  throw Error(
+      place, "would hold a file '" + shortened(name) + "', which is not an allowed file name",
+      "nothing was written; get the database or protocol that names this file again, from a source you "
+      "trust");
 }
 
 std::string TerminalText::next(std::string_view part) {

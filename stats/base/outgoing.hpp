@@ -15,9 +15,11 @@ void check_file_name(const std::string& name, const std::string& place);
 /// are not UTF-8, become '?'. So text from a file cannot move the cursor or clear the screen.
 class TerminalText {
  public:
-  /// Filters the next part. A character that is cut at its end is held back until the part after it.
+  /// Returns the next part, filtered. If the part ends within a character, the bytes of that character are
+  /// stored and filtered with the part after it.
   std::string next(std::string_view part);
-  /// Call at the end of the stream: '?' for a character that was held back, else empty.
+  /// Call at the end of the stream: returns '?' if bytes of an incomplete character are still stored, else an
+  /// empty text.
   std::string rest();
 
  private:

@@ -13,11 +13,13 @@ inline constexpr int least_picture_side = 16, most_picture_side = 8192;
 /// "1280x720".
 std::string size_words(PictureSize size);
 
-/// 8192x4096. Drawing a picture of fluid takes about 40 bytes a pixel.
+/// Largest number of pixels of a picture, 8192 x 4096. Drawing a picture of fluid takes about 40 bytes of
+/// memory a pixel.
 inline constexpr long long most_picture_pixels = 1LL << 25;
 
-/// Parses "1280x720", without spaces. base::Error, beginning with the option and the text, if this is not a
-/// size, a side is out of range, or the picture would take too much memory; the message says how much.
+/// Parses "1280x720", without spaces. base::Error, beginning with the option and the text, if the text is not
+/// a size, a side is out of range, or the picture would take too much memory; the message says how much
+/// memory.
 PictureSize parse_picture_size(const std::string& text, const std::string& option = "--size");
 
 }  // namespace base

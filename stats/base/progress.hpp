@@ -7,7 +7,7 @@
 namespace base {
 
 /// Shows the progress of a long step on stderr: a line redrawn at most ten times a second, or one plain line
-/// per tenth if stderr is not a terminal. Shows nothing for steps that end within two seconds.
+/// per tenth of the work if stderr is not a terminal. Shows nothing for steps that end within two seconds.
 class Progress {
  public:
   Progress(std::string label, std::size_t total);

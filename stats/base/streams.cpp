@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t line_bytes = 1000;
 constexpr int most_lines = 200;
 
-/// True if the reader of the pipe or socket has left.
+/// True if stdout is a pipe or socket whose reader has closed it.
 bool reader_left() {
   pollfd out{STDOUT_FILENO, 0, 0};
   return ::poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLHUP)) != 0;
@@ -81,7 +81,8 @@ void print_coloured(const std::string& text) {
   write_out(out + plain.rest());
 }
 
-// open() returns the lowest free number. The descriptors stay open over exec.
+// Because open() returns the lowest free number, opening in ascending order fills the gaps. The descriptors
+// stay open over exec.
 bool open_standard_streams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != fd) return false;
@@ -96,7 +97,8 @@ bool finish_output() {
   const std::string why = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
   if (flushed && !std::ferror(stdout)) return true;
   if (reader_left()) return false;
-  throw Error("standard output", "cannot be written" + why, "free space, or send it elsewhere");
+  throw Error("standard output", "cannot be written" + why,
+              "free space, or redirect the output to another file");
 }
 
 std::string for_terminal(const std::string& message) {

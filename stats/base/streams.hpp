@@ -9,12 +9,12 @@
 
 namespace base {
 
-/// Opens /dev/null on each of the descriptors 0, 1 and 2 that is closed; otherwise a data file could get that
-/// number and messages would be written into it. Returns false on failure.
+/// Opens /dev/null on each of the descriptors 0, 1 and 2 that is closed; otherwise a data file could get the
+/// closed descriptor's number, and messages would be written into the data file. Returns false on failure.
 bool open_standard_streams();
 
-/// While it lives, everything printed to stdout passes through base::TerminalText, which lets no control
-/// characters through. Use print_coloured() for coloured text.
+/// While an object of this class exists, everything printed to stdout passes through base::TerminalText,
+/// which replaces control characters by '?'. Use print_coloured() for coloured text.
 class PlainOutput {
  public:
   PlainOutput();
@@ -27,15 +27,16 @@ class PlainOutput {
   std::FILE *before_, *plain_ = nullptr;
 };
 
-/// Prints text with its colours (ECMA-48 "ESC [ digits m") and no other control characters.
+/// Prints text with its colour codes (ECMA-48 "ESC [ digits m"). Other control characters than tab and line
+/// feed become '?'.
 void print_coloured(const std::string& text);
 
 /// Flushes stdout; base::Error if any of its output could not be written, now or earlier. Returns false,
-/// without an error, if the reader of a pipe has left (`| head -1`).
+/// without an error, if the reader of a pipe has closed it (`| head -1`).
 bool finish_output();
 
-/// Prepares a message for stderr: cuts the middle of long lines, removes control characters, and limits the
-/// length to a screen or two.
+/// Prepares a message for stderr: cuts the middle of lines longer than 1000 bytes, replaces control
+/// characters by '?', and cuts the message after 200 lines.
 std::string for_terminal(const std::string& message);
 
 }  // namespace base

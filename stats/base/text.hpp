@@ -11,16 +11,16 @@
 
 namespace base {
 
-/// Number of bytes of the first character of `text`, or 0 if that is not UTF-8 (RFC 3629: no overlong forms,
-/// no surrogates, nothing above U+10FFFF) or `text` is empty.
+/// Number of bytes of the first character of `text`, or 0 if the character is not UTF-8 (RFC 3629: no
+/// overlong forms, no surrogates, nothing above U+10FFFF) or `text` is empty.
 std::size_t utf8_length(std::string_view text);
 
-/// True if all of it is UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F), so that every
-/// file and terminal shows it unchanged.
+/// True if all of the text is UTF-8 without control characters (U+0000 to U+001F, U+007F to U+009F), so that
+/// every file and terminal shows it unchanged.
 bool is_plain_line(std::string_view text);
 
-/// A user's value for display in a message: characters that is_plain_line() would refuse become '?'. If it
-/// has more than `most_bytes`, its middle is replaced by its length in bytes.
+/// A user's value for display in a message: characters that is_plain_line() would refuse become '?'. If the
+/// value has more than `most_bytes`, its middle is replaced by the number of its bytes.
 std::string shortened(std::string_view value, std::size_t most_bytes = 120);
 
 /// The words, separated by ", ".
@@ -30,7 +30,8 @@ std::string joined(const std::vector<std::string>& words);
 /// left out.
 std::vector<std::string> split(const std::string& line, char separator = ',');
 
-/// The number that all of `text` is; none if it is no number, or beyond the type's range.
+/// Parses all of `text` as a number. Empty if `text` is not a number or the number is beyond the type's
+/// range.
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number value{};

@@ -32,7 +32,7 @@ std::string known_keys(std::string_view key, const std::map<std::string, AskedKe
   return "known keys here: " + joined(names) + (nearest.empty() ? "" : "; the nearest is " + nearest);
 }
 
-/// "block[3].question[0]" without its indices.
+/// "block.question" for "block[3].question[0]".
 std::string without_indices(const std::string& path) {
   std::string out;
   bool inside = false;
@@ -62,7 +62,7 @@ std::string shown(double value) {
 
 }  // namespace
 
-/// A table of the document, the keys asked for, and the child tables asked for.
+/// A table of the document, with the keys and the child tables that the reader has looked up so far.
 struct TomlTable::State {
   using Asked = std::map<std::string, AskedKey, std::less<>>;
 
@@ -76,7 +76,7 @@ struct TomlTable::State {
   std::string name(std::string_view key) const;
   [[noreturn]] void fail(const toml::node* node, std::string_view key, const std::string& problem,
                          const std::string& mend) const;
-  /// Looks up a key and records that it was asked for, which finish() checks.
+  /// Looks up a key and records that the reader knows it: finish() refuses all other keys.
   const toml::node* find(std::string_view key) const;
   const toml::node& need(std::string_view key) const;
   void note(std::string_view key, const char* type, std::optional<Range> range = {},

@@ -1,7 +1,7 @@
 #pragma once
-/// Checked reading of TOML: the reader asks for every key once with its type and range; a key that was not
-/// asked for is an error. Errors are base::Error at file:line:column. toml++ itself is included only by its
-/// implementation (toml_parser.hpp).
+/// Checked reading of TOML: the reader of a format looks up every key with its type and range. A key in the
+/// file that the reader did not look up is an error. Errors are base::Error at file:line:column. Only the
+/// implementation includes toml++ (toml_parser.hpp).
 
 #include <cstdint>
 #include <filesystem>
@@ -21,15 +21,15 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
 };
 inline constexpr Range any{};
-/// Larger than zero.
+/// The range of all numbers above zero.
 inline constexpr Range positive{std::numeric_limits<double>::min()};
 inline constexpr Range non_negative{0.0};
 
-/// How a reader asked for one key.
+/// How a reader looked up one key.
 struct AskedKey {
   std::string type;  ///< "number", "whole number", "true or false", "text", "list of numbers", "list of
-                     ///< texts", "table" or "tables"; empty: only its presence was asked for
-  std::optional<Range> range;        ///< of numbers
+                     ///< texts", "table" or "tables"; empty: the reader only looked up if the key is present
+  std::optional<Range> range;        ///< range of allowed numbers
   std::vector<std::string> choices;  ///< allowed texts
   std::string fallback;              ///< value for an absent key, as TOML writes it; empty: none
 };
@@ -37,7 +37,7 @@ struct AskedKey {
 /// A range as shown in messages: "[0, 1]", "(0, inf]".
 std::string range_text(Range range);
 
-/// A table of a TOML document. Copies share the document and the record of the keys asked for.
+/// A table of a TOML document. Copies share the document and the record of the keys looked up.
 class TomlTable {
  public:
   bool has(std::string_view key) const;
@@ -51,9 +51,10 @@ class TomlTable {
   std::int64_t integer(std::string_view key, Range range = any) const;
   bool boolean(std::string_view key) const;
   std::string string(std::string_view key) const;
-  /// One of the allowed words.
+  /// The text of a key; an error unless it is one of the words `allowed`.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed) const;
-  /// All elements within range; exactly `size` of them unless size is 0.
+  /// The numbers of a list, each within `range`. An error unless there are exactly `size` of them; a size of
+  /// 0 allows any number.
   std::vector<double> numbers(std::string_view key, std::size_t size = 0, Range range = any) const;
   std::vector<std::string> strings(std::string_view key) const;
   TomlTable table(std::string_view key) const;
@@ -62,7 +63,7 @@ class TomlTable {
   /// [[key]]: an array of tables; empty when absent.
   std::vector<TomlTable> tables(std::string_view key) const;
 
-  /// The same with a default for an absent key.
+  /// Return the value of the key, or `fallback` if the key is absent.
   double number_or(std::string_view key, double fallback, Range range = any) const;
   std::int64_t integer_or(std::string_view key, std::int64_t fallback, Range range = any) const;
   bool boolean_or(std::string_view key, bool fallback) const;
@@ -70,19 +71,19 @@ class TomlTable {
   std::string choice_or(std::string_view key, const std::string& fallback,
                         const std::vector<std::string>& allowed) const;
 
-  /// Throws an error at this key (or at the table, if the key is empty) with the fix given.
+  /// Throws an error at this key (or at the table, if the key is empty) with the advice `mend`.
   [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& mend) const;
 
-  /// The same at element `index` of the list or [[tables]] under this key.
+  /// Throws an error at element `index` of the list or [[tables]] under this key.
   [[noreturn]] void fail_at(std::string_view key, std::size_t index, const std::string& problem,
                             const std::string& mend) const;
 
-  /// The keys asked for so far, in this table and below, by dotted name. All tables of a [[list]] count as
-  /// one, without indices. Tests use this to compare a format's reference with its reader.
+  /// The keys looked up so far, in this table and its child tables, by dotted name. All tables of a [[list]]
+  /// count as one, without indices. Tests use this to compare a format's reference with its reader.
   std::map<std::string, AskedKey> asked() const;
 
-  /// Call once on the root after reading everything: an error at the first key that was not asked for, naming
-  /// the known keys.
+  /// Call once on the root after reading everything. Throws an error at the first key that was not looked up;
+  /// the error names the known keys.
   void finish() const;
 
   struct State;

@@ -1,8 +1,9 @@
 #pragma once
-/// Includes toml++; only for toml.cpp and its tests. Version 3.3 asserts properties
-/// that malformed documents violate ("here begins a key"); with assertions disabled it goes on to report a
-/// proper error. So they are disabled here: enabled, they would end the program, and as assumptions for the
-/// compiler (clang) they would be undefined behaviour.
+/// Includes toml++; only for toml.cpp and its tests. toml++ 3.3 asserts conditions that malformed documents
+/// violate, such as that a key begins at the current character. This header disables the assertions: a
+/// violated one would end the program, while without assertions toml++ reports an ordinary error. With clang
+/// toml++ also gives the conditions to the compiler as assumptions. Violating an assumption is undefined
+/// behaviour, so this header removes them too.
 
 #pragma push_macro("NDEBUG")
 #undef NDEBUG

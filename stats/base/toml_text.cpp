@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-/// Scans a text once, with just enough grammar to tell keys, values, quoted texts and comments apart. The
-/// parser stops where the text breaks the grammar, so the result for the rest does not matter.
+/// Scans a text once, with just enough grammar to distinguish keys, values, quoted texts and comments. After
+/// a syntax error the scan may be wrong, which does no harm: the parser stops at the error.
 class Walk {
  public:
   Walk(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -43,7 +43,7 @@ class Walk {
   }
 
  private:
-  /// An open list, an inline table, or (at the bottom) the document.
+  /// A list or inline table whose closing bracket has not been reached yet.
   struct Bracket {
     char kind;
     int depth;  // nesting depth of keys and brackets around its contents
@@ -51,7 +51,7 @@ class Walk {
 
   void step(char c) {
     if (static_cast<unsigned char>(c) >= 0x80)
-      fail("is a character outside ASCII where no quotes stand", "put the word in double quotes");
+      fail("is a character outside ASCII that is not within quotes", "put the word in double quotes");
     check_value_is_alone(c);
     const bool top = open_.empty();
     if (c == '\n' && top)
@@ -88,7 +88,8 @@ class Walk {
     header_ = false;
   }
 
-  /// A header counts its levels from the document, not from the header before it.
+  /// Begins a table header such as [a.b]. Its nesting depth counts from the document's root, not from the
+  /// header before it.
   void open_header() {
     header_ = true;
     depth_ = 1;
@@ -118,7 +119,7 @@ class Walk {
     end_value();
   }
 
-  /// Text before the next comma, bracket or line break belongs to no value.
+  /// Marks the value as complete: until the next comma or line end, a quote or opening bracket is an error.
   void end_value() {
     key_ = false;
     value_ = true;
@@ -132,7 +133,8 @@ class Walk {
 
   void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
-  /// toml++ 3.3 takes text directly after a number or date as a part of it.
+  /// Refuses a second '=', and a quote or opening bracket directly after a value: toml++ 3.3 takes text
+  /// directly after a number or date as a part of it.
   void check_value_is_alone(char c) const {
     if (!key_ && (c == '=' || (value_ && std::string_view("\"'[{").find(c) != std::string_view::npos)))
       fail(std::string("is a ") + c + " behind a value", "put a comma or the end of the line between them");
@@ -153,7 +155,7 @@ class Walk {
     at_ += 3;
     while (at_ < text_.size() && text_.substr(at_, 3) != three) skip_in_text(quote, true);
     at_ = std::min(at_ + 3, text_.size());
-    // Up to two quotes may precede the closing three.
+    // A multi-line text may itself end with up to two quotes, before the closing three.
     for (int i = 0; i < 2 && at_ < text_.size() && text_[at_] == quote; ++i) ++at_;
   }
 

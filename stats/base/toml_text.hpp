@@ -1,6 +1,6 @@
 #pragma once
 /// Checks of a TOML text before it is parsed. toml++ 3.3 recurses once per level of nesting. Outside quotes
-/// and comments it takes non-ASCII letters for spaces or runs into undefined behaviour.
+/// and comments it takes some non-ASCII characters for spaces, and others lead to undefined behaviour.
 
 #include <cstddef>
 #include <string>

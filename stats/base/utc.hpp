@@ -20,7 +20,7 @@ std::string build_options();
 std::optional<std::int64_t> seconds_of_utc(const std::string& utc);
 std::string utc_of_seconds(std::int64_t seconds);
 
-/// For tests: while it lives, utc_now() returns this time in all threads.
+/// For tests: while an object of this class exists, utc_now() returns the fixed time `utc` in all threads.
 class FixedUtc {
  public:
   explicit FixedUtc(const std::string& utc);

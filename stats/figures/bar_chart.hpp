@@ -10,7 +10,7 @@ namespace figures {
 struct BarChart {
   struct Bar {
     std::string group, label;
-    double value = 0;  ///< negative and non-finite values are drawn as 0 and labelled as they are
+    double value = 0;  ///< a negative or non-finite value has no bar; its label shows the value
     /// Ends of an interval, drawn over the bar if both are finite.
     double low = std::numeric_limits<double>::quiet_NaN();
     double high = std::numeric_limits<double>::quiet_NaN();

@@ -29,13 +29,13 @@ class Table {
 std::string section(const std::string& id, const std::string& title, const std::string& body);
 std::string subsection(const std::string& title, const std::string& body);
 std::string paragraph(const std::string& html);
-/// `caption` is HTML.
+/// A figure with its caption below; `caption` is HTML.
 std::string figure(const svg::Picture& picture, const std::string& caption);
-/// A section that the reader can open; printed as it is on the page.
+/// A section that the reader can open and close. On paper it is open or closed as on the screen.
 std::string details(const std::string& summary, const std::string& body);
 std::string list(const std::vector<std::string>& items);
-/// `body` between the page's head with its style sheet and its end. `body` must give the main content the id
-/// "main".
+/// A complete page: the head with the style sheet, then `body`. The element of `body` with the main content
+/// must have the id "main", the target of the link that skips the navigation.
 std::string whole_page(const std::string& title, const std::string& body);
 
 }  // namespace html

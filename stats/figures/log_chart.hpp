@@ -1,5 +1,5 @@
 #pragma once
-/// Logarithmic axes, and points on two of them with a straight line through them, as SVG.
+/// Logarithmic axes, and charts as SVG of points and a straight line on two such axes.
 
 #include <string>
 #include <vector>
@@ -14,19 +14,19 @@ struct LogScale {
 };
 
 /// 1, 2 and 5 times each power of ten, from the last one not above `least` to the first one not below `most`,
-/// at least two. Over more than three decades only the powers. 0 < least <= most.
+/// at least two. If most > 1000 least, only the powers of ten. 0 < least <= most.
 std::vector<double> log_ticks(double least, double most);
 std::string tick_label(double tick);
 
 struct LogChart {
   struct Point {
     double x = 0, y = 0;  ///< above 0
-    double high = 0;      ///< upper end of a stroke from y; y or less: none
+    double high = 0;      ///< upper end of a vertical stroke that begins at y; no stroke if high <= y
   };
   std::string title, x_title, y_title;
-  std::string note;                ///< beside the line
+  std::string note;                ///< text in the upper left corner of the plot
   std::vector<Point> points = {};  ///< at least one
-  double slope = 0;                ///< of the line: y = factor x^slope
+  double slope = 0;                ///< exponent of the line y = factor * x^slope
   double factor = 0;               ///< above 0
 };
 std::string to_svg(const LogChart& chart);

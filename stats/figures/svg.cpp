@@ -102,7 +102,7 @@ std::string cross(Point centre, double reach, const std::string& attributes) {
               attributes);
 }
 
-// Without a background, which would cover the page's shading that indicates more content to scroll to.
+// Draws no background rectangle: it would cover the page's shading that indicates more content to scroll to.
 std::string element(const Picture& picture) { return drawn(picture, "", ""); }
 
 std::string document(const Picture& picture) {

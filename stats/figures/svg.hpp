@@ -32,32 +32,33 @@ std::string escaped(std::string_view raw);
 /// ` name="value"`, escaped; several can be concatenated.
 std::string attribute(std::string_view name, std::string_view value);
 
-/// Elements; `attributes` are added as written. `words` are escaped here.
+/// A <text> element. `words` are escaped. `attributes` are inserted as written, here and in the functions
+/// below.
 std::string text(Point at, std::string_view words, const std::string& attributes = "");
-/// As text(), with markup such as tspans, inserted as written.
+/// A <text> element whose content, such as tspans, is inserted as written.
 std::string marked_text(Point at, const std::string& markup, const std::string& attributes = "");
 std::string line(Point from, Point to, const std::string& attributes);
-/// Any two opposite corners, in any order.
+/// `corner` and `opposite` are any two opposite corners.
 std::string rectangle(Point corner, Point opposite, const std::string& attributes);
 std::string circle(Point centre, double radius, const std::string& attributes);
 std::string path(const std::string& moves, const std::string& attributes);
 /// "M" or "L" with a point, for path().
 std::string move(char command, Point to);
-/// An X of the given half width.
+/// An X that extends `reach` px from its centre along x and y.
 std::string cross(Point centre, double reach, const std::string& attributes);
 
 /// A whole picture. `id` is the prefix of the ids inside it, so that several pictures can share a page.
 struct Picture {
   double width = 0, height = 0;
   std::string id = {};
-  std::string title = {};        ///< in a few words, read aloud first
+  std::string title = {};        ///< names the picture in a few words; screen readers read it first
   std::string description = {};  ///< describes the picture for readers who cannot see it
   std::string definitions = {};  ///< patterns and clip paths
   std::string body = {};
 };
-/// As an element of an HTML page, which needs no namespace.
+/// The picture as an <svg> element for an HTML page, which needs no XML namespace.
 std::string element(const Picture& picture);
-/// As a file of its own.
+/// The picture as the text of an SVG file, with a white background.
 std::string document(const Picture& picture);
 
 }  // namespace svg

@@ -12,7 +12,8 @@ std::string number(double value, int digits);
 /// At most four significant digits, without trailing zeros: "0.01667", "4".
 std::string shortest(double value);
 
-/// Free text as one cell of a CSV or Markdown table.
+/// Free text as one cell of a CSV or Markdown table: ',' becomes ';', '|' becomes '/', and line ends become
+/// spaces.
 std::string in_a_cell(std::string text);
 
 /// Rows of text cells as CSV and as a Markdown table; the caller formats numbers.

@@ -13,10 +13,10 @@ namespace stats {
 namespace {
 
 constexpr double most_pixels_per_degree = 200;
-// Section 4.3 and Table 1 of the paper.
+// Constants of FLIP: section 4.3 and Table 1 of Andersson et al. 2020 (flip.hpp).
 constexpr double colour_power = 0.7, knee_share = 0.4, knee_error = 0.95;
 constexpr double feature_power = 0.5, feature_width_deg = 0.082;
-/// Reference white D65, as of the matrix below.
+/// CIE XYZ of the reference white D65: the sum of each row of the matrix in relative_xyz.
 constexpr std::array<double, 3> white{0.950428545, 1.0, 1.088900371};
 
 using Colour = std::array<double, 3>;
@@ -80,7 +80,7 @@ double linear(std::uint8_t encoded) {
   return c > 0.04045 ? std::pow((c + 0.055) / 1.055, 2.4) : c / 12.92;
 }
 
-/// CIE XYZ of linear sRGB, relative to the white.
+/// CIE XYZ of linear sRGB, each divided by the white's XYZ.
 Colour relative_xyz(const Colour& rgb) {
   return {(10135552 * rgb[0] + 8788810 * rgb[1] + 4435075 * rgb[2]) / 24577794 / white[0],
           (2613072 * rgb[0] + 8788810 * rgb[1] + 887015 * rgb[2]) / 12288897 / white[1],
@@ -94,15 +94,16 @@ Colour linear_rgb(const Colour& relative) {
           0.055639423 * x - 0.204011202 * y + 1.057148933 * z};
 }
 
-/// Lightness and two opponent colours of three numbers that are 1 for white: YCxCz from relative XYZ, L*a*b*
-/// from their roots.
+/// Lightness and two opponent-colour channels of three values that are 1 for white. The values of
+/// relative_xyz give YCxCz; their cube roots give L*a*b*.
 Colour opponent(const Colour& c) { return {116 * c[1] - 16, 500 * (c[0] - c[1]), 200 * (c[1] - c[2])}; }
 Colour from_opponent(const Colour& c) {
   const double y = (c[0] + 16) / 116;
   return {y + c[1] / 500, y, y - c[2] / 200};
 }
 
-/// L*a*b* with opponent colours that fade in the dark (Hunt adjustment).
+/// L*a*b* of linear sRGB with the Hunt adjustment: a* and b* are scaled by L* / 100, since dark colours look
+/// less colourful.
 Colour hunt_lab(const Colour& rgb) {
   constexpr double delta = 6.0 / 29;
   Colour c = relative_xyz(rgb);
@@ -118,7 +119,8 @@ double hyab(const Colour& a, const Colour& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-/// Contrast sensitivity as a sum of two Gaussians over degrees.
+/// Contrast sensitivity of one channel: a sum of two Gaussians over the distance in degrees of visual angle,
+/// with amplitudes a and widths b.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
@@ -137,7 +139,8 @@ Kernel sensitivity_kernel(const Sensitivity& s, double pixels_per_degree) {
   return balanced(std::move(out));
 }
 
-/// Magnitudes of a plane's gradients, for edges (order 1) or points (order 2).
+/// Magnitude, at each pixel, of the derivatives of the Gaussian-filtered lightness: first derivatives (order
+/// 1) show edges, second ones (order 2) show points.
 Plane gradient(const Plane& lightness, double pixels_per_degree, int order) {
   const double sd = 0.5 * feature_width_deg * pixels_per_degree;
   const auto weight = [&](int along, int across) {
@@ -151,9 +154,10 @@ Plane gradient(const Plane& lightness, double pixels_per_degree, int order) {
   return out;
 }
 
-/// A picture as filtered by the eye.
+/// A picture as the eye resolves it: colours filtered with the contrast sensitivity, and the strengths of
+/// edges and points.
 struct Seen {
-  std::vector<Colour> colours;  ///< filtered, in hunt_lab
+  std::vector<Colour> colours;  ///< filtered; as returned by hunt_lab()
   Plane edges, points;
 };
 
@@ -178,7 +182,7 @@ Seen seen(const ImageView& image, double pixels_per_degree) {
   return out;
 }
 
-/// Maps a distance of colours to 0 to 1; large distances are compressed.
+/// Maps a HyAB distance of two colours to an error from 0 to 1. Large distances are compressed.
 double colour_error(double distance) {
   static const double most = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), colour_power);
   const double error = std::pow(distance, colour_power), knee = knee_share * most;

@@ -8,8 +8,9 @@ namespace stats {
 
 /// Mean over the mask of each pixel's error, 0 (invisible) to 1. `pixels_per_degree` of visual angle must be
 /// positive and at most 200; colours and features are filtered to what the eye resolves at that resolution.
-/// Pixels beyond the border repeat the nearest one on it. The result does not depend on the order of the
-/// pictures. std::invalid_argument as check_images, and for other pixels_per_degree.
+/// Outside the picture the filters read the nearest pixel on its border. The result does not depend on the
+/// order of the pictures. std::invalid_argument where check_images throws it, and if pixels_per_degree is out
+/// of range.
 ImageScore flip(const ImageView& a, const ImageView& b, double pixels_per_degree, MaskView mask = {});
 
 }  // namespace stats

@@ -15,7 +15,7 @@ struct ImageView {
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 
-/// One byte per pixel; nonzero pixels belong to the mask. Empty means the whole picture.
+/// One byte per pixel; nonzero pixels belong to the mask. An empty mask means the whole picture.
 using MaskView = std::span<const std::uint8_t>;
 
 /// A metric over the pixels of a mask.

@@ -32,12 +32,14 @@ std::vector<double> luma(const ImageView& image) {
   return out;
 }
 
-/// Rows of the map that one thread takes at a time; along x it filters ten rows more.
+/// Rows of the SSIM map that a thread computes as one block. Their windows reach over ten more rows of the
+/// picture, which the thread filters too.
 constexpr int band_rows = 24;
 /// The quantities that the window averages: x, y, x^2, y^2 and x y.
 constexpr int quantities = 5;
 
-/// The five quantities of a row of lumas x and y, averaged along the row: out[q * width + i].
+/// Averages the five quantities along a row of lumas x and y with the window's weights. Quantity q of pixel i
+/// goes to out[q * width + i].
 void filter_row(const double* x, const double* y, int width, const std::array<double, window>& weights,
                 double* out) {
   std::fill_n(out, quantities * width, 0.0);
@@ -55,7 +57,7 @@ void filter_row(const double* x, const double* y, int width, const std::array<do
   }
 }
 
-/// The indices of a row from the five averages.
+/// Computes the SSIM indices of one row from the five averaged quantities of each pixel.
 void index_row(const double* mean, int width, double* out) {
   constexpr double c1 = (0.01 * 255) * (0.01 * 255);
   constexpr double c2 = (0.03 * 255) * (0.03 * 255);
@@ -71,7 +73,8 @@ void index_row(const double* mean, int width, double* out) {
   }
 }
 
-/// Rows [first, last) of the map. The Gaussian is separable: along x, then along y.
+/// Fills rows [first, last) of the SSIM map. The Gaussian window is separable: it is applied along x, then
+/// along y.
 void fill_band(const std::vector<double>& x, const std::vector<double>& y, int first, int last,
                const std::array<double, window>& weights, SsimMap& map) {
   const int stride = quantities * map.width;

@@ -22,13 +22,13 @@ Values scaled(const Values& sorted, const std::function<double(double)>& factor)
   return out;
 }
 
-/// Raises each value to the largest before it.
+/// Raises each value to the largest value before it, if that is larger.
 Values step_down(Values values) {
   for (std::size_t i = 1; i < values.size(); ++i) values[i] = std::max(values[i], values[i - 1]);
   return values;
 }
 
-/// Lowers each value to the smallest after it.
+/// Lowers each value to the smallest value after it, if that is smaller.
 Values step_up(Values values) {
   for (std::size_t i = values.size() - 1; i-- > 0;) values[i] = std::min(values[i], values[i + 1]);
   return values;

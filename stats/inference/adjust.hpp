@@ -19,14 +19,15 @@ enum class Adjustment {
 };
 
 struct AdjustedP {
-  std::vector<double> p;   ///< in the order given; NaN exactly where the input was missing
+  std::vector<double> p;   ///< corrected p-values in the order given; NaN where the input was missing
   std::size_t family = 0;  ///< number of tests corrected for
   std::size_t missing = 0;
 };
 
-/// Missing values (NaN) stay missing and do not count. `family` is the number of tests if it is larger than
-/// the number of p-values given; the absent ones count as p = 1. 0: as many as are given. Refused: no p-value
-/// at all, one outside [0, 1], a family smaller than the number given.
+/// Corrects p-values by `method`. Missing values (NaN) stay missing and do not count. `family` is the number
+/// of tests; 0 means the number of p-values given. If `family` is larger than that number, the absent
+/// p-values count as 1. Refused: no p-value at all, one outside [0, 1], a family smaller than the number
+/// given.
 Result<AdjustedP> adjust(std::span<const double> p, Adjustment method, std::size_t family = 0);
 
 /// The paper's marks (Fig. 9 and 10): "***" for p < .001, "**" for p < .01, "*" for p < .05, else "".

@@ -34,7 +34,7 @@ double last_where(double low, double high, const Predicate& holds) {
   return good;
 }
 
-/// Sum of the point probabilities that do not exceed that of k.
+/// Two-sided p: the sum of the probabilities of all counts that are at most as probable as k.
 double two_sided(const Count& c) {
   if (c.p == 0 || c.q == 0) return c.k == (c.p == 0 ? 0 : c.n) ? 1 : 0;
   const double mean = c.n * c.p;

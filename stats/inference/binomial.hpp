@@ -25,19 +25,20 @@ struct BinomialTest {
   double p_mid = 0;
   std::array<double, 2> clopper_pearson{};  ///< exact (Clopper and Pearson 1934)
   std::array<double, 2> wilson{};           ///< score interval (Wilson 1927)
-  std::array<double, 2> wilson_cc{};        ///< with continuity correction (Newcombe 1998, method 4)
-  std::array<double, 2> jeffreys{};       ///< quantiles of Beta(k + 1/2, n - k + 1/2); 0 at k = 0, 1 at k = n
+  std::array<double, 2> wilson_cc{};  ///< score interval with continuity correction (Newcombe 1998, method 4)
+  std::array<double, 2> jeffreys{};   ///< quantiles of Beta(k + 1/2, n - k + 1/2); 0 at k = 0, 1 at k = n
   std::array<double, 2> agresti_coull{};  ///< Agresti and Coull 1998; may leave [0, 1]
   double cohen_g = 0;                     ///< estimate - p0
   double cohen_h = 0;                     ///< 2 asin sqrt(estimate) - 2 asin sqrt(p0)
 };
 
-/// Refused: n < 1, k outside [0, n], counts that are not whole numbers or above 1e9, p0 outside [0, 1].
-/// std::invalid_argument when the confidence is outside (0, 1).
+/// Tests k successes in n trials against the proportion p0. Refused: n < 1, k outside [0, n], counts that are
+/// not whole numbers or above 1e9, p0 outside [0, 1]. std::invalid_argument when the confidence is outside
+/// (0, 1).
 Result<BinomialTest> binomial_test(double k, double n, double p0 = 0.5,
                                    Alternative alternative = Alternative::TwoSided, double confidence = 0.95);
 
-/// Only the p-value. std::invalid_argument if binomial_test refuses.
+/// The p-value of binomial_test(). std::invalid_argument if binomial_test refuses.
 double binomial_p(double k, double n, double p0 = 0.5, Alternative alternative = Alternative::TwoSided);
 
 }  // namespace stats

@@ -27,7 +27,7 @@ double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Sum of the pth powers of mean - value.
+/// Sum over the values of (mean - value)^power.
 double moment(std::span<const double> values, int power) {
   const double mean = mean_of(values);
   double sum = 0;
@@ -49,7 +49,8 @@ double quantile_type6(std::span<const double> ascending, double p) {
   return std::lerp(ascending[low - 1], ascending[high - 1], at - static_cast<double>(low));
 }
 
-/// The same position, interpolated on the normal scale (Davison and Hinkley 1997, Eq. 5.8).
+/// The order statistic at position p (N + 1), interpolated on the scale of normal quantiles (Davison and
+/// Hinkley 1997, Eq. 5.8).
 double quantile_normal(std::span<const double> ascending, double p) {
   const double spaces = static_cast<double>(ascending.size()) + 1, at = p * spaces;
   if (at <= 1) return ascending.front();
@@ -67,8 +68,8 @@ struct Resampled {
   double estimate = 0, acceleration = 0;
 };
 
-/// Why the sample is too small; empty if it is not. No interval from resamples exceeds the range of the
-/// values, which covers the centre of a symmetric distribution with probability 1 - 2^(1 - n).
+/// Why the sample is too small; empty if it is not. No interval from resamples exceeds the range of the n
+/// values. This range covers the centre of a symmetric distribution with probability 1 - 2^(1 - n).
 std::string too_few(std::size_t n, double confidence) {
   const double most = 1 - std::exp2(1 - static_cast<double>(n));
   if (most >= confidence) return {};
@@ -107,8 +108,8 @@ Result<Resampled> prepare(std::span<const double> x, const Statistic& statistic,
   return out;
 }
 
-/// Empty if all resamples lie on one side of the estimate, or if the acceleration is so large that it
-/// reverses the tails.
+/// Returns nothing if all resampled estimates lie on one side of the sample's estimate, or if the
+/// acceleration is so large that it reverses the order of the tails.
 std::optional<BcaInterval> bca_interval(std::span<const double> ascending, double share_below,
                                         double acceleration, double confidence) {
   if (!(share_below > 0 && share_below < 1)) return std::nullopt;
@@ -139,7 +140,8 @@ Result<BootstrapInterval> summarise(const Resampled& sample, Values estimates, d
                         .acceleration = sample.acceleration};
   std::sort(estimates.begin(), estimates.end());
   const auto total = static_cast<double>(estimates.size());
-  // Rounding from another order of summation must not separate a resample from an equal estimate.
+  // Resamples add the same values in another order. `rounding` makes estimates that differ from the sample's
+  // estimate by rounding alone count as equal to it.
   const double rounding = 16 * std::numeric_limits<double>::epsilon() * std::abs(sample.estimate);
   const auto first = std::lower_bound(estimates.begin(), estimates.end(), sample.estimate - rounding);
   const auto last = std::upper_bound(first, estimates.end(), sample.estimate + rounding);

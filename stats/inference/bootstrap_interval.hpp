@@ -28,11 +28,11 @@ struct BootstrapInterval {
   int n = 0, n_missing = 0;
   int resamples = 0;
   double confidence = 0.95;
-  double estimate = 0;      ///< of the sample
-  double mean = 0, se = 0;  ///< of the resamples (divisor N - 1)
-  double acceleration = 0;  ///< from the jackknife
-  BcaInterval bca{};  ///< the interval to report; resamples equal to the estimate count half, as suits coarse
-                      ///< statistics
+  double estimate = 0;      ///< the statistic of the sample
+  double mean = 0, se = 0;  ///< mean and sd of the resampled estimates (divisor N - 1)
+  double acceleration = 0;  ///< acceleration of the BCa interval, from the jackknife
+  BcaInterval bca{};  ///< the interval to report; a resample equal to the estimate counts half as below, half
+                      ///< as above it
   /// Counts only resamples strictly below the estimate, as R's boot does. Empty if no or all resamples are
   /// below.
   std::optional<BcaInterval> bca_strict{};
@@ -50,8 +50,8 @@ struct BootstrapInterval {
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              const BootstrapOptions& options = {});
 
-/// The same with given resamples: indices into x, one resample after the other, each of x.size() indices.
-/// std::invalid_argument if x has missing values or an index is out of range.
+/// The same interval from given resamples. `indices` are indices into x, one resample after the other, each
+/// of x.size() indices. std::invalid_argument if x has missing values or an index is out of range.
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              std::span<const int> indices, double confidence = 0.95);
 

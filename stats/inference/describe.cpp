@@ -35,8 +35,8 @@ Wide median_of(std::vector<Wide> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) * Wide(0.5);
 }
 
-/// Deviations are from the median rounded to double, as in other programs; at a large offset that rounding is
-/// visible.
+/// Median absolute deviation from `median`, the median rounded to double, as other programs compute it. With
+/// a large offset of the values this rounding shows in the result.
 double median_absolute_deviation(const std::vector<Wide>& values, double median) {
   std::vector<Wide> deviations;
   for (const auto& v : values) deviations.push_back(abs(v - median));
@@ -106,7 +106,8 @@ Result<BoxPlot> box_plot(std::span<const double> values) {
   out.q25 = d->q25;
   out.q75 = d->q75;
   out.n = d->n;
-  // A value on the fence counts as inside, up to rounding: means of whole answers often fall exactly on it.
+  // A value exactly 1.5 interquartile ranges from the box is not an outlier. Means of whole answers often
+  // have exactly this distance, so `rounding` allows for the rounding of quartiles and values.
   const double rounding =
       16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(d->q25), std::abs(d->q75));
   const double reach = 1.5 * (d->q75 - d->q25) + rounding;

@@ -9,8 +9,8 @@
 
 namespace stats {
 
-/// Sums are computed in double-double about the sample's own level, so an offset of 1e12 or a scale of 1e-150
-/// costs no digits. Empty fields are undefined for the sample.
+/// Sums are computed in double-double from scaled differences to the first value, so an offset of 1e12 or a
+/// scale of 1e-150 costs no digits. A statistic that is undefined for the sample is empty.
 struct Description {
   std::size_t n = 0;          ///< values used
   std::size_t n_missing = 0;  ///< values left out as NaN
@@ -22,10 +22,10 @@ struct Description {
   double q25 = 0, q75 = 0;                ///< quartiles of type 7
   std::optional<double> skewness;         ///< g1 = m3 / m2^1.5, divisor n; empty when all values are equal
   std::optional<double> kurtosis;         ///< excess, g2 = m4 / m2^2 - 3, divisor n
-  std::optional<double> autocorrelation;  ///< of neighbours in the order given (lag 1)
+  std::optional<double> autocorrelation;  ///< of neighbouring values in the order given (lag 1)
 };
 
-/// Refused: no values, an infinite value.
+/// Describes the values. Refused: no values, an infinite value.
 Result<Description> describe(std::span<const double> values);
 
 enum class QuantileType {
@@ -38,7 +38,7 @@ enum class QuantileType {
 Result<double> quantile(std::span<const double> values, double p, QuantileType type = QuantileType::Linear);
 
 /// Points of a box plot: quartiles of type 7, whiskers to the outermost values within 1.5 interquartile
-/// ranges of the box (Tukey 1977), and how many lie beyond.
+/// ranges of the box (Tukey 1977), and n_outliers, the number of values beyond the whiskers.
 struct BoxPlot {
   double median = 0, q25 = 0, q75 = 0, low_whisker = 0, high_whisker = 0;
   std::size_t n = 0, n_outliers = 0;

@@ -32,8 +32,9 @@ double log_normal_lower(double x) { return gsl_sf_log_erfc(-x / std::numbers::sq
 /// d log P(Z <= x) / dx.
 double normal_lower_slope(double x) { return gsl_sf_hazard(-x); }
 
-/// The integrand of P(t U - ncp >= Z), U = sqrt(chi2(df) / df), over y = log U; `sign` is -1 for the opposite
-/// tail. Its logarithm has a single maximum, since its slope decreases strictly in U.
+/// P(Z <= t U - ncp) as an integral over y = log U, with Z standard normal and U = sqrt(chi2(df) / df).
+/// `sign` is -1 for the opposite tail. The integrand's logarithm has a single maximum, since its slope
+/// decreases strictly with U.
 class ChiMixture {
  public:
   ChiMixture(double t, double df, double ncp, double sign)
@@ -56,8 +57,9 @@ class ChiMixture {
     return find_root(slope, low, high);
   }
 
-  /// The trapezoidal rule, outwards from the mode. The step resolves both the chi density (width 1/sqrt(2 df)
-  /// in y) and the normal edge (width 1/ncp).
+  /// The trapezoidal rule, outwards from the mode. The step resolves both factors of the integrand: the
+  /// density of U (width 1/sqrt(2 df) in y) and the normal distribution function (which rises over a width of
+  /// 1/ncp).
   double integral() const {
     const double centre = mode();
     const double top = log_value(centre);
@@ -85,7 +87,8 @@ class ChiMixture {
   double t_, df_, ncp_, sign_, log_scale_;
 };
 
-/// P(T <= t) for ncp >> 1: the trapezoidal rule over the normal variate, over which the edge is wide.
+/// P(T <= t) for ncp >> 1, by the trapezoidal rule over the normal variate z. The chi-square probability in
+/// the integrand changes slowly with z.
 double large_ncp_lower(double t, double df, double ncp) {
   if (t <= 0) return 0;
   constexpr double step = 0.25;
@@ -143,9 +146,10 @@ double student_p(double t, double df, Alternative alternative) {
 
 namespace {
 
-/// Requires p < 0.5.
+/// The t > 0 with P(T >= t) = p; requires p < 0.5.
 double solve_upper_quantile(double p, double df) {
-  // Over log t, the log of the tail is nearly linear far out and smooth everywhere.
+  // Solves for log t: as a function of log t, the log of the tail is smooth everywhere and nearly linear for
+  // large t.
   const auto excess = [&](double log_t) { return log_ratio(student_tail(std::exp(log_t), df), p); };
   double low = -1, high = 1;
   while (excess(low) < 0) low *= 2;
@@ -161,7 +165,7 @@ double student_upper_quantile(double p, double df) {
   require(p > 0 && p < 1, "a probability must lie between 0 and 1");
   if (p > 0.5) return -student_upper_quantile(1 - p, df);
   if (p == 0.5) return 0;
-  // A small cache: tables of tests with equal numbers of people ask for the same few quantiles.
+  // A small cache: tables of tests with equal numbers of people need the same few quantiles.
   struct Known {
     double p = 0, df = 0, value = 0;
   };
@@ -201,7 +205,7 @@ std::array<double, 2> noncentrality_interval(double t, double df, double confide
     double inner = t, outer = t + direction * reach;
     const double inside = excess(inner);
     if (inside < 0) {
-      // With few degrees of freedom t itself may lie outside its own interval.
+      // With few degrees of freedom the noncentrality interval may not contain t.
       for (outer = t - direction * reach; excess(outer) < 0; outer = t - direction * reach) reach *= 2;
     } else {
       for (; excess(outer) > 0; outer = t + direction * reach) reach *= 2;
@@ -248,10 +252,10 @@ double stirling_error(double x) {
          x;
 }
 
-/// ln p. A small p keeps its digits itself; a large p keeps them in q = 1 - p.
+/// ln p for p + q = 1, computed from the smaller of p and q, which has more accurate digits.
 double log_part(double p, double q) { return p < q ? std::log(p) : std::log1p(-q); }
 
-/// Continued fraction of the incomplete beta function, modified Lentz.
+/// Continued fraction of the incomplete beta function, by the modified Lentz algorithm.
 double beta_fraction(double a, double b, double x) {
   constexpr double tiny = 1e-300, precise = 1e-16;
   const auto away = [](double v) { return std::abs(v) < tiny ? tiny : v; };
@@ -270,7 +274,7 @@ double beta_fraction(double a, double b, double x) {
   return h;
 }
 
-/// For x below about a / (a + b), where the fraction converges fast.
+/// ln I_x(a, b) with y = 1 - x, for x below about a / (a + b), where the continued fraction converges fast.
 double log_beta_near(double a, double b, double x, double y) {
   return log_binomial_mass(a, a + b, x, y) + std::log(b / (a + b)) + std::log(beta_fraction(a, b, x));
 }
@@ -314,7 +318,7 @@ double beta_quantile(double probability, double a, double b) {
   const auto part = [](double logit) { return 1 / (1 + std::exp(-logit)); };
   const auto miss = [&](double logit) {
     const double x = part(logit), y = part(-logit);
-    // The smaller tail has more digits.
+    // Compares the smaller tail, which has more accurate digits.
     return probability <= 0.5 ? log_beta_lower(a, b, x, y) - std::log(probability)
                               : std::log1p(-probability) - log_beta_lower(b, a, y, x);
   };

@@ -1,7 +1,7 @@
 #pragma once
 /// Tail probabilities that are accurate relative to their size even in the far tails and for large counts,
-/// where 1 - P and GSL's functions lose their digits. Those of Student's t, central and noncentral:
-/// std::invalid_argument if df is not positive, a probability is outside (0, 1), or an argument is NaN.
+/// where 1 - P and GSL's functions lose their digits. The functions of Student's t, central and noncentral,
+/// throw std::invalid_argument if df is not positive, a probability is outside (0, 1), or an argument is NaN.
 
 #include <array>
 
@@ -26,13 +26,13 @@ double student_upper_quantile(double p, double df);
 double noncentral_t_lower(double t, double df, double ncp);
 double noncentral_t_upper(double t, double df, double ncp);
 
-/// The noncentralities for which t lies at the upper and at the lower (1 - confidence)/2 point. Divided by
-/// its scale, this is the interval of a standardised effect (Steiger and Fouladi 1997; Cumming and Finch
-/// 2001).
+/// Confidence interval of the noncentrality: at its lower end P(T >= t), and at its upper end P(T <= t), is
+/// (1 - confidence)/2. Both ends times the ratio effect / t bound a standardised effect (Steiger and Fouladi
+/// 1997; Cumming and Finch 2001).
 std::array<double, 2> noncentrality_interval(double t, double df, double confidence = 0.95);
 
 /// Hedges' factor, which removes the bias of a standardised difference with df degrees of freedom: G(df/2) /
-/// (sqrt(df/2) G((df-1)/2)), exact (Hedges 1981). df > 1.
+/// (sqrt(df/2) G((df-1)/2)) with the gamma function G, exact (Hedges 1981). df > 1.
 double hedges_factor(double df);
 
 /// Upper tail of Fisher's F, x >= 0.
@@ -42,7 +42,8 @@ double fisher_upper(double x, double df1, double df2);
 double deviance_part(double x, double m);
 
 /// ln of the probability of k successes in n trials, p + q = 1, by Loader's saddle-point expansion (Loader
-/// 2000): about 1e-14 absolute for any n. k and n may be fractions, 0 <= k <= n. -infinity where impossible.
+/// 2000): about 1e-14 absolute for any n. k and n may be fractions, 0 <= k <= n. -infinity if k is
+/// impossible.
 double log_binomial_mass(double k, double n, double p, double q);
 
 /// ln of the regularised incomplete beta function I_x(a, b), a and b > 0, y = 1 - x: a continued fraction

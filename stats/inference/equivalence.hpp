@@ -21,14 +21,14 @@ struct EquivalenceTest {
   double estimate = 0, stderr_estimate = 0, df = 0;
   double t_lower = 0, p_lower = 0;
   double t_upper = 0, p_upper = 0;
-  double p = 0;  ///< the larger of the two: equivalence is shown when p < alpha
+  double p = 0;  ///< the larger of p_lower and p_upper: equivalence is shown if p < alpha
   std::array<double, 2>
       ci{};  ///< for the estimate, confidence 1 - 2 alpha; it lies inside the margins if equivalence is shown
   std::size_t n = 0;  ///< pairs
   std::size_t n_missing = 0;
 };
 
-/// Mean of x - y over pairs. alpha in (0, 1/2).
+/// Tests that the mean of x - y over pairs lies within the margins. alpha in (0, 1/2).
 Result<EquivalenceTest> equivalence_paired(std::span<const double> x, std::span<const double> y,
                                            Margins margins, double alpha = 0.05);
 

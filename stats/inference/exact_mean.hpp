@@ -1,6 +1,6 @@
 #pragma once
-/// Means of whole numbers, stored as sum and count. Their differences are compared over a common denominator
-/// so that equal ones tie: 1 - 2/3 and 4/3 - 1 are equal, but not as doubles.
+/// Means of whole numbers, stored as sum and count. Their differences are compared over a common denominator,
+/// so that equal differences tie: 1 - 2/3 and 4/3 - 1 are equal, but their doubles differ.
 
 #include <cstddef>
 #include <limits>
@@ -20,14 +20,14 @@ struct ExactMean {
   double value() const { return sum / count; }
 };
 
-/// Differences as numerators over one denominator; the numerators are whole if the sums are. Other sums are
-/// taken as the doubles they are.
+/// Differences as numerators over one denominator; the numerators are whole if the sums are. With other sums
+/// the numerators are rounded to double.
 struct ExactDifferences {
   std::vector<double> numerators;
   double denominator = 1;
   std::size_t n_missing = 0;  ///< pairs that lack a value
 
-  std::vector<double> values() const;  ///< each rounded to the nearest double
+  std::vector<double> values() const;  ///< the differences, each rounded to the nearest double
 };
 
 /// x - y, pair by pair. std::invalid_argument unless the lengths are equal and the counts above 0. Refused:

@@ -20,17 +20,19 @@ Wide dot(const Column& a, const Column& b, std::size_t from) {
   return sum;
 }
 
-/// Reflects `column` in the plane with normal `mirror`, both from row `from` on.
+/// Householder reflection of `column` in the plane with the normal vector `mirror`. Only rows from `from` on
+/// are read and changed.
 void reflect(Column& column, const Column& mirror, Wide mirror_square, std::size_t from) {
   const Wide factor = Wide(2) * dot(column, mirror, from) / mirror_square;
   for (std::size_t i = from; i < column.size(); ++i) column[i] -= factor * mirror[i];
 }
 
 /// A column depends on the columns before it if its part orthogonal to them is less than this share of its
-/// length. The columns themselves are rounded.
+/// length. Smaller parts may be rounding of the columns' values.
 constexpr double dependence = 1e-14;
 
-/// Householder's QR: the columns become R, y becomes Q^T y. False when columns depend on each other.
+/// QR decomposition by Householder: the columns become R, y becomes Q^T y. Returns false if a column is a
+/// linear combination of earlier ones.
 bool triangulate(std::vector<Column>& columns, Column& y) {
   for (std::size_t j = 0; j < columns.size(); ++j) {
     const double length = std::sqrt(dot(columns[j], columns[j], 0).value());
@@ -60,7 +62,8 @@ std::vector<Column> inverse(const std::vector<Column>& r) {
   return out;
 }
 
-/// Fits scaled columns; the exponents scale the results back.
+/// Fits columns scaled by 2^-exponent. `exponents` and `y_exponent` scale the results back to the data's
+/// units.
 Result<LinearFit> fit(std::vector<Column> columns, const std::vector<int>& exponents, Column y,
                       int y_exponent, bool intercept, std::size_t n_missing) {
   const auto n = y.size(), p = columns.size();

@@ -12,7 +12,8 @@ namespace stats {
 
 /// A field is empty if the data have too few degrees of freedom for it.
 struct LinearFit {
-  std::vector<double> coefficients;     ///< of the columns in their order, the intercept (if any) first
+  /// The intercept (if any), then one coefficient for each column in order.
+  std::vector<double> coefficients;
   std::vector<double> standard_errors;  ///< empty if df = 0
   std::size_t n = 0, n_missing = 0;
   double rss = 0;
@@ -22,10 +23,10 @@ struct LinearFit {
   std::optional<double> f, f_p;  ///< F test that all slopes are zero
 };
 
-/// y on columns of equal length. Householder QR with scaled columns in double-double, so collinear data
-/// (Longley, Wampler) keep their digits. A row with a NaN counts as missing. std::invalid_argument when
-/// lengths differ. Refused: fewer rows than coefficients, an infinite value, columns that depend on each
-/// other.
+/// Fits y by a linear combination of columns of equal length. Householder QR with scaled columns in
+/// double-double, so that results of nearly collinear data (Longley, Wampler) are accurate. A row with a NaN
+/// counts as missing. std::invalid_argument when lengths differ. Refused: fewer rows than coefficients, an
+/// infinite value, a column that is a linear combination of others.
 Result<LinearFit> fit_linear(const std::vector<std::vector<double>>& columns, std::span<const double> y,
                              bool intercept = true);
 }  // namespace stats

@@ -22,12 +22,13 @@ using Lambda = std::array<double, 2>;
 /// A column counts as a combination of the earlier ones if its squared length orthogonal to them is below
 /// this share.
 constexpr double least_new = 1e-10;
-/// Largest lambda. Beyond it a participant's answers agree so closely that no residual is left.
+/// Largest accepted lambda, the ratio of a random effect's standard deviation to the residual's. Beyond it a
+/// participant's answers agree so closely that no residual is left.
 constexpr double largest_ratio = 1e3;
 /// A simpler model is preferred if its criterion is higher by less than this.
 constexpr double same_criterion = 1e-7;
 
-/// Which random effects the model has: participant, participant with thing.
+/// Which random effects the model has: [0] of the participant, [1] of the participant with each thing judged.
 using Effects = std::array<bool, 2>;
 
 std::string refusal_of(std::span<const double> y, std::span<const int> participant) {
@@ -41,7 +42,7 @@ std::string refusal_of(std::span<const double> y, std::span<const int> participa
   return "";
 }
 
-/// True if a participant answered twice about one thing.
+/// True if any participant answered more than once about the same thing.
 bool any_replicate(std::span<const int> participant, std::span<const int> thing) {
   std::set<std::pair<int, int>> seen;
   for (std::size_t i = 0; i < participant.size(); ++i) {
@@ -50,8 +51,8 @@ bool any_replicate(std::span<const int> participant, std::span<const int> thing)
   return false;
 }
 
-/// Separates the estimated terms from the terms that are combinations of earlier ones. Returns the columns of
-/// the former.
+/// Adds each term's name to fit.terms, or to fit.left_out if its column is a linear combination of earlier
+/// ones. Returns the columns of fit.terms.
 std::vector<Vector> independent_columns(std::span<const Predictor> terms, LinearMixedFit& fit) {
   std::vector<Vector> kept, residuals;  // residuals: columns orthogonal to the columns before them
   for (const Predictor& term : terms) {
@@ -79,7 +80,7 @@ std::vector<Vector> independent_columns(std::span<const Predictor> terms, Linear
   return kept;
 }
 
-/// lambda: x for the effects in the model, zero for the others.
+/// The lambdas of both random effects: taken from x for effects in the model, zero for the others.
 Lambda spread(std::span<const double> x, Effects effects) {
   Lambda out{};
   std::size_t next = 0;
@@ -89,7 +90,8 @@ Lambda spread(std::span<const double> x, Effects effects) {
   return out;
 }
 
-/// The criterion, minimised over sigma.
+/// The criterion (-2 times the restricted log-likelihood) as a function of the model's lambdas, with the
+/// sigma that minimises it.
 Objective profiled(const RestrictedLikelihood& likelihood, Effects effects) {
   return [&likelihood, effects](std::span<const double> x, std::span<double> gradient) {
     const auto at = likelihood.at(spread(x, effects));
@@ -109,8 +111,8 @@ struct Best {
   double value = std::numeric_limits<double>::infinity();
 };
 
-/// The criterion's minimum, by the simplest model that reaches it: an effect with a spread of zero is left
-/// out.
+/// Finds the criterion's minimum and the simplest model that reaches it. That model omits an effect whose
+/// standard deviation is estimated as zero.
 Best minimise_criterion(const RestrictedLikelihood& likelihood, bool replicated) {
   Best best;
   for (const Effects effects : {Effects{false, false}, {true, false}, {false, true}, {true, true}}) {
@@ -129,7 +131,7 @@ Best minimise_criterion(const RestrictedLikelihood& likelihood, bool replicated)
   return best;
 }
 
-/// Covariance of the model's lambdas and sigma: the inverse of half the criterion's Hessian.
+/// Covariance of the estimates of the model's lambdas and sigma: the inverse of half the criterion's Hessian.
 std::optional<Vector> parameter_covariance(const RestrictedLikelihood& likelihood, const Best& best,
                                            const RestrictedLikelihood::At& at, double sigma) {
   std::vector<std::size_t> in;
@@ -177,7 +179,8 @@ double form(const Vector& matrix, std::span<const double> w) {
   return sum;
 }
 
-/// Fills the fit from the minimum. False if the Hessian there is not positive definite.
+/// Fills the fit from the criterion's minimum `best`. Returns false if the Hessian at the minimum is not
+/// positive definite.
 bool fill_fit(const RestrictedLikelihood& likelihood, const Best& best, bool replicated,
               LinearMixedFit& fit) {
   const auto at = *likelihood.at(best.lambda);

@@ -21,7 +21,8 @@ double polynomial(std::span<const double> coefficients, double x) {
   return sum;
 }
 
-/// Weights of the upper half, largest first: polynomials for the outermost, Blom's scores for the others.
+/// Royston's weights of the upper half of the sample, largest first. Polynomials in 1/sqrt(n) give the
+/// outermost one or two, Blom's scores the others.
 std::vector<double> weights(std::size_t n) {
   if (n == 3) return {std::numbers::sqrt2 / 2};
   constexpr std::array outermost{0.0, 0.221157, -0.147981, -2.07119, 4.434685, -2.706056};
@@ -58,7 +59,7 @@ double p_value(double one_minus_w, std::size_t n) {
     constexpr std::array mean{0.5440, -0.39978, 0.025054, -6.714e-4};
     constexpr std::array log_sd{1.3822, -0.77857, 0.062767, -0.0020322};
     const double gap = polynomial(bound, size) - y;
-    // W lies below the range of the approximation.
+    // The approximation is undefined for a W this small.
     if (gap <= 0) return 0;
     return normal_probability((polynomial(mean, size) + std::log(gap)) / std::exp(polynomial(log_sd, size)));
   }

@@ -14,8 +14,8 @@ struct ShapiroWilk {
   std::size_t n = 0, n_missing = 0;
 };
 
-/// W, with weights and p-value after Royston (1995, AS R94). NaN = missing. Refused: fewer than 3 or more
-/// than 5000 values (the range of the approximation), all values equal, an infinite value.
+/// Shapiro and Wilk's W, with weights and p-value after Royston (1995, AS R94). NaN = missing. Refused: fewer
+/// than 3 or more than 5000 values (the range of the approximation), all values equal, an infinite value.
 Result<ShapiroWilk> shapiro_wilk(std::span<const double> values);
 
 }  // namespace stats

@@ -75,7 +75,7 @@ double tost_power_of(double n, const Equivalence& e) {
   const double low = (e.low - e.difference) / error, high = (e.high - e.difference) / error;
   const double critical = student_upper_quantile(e.alpha, df);
   // The estimate must lie between the margins, each moved inwards by the critical value times the sample's SD
-  // (s times the true one). Beyond s = `widest` they leave no range.
+  // (s times the true one). Beyond s = `widest` the moved margins leave no range.
   const double widest = (high - low) / (2 * critical), spread = 12 / std::sqrt(2 * df);
   const double from = std::max(0.0, 1 - spread), to = std::min(widest, 1 + spread);
   if (from >= to) return 0;
@@ -99,8 +99,8 @@ std::string why_no_tost(const Equivalence& e) {
   return e.alpha > 0 && e.alpha <= 0.5 ? "" : "alpha must lie between 0 and 0.5";
 }
 
-/// The significant counts: at most `lower`, or at least `upper`. p decreases with the distance from n p0 on
-/// either side, so bisection finds each end.
+/// The counts k at which the test is significant: k <= lower or k >= upper. p decreases with the distance
+/// from n p0 on either side, so bisection finds each end.
 struct Rejection {
   double lower = -1, upper = 0;
 };

@@ -13,8 +13,9 @@ namespace stats {
 enum class Design { OneSample, Paired, TwoSample };
 
 /// Power of Student's t-test for a standardised difference d (mean over the SD of the differences, or of a
-/// group): noncentral t, both tails counted. n > 1 may be a fraction (per group).
-/// Refused: n <= 1, alpha outside (0, 1), d not finite.
+/// group): computed by the noncentral t, with the rejections in both tails. A non-inferiority or superiority
+/// test against a margin has this power with d = (difference - margin) / sd and a one-sided alternative. n >
+/// 1 may be a fraction (per group). Refused: n <= 1, alpha outside (0, 1), d not finite.
 Result<double> t_power(double n, double d, double alpha = 0.05, Design design = Design::Paired,
                        Alternative alternative = Alternative::TwoSided);
 
@@ -26,9 +27,9 @@ Result<double> t_detectable(double n, double power, double alpha = 0.05, Design 
 /// An equivalence test (two one-sided t-tests) in the units of the scale.
 struct Equivalence {
   double low = -0.5, high = 0.5;  ///< margins
-  double sd = 1;                  ///< of the differences, or of each group
+  double sd = 1;                  ///< standard deviation of the differences, or of each group
   double difference = 0;          ///< true difference
-  double alpha = 0.05;            ///< of each one-sided test
+  double alpha = 0.05;            ///< level of each one-sided test
   Design design = Design::Paired;
 };
 
@@ -36,12 +37,10 @@ struct Equivalence {
 /// Phillips 1990). Refused: n <= 1, sd <= 0, low >= high, alpha outside (0, 0.5].
 Result<double> tost_power(double n, const Equivalence& equivalence);
 
-/// A non-inferiority or superiority test against a margin is t_power with d = (difference - margin) / sd and
-/// a one-sided alternative.
-
+/// Power and critical counts of the exact test of a proportion.
 struct BinomialPower {
-  double power = 0;         ///< if the true proportion is p1
-  double actual_alpha = 0;  ///< the same if it is p0; at most alpha
+  double power = 0;         ///< probability of a significant result if the true proportion is p1
+  double actual_alpha = 0;  ///< the same probability if the true proportion is p0; at most alpha
   /// Smallest k above n p0 and largest k below it that are significant; empty where none is.
   std::optional<int> k_critical_upper{}, k_critical_lower{};
 };

@@ -19,7 +19,7 @@ RankSumTails tails(std::span<const double> weights, double sum) {
   const auto at = static_cast<std::size_t>(std::lround(2 * sum));
   RankSumTails out;
   double total = 0;
-  // Adds rare sums first, from both ends, so that small tails keep their digits.
+  // Adds rare sums first, from both ends, so that small tails are accurate.
   for (std::size_t s = 0; s < weights.size(); ++s) {
     if (s <= at) out.lower += weights[s];
   }
@@ -55,7 +55,7 @@ RankSumTails signed_rank_tails(std::span<const double> ranks, double sum) {
   std::size_t reached = 0;
   for (const auto step : steps) {
     reached += step;
-    // Halving at each step keeps the weights probabilities for any n.
+    // Halving at each step makes the weights probabilities, which do not overflow for any n.
     for (std::size_t s = reached + 1; s-- > 0;) {
       weights[s] = (weights[s] + (s >= step ? weights[s - step] : 0)) / 2;
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Midranks, and exact distributions of sums of ranks. For the rank tests in this folder.
+/// Midranks, and exact distributions of sums of ranks. The rank tests in this folder use them.
 
 #include <cstddef>
 #include <span>
@@ -8,13 +8,13 @@
 namespace stats {
 
 struct Midranks {
-  std::vector<double> ranks;  ///< in the order of the values, from 1; tied values share their mean rank
-  double tie_sum = 0;         ///< sum over ties of (t^3 - t)
+  std::vector<double> ranks;  ///< rank of each value, 1 for the smallest; tied values share their mean rank
+  double tie_sum = 0;         ///< sum of t^3 - t over all groups of t tied values
   bool has_ties() const { return tie_sum > 0; }
 };
 
-/// `values` must not contain NaN. Equal values share their rank. Equal means and differences are equal
-/// doubles only if they come from exact_mean.hpp.
+/// `values` must not contain NaN. Equal values share their rank. Means and their differences that are
+/// mathematically equal may differ as doubles unless exact_mean.hpp computes them.
 Midranks midranks(std::span<const double> values);
 
 /// P(S <= s) and P(S >= s) for a sum S of midranks.
@@ -22,7 +22,8 @@ struct RankSumTails {
   double lower = 0, upper = 0;
 };
 
-/// S includes each rank with probability 1/2: the null distribution of the signed-rank test, given the ranks.
+/// Tails of S, a sum that includes each rank with probability 1/2: the null distribution of the signed-rank
+/// test, given the ranks. `sum` is s.
 RankSumTails signed_rank_tails(std::span<const double> ranks, double sum);
 
 }  // namespace stats

@@ -72,7 +72,8 @@ RestrictedLikelihood::RestrictedLikelihood(std::span<const Vector> columns, std:
   }
 }
 
-/// V = A + theta_0 1 1' and A = I + theta_1 Z Z', each inverted by Woodbury's identity.
+/// Adds one participant's terms to `sums`. With theta_k = lambda_k^2 and Z assigning rows to things, the
+/// participant's V is A + theta_0 1 1', where A = I + theta_1 Z Z'. Woodbury's identity inverts both.
 void RestrictedLikelihood::add_person(const std::vector<Group>& groups, std::array<double, 2> theta,
                                       Sums& sums) const {
   Vector all(q_ + 1);  // 1' A^-1 (X y)
@@ -113,7 +114,7 @@ std::optional<RestrictedLikelihood::At> RestrictedLikelihood::at(std::array<doub
   if (!(out.residual > least_residual * gram_.back())) return std::nullopt;
   out.inverse = factor->inverse();
   out.log_determinants = sums.log_det_v + factor->log_determinant();
-  Vector contrast;  // y - X beta over (X y)
+  Vector contrast;  // c with (X y) c = y - X beta
   for (const double b : out.beta) contrast.push_back(-b);
   contrast.push_back(1);
   for (std::size_t k = 0; k < 2; ++k) {

@@ -18,9 +18,10 @@ class RestrictedLikelihood {
   RestrictedLikelihood(std::span<const std::vector<double>> columns, std::span<const double> y,
                        std::span<const int> participant, std::span<const int> thing);
 
-  /// The likelihood's parts at one lambda; V is the covariance of y over sigma^2.
+  /// The parts of the likelihood at one pair of lambdas. V is the covariance matrix of y divided by sigma^2,
+  /// and r = y - X beta.
   struct At {
-    std::vector<double> beta;       ///< generalised least squares
+    std::vector<double> beta;       ///< the estimate by generalised least squares
     std::vector<double> inverse;    ///< (X' V^-1 X)^-1, row-major
     double residual = 0;            ///< r' V^-1 r
     double log_determinants = 0;    ///< log |V| + log |X' V^-1 X|
@@ -31,21 +32,23 @@ class RestrictedLikelihood {
   /// Empty if X' V^-1 X is singular or the fit leaves no residual.
   std::optional<At> at(std::array<double, 2> lambda) const;
 
-  /// Rows minus columns.
+  /// Residual degrees of freedom: rows minus columns.
   int freedom() const { return n_ - static_cast<int>(q_); }
   int participants() const { return static_cast<int>(people_.size()); }
 
  private:
-  /// Rows of one participant about one thing: their number, and the sums of the columns and y over them.
+  /// The rows of one participant about one thing: their number n, and the sums of each column and of y over
+  /// these rows.
   struct Group {
     double n = 0;
     std::vector<double> sums;
   };
-  /// Sums over people from which at() is computed; matrices are over columns and y together.
+  /// Sums over people from which at() is computed. (X y) is the matrix of the columns and y. Z assigns the
+  /// rows to participants for index 0, and to participants with things for index 1.
   struct Sums {
     std::vector<double> gram;  ///< (X y)' V^-1 (X y)
     double log_det_v = 0;
-    std::array<double, 2> trace{};              ///< of V^-1 Z Z'
+    std::array<double, 2> trace{};              ///< trace of V^-1 Z Z'
     std::array<std::vector<double>, 2> spread;  ///< (X y)' V^-1 Z Z' V^-1 (X y)
   };
   void add_person(const std::vector<Group>& groups, std::array<double, 2> theta, Sums& sums) const;

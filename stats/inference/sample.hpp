@@ -1,6 +1,6 @@
 #pragma once
-/// Samples without missing values, and their moments to twice double's precision. For the tests in this
-/// folder.
+/// Samples without missing values, and their moments to twice double's precision. The tests in this folder
+/// use them.
 
 #include <cmath>
 #include <cstddef>
@@ -65,7 +65,7 @@ inline bool operator==(Wide a, Wide b) { return a.high == b.high && a.low == b.l
 
 inline Wide abs(Wide a) { return a < Wide(0) ? -a : a; }
 
-/// Square root of a >= 0: one Newton step from double's.
+/// Square root of a >= 0: one Newton step from the square root in double.
 inline Wide sqrt(Wide a) {
   if (!(a.high > 0)) return 0;
   const double root = std::sqrt(a.high);
@@ -78,18 +78,19 @@ struct Sample {
   std::size_t n_missing = 0;
 };
 
-/// NaN = missing. Refused: an infinite value.
+/// Drops and counts the missing values (NaN). Refused: an infinite value.
 Result<Sample> present(std::span<const double> values);
 
 struct PairedSample {
   std::vector<double> x, y;
-  std::size_t n_missing = 0;  ///< pairs that lack a side
+  std::size_t n_missing = 0;  ///< pairs left out because a value is missing
 };
 
-/// std::invalid_argument when the lengths differ. Refused: an infinite value in a pair that has both sides.
+/// Drops and counts the pairs in which x or y is missing (NaN). std::invalid_argument if the lengths differ.
+/// Refused: an infinite value in a complete pair.
 Result<PairedSample> present_pairs(std::span<const double> x, std::span<const double> y);
 
-/// The exponent for which value * 2^-exponent brings the largest magnitude to [0.5, 1); 0 if all are zero.
+/// The exponent for which the largest magnitude times 2^-exponent lies in [0.5, 1); 0 if all are zero.
 int common_exponent(std::span<const double> a, std::span<const double> b = {});
 
 /// value * 2^-exponent, exact.
@@ -99,7 +100,7 @@ std::vector<Wide> scaled(std::span<const double> values, int exponent);
 struct Moments {
   std::size_t n = 0;
   Wide mean, squares;
-  /// Divisor n - 1; 0 for one value.
+  /// Sample variance, with divisor n - 1; 0 for one value.
   double variance() const { return n > 1 ? (squares / static_cast<double>(n - 1)).value() : 0; }
 };
 
@@ -121,7 +122,7 @@ struct CompleteRows {
   }
 };
 
-/// std::invalid_argument when the values do not fill whole rows or k < 1.
+/// Drops and counts the rows with a NaN. std::invalid_argument if the values do not fill whole rows or k < 1.
 CompleteRows complete_rows(std::span<const double> rows, int k);
 
 }  // namespace stats

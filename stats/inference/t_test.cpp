@@ -21,7 +21,8 @@ void require_valid(const TTestOptions& options) {
   if (!std::isfinite(options.null_value)) throw std::invalid_argument("the null value must be finite");
 }
 
-/// An estimate, its standard error and the largest mean behind it, all times 2^-exponent.
+/// An estimate, its standard error and the largest of the means that it is computed from, all times
+/// 2^-exponent.
 struct Scaled {
   Wide estimate;
   double se = 0;
@@ -43,7 +44,7 @@ std::array<double, 2> interval(double estimate, double se, double df, const TTes
   return out;
 }
 
-/// Fills the fields of every t-test; returns a reason if there is no t.
+/// Fills the fields that all t-tests share. Returns a reason if t is undefined.
 std::optional<Refusal> fill(TTest& test, const Scaled& s, const TTestOptions& options) {
   if (essentially_constant(s)) return Refusal{"the values are constant, or differ by rounding only"};
   const Wide null = std::ldexp(options.null_value, -s.exponent);
@@ -97,7 +98,7 @@ void fill_paired_effects(PairedTTest& test, const Moments& x, const Moments& y, 
   test.cohen_drm = test.cohen_dz * std::sqrt(2 * *complement);
 }
 
-/// Two independent groups, scaled alike.
+/// Moments of two independent groups, both scaled by 2^-exponent.
 struct Groups {
   Moments x, y;
   int exponent = 0;
@@ -142,7 +143,7 @@ void fill_groups(IndependentTTest& test, const Groups& g, const TTestOptions& op
   test.mean_y = mean(g.y, g.exponent);
   if (g.x.n > 1) test.sd_x = sd(g.x, g.exponent);
   if (g.y.n > 1) test.sd_y = sd(g.y, g.exponent);
-  // The effect sizes are those of the pooled test for both tests.
+  // Student's and Welch's test both report the effect sizes of the pooled (Student's) test.
   const Wide null = std::ldexp(options.null_value, -g.exponent);
   const double difference = (g.x.mean - g.y.mean - null).value();
   const double se = pooled_error(g), df = n.x + n.y - 2, per_t = std::sqrt(1 / n.x + 1 / n.y);
@@ -227,8 +228,8 @@ Result<IndependentTTest> t_test_welch(std::span<const double> x, std::span<const
   if (g->x.n < 2 || g->y.n < 2) return too_few;
   const auto n = sizes(*g);
   const double of_x = g->x.variance() / n.x, of_y = g->y.variance() / n.y, sum = of_x + of_y;
-  // Satterthwaite's degrees of freedom from each group's share of the variance, since squared shares cannot
-  // underflow.
+  // Satterthwaite's degrees of freedom from each group's share of the variance. Squared variances could
+  // underflow; squared shares do not.
   const double share_x = of_x / sum, share_y = of_y / sum;
   const double df = 1 / (share_x * share_x / (n.x - 1) + share_y * share_y / (n.y - 1));
   IndependentTTest test;

@@ -1,11 +1,11 @@
 #pragma once
 /// Student's and Welch's t-tests with effect sizes.
 ///
-/// NaN = missing: a pair needs both sides; independent groups drop their own. Means and variances are exact
-/// to double-double, so t depends only on the doubles given, whatever their offset or scale. Refused: too few
-/// values, an infinite value, and data that are constant up to rounding (standard error below 10 eps of the
-/// largest mean, as R's t.test does). std::invalid_argument: pairs of different length, confidence outside
-/// (0, 1), null value not finite.
+/// NaN = missing: a pair is dropped if x or y is missing, and an independent group drops its missing values.
+/// Means and variances are exact to double-double, so t depends only on the doubles given, whatever their
+/// offset or scale. Refused: too few values, an infinite value, and data that are constant up to rounding
+/// (standard error below 10 eps of the largest mean, as R's t.test does). std::invalid_argument: pairs of
+/// different length, confidence outside (0, 1), null value not finite.
 
 #include <array>
 #include <cstddef>
@@ -31,9 +31,9 @@ struct TTest {
   double estimate = 0;  ///< mean, or mean(x) - mean(y), in the data's unit
   double stderr_estimate = 0;
   double t = 0;   ///< (estimate - null_value) / stderr_estimate
-  double df = 0;  ///< not whole for Welch
+  double df = 0;  ///< degrees of freedom; not whole for Welch's test
   double p = 0;
-  std::array<double, 2> ci{};  ///< for `estimate`; one end infinite for a one-sided alternative
+  std::array<double, 2> ci{};  ///< interval for `estimate`; one end is infinite for a one-sided alternative
   std::size_t n_missing = 0;   ///< values, or pairs, left out
 };
 
@@ -44,14 +44,14 @@ struct OneSampleTTest : TTest {
   std::array<double, 2> cohen_d_ci{};  ///< by the noncentral t; always two-sided
 };
 
-/// Standardised paired differences follow Lakens (2013); their null value is that of the test.
+/// Standardised differences follow Lakens (2013). Below, difference = mean_x - mean_y - null_value.
 struct PairedTTest : TTest {
   std::size_t n = 0;  ///< pairs
   double mean_x = 0, mean_y = 0, sd_x = 0, sd_y = 0, sd_difference = 0;
   std::optional<double> r;                            ///< correlation; empty when one side is constant
   double cohen_dz = 0;                                ///< difference / sd of the differences
   std::optional<double> hedges_gz;                    ///< dz times Hedges' factor; empty with two pairs
-  std::optional<double> cohen_dav;                    ///< difference / root of the mean variance
+  std::optional<double> cohen_dav;                    ///< difference / root of the mean of both variances
   std::optional<double> cohen_drm;                    ///< dz sqrt(2 (1 - r)); empty without r
   std::array<double, 2> cohen_dz_ci{};                ///< by the noncentral t; always two-sided
   std::optional<std::array<double, 2>> hedges_gz_ci;  ///< cohen_dz_ci times Hedges' factor
@@ -68,16 +68,17 @@ struct IndependentTTest : TTest {
   std::array<double, 2> cohen_ds_ci{};  ///< by the noncentral t; always two-sided
 };
 
-/// Needs two values.
+/// Tests the mean of x against null_value. Needs two values.
 Result<OneSampleTTest> t_test_one(std::span<const double> x, const TTestOptions& options = {});
-/// Needs two pairs.
+/// Tests the mean of x - y over pairs against null_value. Needs two pairs.
 Result<PairedTTest> t_test_paired(std::span<const double> x, std::span<const double> y,
                                   const TTestOptions& options = {});
-/// Equal variances (Student). Needs one value in each group and three in all.
+/// Compares the means of two groups with equal variances (Student). Needs one value in each group and three
+/// in all.
 Result<IndependentTTest> t_test_independent(std::span<const double> x, std::span<const double> y,
                                             const TTestOptions& options = {});
-/// Unequal variances (Welch 1947, Satterthwaite's df). Needs two values in each group. The effect sizes are
-/// those of the pooled test.
+/// Compares the means of two groups with unequal variances (Welch 1947, Satterthwaite's df). Needs two values
+/// in each group. The effect sizes are those of the pooled test.
 Result<IndependentTTest> t_test_welch(std::span<const double> x, std::span<const double> y,
                                       const TTestOptions& options = {});
 

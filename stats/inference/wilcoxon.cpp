@@ -36,7 +36,7 @@ double median_in_place(std::vector<double>& values) {
 
 /// Sums of the ranks of positive and of negative differences, zeros left out.
 struct SignedRanks {
-  std::vector<double> ranks;  ///< of the differences that are not zero
+  std::vector<double> ranks;  ///< ranks of the differences that are not zero
   double plus = 0, minus = 0, squares = 0;
   double mean() const { return (plus + minus) / 2; }
   double variance() const { return squares / 4; }

@@ -12,8 +12,8 @@
 
 namespace stats {
 
-/// Exact p-values are conditional on the observed midranks, so they hold with ties; without ties they are the
-/// classical ones. They are omitted beyond n = 1000, where the normal ones suffice.
+/// Exact p-values are conditional on the observed midranks, so they are valid with ties; without ties they
+/// equal the classical p-values. They are omitted beyond n = 1000, where the normal p-values suffice.
 struct SignedRank {
   std::size_t n = 0, n_nonzero = 0, n_missing = 0;
   double w_plus = 0, w_minus = 0;  ///< sums of midranks of |d|, zeros dropped (Wilcoxon 1945)
@@ -21,27 +21,29 @@ struct SignedRank {
   double rank_biserial = 0;        ///< (w_plus - w_minus) / (w_plus + w_minus)
   std::optional<double> p_exact, p_exact_less, p_exact_greater;  ///< two-sided: twice the smaller, at most 1
   double p_normal = 0;              ///< two-sided, tie-corrected, with continuity correction
-  double p_normal_uncorrected = 0;  ///< without continuity correction
+  double p_normal_uncorrected = 0;  ///< as p_normal, but without continuity correction
   /// The p to report: exact if there is one, else normal.
   double p() const { return p_exact.value_or(p_normal); }
-  /// Pratt's (1959) version: zeros are ranked with the others, and their ranks then dropped.
+  /// Pratt's (1959) version: zeros are ranked with the other differences, and the ranks of the zeros are then
+  /// dropped.
   double pratt_w_plus = 0, pratt_z = 0, pratt_p_normal = 0;
   std::optional<double> pratt_p_exact;
   double hodges_lehmann = 0;  ///< median of all Walsh averages (d_i + d_j) / 2, i <= j, zeros included
   /// Order statistics of the Walsh averages, chosen by the exact distribution, both ends included. The level
-  /// is at least the confidence; if n is too small for that, the range of all Walsh averages. Empty beyond n
-  /// = 1000.
+  /// is at least the confidence; if n is too small for that, the interval is the range of all Walsh averages.
+  /// Empty beyond n = 1000.
   std::optional<std::array<double, 2>> hodges_lehmann_ci;
-  /// The probability that this interval covers the centre: above the confidence, or 1 - 2^(1 - n) if n is too
-  /// small for it (below 6 at .95). Exact without ties and zeros; with them the coverage is at least this
-  /// (Noether 1967, J. Am. Stat. Assoc. 62, 184-188).
+  /// The probability that hodges_lehmann_ci covers the centre: above the confidence, or 1 - 2^(1 - n) if n is
+  /// too small for the confidence (below 6 at .95). Exact without ties and zeros; with them the coverage is
+  /// at least this probability (Noether 1967, J. Am. Stat. Assoc. 62, 184-188).
   double hodges_lehmann_level = 0;
 };
 
-/// Tests differences against a median of zero. They tie only if they are equal doubles. std::invalid_argument
-/// unless confidence lies in (0, 1). Refused: no values, an infinite value, no nonzero difference.
+/// Tests differences against a median of zero. Two differences tie only if they are equal doubles.
+/// std::invalid_argument unless confidence lies in (0, 1). Refused: no values, an infinite value, no nonzero
+/// difference.
 Result<SignedRank> signed_rank(std::span<const double> differences, double confidence = 0.95);
-/// The same for differences of means: equal differences tie, whatever the counts.
+/// The same test for exact differences of means. Equal differences tie, whatever the counts of the means.
 Result<SignedRank> signed_rank(const ExactDifferences& differences, double confidence = 0.95);
 
 }  // namespace stats

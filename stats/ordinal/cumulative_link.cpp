@@ -39,7 +39,8 @@ double link_quantile(Link link, double p) {
 
 CategoryTerm category_term(Link link, double lower, double upper, double location) {
   const auto a = link_value(link, upper - location), c = link_value(link, lower - location);
-  // Above the middle the difference of the upper tails is more accurate: F(x) = 1 - F(-x).
+  // If both thresholds lie above the location, the difference of the upper tails is more accurate: F(x) = 1 -
+  // F(-x).
   const double p = lower > location
                        ? link_value(link, location - lower).F - link_value(link, location - upper).F
                        : a.F - c.F;
@@ -125,8 +126,8 @@ std::string separation(std::span<const Predictor> predictors, std::span<const do
          ", so that the likelihood has no maximum";
 }
 
-/// Newton's method with step halving. At a maximum the steps vanish; without one (separation) they keep their
-/// length until the information is singular.
+/// Newton's method with step halving. Near a maximum the steps vanish. Without a maximum (separation) the
+/// steps keep their length until the information matrix is singular.
 struct Climb {
   std::vector<double> at, covariance, last_step;
   double log_likelihood = 0;
@@ -213,7 +214,7 @@ std::string too_few(const OrdinalRows& rows) {
   return "";
 }
 
-/// Log density of log-F(1, 1) at beta, minus that at 0.
+/// Log density of the log-F(1, 1) distribution at beta, minus its log density at 0.
 double log_prior(double beta) {
   const double half = std::abs(beta) / 2;
   return -(half + std::log1p(std::exp(-2 * half)) - std::numbers::ln2);  // -log cosh, without overflow
@@ -228,7 +229,8 @@ double log_prior(std::span<const double> standardised_beta, const OrdinalRows& r
   return sum;
 }
 
-/// Minus the log-likelihood as a function of thresholds, beta and sd; or minus the penalised one.
+/// Minus the log-likelihood as a function of thresholds, beta and sd; if `penalised`, minus the penalised
+/// log-likelihood.
 Objective deviance(MixedLikelihood& likelihood, const OrdinalRows& rows, bool penalised) {
   return [&likelihood, &rows, penalised](std::span<const double> at, std::span<double> gradient) {
     const auto q = static_cast<std::size_t>(rows.thresholds()), k = rows.x.size();
@@ -245,7 +247,7 @@ Objective deviance(MixedLikelihood& likelihood, const OrdinalRows& rows, bool pe
   };
 }
 
-/// Thresholds and beta in standardised units, from a fit in the predictors' own units.
+/// Thresholds and beta in standardised units, from a fit in the predictors' original units.
 std::vector<double> standardised(const OrdinalFit& fit, const OrdinalRows& rows) {
   std::vector<double> at = fit.thresholds;
   for (std::size_t k = 0; k < fit.beta.size(); ++k) {
@@ -255,7 +257,7 @@ std::vector<double> standardised(const OrdinalFit& fit, const OrdinalRows& rows)
   return at;
 }
 
-/// Start of the search: the fit without participants, or if there is none, zero effects.
+/// Start of the search: the fit without participants' effects, or zero effects if that fit was refused.
 std::vector<double> start_of(const Result<OrdinalFit>& fixed, const OrdinalRows& rows, Link link) {
   auto start =
       fixed ? standardised(*fixed, rows) : marginal_thresholds(rows.category, rows.thresholds() + 1, link);
@@ -264,7 +266,8 @@ std::vector<double> start_of(const Result<OrdinalFit>& fixed, const OrdinalRows&
   return start;
 }
 
-/// Rows and columns of thresholds and beta, from the inverse of a Hessian that also includes sd.
+/// Covariance of thresholds and beta: their rows and columns of the inverse of a Hessian that also includes
+/// sd.
 std::vector<double> covariance_of(std::span<const double> hessian, std::size_t p) {
   const auto all = Cholesky::of(hessian)->inverse();
   std::vector<double> out;
@@ -288,7 +291,8 @@ Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> rating
   const auto rows = ordinal_rows(ratings, predictors, participants);
   if (!rows) return Refusal{rows.reason()};
   if (const auto reason = too_few(*rows); !reason.empty()) return Refusal{reason};
-  // Ratings that are separated without participants are also separated with them.
+  // Ratings that are separated in the model without participants' effects are also separated in the model
+  // with them.
   const auto fixed = fit_cumulative_link(ratings, predictors, link);
   const bool penalised = !fixed && separation == Separation::Penalise;
   if (!fixed && !penalised) return Refusal{fixed.reason()};

@@ -26,8 +26,8 @@ LinkValue link_value(Link link, double x);
 double link_quantile(Link link, double p);
 
 /// log P of one rating, P = F(upper - v) - F(lower - v), and its derivatives: d1, d2, d3 with respect to the
-/// location v; `up` and `lo` with respect to the upper and lower threshold, `up1`, `up2`, `lo1`, `lo2` of
-/// those with respect to v.
+/// location v; `up` and `lo` with respect to the upper and lower threshold, `up1`, `up2`, `lo1`, `lo2` are
+/// the first and second derivatives of `up` and `lo` with respect to v.
 struct CategoryTerm {
   double log_p = 0;
   double d1 = 0, d2 = 0, d3 = 0;
@@ -54,8 +54,9 @@ struct OrdinalFit {
   Link link = Link::Logit;
   std::vector<double> levels;      ///< scores that occur, ascending; unused scores have no threshold
   std::vector<double> thresholds;  ///< one fewer than levels, ascending
-  std::vector<double> beta;        ///< one for each predictor; larger = higher ratings
-  std::vector<double> covariance;  ///< of thresholds, then beta; row-major, from the observed information
+  std::vector<double> beta;        ///< coefficient of each predictor; larger = higher ratings
+  /// Covariance of thresholds, then beta; row-major, from the observed information.
+  std::vector<double> covariance;
   double log_likelihood = 0;
   int n = 0;          ///< rows used
   int n_missing = 0;  ///< rows with a NaN, left out
@@ -65,13 +66,13 @@ struct OrdinalFit {
 };
 
 /// Maximum likelihood by Newton's method on the concave log-likelihood. All columns have one length
-/// (std::invalid_argument). Refused: no rows; one score throughout; a predictor that is constant or a
+/// (std::invalid_argument). Refused: no rows; all ratings equal; a predictor that is constant or a linear
 /// combination of the others; an infinite value; separation (the reason names its predictors): the predictors
 /// separate the ratings so that the likelihood has no maximum (Albert and Anderson 1984).
 Result<OrdinalFit> fit_cumulative_link(std::span<const double> ratings, std::span<const Predictor> predictors,
                                        Link link = Link::Logit);
 
-/// What a fit does if the ratings are separated.
+/// How a fit treats ratings that the predictors separate (see fit_cumulative_link()).
 enum class Separation {
   Refuse,
   /// Maximise the likelihood times the log-F(1, 1) density of each beta (Greenland and Mansournia 2015, Stat.
@@ -88,16 +89,16 @@ struct MixedOrdinalFit : OrdinalFit {
   int participants = 0;
   int points = 1;             ///< nodes of the quadrature; 1 is Laplace's approximation
   std::string why_penalised;  ///< the separation found; empty: maximum likelihood was used
-  double log_prior = 0;       ///< of a penalised fit, relative to beta = 0; log_likelihood excludes it
+  double log_prior = 0;  ///< log prior of a penalised fit relative to beta = 0; log_likelihood excludes it
   double objective() const { return log_likelihood + log_prior; }  ///< the value that was maximised
 };
 
 /// Maximum likelihood by adaptive Gauss-Hermite quadrature with `points` nodes over each participant's effect
 /// (Pinheiro and Bates 1995; 1 = Laplace), 1 to 101 (std::invalid_argument). Refused as
-/// fit_cumulative_link(), and also: fewer than two participants; one rating from each, which cannot separate
-/// sd_participant from the scatter of single ratings; an unbounded sd_participant. Separation::Penalise
-/// changes nothing if the ratings are not separated; it requires beta to be log odds (std::invalid_argument
-/// with the probit link), and the covariance is that of the penalised likelihood.
+/// fit_cumulative_link(), and also: fewer than two participants; one rating from each participant, from which
+/// sd_participant cannot be separated from the scatter of single ratings; an unbounded sd_participant.
+/// Separation::Penalise changes nothing if the ratings are not separated; it requires beta to be log odds
+/// (std::invalid_argument with the probit link), and the covariance is that of the penalised likelihood.
 Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> ratings,
                                                   std::span<const Predictor> predictors,
                                                   std::span<const int> participants, Link link = Link::Logit,
@@ -110,7 +111,7 @@ struct LikelihoodRatio {
   int df = 0;
   double p = 1;
 };
-/// std::invalid_argument unless df >= 1.
+/// Compares two nested fits that differ by df parameters. std::invalid_argument unless df >= 1.
 LikelihoodRatio likelihood_ratio(double log_likelihood_full, double log_likelihood_reduced, int df);
 
 }  // namespace stats

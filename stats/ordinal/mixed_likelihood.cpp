@@ -15,7 +15,8 @@ namespace stats {
 
 namespace {
 
-/// g(u) = sum log P(row | u) - u^2 / 2 and its derivatives.
+/// The exponent of the integrand over a participant's effect u, g(u) = sum log P(row | u) - u^2 / 2, and its
+/// derivatives.
 struct Exponent {
   double g = 0, d1 = 0, d2 = 0, d3 = 0;
 };
@@ -69,7 +70,8 @@ MixedLikelihood::MixedLikelihood(std::span<const int> category, std::span<const 
   }
 }
 
-/// Newton's method on the concave exponent.
+/// Moves group.mode to the maximum of the concave exponent by Newton's method. Returns false if the exponent
+/// is not finite.
 bool MixedLikelihood::find_mode(Group& group, const Place& place) const {
   auto here = place.exponent(group.rows, group.mode);
   if (!std::isfinite(here.g)) {

@@ -10,21 +10,21 @@ namespace stats {
 
 /// Derivatives of the log-likelihood.
 struct MixedGradient {
-  std::vector<double> thresholds, location;  ///< one for each threshold; one for each row
+  std::vector<double> thresholds, location;  ///< derivatives for each threshold, and for each row's location
   double sd = 0;
 };
 
 /// Adaptive Gauss-Hermite quadrature (Pinheiro and Bates 1995, section 2.4) about each participant's mode,
-/// scaled by the curvature there; one node is Laplace's approximation. The gradient is that of the
-/// approximation itself and accounts for the moving nodes.
+/// scaled by the curvature at the mode; one node is Laplace's approximation. The gradient is that of the
+/// approximation, so it includes the movement of the nodes with the mode.
 class MixedLikelihood {
  public:
   /// category in [0, levels), participant in [0, participants) for each row; points >= 1.
   MixedLikelihood(std::span<const int> category, std::span<const int> participant, Link link, int points);
 
   /// Log-likelihood and its gradient. -infinity if a rating has probability zero or the thresholds do not
-  /// ascend; the gradient is then invalid. Effects are sd u with u ~ N(0, 1), so the likelihood is even in
-  /// sd. Not thread-safe: each call starts from the modes that the previous call found.
+  /// ascend; the gradient is then invalid. Effects are sd u with u ~ N(0, 1), so the likelihood is the same
+  /// for sd and -sd. Not thread-safe: each call starts from the modes that the previous call found.
   double evaluate(std::span<const double> thresholds, std::span<const double> location, double sd,
                   MixedGradient& gradient);
 
@@ -40,7 +40,8 @@ class MixedLikelihood {
   std::vector<int> category_;
   std::vector<Group> groups_;
   Link link_;
-  std::vector<double> nodes_, log_weights_;  ///< sqrt(2) z and log(w exp(z^2) / sqrt(pi))
+  /// sqrt(2) z and log(w exp(z^2) / sqrt(pi)), for the Gauss-Hermite nodes z and their weights w.
+  std::vector<double> nodes_, log_weights_;
 };
 
 }  // namespace stats

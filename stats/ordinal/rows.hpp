@@ -13,7 +13,7 @@ struct OrdinalRows {
   std::vector<int> category;           ///< index into levels, for each row
   std::vector<int> participant;        ///< 0, 1, ... ; empty without participants
   std::vector<std::vector<double>> x;  ///< standardised columns
-  std::vector<double> centre, scale;   ///< of the columns
+  std::vector<double> centre, scale;   ///< mean and sd of each column before it was standardised
   int participants = 0;
   int n_missing = 0;
 
@@ -23,14 +23,15 @@ struct OrdinalRows {
   std::vector<double> location(std::span<const double> beta) const;
 };
 
-/// Refused as fit_cumulative_link(), except for separation.
+/// Selects the rows without a NaN, numbers their categories and standardises the predictors. Refused as
+/// fit_cumulative_link(), except for separation.
 Result<OrdinalRows> ordinal_rows(std::span<const double> ratings, std::span<const Predictor> predictors,
                                  std::span<const int> participants);
 
 /// Thresholds of the ratings without predictors: link_quantile of the cumulative shares.
 std::vector<double> marginal_thresholds(std::span<const int> category, int levels, Link link);
 
-/// Sets thresholds, beta and covariance in the predictors' own units; `parameters` and `covariance` hold
+/// Sets thresholds, beta and covariance in the predictors' original units; `parameters` and `covariance` hold
 /// thresholds and beta for the standardised predictors.
 void set_original_units(OrdinalFit& fit, const OrdinalRows& rows, std::span<const double> parameters,
                         std::span<const double> covariance);

@@ -91,7 +91,7 @@ std::vector<LogitRow> pair_rows(const Wins& wins) {
   return rows;
 }
 
-/// Strengths with the first item at 0 and with sum 0, and the worths.
+/// Sets the strengths relative to the first item, the strengths that sum to 0, and the worths.
 void set_strengths(BradleyTerry& out, const LogitFit& fit) {
   out.lambda_ref1.assign(1, 0.0);
   out.lambda_ref1.insert(out.lambda_ref1.end(), fit.coefficients.begin(), fit.coefficients.end());
@@ -104,7 +104,7 @@ void set_strengths(BradleyTerry& out, const LogitFit& fit) {
   }
 }
 
-/// Covariance of the strengths with the first item at 0.
+/// Sets the covariance and standard errors of the strengths relative to the first item.
 void set_covariance(BradleyTerry& out, const CoefficientErrors& errors) {
   const auto n = static_cast<std::size_t>(out.items);
   out.se_ref1.assign(n, 0.0);
@@ -115,7 +115,7 @@ void set_covariance(BradleyTerry& out, const CoefficientErrors& errors) {
   }
 }
 
-/// Errors of the strengths that sum to 0.
+/// Sets the standard errors and intervals of the strengths that sum to 0.
 void set_centred(BradleyTerry& out, double quantile) {
   const auto n = static_cast<std::size_t>(out.items);
   const auto items = static_cast<double>(out.items);
@@ -160,7 +160,8 @@ void set_errors(BradleyTerry& out, const CoefficientErrors& errors) {
   set_pairs(out, errors, quantile);
 }
 
-/// Replaces errors of independent answers by errors over people; the former are stored beside them.
+/// Replaces errors of independent answers by errors over people; the errors of independent answers stay in
+/// the fields se_independent and se_sum0_independent.
 void set_people(BradleyTerry& out, const CoefficientErrors& errors, const LogitFit& fit) {
   const auto before = out.pairs;
   set_errors(out, errors);
@@ -182,7 +183,7 @@ void set_tests(BradleyTerry& out, const LogitFit& fit, std::span<const LogitRow>
   out.gof_deviance = fit.deviance;
   out.gof_df = static_cast<int>(rows.size()) - (out.items - 1);
   if (out.gof_df > 0) out.gof_p = chi2_upper(out.gof_deviance, out.gof_df);
-  // Deviances rather than likelihoods: small differences of large sums keep their digits.
+  // Subtracts deviances, not likelihoods, so that small differences of large sums are accurate.
   double equal = 0;
   for (const auto& row : rows) {
     equal += 2 * (deviance_part(row.successes, row.trials / 2) +

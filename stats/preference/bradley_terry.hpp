@@ -12,8 +12,8 @@
 
 namespace stats {
 
-/// Tells if the strengths are finite (Ford 1957): for each split of the items into two sets, each set must
-/// have a win over the other.
+/// Decides if the strengths are finite (Ford 1957). They are if, for each split of the items into two sets,
+/// each set has a win over the other.
 enum class Connection {
   Strong,     ///< finite maximum of the likelihood
   Separated,  ///< connected, but some items never lose to the others: infinite strengths
@@ -21,7 +21,7 @@ enum class Connection {
 };
 struct ConnectionReport {
   Connection connection = Connection::Strong;
-  std::string reason;  ///< e.g. "item 5 wins every comparison"; empty when Strong
+  std::string reason;  ///< e.g. "item 5 wins every comparison with the others"; empty when Strong
 };
 /// `wins`: items by items, row after row; entry (i, j) is how often i was preferred to j.
 /// std::invalid_argument unless there are items^2 entries, all finite and >= 0.
@@ -37,9 +37,9 @@ struct PairDifference {
   int i = 0, j = 0;       ///< items, from 0, i < j
   double difference = 0;  ///< lambda_i - lambda_j, logits
   double se = 0;
-  double se_independent = 0;   ///< as if answers were independent
-  std::array<double, 2> ci{};  ///< Wald
-  double p = 0;                ///< Wald
+  double se_independent = 0;   ///< standard error that treats answers as independent
+  std::array<double, 2> ci{};  ///< Wald interval
+  double p = 0;                ///< of the two-sided Wald test
   double probability = 0;      ///< probability that i is preferred to j
   std::array<double, 2> probability_ci{};
 };
@@ -48,18 +48,18 @@ struct BradleyTerry {
   int items = 0;
   double comparisons = 0;
   bool bias_reduced = false;
-  std::string why_bias_reduced;  ///< the reason when Automatic chose it
+  std::string why_bias_reduced;  ///< why Automatic chose bias reduction; empty if it did not
   double confidence = 0.95;
-  std::vector<double> lambda_ref1, se_ref1;  ///< relative to the first item, which has 0
+  std::vector<double> lambda_ref1, se_ref1;  ///< strengths relative to the first item, and their errors
   std::vector<double> covariance_ref1;  ///< items by items, row after row; the first row and column are 0
-  std::vector<double> lambda_sum0, se_sum0;    ///< strengths that sum to 0
-  std::vector<std::array<double, 2>> ci_sum0;  ///< Wald
-  std::vector<double> se_sum0_independent;     ///< as if answers were independent
+  std::vector<double> lambda_sum0, se_sum0;    ///< strengths that sum to 0, and their standard errors
+  std::vector<std::array<double, 2>> ci_sum0;  ///< Wald intervals
+  std::vector<double> se_sum0_independent;     ///< errors that treat answers as independent
   std::vector<double> worth;                   ///< exp(lambda), sum 1
   /// Degrees of freedom of errors over people (people_errors()). Empty if errors treat answers as
   /// independent.
   std::optional<double> people_df;
-  std::string why_independent;  ///< for single trials: why errors are not over people
+  std::string why_independent;  ///< fits of single trials: why their errors are not over people
   /// Wald's test of equal strengths with errors over people, as Hotelling's T2.
   struct PeopleTest {
     double f = 0, df1 = 0, df2 = 0, p = 0;
@@ -70,23 +70,24 @@ struct BradleyTerry {
   double gof_deviance = 0;
   int gof_df = 0;
   std::optional<double> gof_p;
-  /// Likelihood ratio against equal strengths.
+  /// Likelihood-ratio test of equal strengths.
   double lrt_chi2 = 0;
   int lrt_df = 0;
   double lrt_p = 0;
   std::vector<PairDifference> pairs;  ///< all pairs, also those never compared directly
 };
 
-/// Refused: fewer than two items, no comparison, items never compared, and for MaximumLikelihood an infinite
-/// estimate (the reason names the items). For BiasReduced, likelihood-ratio tests use the bias-reduced
-/// strengths in the ordinary likelihood. std::invalid_argument as for connection(), and for an entry (i, i) >
-/// 0 or a confidence outside (0, 1).
+/// Fits the model to counts of wins. Refused: fewer than two items, no comparison, items never compared, and
+/// for MaximumLikelihood an infinite estimate (the reason names the items). For BiasReduced, likelihood-ratio
+/// tests use the bias-reduced strengths in the ordinary likelihood. std::invalid_argument as for
+/// connection(), and for an entry (i, i) > 0 or a confidence outside (0, 1).
 Result<BradleyTerry> bradley_terry(std::span<const double> wins, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);
 
-/// The same for single trials: strengths and likelihood ratios as from their wins; errors, intervals and Wald
-/// tests over people where the data allow it. Penalised strengths keep the errors of independent answers.
+/// Fits single trials. Strengths and likelihood ratios are those of the trials' win counts. Errors, intervals
+/// and Wald tests are over people (people_errors()) if the data allow it. Bias-reduced strengths have the
+/// errors of independent answers.
 Result<BradleyTerry> bradley_terry(std::span<const Comparison> trials, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);

@@ -23,7 +23,7 @@ constexpr int most_exact = 7;
 
 int all_triads(int items) { return items * (items - 1) * (items - 2) / 6; }
 
-/// Kendall and Babington Smith 1940.
+/// Largest possible number of circular triads (Kendall and Babington Smith 1940).
 int most_circular(int items) {
   const int n = items;
   return n % 2 == 1 ? (n * n * n - n) / 24 : (n * n * n - 4 * n) / 24;
@@ -33,8 +33,8 @@ int most_circular(int items) {
 /// is circular.
 int heads(int wins) { return wins * (wins - 1) / 2; }
 
-/// Share of each number of circular triads among all tournaments. They are enumerated in Gray code, so that
-/// one answer changes at a time.
+/// Share of each number of circular triads among all tournaments. The tournaments are enumerated in Gray
+/// code, so that each differs from the one before it in one answer.
 Values enumerate(int items) {
   std::vector<std::array<std::size_t, 2>> pairs;
   std::vector<int> score(static_cast<std::size_t>(items), 0);
@@ -84,7 +84,7 @@ Values convolve(const Values& a, const Values& b) {
   return out;
 }
 
-/// Kendall 1962, section 11.10.
+/// p by Kendall's chi-square approximation (Kendall 1962, section 11.10).
 double approximate_p(int items, int triads) {
   const double n = items;
   const double df = n * (n - 1) * (n - 2) / ((n - 4) * (n - 4));
@@ -133,7 +133,7 @@ Result<GroupTriads> group_triads(std::span<const CircularTriads> participants) {
     for (int i = 0; i < out.participants; ++i) sum = convolve(sum, exact_distribution(out.items));
     out.p = share_up_to(sum, out.triads);
   } else {
-    // Each triad is circular with probability 1/4, and any two are independent
+    // Each triad is circular with probability 1/4, and any two triads are independent.
     const double sd = std::sqrt(0.75 * out.expected);
     out.p = normal_probability((out.triads + 0.5 - out.expected) / sd);
   }

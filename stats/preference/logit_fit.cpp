@@ -48,8 +48,8 @@ double deviance(std::span<const LogitRow> rows, const Values& beta) {
   return 2 * sum;
 }
 
-/// Inverse of the information matrix, and the latter's log determinant. information() is empty if the matrix
-/// is singular.
+/// Inverse of the information matrix, and log determinant of the information matrix. information() is empty
+/// if the matrix is singular.
 struct Information {
   Values inverse;
   double log_determinant = 0;
@@ -70,7 +70,7 @@ std::optional<Information> information(std::span<const LogitRow> rows, const Val
   if (gsl_linalg_cholesky_decomp1(&view.matrix) != GSL_SUCCESS) return std::nullopt;
   for (std::size_t i = 0; i < k; ++i) {
     const double pivot = out.inverse[i * k + i];
-    // The column depends on the others up to rounding.
+    // The column is a linear combination of the others, up to rounding.
     if (!(pivot * pivot > 1e-12 * diagonal[i])) return std::nullopt;
     out.log_determinant += 2 * std::log(pivot);
   }
@@ -78,8 +78,8 @@ std::optional<Information> information(std::span<const LogitRow> rows, const Val
   return out;
 }
 
-/// The score, with Firth's term: a row's residual gains leverage times trials times variance times (1/2 -
-/// probability).
+/// The score (gradient of the objective). Firth's term for LogitBias::Reduced adds leverage * trials *
+/// variance * (1/2 - probability) to a row's residual.
 Values score(std::span<const LogitRow> rows, const Values& beta, const Values& inverse, LogitBias bias) {
   const std::size_t k = beta.size();
   Values out(k, 0.0);
@@ -97,7 +97,8 @@ Values score(std::span<const LogitRow> rows, const Values& beta, const Values& i
   return out;
 }
 
-/// The objective that Newton's method maximises.
+/// The objective that Newton's method maximises: the log-likelihood, plus half the information's log
+/// determinant if the bias is reduced.
 double objective(std::span<const LogitRow> rows, const Values& beta, const Information& at, LogitBias bias) {
   return log_likelihood(rows, beta) + (bias == LogitBias::Reduced ? at.log_determinant / 2 : 0);
 }
@@ -142,7 +143,8 @@ Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias) {
   at.information = *start;
   at.objective = objective(rows, at.beta, at.information, bias);
 
-  // A separated likelihood increases for ever, in steps of about 1.
+  // Under separation the likelihood increases without end, and Newton's steps have a length of about 1. A
+  // linear predictor beyond `farthest` is therefore refused.
   constexpr int most_steps = 200;
   constexpr double farthest = 30;
   for (int i = 0; i < most_steps; ++i) {
@@ -244,7 +246,7 @@ Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const Log
     for (std::size_t i = 0; i < k; ++i)
       for (std::size_t j = 0; j < k; ++j) out.covariance[i * k + j] += step[i] * step[j] * n / (n - 1);
   }
-  // If all people answer alike, only rounding remains compared with the errors of independent answers.
+  // If all people answer alike, the covariance over people is only rounding.
   for (std::size_t i = 0; i < k; ++i) {
     if (!(out.covariance[i * k + i] > 1e-10 * fit.variance(i, i)))
       return Refusal{"the participants answered too much alike for errors over people"};

@@ -34,19 +34,21 @@ enum class LogitBias {
   Reduced,  ///< Firth 1993: maximises likelihood times Jeffreys' prior; finite under separation
 };
 
-/// Newton's method with step halving. All rows have the same number of coefficients, one or more. Refused:
-/// coefficients that the rows do not determine, separation (LogitBias::AsIs), no convergence.
+/// Fits the coefficients by Newton's method with step halving. All rows have the same number of coefficients,
+/// one or more. Refused: coefficients that the rows do not determine, separation (LogitBias::AsIs), no
+/// convergence.
 Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias = LogitBias::AsIs);
 
 /// One 2AFC trial.
 struct Comparison {
   int first = 0, second = 0;  ///< items shown in the first and the second interval, from 0
   bool first_chosen = false;
-  double position = 0;  ///< position of the trial in its session, 1, 2, 3 ...; any unit
+  double position = 0;  ///< position of the trial in its session; any unit
   int participant = 0;  ///< any number; equal numbers are one participant
 };
 
-/// std::invalid_argument for an item outside [0, items), equal items, or a position that is not finite.
+/// Throws std::invalid_argument for an item outside [0, items), equal items, or a position that is not
+/// finite.
 void check_trials(std::span<const Comparison> trials, int items);
 
 /// Counts of wins: items by items, row after row, as bradley_terry() takes them.
@@ -56,10 +58,10 @@ std::vector<double> win_table(std::span<const Comparison> trials, int items);
 /// further terms.
 std::vector<LogitRow> trial_rows(std::span<const Comparison> trials, int items, std::size_t terms = 0);
 
-/// A covariance of coefficients and the distribution that goes with its errors.
+/// The covariance of estimated coefficients, and the distribution of an estimate over its standard error.
 struct CoefficientErrors {
   std::vector<double> covariance;  ///< coefficients by coefficients, row after row
-  std::optional<double> df;        ///< Student's t; empty: normal
+  std::optional<double> df;        ///< degrees of freedom of Student's t; empty: normal distribution
 
   double variance(std::size_t i, std::size_t j, std::size_t size) const { return covariance[i * size + j]; }
   double quantile(double confidence) const;  ///< two-sided
@@ -69,10 +71,10 @@ struct CoefficientErrors {
 /// Errors as if answers were independent: the inverse information.
 CoefficientErrors independent_errors(const LogitFit& fit);
 
-/// The sandwich estimator with each person's answers as a cluster (Liang and Zeger 1986), times people /
-/// (people - 1), with Student's t of people - 1 degrees of freedom. `rows` as they were fitted, one for each
-/// of `trials`. Refused: no more people than coefficients, since their answers then do not span the
-/// coefficients; people whose answers leave a coefficient without error.
+/// Errors by the sandwich estimator with each person's answers as a cluster (Liang and Zeger 1986), times
+/// people / (people - 1), with Student's t of people - 1 degrees of freedom. `rows` as they were fitted, one
+/// for each of `trials`. Refused: no more people than coefficients, since their answers then do not span the
+/// coefficients; people who answer so much alike that a coefficient has no error.
 Result<CoefficientErrors> people_errors(const LogitFit& fit, std::span<const LogitRow> rows,
                                         std::span<const Comparison> trials);
 

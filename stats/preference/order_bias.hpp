@@ -13,10 +13,10 @@ namespace stats {
 
 /// One term in the logit of choosing the first interval.
 struct OrderTerm {
-  double estimate = 0;         ///< logits
-  double se = 0;               ///< over people if people_errors() is not refused, else se_independent
-  double se_independent = 0;   ///< as if answers were independent
-  std::optional<double> df;    ///< of Student's t for `ci` and `p_wald`; empty: normal
+  double estimate = 0;  ///< logits
+  double se = 0;        ///< standard error over people if people_errors() gives one, else se_independent
+  double se_independent = 0;   ///< standard error that treats answers as independent
+  std::optional<double> df;    ///< degrees of freedom of Student's t for `ci` and `p_wald`; empty: normal
   std::array<double, 2> ci{};  ///< Wald
   double p_wald = 0;
   double lrt_chi2 = 0;  ///< likelihood ratio against the model without this term, 1 df; treats answers as
@@ -28,18 +28,20 @@ struct OrderBias {
   int items = 0;
   int n = 0, first_chosen = 0;
   double confidence = 0.95;
-  OrderTerm interval;  ///< constant bias to the first interval: logit = lambda_i - lambda_j + interval
+  OrderTerm interval;  ///< constant bias towards choosing the first interval: logit = lambda_i - lambda_j +
+                       ///< interval
   double first_probability = 0.5;  ///< probability of choosing the first of two equal items
   std::array<double, 2> first_probability_ci{};
-  /// Change of that bias with position, per unit, about the mean position. Empty if all positions are equal
-  /// or the fit with it is separated.
+  /// Change of the interval's bias per unit of position; positions are centred at their mean. Empty if all
+  /// positions are equal or the fit with it is separated.
   std::optional<OrderTerm> drift{};
 };
 
-/// Trials of one participant are correlated: Wald errors are over people, likelihood ratios treat all trials
-/// as independent. Refused: no trial, fewer than two items, items never compared, orders that do not
-/// determine the bias to an interval, separation (the reason says of which model). std::invalid_argument for
-/// an item outside [0, items), equal items, a position that is not finite, or a confidence outside (0, 1).
+/// Estimates the order effects. Trials of one participant are correlated: Wald errors are over people,
+/// likelihood ratios treat all trials as independent. Refused: no trial, fewer than two items, items never
+/// compared, orders of showing that do not determine the bias towards an interval, separation (the reason
+/// says of which model). std::invalid_argument for an item outside [0, items), equal items, a position that
+/// is not finite, or a confidence outside (0, 1).
 Result<OrderBias> order_bias(std::span<const Comparison> trials, int items, double confidence = 0.95);
 
 }  // namespace stats

@@ -24,8 +24,8 @@ struct BandPoint {
   std::array<double, 2> simultaneous{};  ///< covers the whole true curve at once
 };
 
-/// A curve with its uncertainty by the jackknife over participants (Tukey 1958), which leaves out each in
-/// turn.
+/// A curve with its uncertainty by the jackknife over participants (Tukey 1958), which leaves out each
+/// participant in turn.
 struct CurveSpread {
   Curve curve;
   double var_log_a = 0, cov = 0, var_b = 0;
@@ -33,21 +33,22 @@ struct CurveSpread {
   double confidence = 0.95;
   std::array<double, 2> a_ci{}, b_ci{};  ///< exp(log a -+ t se), b -+ t se with participants - 1 df
 
-  double a_se() const;  ///< a se(log a)
+  double a_se() const;  ///< standard error of a: a times the standard error of log a
   double b_se() const;
-  /// Pointwise with Student's t; simultaneous after Working and Hotelling (1929) with Hotelling's T^2 for the
-  /// two coefficients.
+  /// The band at one delta: pointwise with Student's t; simultaneous after Working and Hotelling (1929) with
+  /// Hotelling's T^2 for the two coefficients.
   BandPoint band(double delta) const;
   /// Largest half width of the pointwise band over `deltas`, as a share of mu(delta): the relative
   /// uncertainty of the threshold frame rate.
   double largest_relative_half_width(std::span<const double> deltas) const;
 };
 
-/// Jackknife from the estimate and the estimates without each participant, both in any units. Needs at least
-/// four participants (std::invalid_argument). `confidence` in (0, 1).
+/// Jackknife over participants: from the estimate with all participants, and the estimates that leave out one
+/// participant each. Needs at least four participants (std::invalid_argument). `confidence` in (0, 1).
 CurveSpread jackknife_curve(const Curve& estimate, std::span<const Curve> without_one, double confidence);
 
-/// (n-1)/n sum (x_i - mean)(y_i - mean): the jackknife's covariance of two estimates.
+/// (n-1)/n sum (x_i - mean)(y_i - mean): the jackknife's covariance of two estimates, where x_i and y_i are
+/// the estimates without participant i of n.
 double jackknife_covariance(std::span<const double> x, std::span<const double> y);
 
 }  // namespace stats

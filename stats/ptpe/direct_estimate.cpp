@@ -17,8 +17,10 @@ namespace stats {
 
 namespace {
 
-/// The fits without each participant in turn; the reason if one is refused.
+/// Fits the ratings with one weight for each participant.
 using Fitter = std::function<Result<DirectFit>(std::span<const double>)>;
+
+/// The fits without each participant in turn, or the reason if one of them is refused.
 Result<std::vector<DirectFit>> leave_one_out(int n, const Fitter& fitter) {
   if (n < least_participants) {
     return Refusal{"an interval over participants needs at least " + std::to_string(least_participants) +
@@ -51,7 +53,7 @@ Result<LackOfFit> lack_of_fit(const DirectFit& fit, const std::vector<DirectFit>
   const double mm = jackknife_covariance(m, m), mq = jackknife_covariance(m, q),
                qq = jackknife_covariance(q, q);
   const double determinant = mm * qq - mq * mq, n = static_cast<double>(m.size());
-  // If people do not differ, only rounding remains (and would give an F of 1e18).
+  // If the participants' estimates are equal, their variance is only rounding, which would give an F of 1e18.
   const auto no_spread = [](double variance, double value) { return !(variance > 1e-18 * value * value); };
   if (no_spread(mm, fit.m) || no_spread(qq, fit.q) || !(determinant > 1e-12 * mm * qq))
     return Refusal{"the participants agree: m and q have no spread"};
@@ -118,7 +120,7 @@ Reach within_reach(std::span<const PilotObservation> observations, double level)
     low = std::min(low, o.mu);
     high = std::max(high, o.mu);
   }
-  std::map<double, double> beyond;  // how far the curve runs outside, in log mu, by nominal delta
+  std::map<double, double> beyond;  // distance of the curve from the rates shown in log mu, by nominal delta
   std::vector<double> distances;
   for (const auto& [delta, range] : shown) {
     const double mu = whole->curve.mu(delta);

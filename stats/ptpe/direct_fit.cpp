@@ -24,8 +24,8 @@ std::array<double, 9> plane_gram(const TermSums<Terms>& sums) {
 
 }  // namespace
 
-/// u = x - alpha - beta d, with x = log mu - its centre and d = (delta - its centre) / delta_unit. The score
-/// minus the level is u (k + m d + q u).
+/// Parameters of the model in centred variables: u = x - alpha - beta d, with x = log mu and d = delta /
+/// delta_unit, both minus their means. The score minus the level is u (k + m d + q u).
 struct DirectModel::Place {
   static constexpr std::size_t terms = DirectModel::terms, parameters = 5;
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
@@ -38,7 +38,7 @@ struct DirectModel::Place {
             q,
             -m * beta + q * beta * beta};
   }
-  /// Rows: alpha, beta, k, m, q.
+  /// Derivatives of coefficients(): one row each for alpha, beta, k, m and q.
   std::array<std::array<double, terms>, 5> jacobian() const {
     return {{{-k + 2 * q * alpha, -2 * q, -m + 2 * q * beta, 0, 0, 0},
              {0, 0, -k + 2 * q * alpha, -2 * q, 0, -m + 2 * q * beta},
@@ -49,7 +49,7 @@ struct DirectModel::Place {
   Place moved(const std::array<double, 5>& step) const {
     return {alpha + step[0], beta + step[1], k + step[2], m + step[3], q + step[4]};
   }
-  /// The other line on which the score equals the level.
+  /// The same surface, described by the other line on which the score equals the level.
   Place other() const { return {alpha - k / q, beta - m / q, -k, -m, q}; }
 };
 
@@ -89,8 +89,8 @@ DirectModel::Sums DirectModel::weighted(std::span<const double> weights) const {
   return out;
 }
 
-/// Ordinary least squares on 1, x and d. Empty if the settings do not determine it or the score does not
-/// depend on x.
+/// Ordinary least squares on 1, x and d. Empty if the settings do not determine the plane or the score does
+/// not depend on x.
 std::optional<DirectModel::Place> DirectModel::straight(const Sums& sums) const {
   const auto c = solve_positive<3>(plane_gram(sums), {sums.moment[0], sums.moment[1], sums.moment[2]});
   if (!c || std::abs((*c)[1]) < 1e-12) return std::nullopt;
@@ -106,7 +106,7 @@ Refusal DirectModel::no_slope(const Sums& sums, const std::string& surface) {
   return {equal ? "all ratings are equal" : "the scores do not depend on the mean frame rate"};
 }
 
-/// Chooses, of the two lines on which the score equals the level, the one along which it rises with mu.
+/// Chooses, of the two lines on which the score equals the level, the one at which the score rises with mu.
 Result<DirectFit> DirectModel::checked(const Sums& sums, const Place& at) const {
   if (at.k < 0 && std::abs(at.q) > 1e-12) {
     if (const auto rising = described(sums, at.other())) return rising;

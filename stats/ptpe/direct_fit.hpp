@@ -4,8 +4,8 @@
 ///   E[score] = level + k u + m u delta + q u^2,   u = log mu - log a - b delta
 ///
 /// is the general quadratic in (log mu, delta) whose contour at `level` is mu = a exp(b delta) exactly: m
-/// lets the slope change along the curve, q across it. m = q = 0 is the straight form, a plane in (log mu,
-/// delta).
+/// lets the slope of the score change along the curve, q lets it change across the curve. m = q = 0 is the
+/// straight form, a plane in (log mu, delta).
 
 #include <array>
 #include <optional>
@@ -21,7 +21,7 @@
 
 namespace stats {
 
-/// In frames/s. Fits measure delta in this unit, so that every coefficient is of order 1.
+/// The unit in which the fits measure delta, in frames/s. With it every coefficient is of order 1.
 constexpr double delta_unit = 10;
 
 struct DirectFit {
@@ -39,16 +39,16 @@ struct DirectFit {
 /// Least squares with any weights of the participants, from sums of monomials that are computed once.
 class DirectModel {
  public:
-  /// Settings as from PilotTable::observations; mu > 0 (std::invalid_argument).
+  /// `observations` as from PilotTable::observations; every mu > 0 (std::invalid_argument).
   DirectModel(std::span<const PilotObservation> observations, double level);
 
   int participants() const { return static_cast<int>(sums_.size()); }
 
-  /// The global minimum by the Levenberg-Marquardt method from several starts; with `start` only from it and
-  /// the straight form, as for resamples. Scores may meet the level on a second line, where they fall as mu
-  /// rises; the curve is the line where they rise. Refused: settings that do not determine the surface;
-  /// scores that do not rise with the frame rate all along the curve; a curve outside the settings shown ("no
-  /// contour").
+  /// Least squares: the smallest minimum that the Levenberg-Marquardt method reaches from several starts.
+  /// With `start`, for resamples, it starts from `start` and from the straight form only. The fitted surface
+  /// may equal the level on two lines; the curve is the line at which the score rises with mu. Refused:
+  /// settings that do not determine the surface; scores that do not rise with the frame rate all along the
+  /// curve; a curve outside the settings shown ("no contour").
   Result<DirectFit> fit(std::span<const double> weights = {}, const DirectFit* start = nullptr) const;
 
   /// m = q = 0: ordinary least squares of the score on log mu and delta.
@@ -70,7 +70,7 @@ class DirectModel {
   std::array<double, 2> log_mu_range_{}, delta_range_{};  ///< smallest and largest
 };
 
-/// Test of m = q = 0, which tells if the straight form may be used: Hotelling's T^2 of (m, q) with the
+/// Test of m = q = 0, which decides if the straight form may be used: Hotelling's T^2 of (m, q) with the
 /// jackknife's covariance over participants.
 struct LackOfFit {
   double m = 0, q = 0;
@@ -88,21 +88,23 @@ struct DirectEstimate {
   Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
-  Result<FormTest> form = Refusal{"not computed"};  ///< test if log mu is a straight line in delta
+  Result<FormTest> form = Refusal{"not computed"};  ///< test that log mu is a straight line in delta
   Result<DirectFit> straight = Refusal{"not computed"};
   Result<CurveSpread> straight_jackknife = Refusal{"not computed"};
 
-  /// The nominal deltas of `deltas` (ascending) that are not out_of_reach. Beyond them the curve is
-  /// extrapolated.
+  /// The nominal deltas of `deltas` (ascending) that are not out_of_reach. At the excluded deltas the curve
+  /// is extrapolated.
   std::vector<double> in_reach_of(std::span<const double> deltas) const;
 };
 
-/// A curve is within reach at a delta if it runs outside the frame rates shown by at most this factor.
-/// Without the margin, chance would decide on curves that pass through the outermost frame rate.
+/// A curve is within reach at a delta if it lies at most this factor above the highest or below the lowest
+/// frame rate shown. Without the margin, chance would decide if a curve that passes through the outermost
+/// frame rate is within reach.
 inline constexpr double reach_margin = 1.15;
 /// Settings above this multiple of the curve are excluded. Near the top of the scale the scores level off,
-/// and a quadratic that follows them there misses the level (a = 18, b = 0.01, 40 people: a's bias falls from
-/// 1.4 to 0.4 frames/s, the intervals cover it in 93 instead of 67 %).
+/// and a quadratic fitted to these scores misses the level. With the exclusion, for a = 18 frames/s, b = 0.01
+/// s/frame and 40 people, the bias of a falls from 1.4 to 0.4 frames/s and its intervals cover it in 93
+/// instead of 67 %.
 inline constexpr double far_factor = 2.46;
 
 /// The result of within_reach().
@@ -114,16 +116,17 @@ struct Reach {
 };
 
 /// Selects the settings that determine the curve. At a delta where the curve fitted to all settings lies
-/// outside the frame rates shown, the settings say nothing about its course and only bend it (without them
-/// b's bias at a = 31, b = 0.035 falls from 12 to 4 %). Such deltas are excluded, except that the three
-/// nearest to the curve always stay, so that a fit remains. Then settings far above the curve fitted to the
-/// rest are excluded, unless no fit remains without them. If the fit to all settings is refused, everything
-/// is kept.
+/// outside the frame rates shown, the settings do not determine the curve and only bias it (without them the
+/// bias of b at a = 31 frames/s, b = 0.035 s/frame falls from 12 to 4 %). Such deltas are excluded, except
+/// for the three with the smallest distance between curve and frame rates, so that a fit remains. Then the
+/// settings far above the curve fitted to the remaining settings are excluded, unless no fit is possible
+/// without them. If the fit to all settings is refused, everything is kept.
 Reach within_reach(std::span<const PilotObservation> observations, double level);
 
-/// Fit within reach, with jackknife-t and expanded percentile bootstrap over whole participants
-/// (options.resamples = 0: no bootstrap). The intervals are refused with fewer than least_participants and if
-/// there is no fit without one of the participants; the bootstrap also beyond largest_failed_share.
+/// Fits the settings that within_reach() keeps, with a jackknife-t and an expanded percentile bootstrap over
+/// whole participants (options.resamples = 0: no bootstrap). The intervals are refused with fewer than
+/// least_participants and if there is no fit without one of the participants; the bootstrap also if more than
+/// largest_failed_share of the resamples have no fit.
 DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
                                const BootstrapOptions& options);
 

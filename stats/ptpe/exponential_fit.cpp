@@ -16,7 +16,7 @@ namespace stats {
 
 namespace {
 
-/// The data as v = A exp(B u) with u in [-1, 1] around the mean of x and |v| <= 1.
+/// The data scaled for the fit v = A exp(B u): u in [-1, 1] about the middle of the range of x, and |v| <= 1.
 struct Scaled {
   std::vector<double> u, v, w;
   double x_mean = 0, x_scale = 1, y_scale = 1;
@@ -48,8 +48,8 @@ Candidate with_best_amplitude(const Scaled& data, double B) {
   return {num / den, B, residual_sum(data, num / den, B)};
 }
 
-/// Slope of log|v| on u over the values of the more frequent sign, each weighted by v^2 (the variance of log
-/// v).
+/// Slope of log|v| on u over the values that have the sign of the sum of v. Each is weighted by v^2, the
+/// inverse of the variance of log|v|.
 double log_linear_rate(const Scaled& data) {
   double balance = 0;
   for (const double v : data.v) balance += v;
@@ -72,10 +72,11 @@ double log_linear_rate(const Scaled& data) {
   return suu > 0 ? sul / suu : 0;
 }
 
-/// Data on [-1, 1] do not give larger rates: exp(2 * 60) is 1e52.
+/// Largest accepted |B|. Between u = -1 and 1 the curve then changes by a factor of exp(2 * 60), 1e52.
 constexpr double largest_rate = 60;
 
-/// Local minima of the profile over B on a coarse grid, and the log-linear estimate.
+/// Starting points of the solver: the local minima, on a coarse grid of B, of the sum of squares with the
+/// best A, and the log-linear estimate.
 std::vector<Candidate> starts(const Scaled& data) {
   constexpr std::array steps{0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
   std::vector<Candidate> profile;
@@ -151,7 +152,8 @@ class Solver {
   std::unique_ptr<gsl_multifit_nlinear_workspace, Free> work_;
 };
 
-/// J^T W J and J^T W r at a candidate.
+/// The parts of J^T W J and J^T W r at a candidate (A, B), with the Jacobian J, the weights W and the
+/// residuals r.
 struct NormalEquations {
   double aa = 0, ab = 0, bb = 0, ga = 0, gb = 0;
   double determinant() const { return aa * bb - ab * ab; }
@@ -182,7 +184,7 @@ bool is_minimum(const Scaled& data, const Candidate& at) {
   if (!(n.determinant() > 1e-14 * n.aa * n.bb)) return false;
   double total = 0;
   for (std::size_t i = 0; i < data.v.size(); ++i) total += data.w[i] * data.v[i] * data.v[i];
-  // Residuals that are only rounding have no direction.
+  // Residuals that are only rounding need not be orthogonal to the tangent plane.
   const double rounding = 1e-28 * total;
   return tangential(n) <= 1e-14 * at.rss + rounding;
 }

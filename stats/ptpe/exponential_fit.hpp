@@ -32,17 +32,19 @@ struct ExponentialFit {
 /// residual sum of squares is taken, but only if the residuals are orthogonal to the tangent plane (Bates and
 /// Watts 1981, relative offset), since the driver may report success elsewhere. Pairs with a NaN are dropped.
 /// x, y and weights (empty = all 1; each finite and positive) have equal length (std::invalid_argument).
-/// Refused: fewer than two pairs, infinite values, one x only, y all zero, no finite minimum, no convergence.
+/// Refused: fewer than two pairs, infinite values, all x equal, all y zero, no finite minimum, no
+/// convergence.
 Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<const double> y,
                                        std::span<const double> weights = {});
 
 /// Profile-likelihood intervals of a and b (Bates and Watts 1988, section 6.1). An interval ends where the
-/// least sum of squares, with the parameter held there, exceeds the minimum by t^2 rss / df. An end that is
-/// never reached is infinite.
+/// least sum of squares, with the parameter fixed at that value, exceeds the minimum by t^2 rss / df. An end
+/// that is never reached is infinite.
 struct ExponentialProfile {
   std::array<double, 2> a{}, b{};
 };
-/// From the same pairs as the fit. Refused as fit_exponential; also with two pairs or zero residuals.
+/// Intervals around the fit_exponential() of the same data, at confidence `level`. Refused as
+/// fit_exponential; also with two pairs or zero residuals.
 Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::span<const double> y,
                                                std::span<const double> weights = {}, double level = 0.95);
 

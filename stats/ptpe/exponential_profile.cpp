@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Pairs without NaN; y in units of its largest value.
+/// The pairs without NaN. y is divided by its largest magnitude, `unit`.
 struct Pairs {
   std::vector<double> x, y, w;
   double unit = 0;
@@ -34,7 +34,8 @@ Pairs whole_pairs(std::span<const double> x, std::span<const double> y, std::spa
   return out;
 }
 
-/// Least sum of squares with b held; `centre` keeps exp(b x) within range.
+/// Least sum of squares over a for a fixed b. Subtracting `centre` from x keeps exp(b x) within double's
+/// range.
 double rss_at_b(const Pairs& data, double b, double centre) {
   double num = 0, den = 0, rss = 0;
   for (std::size_t i = 0; i < data.x.size(); ++i) {
@@ -49,7 +50,8 @@ double rss_at_b(const Pairs& data, double b, double centre) {
   return rss;
 }
 
-/// Least sum of squares with a = sign exp(log_a) held: Gauss-Newton steps in b, halved until they reduce it.
+/// Least sum of squares over b for a fixed a = sign exp(log_a): Gauss-Newton steps from the given b, each
+/// halved until it reduces the sum.
 double rss_at_a(const Pairs& data, double sign, double log_a, double b) {
   const auto sums = [&](double rate, double& slope, double& curvature) {
     double rss = 0;
@@ -82,7 +84,8 @@ double rss_at_a(const Pairs& data, double sign, double log_a, double b) {
   return rss;
 }
 
-/// The first point where `excess`, negative at `from`, becomes positive, in steps of `stride`.
+/// The first zero of `excess` beyond `from`, where `excess` is negative; searched in steps of `stride`.
+/// Infinite if 400 steps do not reach it.
 double end_of(const std::function<double(double)>& excess, double from, double stride) {
   double inside = from;
   for (int i = 0; i < 400; ++i) {
@@ -119,7 +122,8 @@ Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::s
   const double b_step = std::sqrt(fit->covariance->bb);
   const auto at_b = [&](double b) { return rss_at_b(data, b, centre) - limit; };
   out.b = {end_of(at_b, fit->b, -b_step), end_of(at_b, fit->b, b_step)};
-  // Searches over log |a|, starting from the rate that keeps the curve unchanged at the data's centre.
+  // Searches over log |a|. For each a, the search for b starts from the b that keeps the curve unchanged at
+  // the data's centre, and from the fitted b.
   const double sign = fit->a < 0 ? -1 : 1, log_a = std::log(std::abs(fit->a) / data.unit);
   const double a_step = std::min(1.0, std::sqrt(fit->covariance->aa) / std::abs(fit->a));
   const auto at_a = [&](double value) {
@@ -128,7 +132,7 @@ Result<ExponentialProfile> profile_exponential(std::span<const double> x, std::s
   };
   const double near = sign * std::exp(end_of(at_a, log_a, -a_step)) * data.unit;
   const double far = sign * std::exp(end_of(at_a, log_a, a_step)) * data.unit;
-  // If a has no end with this sign, the interval extends beyond zero.
+  // If the interval of a has no end between the fitted a and zero, it extends beyond zero without limit.
   const double inner = near == 0 ? -sign * infinity : near;
   out.a = {std::min(inner, far), std::max(inner, far)};
   return out;

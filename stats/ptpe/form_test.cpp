@@ -23,8 +23,8 @@ namespace {
 constexpr std::size_t terms = 9;  // 1, x, e, x e, x^2, e^2, x e^2, e^3, e^4
 using Sums = TermSums<terms>;
 
-/// u = x - alpha - beta e - gamma e^2, with x = log mu - its mean. The score minus the level is u (k + m e +
-/// q u).
+/// Parameters of the surface: u = x - alpha - beta e - gamma e^2, with x = log mu minus its mean. The score
+/// minus the level is u (k + m e + q u).
 struct Place {
   static constexpr std::size_t terms = stats::terms, parameters = 6;
   double alpha = 0, beta = 0, gamma = 0, k = 0, m = 0, q = 0;
@@ -40,7 +40,7 @@ struct Place {
             -m * gamma + 2 * q * beta * gamma,
             q * gamma * gamma};
   }
-  /// Rows: alpha, beta, gamma, k, m, q.
+  /// Derivatives of coefficients(): one row each for alpha, beta, gamma, k, m and q.
   std::array<std::array<double, terms>, 6> jacobian() const {
     const double slope = -k + 2 * q * alpha, turn = -m + 2 * q * beta, bend = 2 * q * gamma;
     return {{{slope, -2 * q, turn, 0, 0, bend, 0, 0, 0},
@@ -54,10 +54,11 @@ struct Place {
   Place moved(const std::array<double, 6>& step) const {
     return {alpha + step[0], beta + step[1], gamma + step[2], k + step[3], m + step[4], q + step[5]};
   }
-  bool rises() const { return k - std::abs(m) > 0; }  // at e from -1 to 1
+  bool rises() const { return k - std::abs(m) > 0; }  // on the curve, at all e in [-1, 1]
 };
 
-/// The ratings of all participants as sums, and the units of those sums.
+/// The sums of the terms over the ratings of each participant and of all, with the centres and units of x and
+/// e.
 struct Ratings {
   std::vector<Sums> people;
   Sums all;
@@ -123,7 +124,8 @@ Result<Place> checked(const Place& at) {
   return at;
 }
 
-/// The smallest of the minima reached from several starts.
+/// The smallest of the minima that are reached from several starts and at which the score rises with the
+/// frame rate.
 Result<Place> fit(const Sums& sums) {
   const auto start = plane(sums);
   if (!start)

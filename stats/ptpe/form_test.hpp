@@ -17,7 +17,7 @@
 
 namespace stats {
 
-/// log mu(delta) = level + slope e + bend e^2, with the jackknife's covariance of the three.
+/// log mu(delta) = level + slope e + bend e^2, with the jackknife's covariance of the three coefficients.
 struct FreeCurve {
   double middle = 10, half = 10;       ///< e = (delta - middle) / half, frames/s
   std::array<double, 3> at{};          ///< level, slope, bend
@@ -26,7 +26,8 @@ struct FreeCurve {
   double confidence = 0.95;
 
   double mu(double delta) const;
-  /// Pointwise with Student's t, simultaneous with Hotelling's T^2 for the three coefficients.
+  /// The band at one delta: pointwise with Student's t, simultaneous with Hotelling's T^2 for the three
+  /// coefficients.
   BandPoint band(double delta) const;
 };
 
@@ -35,7 +36,7 @@ struct FormTest {
   double c = 0, se = 0, t = 0;
   int df = 0;
   double p = 1;                ///< two-sided
-  std::array<double, 2> ci{};  ///< at FreeCurve::confidence
+  std::array<double, 2> ci{};  ///< interval of c with the confidence `curve.confidence`
   double detectable = 0;  ///< the smallest |c| that this test detects with form_power if `se` is its standard
                           ///< error
   FreeCurve curve;
@@ -48,8 +49,8 @@ inline constexpr double form_level = 0.05;
 inline constexpr double form_power = 0.80;
 
 /// Settings whose frame rate times this factor is below the curve are excluded from the test. Near the bottom
-/// of the scale the scores level off, and a surface that follows them there bends the curve (with these
-/// settings .22 of exponentials with a = 30, b = 0.03 were rejected).
+/// of the scale the scores level off, and a surface fitted to them gives a bent curve (with these settings
+/// the test rejected 22 % of simulated exponentials with a = 30 frames/s, b = 0.03 s/frame).
 inline constexpr double far_below_factor = 2.46;
 
 /// Least squares of ratings as for the direct estimate, E[score] = level + k u + m u e + q u^2 with u = log

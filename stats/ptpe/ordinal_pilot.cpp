@@ -33,7 +33,7 @@ double realised(const PilotRating& r, PilotMean mean) {
   return mean == PilotMean::Harmonic ? r.realised_mu : r.realised_mu_arithmetic;
 }
 
-/// Centred at their own means, or at those of `others`.
+/// Converts ratings to rows. x and d are centred at the means of these ratings, or at the means of `others`.
 Rows rows_of(std::span<const PilotRating> ratings, PilotMean mean, const Rows* others = nullptr) {
   Rows rows;
   std::set<double> scores;
@@ -62,7 +62,7 @@ Rows rows_of(std::span<const PilotRating> ratings, PilotMean mean, const Rows* o
 /// derivatives.
 struct Scale {
   std::vector<double> theta, weight;  ///< weight: -dE/dtheta_j
-  double total = 0;                   ///< of the weights
+  double total = 0;                   ///< sum of the weights
   double by_sd = 0;                   ///< dc / d sd
 };
 
@@ -137,7 +137,7 @@ Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) 
   };
 }
 
-/// Converts a fit to parameters in the rows' coordinates, and back.
+/// The optimiser's parameters of a fit, in the rows' centred variables. fit_of() converts them back.
 std::vector<double> parameters_of(const OrdinalPilotFit& fit, const Rows& rows) {
   std::vector<double> out;
   for (std::size_t j = 0; j + 1 < fit.thresholds.size(); ++j)
@@ -229,8 +229,8 @@ Result<Fitted> fit_all(std::span<const PilotRating> ratings, PilotMean mean, dou
   return Fitted{*fit, std::move(rows), best.x, Cholesky::of(best.hessian)->inverse()};
 }
 
-/// A fit to a part of the same ratings: started from `whole`, or from its own first guess if a score no
-/// longer occurs.
+/// A fit to a part of the same ratings: started from `whole`, or from first_guess() if a score no longer
+/// occurs in the part.
 Result<OrdinalPilotFit> fit_part(std::span<const PilotRating> ratings, PilotMean mean, double level,
                                  const Fitted& whole) {
   const auto rows = rows_of(ratings, mean, &whole.rows);

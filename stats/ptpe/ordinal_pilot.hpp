@@ -1,13 +1,13 @@
 #pragma once
-/// a and b by an ordinal mixed model: ratings as ordered categories, people as a random effect, and the same
-/// location as the direct estimate (stats/ptpe/direct_fit.hpp).
+/// a and b by an ordinal mixed model: ratings as ordered categories, people as a random effect. The location
+/// depends on mu and delta as the score does in the direct estimate (stats/ptpe/direct_fit.hpp).
 ///
 ///   P(Y <= j) = Phi(theta_j - k u - m u delta - q u^2 - s_p),  s_p ~ N(0, sd^2)
 ///   u = log mu - log a - b delta
 ///
 /// with the thresholds constrained so that E[Y] = level at u = 0 over the population of participants. Scores
-/// need not be equally spaced, and no curvature is needed at the ends of the scale, since the thresholds
-/// bound it.
+/// need not be equally spaced. The location needs no curvature at the ends of the scale, since the thresholds
+/// bound the scores.
 
 #include <span>
 #include <vector>
@@ -21,7 +21,7 @@ namespace stats {
 struct OrdinalPilotFit {
   Curve curve;
   double level = 4;
-  double k = 0, m = 0, q = 0;  ///< on the probit scale
+  double k = 0, m = 0, q = 0;  ///< coefficients of the location, on the probit scale
   double sd_participant = 0;
   std::vector<double> levels, thresholds;
   double log_likelihood = 0;
@@ -29,8 +29,8 @@ struct OrdinalPilotFit {
 };
 
 /// Maximum likelihood with adaptive quadrature of `points` nodes (1 = Laplace), started from the direct fit.
-/// Repeated ratings enter one by one. Refused: no direct fit to start from; one score throughout; the level
-/// not between the lowest and the highest score given; no convergence; scores that do not rise with the frame
+/// Repeated ratings enter one by one. Refused: no direct fit to start from; all scores equal; the level not
+/// between the lowest and the highest score given; no convergence; scores that do not rise with the frame
 /// rate along the curve.
 Result<OrdinalPilotFit> fit_ordinal_pilot(std::span<const PilotRating> ratings, PilotMean mean, double level,
                                           int points = 1);
@@ -41,8 +41,8 @@ struct OrdinalPilotEstimate {
   std::vector<double> out_of_reach;  ///< nominal deltas excluded by the direct fit's rule
 };
 
-/// The fit within reach and its jackknife over participants: one more fit for each, about 0.1 s in all for
-/// the paper's pilot.
+/// The fit within reach and its jackknife over participants: one fit more for each participant, about 0.1 s
+/// in all for the paper's pilot.
 OrdinalPilotEstimate estimate_ordinal_pilot(std::span<const PilotRating> ratings, PilotMean mean,
                                             double level, double confidence);
 

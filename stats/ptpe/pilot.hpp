@@ -17,11 +17,11 @@ struct PilotRating {
   int participant = 0;                ///< any number; equal numbers are one participant
   double mu = 0;                      ///< nominal mean frame rate of the setting, frames/s
   double delta = 0;                   ///< nominal standard deviation
-  double realised_mu = 0;             ///< as shown, harmonic: N / sum(dt)
-  double realised_mu_arithmetic = 0;  ///< as shown, mean of 1/dt
+  double realised_mu = 0;             ///< harmonic mean frame rate as shown, N / sum(dt), frames/s
+  double realised_mu_arithmetic = 0;  ///< arithmetic mean frame rate as shown, the mean of 1/dt, frames/s
   double realised_delta = 0;
   double score = 0;
-  int position = -1;  ///< of the trial in its session; -1: not known
+  int position = -1;  ///< position of the trial in its session; -1: not known
 };
 
 /// A participant's mean score of one setting, at the frame rates really shown.
@@ -29,25 +29,25 @@ struct PilotObservation {
   int participant = 0;  ///< 0, 1, ... in ascending order of PilotRating::participant
   double mu = 0, delta = 0;
   double score = 0;
-  double nominal_delta = 0;  ///< of the setting; equal numbers form one column of the grid
-  double nominal_mu = 0;     ///< of the setting; equal numbers form one row of the grid
+  double nominal_delta = 0;  ///< nominal delta of the setting; equal numbers form one column of the grid
+  double nominal_mu = 0;     ///< nominal mu of the setting; equal numbers form one row of the grid
 };
 
 /// Which realised mean frame rate is used as mu of a setting.
 enum class PilotMean { Harmonic, Arithmetic };
 
 /// Ratings by participant and setting. A participant's repeated ratings of a setting are averaged first, so
-/// that the participant remains the unit.
+/// that each participant counts once at each setting.
 class PilotTable {
  public:
-  /// Every number finite (std::invalid_argument).
+  /// std::invalid_argument unless every number of every rating is finite.
   explicit PilotTable(std::span<const PilotRating> ratings);
 
   int participants() const { return participants_; }
   std::size_t settings() const;  ///< number of settings with at least one rating
   std::size_t ratings() const { return ratings_; }
   int incomplete_participants() const;  ///< participants who lack a setting that another participant rated
-  bool all_equal() const;               ///< all scores are equal
+  bool all_equal() const;               ///< true if all scores are equal
 
   /// Mean scores and realised frame rates, with participant i counted weights[i] times (empty = once each).
   ScoreGrid grid(PilotMean mean, std::span<const double> weights = {}) const;
@@ -69,9 +69,10 @@ class PilotTable {
   std::vector<Entry> entries_;  ///< participant x cell, cells row-major
 };
 
-/// The contour estimate: the contour of the mean scores along lines one frame/s apart, then least squares.
-/// The dense lines weigh the curve evenly over delta. Crossings of the grid's edges alone are few (5 to 9 in
-/// the pilot) and crowd where the curve runs along a row, so a single crossing more or less would move b.
+/// The contour estimate: the contour of the mean scores is sampled along lines of constant delta one frame/s
+/// apart, then a exp(b delta) is fitted by least squares. These lines weigh all deltas equally. The contour's
+/// crossings with the grid's edges are few (5 to 9 in the pilot) and lie close together where the curve runs
+/// along a row, so one crossing more or less would change b.
 Result<ExponentialFit> estimate_contour(const ScoreGrid& grid, double level);
 
 /// Uncertainty of a and b from resampling the participants.
@@ -84,14 +85,14 @@ struct PilotSpread {
                           ///< resamples
 };
 
-/// Smallest number of participants for an interval; fewer have too few different resamples.
+/// Smallest number of participants for an interval; fewer participants have too few different resamples.
 inline constexpr int least_participants = 4;
-/// Largest share of resamples without a fit. Beyond it the rest is a biased selection and no interval is
-/// given.
+/// Largest share of resamples without a fit. Above this share, the resamples with a fit are a biased
+/// selection, so no interval is given.
 inline constexpr double largest_failed_share = 0.05;
 
-/// Summarises resampled estimates of a and b; fewer than options.resamples if some had no fit. Refused beyond
-/// largest_failed_share.
+/// Summarises the resampled estimates of a and b. Resamples without a fit are missing from `a` and `b`;
+/// refused if they are more than largest_failed_share of options.resamples.
 Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const double> b, int participants,
                                  const BootstrapOptions& options);
 
@@ -105,7 +106,7 @@ struct PilotEstimate {
 /// Resamples whole participants and computes the contour and its curve anew each time. The fit's own standard
 /// errors do not reflect differences between participants: the contour's points are interpolated from few
 /// means and far from independent. `spread` is refused without a fit, with fewer than least_participants, and
-/// beyond largest_failed_share.
+/// if more than largest_failed_share of the resamples have no fit.
 PilotEstimate estimate_pilot(const PilotTable& table, PilotMean mean, double level,
                              const BootstrapOptions& options);
 

@@ -34,7 +34,8 @@ std::vector<double> rates_of(const std::vector<Scores>& people) {
   return rates;
 }
 
-/// Points of the scale for each doubling of the frame rate; empty if no delta was shown at two rates.
+/// A person's slope: points of the scale for each doubling of the frame rate. Empty if no delta was shown at
+/// two frame rates.
 std::optional<double> slope_of(const Scores& scores) {
   double xy = 0, xx = 0;
   for (const auto& [delta, row] : scores) {
@@ -73,7 +74,8 @@ std::vector<double> over_people(const std::vector<Scores>& people, const Measure
   return values;
 }
 
-/// One-sided p. If all people agree, the sign is certain.
+/// One-sided p of a t test against a mean of zero. If all values are equal, there is no t; p is then 0 or 1
+/// by their sign.
 double one_sided_p(const std::vector<double>& values, Alternative alternative) {
   const auto test = t_test_one(values, {.alternative = alternative, .effect_intervals = false});
   if (test) return test->p;

@@ -12,36 +12,39 @@
 
 namespace stats {
 
-/// One reason.
+/// One reason not to use a pilot's fit.
 struct PilotDoubt {
-  std::string code;  ///< stable, snake_case
-  std::string text;  ///< in words, with its figures
+  std::string code;  ///< identifier in snake_case that does not change between versions
+  std::string text;  ///< the reason in words and numbers
 };
 
 /// The rise of the mean score with the frame rate must be significant at this one-sided level.
 inline constexpr double rise_level = 0.025;
-/// A fall between two frame rates counts at this level, shared by all pairs of them (Bonferroni). A pilot
-/// whose scores never fall raises this doubt in at most one of a hundred cases.
+/// Level at which a fall of the scores between two frame rates is significant. It is divided by the number of
+/// pairs of frame rates (Bonferroni). A pilot whose scores never fall raises this doubt in at most one of a
+/// hundred cases.
 inline constexpr double fall_level = 0.01;
 /// Smallest number of deltas at which the curve must run through the frame rates shown.
 inline constexpr int least_deltas_in_reach = 3;
 
 /// Returns these doubts, in this order and each at most once: the scores do not rise with the mean frame rate
-/// ("no_rise": t-test of the participants' slopes on its log2 within each delta); they fall between two frame
-/// rates ("falls": paired t-tests over common deltas); the participants do not differ ("no_spread"); the
-/// curve is within the settings at fewer than three deltas ("few_deltas"); the interval of b lies below zero
-/// ("b_below_zero"); the intervals of two estimators do not overlap ("estimators_disagree"). What cannot be
-/// computed raises no doubt, since it is refused elsewhere.
+/// ("no_rise": t-test of the participants' slopes over log2 of the frame rate within each delta); they fall
+/// between two frame rates ("falls": paired t-tests over common deltas); the participants do not differ
+/// ("no_spread"); the curve runs through the frame rates shown at fewer than three deltas ("few_deltas"); the
+/// interval of b lies below zero ("b_below_zero"); the intervals of two estimators do not overlap
+/// ("estimators_disagree"). A check whose input could not be computed raises no doubt, since the input is
+/// refused elsewhere.
 std::vector<PilotDoubt> pilot_doubts(const PilotTable& table, const DirectEstimate& direct,
                                      const PilotEstimate& contour, const OrdinalPilotEstimate& ordinal);
 
-/// "form_rejected" if the form test rejects an exponential. Separate from the others, since a lab may accept
-/// an exponential as an approximation.
+/// Code of the doubt that form_doubt() returns if the form test rejects an exponential. It is separate from
+/// pilot_doubts(), since a lab may accept an exponential as an approximation.
 inline constexpr const char* form_rejected = "form_rejected";
 std::optional<PilotDoubt> form_doubt(const DirectEstimate& direct);
 
 /// "no_band" if the curve has no band; "curve_outside_band" if the direct curve, which the fluid solver
-/// reads, leaves it at one of `deltas`. A file then cannot state where the curve is valid.
+/// reads, leaves the band at one of `deltas`. A file for the solver then cannot state where the curve is
+/// valid.
 std::optional<PilotDoubt> band_doubt(const Curve& curve, const Result<CurveSpread>& band,
                                      std::span<const double> deltas);
 

@@ -92,7 +92,7 @@ std::map<int, std::pair<double, double>> sessions_of(std::span<const PilotRating
   return out;
 }
 
-/// Place of a trial in its session, -1/2 to 1/2.
+/// Position of a trial in its session, from -1/2 (first trial) to 1/2 (last trial).
 double place_of(const PilotRating& rating, const std::pair<double, double>& session) {
   const double length = session.second - session.first;
   return length > 0 ? (rating.position - session.first) / length - 0.5 : 0;
@@ -110,7 +110,8 @@ Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confi
   const auto sessions = sessions_of(ratings);
   std::vector<double> slopes;
   for (const auto& [person, own] : by_person(ratings)) {
-    std::vector<std::array<double, 2>> points;  // place in the session; score minus the others' mean
+    // Position in the session; score minus the mean of the setting's other scores.
+    std::vector<std::array<double, 2>> points;
     for (const auto* rating : own) {
       const auto& [n, sum] = settings[setting_of(*rating)];
       if (n < 2) continue;
@@ -133,7 +134,8 @@ Result<SessionDrift> drift_of(std::span<const PilotRating> ratings, double confi
   return SessionDrift{test->mean, test->t, test->p, static_cast<int>(test->df), test->ci};
 }
 
-/// The expected score of each answer without lapses.
+/// The expected score of each answer without lapses: the setting's median score plus the participant's median
+/// distance from such medians.
 std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
   std::map<Setting, std::vector<double>> settings;
   for (const auto& rating : ratings) settings[setting_of(rating)].push_back(rating.score);
@@ -151,7 +153,7 @@ std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
 
 /// Standard deviation of answers about their expected scores. Only expected scores in the middle half of the
 /// scale count, since answers near its ends scatter less. Residuals are clipped at `clip`, so that lapses
-/// hardly widen it.
+/// hardly increase the standard deviation.
 Result<double> spread_about(std::span<const PilotRating> ratings, const std::vector<double>& expected,
                             double lowest, double highest) {
   constexpr double clip = 2.5;

@@ -11,7 +11,8 @@
 
 namespace stats {
 
-/// How the analysis plan treats them, fixed before the data are seen. With all off they are only reported.
+/// The analysis plan's rules for reverse coders, drift and lapses, fixed before the data are seen. With all
+/// rules off, the three are reported and the ratings stay unchanged.
 struct PilotRules {
   bool exclude_reverse_coders = false;
   bool model_drift = false;   ///< subtract the mean drift from the scores
@@ -23,14 +24,15 @@ struct PilotRules {
 struct PersonSlope {
   int participant = 0;  ///< PilotRating::participant
   double slope = 0;     ///< points for each doubling
-  double t = 0;         ///< slope / its error; infinite without residuals
+  double t = 0;         ///< slope / its standard error; infinite without residuals
   int df = 0;
   double p = 1;           ///< one-sided, for a slope below zero
   bool reversed = false;  ///< p < reverse_level / participants
 };
 
 /// Drift from the first to the last trial of a session, in points of the scale: t test of the participants'
-/// slopes over position. Each slope is of a participant's scores minus the others' mean of the same setting.
+/// slopes over position. A participant's slope is that of each score minus the mean of all other scores of
+/// the same setting.
 struct SessionDrift {
   double change = 0, t = 0, p = 1;
   int df = 0;
@@ -39,20 +41,21 @@ struct SessionDrift {
 };
 
 /// Lapses: answers at the lowest score that are improbable (below lapse_tail, by a normal distribution) given
-/// the others' median of the setting and the person's own median distance from such medians. Reverse coders
-/// are left out.
+/// the expected score: the setting's median score plus the participant's own median distance from such
+/// medians. Reverse coders are left out.
 struct LapseCount {
   int at_risk = 0;      ///< answers for which the lowest score is improbable
   int lapsed = 0;       ///< of these, answers at the lowest score
   double expected = 0;  ///< expected number of `lapsed` without lapses
-  double p = 1;         ///< Poisson probability of so many or more
+  double p = 1;         ///< Poisson probability of `lapsed` or more such answers
   double rate = 0;      ///< share of answers that are lapses, 0 or more
   double lowest = 1;    ///< the lowest score
   bool found() const;
 };
 
-inline constexpr double reverse_level = 0.01;  ///< shared by the participants (Bonferroni)
-inline constexpr double drift_level = 0.05;    ///< two-sided
+/// Level of PersonSlope::reversed, divided by the number of participants (Bonferroni).
+inline constexpr double reverse_level = 0.01;
+inline constexpr double drift_level = 0.05;  ///< level of SessionDrift::found(), two-sided
 inline constexpr double lapse_tail = 0.005;
 inline constexpr double lapse_level = 0.001;
 

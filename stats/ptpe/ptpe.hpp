@@ -22,8 +22,8 @@ double ptpe_tolerance(const PtpeModel& model, double fps_mean, double fps_sd);
 /// tau of the frames shown, using the kind of mean that the model was fitted to.
 double ptpe_tolerance(const PtpeModel& model, const FpsMoments& shown);
 
-/// beta = exp(2 b tau) with tau clamped to at most 0, so that 0 < beta <= 1 (Algorithm 3, line 8). 1 for b <
-/// 0, for which beta would exceed 1.
+/// beta = exp(2 b tau) with tau clamped to at most 0, so that 0 < beta <= 1 (Algorithm 3, line 8). Returns 1
+/// if b < 0, since beta would exceed 1.
 double activation_floor(const PtpeModel& model, double tolerance);
 
 }  // namespace stats

@@ -21,7 +21,8 @@ namespace {
 constexpr std::size_t parameters = 5;
 using Values = std::array<double, parameters>;
 
-/// The mean of a rating about x, rounded to whole scores within the scale.
+/// Expected rating S(x): the mean of x plus a normal error, rounded to a whole score and clamped to the
+/// scale.
 struct EndScale {
   ScaleEnds ends;
   double sd = 1;
@@ -82,7 +83,7 @@ std::vector<Group> groups_of(std::span<const PilotObservation> observations, con
   return out;
 }
 
-/// log mu(delta) minus its centre is alpha + beta e.
+/// Parameters of the model. log mu(delta) minus the mean of log mu is alpha + beta e.
 struct CurvePlace {
   double alpha = 0, beta = 0, k = 0, m = 0, q = 0;
 
@@ -105,8 +106,8 @@ struct CurvePlace {
   }
 };
 
-/// Weighted squared deviations of the group means from the prediction. The squares within groups do not
-/// depend on the parameters.
+/// Sum of squared deviations of the group means from the predictions, weighted by the groups' sizes. The
+/// squares within groups do not depend on the parameters.
 double squares(const std::vector<Group>& groups, const EndScale& scale, const CurvePlace& at) {
   double sum = 0;
   for (const Group& group : groups) {
@@ -135,7 +136,8 @@ Normal normal_equations(const std::vector<Group>& groups, const EndScale& scale,
   return out;
 }
 
-/// Damped Gauss-Newton steps (Marquardt 1963) until they vanish; empty if they do not.
+/// Damped Gauss-Newton steps (Marquardt 1963) until the steps vanish. Empty if they do not within 200
+/// iterations.
 std::optional<CurvePlace> descend(const std::vector<Group>& groups, const EndScale& scale, CurvePlace at) {
   double value = squares(groups, scale, at), damping = 1e-3;
   for (int iteration = 0; iteration < 200; ++iteration) {
@@ -164,7 +166,8 @@ std::optional<CurvePlace> descend(const std::vector<Group>& groups, const EndSca
   return std::nullopt;
 }
 
-/// The standard deviation of a rating about its setting's mean, excluding rounding.
+/// The standard deviation of a rating about its setting's mean, without the part that is due to rounding to
+/// whole scores. Counts only settings whose mean lies in the middle half of the scale.
 Result<double> error_sd(std::span<const PilotObservation> observations, const ScaleEnds& ends) {
   struct Setting {
     double n = 0, sum = 0, squares = 0;

@@ -13,7 +13,7 @@ GridNode between(const GridNode& p, const GridNode& q, double t) {
   return {p.score + (q.score - p.score) * t, p.mu + (q.mu - p.mu) * t, p.delta + (q.delta - p.delta) * t};
 }
 
-/// -1, 0 or 1 if the score is below, on or above the level.
+/// -1, 0 or 1 if the score is below the level, equal to it or above it.
 int side(double score, double level) {
   constexpr double equal = 1e-12;
   const double d = score - level;
@@ -26,7 +26,8 @@ std::optional<ContourPoint> crossing(const Node& p, const Node& q, double level)
   return ContourPoint{at.delta, at.mu};
 }
 
-/// The surface along a line of constant nominal delta: one node for each row; empty outside the grid.
+/// The surface along a line of constant nominal delta: one node for each row; no nodes if the line lies
+/// outside the grid's columns.
 std::vector<Node> line_nodes(const ScoreGrid& grid, double delta) {
   const auto right = std::lower_bound(grid.delta.begin(), grid.delta.end(), delta);
   if (right == grid.delta.end() || (right == grid.delta.begin() && delta < *right)) return {};

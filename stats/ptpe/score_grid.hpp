@@ -12,17 +12,17 @@
 
 namespace stats {
 
-/// The data of one setting.
+/// Means over participants at one setting.
 struct GridNode {
   double score = 0;  ///< mean over participants
-  double mu = 0;     ///< mean and standard deviation of the frame rate as shown, frames/s
+  double mu = 0;     ///< mean of the frame rate as shown, frames/s; delta is its standard deviation
   double delta = 0;
 };
 
 /// The settings by their nominal values: rows are means, columns are standard deviations. The surface is the
-/// isoparametric bilinear patch over each cell with all four nodes: score, mu and delta are interpolated
-/// alike. Nodes slightly off their nominal place only bend the lines; nodes at their nominal place give plain
-/// bilinear interpolation.
+/// isoparametric bilinear patch over each cell with all four nodes: score, mu and delta are interpolated with
+/// the same weights. If the mu and delta shown differ slightly from the nominal ones, lines of constant
+/// nominal delta bend; otherwise the interpolation is plainly bilinear.
 struct ScoreGrid {
   std::vector<double> mu, delta;               ///< nominal, ascending, frames/s
   std::vector<std::optional<GridNode>> nodes;  ///< row-major, mu.size() x delta.size()
@@ -39,20 +39,20 @@ struct ContourPoint {
 /// A contour sampled along lines of constant nominal delta.
 struct Contour {
   double level = 0;
-  std::vector<ContourPoint> points;  ///< by line, then by ascending mu
+  std::vector<ContourPoint> points;  ///< ordered by line, then by ascending mu
   int lines = 0;                     ///< sampled lines that have at least two neighbouring scores
   int crossed = 0;                   ///< of these, lines with at least one crossing
   int crossed_twice = 0;             ///< lines with two or more crossings: the scores are not monotone in mu
   int below_grid = 0;  ///< lines with every score above the level: the contour lies below the smallest mu
   int above_grid = 0;  ///< lines with every score below the level: the contour lies above the largest mu
-  int on_node = 0;     ///< lines that meet the level at a setting without crossing it
+  int on_node = 0;     ///< lines without a crossing on which the score of a setting equals the level
 };
 
 /// Finds where the scores cross the level along the given lines. It skips lines outside the grid's columns. A
 /// crossing lies between two neighbouring scores, one above and one below the level. A score equal to the
 /// level (to 1e-12) is not a crossing; its line is counted in on_node.
 Contour column_crossings(const ScoreGrid& grid, double level, std::span<const double> line_deltas);
-/// Nominal lines at every whole frame/s from the first column to the last, and at the last.
+/// Nominal deltas of the lines: from the first column on in steps of 1 frame/s, and the last column.
 std::vector<double> contour_lines(const ScoreGrid& grid);
 
 /// Fits mu = a exp(b delta) to the contour's points. Refused: no point, or fewer than three.

@@ -11,13 +11,14 @@ namespace stats {
 /// Intervals of a, frames/s, and b, s/frame.
 struct SolverInterval {
   std::array<double, 2> a_ci{}, b_ci{};
-  bool spans_contour = false;  ///< false if the contour has no intervals; these are then the direct
-                               ///< estimate's
+  bool spans_contour = false;  ///< false if the contour has no intervals; a_ci and b_ci are then
+                               ///< the direct estimate's
 };
 
 /// The direct estimate has the smaller error, but its intervals reflect chance alone: where the scores are
-/// not quadratic they covered b in as few as 84 %. The contour assumes no shape of the scores and has the
-/// larger error. So these intervals span both (measured: docs/statistics.md).
+/// not quadratic, they covered the true b in as few as 84 % of simulated pilots. The contour assumes no shape
+/// of the scores and has the larger error. So the solver's intervals span the intervals of both estimates
+/// (measured: docs/statistics.md).
 SolverInterval solver_interval(const CurveSpread& direct, const Result<PilotSpread>& contour);
 
 }  // namespace stats

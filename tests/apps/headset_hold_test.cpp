@@ -152,8 +152,9 @@ TEST_F(HeadsetHoldGl, TheProtocolsRefreshRateIsAskedForAndMet) {
 
 TEST_F(HeadsetHoldGl, ARefreshRateThatDoesNotComeStopsTheProgram) {
   use_here("size=32x32;ignores_rate=1");
-  EXPECT_THAT([] { study::HeadsetDisplay(study::SlotDrive::Caller, {}, {.refresh_hz = 120}); },
-              ::testing::ThrowsMessage<base::Error>(HasSubstr("does not go to the protocol's refresh_hz")));
+  EXPECT_THAT(
+      [] { study::HeadsetDisplay(study::SlotDrive::Caller, {}, {.refresh_hz = 120}); },
+      ::testing::ThrowsMessage<base::Error>(HasSubstr("does not change to the protocol's refresh_hz")));
   EXPECT_THAT([] { study::HeadsetDisplay(study::SlotDrive::Caller, {}, {.refresh_hz = 100}); },
               ::testing::ThrowsMessage<base::Error>(HasSubstr("100 Hz is not one of its refresh rates")));
 }

@@ -225,7 +225,7 @@ TEST_F(HeadsetSessionE2e, WhatCannotBeMadeAnewIsToldAndContinued) {
   for (const auto& [trouble, says] : std::vector<std::pair<std::string, std::string>>{
            {"at=400:instance_lost", "XR_ERROR_INSTANCE_LOST"},
            {"at=400:exit", "asked the program to leave"},
-           {"at=400:lost_now,800:lost_now,1200:lost_now", "session after session is lost"},
+           {"at=400:lost_now,800:lost_now,1200:lost_now", "keeps losing the session"},
            {"at=400:lost_now,400:unfound/999", "within 10 s none could be made anew (OpenXR: the runtime"}}) {
     next_database();
     const auto ended = session(trouble, protocol, "2");

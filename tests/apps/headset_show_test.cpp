@@ -113,7 +113,7 @@ TEST_F(HeadsetShowE2e, ASessionThatIsLostIsMadeAnew) {
   }
   const auto ended = show("at=5:lost_now,10:lost_now,15:lost_now");
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_THAT(ended.err, HasSubstr("session after session is lost"));
+  EXPECT_THAT(ended.err, HasSubstr("keeps losing the session"));
   EXPECT_THAT(ended.out, HasSubstr("ended       by an error\n"));
 }
 

@@ -108,7 +108,8 @@ TEST_F(HeadsetViewE2e, WithoutAHeadsetItFallsBackToTheDesktopAndSaysWhy) {
     EXPECT_EQ(ended.exit_code, 1);  // the test machine has no desktop either
     EXPECT_THAT(ended.err,
                 ::testing::ContainsRegex("^no headset: [^\n]*" + why + "[^\n]*; shown on the desktop\n"));
-    EXPECT_THAT(ended.err, HasSubstr(VIP_WINDOW ? "window: no display" : "window: this build has none"));
+    EXPECT_THAT(ended.err,
+                HasSubstr(VIP_WINDOW ? "window: no display" : "window: this build has no windows"));
   };
   falls_back({{"VIP_OPENXR_LOADER", "/nowhere.so"}}, "nowhere.so");
   falls_back({{"XR_RUNTIME_JSON", "/nowhere.json"}}, "OpenXR");

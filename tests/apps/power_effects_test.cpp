@@ -119,7 +119,7 @@ TEST(PowerEffects, WhatTheWorldsDoNotKnowIsRefused) {
   request.effect.reset();
   EXPECT_THAT(error_of(request), HasSubstr("--world effect: no effect was given"));
   EXPECT_THAT(error_of(foam_power("[\"LoRes\"]", "[\"scene\", \"foam\"]", 0.7, 2)),
-              HasSubstr("varies effects without level none"));
+              HasSubstr("varies effects but lacks level none"));
   request.protocol.design.pairs = false;
   EXPECT_THROW(study::power_kind(request.protocol), base::Error);
 }

@@ -138,7 +138,7 @@ TEST(PowerPersonByMethod, TakesTheShareOfPersonByMethodFromAnEarlierStudy) {
     EXPECT_FALSE(std::filesystem::exists(json));
   };
   results["task1"]["mixed"][0]["sd_method"] = nullptr;
-  refused("nobody judged one method twice");
+  refused("no participant judged one method twice");
   results["task1"]["mixed"][0] = {{"score", "realism"}, {"refused", "one participant"}};
   refused("one participant");
   results["task1"] = {{"refused", "no cybersickness items"}};

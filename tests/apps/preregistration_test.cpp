@@ -330,7 +330,7 @@ TEST(Preregistration, IsNeverWrittenOverAndLeavesNothingHalfDone) {
   const TemporaryFolder folder;
   const auto hash = study::report::freeze_bundle(both_tasks(), folder / "bundle");
   EXPECT_THAT([&] { study::report::freeze_bundle(both_tasks(), folder / "bundle"); },
-              ThrowsMessage<base::Error>(HasSubstr("never written over")));
+              ThrowsMessage<base::Error>(HasSubstr("never overwritten")));
   EXPECT_EQ(study::report::read_bundle(folder / "bundle").sha256, hash);
   auto request = both_tasks();
   request.protocols.push_back("no_such_protocol.toml");

@@ -196,7 +196,7 @@ TEST_F(SettingInStudyE2e, ResumeTakesTheRecordedSettingAndNoOther) {
   base::write_file_atomically(other, replaced(text_, "iterations = 6", "iterations = 8"));
   const auto refused = test::run_program({test::vip_study, "resume", "--db", database_, "--setting", other});
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("is not what the sessions of"),
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("is not a setting with which the sessions of"),
                                  HasSubstr(base::sha256_hex(text_).substr(0, 12))));
   const auto resumed = test::run_program({test::vip_study, "resume", "--db", database_});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;

@@ -112,7 +112,7 @@ TEST(SettingPrice, WhatMakesNoTableSaysWhy) {
   for (auto& cell : changed) cell.origin.scene_sha256 = "feed";
   auto tables = study::sweep_tables(changed);
   EXPECT_TRUE(tables.tables.empty());
-  EXPECT_THAT(tables.left_out, ElementsAre(HasSubstr("another file than when the sweep ran")));
+  EXPECT_THAT(tables.left_out, ElementsAre(HasSubstr("has changed since the sweep was run")));
   EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), scene_sha256())), HasSubstr("another file"));
   auto begun = small_sweep();
   begun.erase(begun.begin());

@@ -142,7 +142,7 @@ TEST_F(StimulusFolderE2e, ResumeTakesAMovedBakeByItsHashAndNoOther) {
     };
     const Ended gone = resume({});
     EXPECT_EQ(gone.exit_code, 1);
-    EXPECT_THAT(gone.err, AllOf(HasSubstr(place + ": is not there any more"), HasSubstr(hash),
+    EXPECT_THAT(gone.err, AllOf(HasSubstr(place + ": does not exist any more"), HasSubstr(hash),
                                 HasSubstr("vip-study resume --db " + database + " --stimulus PATH")));
     // A bake with another hash.
     const std::string other = folder_ / "other.bake";

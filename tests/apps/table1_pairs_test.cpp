@@ -84,7 +84,7 @@ TEST_F(CheckpointFile, ComesBackBitForBit) {
 TEST_F(CheckpointFile, SaysWhatIsMissingOrOfSomethingElse) {
   measure::CheckpointOf other = of_;
   other.frame = 120;
-  EXPECT_THAT(error(other), AllOf(HasSubstr("Pond_64_f120.checkpoint: is not there"), HasSubstr("mend: ")));
+  EXPECT_THAT(error(other), AllOf(HasSubstr("Pond_64_f120.checkpoint: does not exist"), HasSubstr("mend: ")));
   other = of_;
   other.scene_sha256 = std::string(64, 'b');
   EXPECT_THAT(error(other), AllOf(HasSubstr("has scene_sha256 aaaa"), HasSubstr("this run has bbbb")));
@@ -239,7 +239,8 @@ TEST_F(Table1PairsE2e, AStoredRunIsReadAgainBitForBit) {
   EXPECT_THAT(ended.out, AllOf(HasSubstr("20 pictures in it are not in this run"), HasSubstr("mend: ")));
   ended = table1("--checkpoints 3 --checkpoints-from " + path("kept/deep"));
   EXPECT_EQ(ended.exit_code, 1) << ended.out;
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("SingleDam_64_f180.checkpoint: is not there"), HasSubstr("mend: ")));
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("SingleDam_64_f180.checkpoint: does not exist"), HasSubstr("mend: ")));
 }
 
 TEST_F(Table1PairsE2e, OptionsThatDoNotGoTogetherAreRefused) {

@@ -181,7 +181,7 @@ TEST(Effects, TheirExplicitLimitRaisesTheSubstepsAndSaysSo) {
   EXPECT_THAT([&] { sim::make_simulation(scene, options); },
               testing::ThrowsMessage<base::Error>(
                   AllOf(HasSubstr("effect cohesion"), HasSubstr("were asked for"),
-                        HasSubstr("take " + std::to_string(options.substeps + 1) + " or more"))));
+                        HasSubstr("set substeps to " + std::to_string(options.substeps + 1) + " or more"))));
   ++options.substeps;
   EXPECT_NO_THROW(sim::make_simulation(scene, options));
   scene.effects = {{EffectKind::AirDrag, 1e6}};

@@ -106,7 +106,7 @@ TEST(PtpeFile, RefusesEachMalformedFileAtItsPlace) {
 
 TEST(PtpeFile, SaysHowFarItLeavesMuOpen) {
   const auto words = sim::describe(example());
-  EXPECT_NE(words.find("mu open by up to +-52 % at delta 0 to 20"), std::string::npos) << words;
+  EXPECT_NE(words.find("mu uncertain by up to +-52 % at delta 0 to 20"), std::string::npos) << words;
 }
 
 TEST(PtpeFile, WithoutABandIsOfTheFirstFormat) {

@@ -160,9 +160,8 @@ TEST_F(OwnExports, OfAnotherStudyInTheSamePlaceStay) {
   export_csv(other, csv);
   report.write("vip-stats report", folder / "r.json", "{\"of\": \"P01\"}");
   theirs.write("vip-stats report", folder / "r.json", "{\"of\": \"Q01\"}");
-  EXPECT_THAT(withdraw(path, "P01").beside.left,
-              ElementsAre(HasSubstr("another export stands in its place"),
-                          HasSubstr("another export stands in its place")));
+  EXPECT_THAT(withdraw(path, "P01").beside.left, ElementsAre(HasSubstr("another export is now at its path"),
+                                                             HasSubstr("another export is now at its path")));
   EXPECT_THAT(test::bytes_of(csv / "sessions.csv"), HasSubstr("Q01"));
   EXPECT_THAT(test::bytes_of(folder / "r.json"), HasSubstr("Q01"));
   EXPECT_THAT(withdraw(path, "P01").beside.left, IsEmpty()) << "it is said once";

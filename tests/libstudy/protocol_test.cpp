@@ -316,7 +316,7 @@ TEST(Protocol, AnAssignmentThatCannotBeListedIsRefused) {
     return [=] { study::parse_protocol(large_design(scenes, groups), "p.toml"); };
   };
   EXPECT_NO_THROW(parse(4, 4)());
-  EXPECT_THAT(parse(20, 20), testing::ThrowsMessage<base::Error>(HasSubstr("orders of scenes and n_*")));
+  EXPECT_THAT(parse(20, 20), testing::ThrowsMessage<base::Error>(HasSubstr("sequences of scenes and n_*")));
   EXPECT_THAT(parse(101, 1), testing::ThrowsMessage<base::Error>(HasSubstr("more than 1000 cells")));
 }
 

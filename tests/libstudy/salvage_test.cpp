@@ -262,7 +262,7 @@ TEST_F(Salvaging, TheDatabaseWinsWhereTheTwoDifferAndTheAnswerIsNamed) {
 TEST_F(Salvaging, TheJournalOfAnotherStudyIsRefused) {
   test::write_small_study(folder / "other.db");
   journal = test::bytes_of(journal_beside(folder / "other.db"));
-  EXPECT_THAT([&] { salvaged(bytes); }, ThrowsMessage<base::Error>(HasSubstr("different studies")));
+  EXPECT_THAT([&] { salvaged(bytes); }, ThrowsMessage<base::Error>(HasSubstr("belongs to another study")));
   EXPECT_FALSE(fs::exists(into));
 }
 

@@ -276,9 +276,9 @@ TEST(Divergence, IsSaidInWords) {
   found.where_m = sim::Vec3d{1.2, 0.31, -0.0004};
   found.cause = Trouble::Coincident;
   found.count = 1;
-  EXPECT_EQ(
-      sim::in_words(found),
-      "frame 12, particle 40 at (1.200, 0.310, -0.000) m is at the same place as another; 1 case so far");
+  EXPECT_EQ(sim::in_words(found),
+            "frame 12, particle 40 at (1.200, 0.310, -0.000) m has the same position as another particle; 1 "
+            "case so far");
 }
 
 TEST(Divergence, NobodyIsPutWhoIsNotThere) {

@@ -1,4 +1,5 @@
-/// vip-bench accuracy: error and time of settings, and the effect of each knob.
+/// vip-bench accuracy: error and milliseconds of solver settings, and the effect of each number of the
+/// solver.
 
 #include <omp.h>
 
@@ -42,7 +43,7 @@ struct AccuracyOptions {
   std::vector<std::string> shards;
 };
 
-/// Parses "240x135"; empty for "none".
+/// Reads the size of the stored pictures, such as "240x135"; empty for "none".
 std::string kept_size(const std::string& words) {
   if (words == "none") return "";
   const auto size = base::parse_picture_size(words, "--pictures");
@@ -52,7 +53,8 @@ std::string kept_size(const std::string& words) {
   return base::size_words(size);
 }
 
-/// Rounds to 1/30 s, the interval of measurements, so that runs at all rates end with one.
+/// Rounds to multiples of 1/30 s, the interval of measurements, so that a run at any frame rate ends with a
+/// measurement.
 double whole_samples(double seconds) { return std::round(30 * seconds) / 30; }
 
 study::SweepPlan plan_of(const AccuracyOptions& options) {
@@ -83,7 +85,7 @@ struct Job {
   }
 };
 
-/// The part of the environment that affects times.
+/// Describes the processor, the device and the number of threads, which affect the times.
 std::string machine(sim::Backend backend) {
   const std::string device = sim::device_name(backend);
   return fmt::format("{}; {}, {} threads", measure::processor(), device.empty() ? "cpu" : device,
@@ -92,7 +94,8 @@ std::string machine(sim::Backend backend) {
 
 Job job_of(const AccuracyOptions& options) {
   if (options.scene == "all")
-    throw base::Error("--scene all", "is more than one sweep", "name one scene; a file may hold several");
+    throw base::Error("--scene all", "is more than one sweep",
+                      "name one scene; one --db file can store several sweeps");
   Job out{
       sim::scenes_of(options.scene).front(), plan_of(options), {}, sim::choose_backend(options.backend), {}};
   out.origin = {machine(out.backend), base::program_words(), out.scene.scene.sha256};
@@ -105,7 +108,7 @@ study::StoredCell run(const Job& job, const study::SweepCell& cell) {
   return {cell, job.origin, study::run_cell(cell, job.scene.scene, job.backend)};
 }
 
-/// What a sweep stores of the guards.
+/// Prints the only guard count that a sweep stores: how often the speed of particles was limited.
 void print_braked(const Job& job, std::int64_t braked) {
   sim::print_guards(job.scene.name, {.speed_limited = static_cast<std::uint64_t>(braked)}, {});
 }
@@ -129,7 +132,8 @@ void run_one(const Job& job, const AccuracyOptions& options) {
   print_braked(job, cell.run.braked);
 }
 
-/// Stores each finished cell, so that an interrupted run can continue.
+/// Runs the cells that `file` lacks. Stores each finished cell at once, so that an interrupted run can
+/// continue.
 void run_missing(const Job& job, study::SweepFile& file, const std::vector<study::SweepCell>& cells) {
   const auto done = file.keys(job.origin.machine);
   std::vector<study::SweepCell> missing;
@@ -148,13 +152,14 @@ void run_missing(const Job& job, study::SweepFile& file, const std::vector<study
   print_braked(job, braked);
 }
 
-/// Reports missing cells, including those that only another machine has run: tables and choices lack them.
+/// Prints how many cells of the sweep this machine has run, if some are missing. Tables and choices do not
+/// use cells of other machines.
 void tell_missing(const Job& job, study::SweepFile& file) {
   const auto done = file.keys(job.origin.machine);
   const auto there = std::count_if(job.cells.begin(), job.cells.end(),
                                    [&](const auto& cell) { return done.contains(job.key(cell)); });
   if (static_cast<std::size_t>(there) < job.cells.size())
-    std::printf("%td of the sweep's %zu cells are there\n", there, job.cells.size());
+    std::printf("%td of the sweep's %zu cells have run on this machine\n", there, job.cells.size());
 }
 
 study::PriceList prices_of(const Job& job, study::SweepFile& file) {
@@ -172,7 +177,7 @@ void write_tables(const Job& job, study::SweepFile& file, const AccuracyOptions&
   if (!options.html.empty()) base::write_file_atomically(options.html, study::accuracy_page(list, job.plan));
 }
 
-/// Chooses a setting; candidates are run again.
+/// Chooses a setting within a budget; the candidates are run again before the choice.
 void run_budget(const Job& job, const AccuracyOptions& options) {
   study::BudgetRequest request{job.plan, study::parse_budget(options.budget),
                                study::parse_sweep_error(options.error), job.scene.scene.tank_size_m[0]};
@@ -199,7 +204,8 @@ void run_accuracy(const AccuracyOptions& options) {
   const Job job = job_of(options);
   if (options.list) return print_list(job);
   if (!options.cell.empty()) return run_one(job, options);
-  if (options.database.empty()) throw base::Error("--db", "is missing", "name the file that keeps the sweep");
+  if (options.database.empty())
+    throw base::Error("--db", "is missing", "name the file that stores the sweep");
   if (!options.budget.empty()) return run_budget(job, options);
   study::SweepFile file(options.database, options.table_only ? Open::Read : Open::Create);
   if (options.table_only) {
@@ -214,7 +220,7 @@ void run_accuracy(const AccuracyOptions& options) {
 }
 
 void merge_shards(const AccuracyOptions& options) {
-  // Checks all files before merging the first.
+  // Checks all shards before merging the first shard.
   for (const auto& shard : options.shards) study::SweepFile(shard, Open::Read);
   study::SweepFile file(options.database, Open::Create);
   std::int64_t added = 0;
@@ -234,7 +240,8 @@ void add_accuracy_command(CLI::App& app) {
                        ->add_option("--db", options->database,
                                     "Sweep file, made when missing; cells in it are not run again")
                        ->check([](const std::string& path) {
-                         // A file that is only read may be in a read-only place.
+                         // An existing sweep file may be in a read-only folder, because some options only
+                         // read it.
                          return std::filesystem::is_regular_file(path) ? "" : output_file()(path);
                        });
   command->add_option("--scene", options->scene, "SingleDam, JetImpact or Faucet")->capture_default_str();

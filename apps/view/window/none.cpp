@@ -4,7 +4,7 @@
 namespace apps {
 
 void run_window(const ViewOptions&) {
-  throw base::Error("window", "this build has none (VIP_WINDOW=OFF)",
+  throw base::Error("window", "this build has no windows (VIP_WINDOW=OFF)",
                     "use --headless --png FOLDER, or build with -DVIP_WINDOW=ON");
 }
 

@@ -1,6 +1,6 @@
 #include "apps/view/window/panel.hpp"
 
-// epoxy first: GLFW then does not include GL's headers.
+// epoxy must be included before GLFW, so that GLFW does not include the system's GL headers.
 #include <epoxy/gl.h>
 #include <fmt/core.h>
 
@@ -21,7 +21,7 @@ namespace {
 constexpr float item_width_px = 190, price_width_px = 400;
 constexpr float schedule_width_px = 480, share_width_px = 110;
 
-/// A combo box; returns true if another entry was chosen.
+/// Draws a combo box; returns true if the user chose another entry.
 bool choose(const char* label, const std::vector<std::string>& words, std::size_t& at) {
   bool changed = false;
   if (!ImGui::BeginCombo(label, words[at].c_str())) return false;
@@ -64,7 +64,7 @@ void draw_figures(const Figures& f) {
                    static_cast<float>(top), {0, 56});
 }
 
-/// Draws the lines, wrapped so that long ones do not widen the panel.
+/// Draws the lines and wraps long lines, so that they do not widen the panel.
 void draw_price(const std::vector<std::string>& lines) {
   ImGui::PushTextWrapPos(price_width_px);
   for (const auto& line : lines) ImGui::TextWrapped("%s", line.c_str());
@@ -109,7 +109,7 @@ Panel::~Panel() {
 bool Panel::has_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 bool Panel::has_keys() const { return ImGui::GetIO().WantTextInput; }
 
-/// Controls that restart the fluid at frame 0. Sliders take effect when released.
+/// Draws the controls that restart the fluid at frame 0. A slider takes effect when it is released.
 void Panel::draw_fluid(Controls& controls) {
   ViewOptions& chosen = controls.chosen;
   std::vector<std::string> titles;
@@ -134,7 +134,7 @@ void Panel::draw_fluid(Controls& controls) {
   ImGui::EndDisabled();
 }
 
-/// Controls that take effect at the next frame.
+/// Draws the controls that take effect at the next frame.
 void Panel::draw_numbers(Controls& controls) {
   const auto& method = sim::traits_of(sim::parse_method(controls.chosen.method));
   auto alpha = static_cast<float>(controls.alpha);
@@ -147,7 +147,8 @@ void Panel::draw_numbers(Controls& controls) {
     controls.chosen.iterations = iterations;
 }
 
-/// A box for each effect of the scene; its coefficient takes effect when the slider is released.
+/// Draws a check box and a slider for each effect of the scene. The coefficient takes effect when the slider
+/// is released.
 void Panel::draw_effects(Controls& controls) {
   if (controls.switches.empty()) return;
   int number = 0;
@@ -174,7 +175,7 @@ void Panel::draw_effects(Controls& controls) {
   ImGui::Separator();
 }
 
-/// The compiled passes in order.
+/// Draws the table of the solver's passes in their order.
 void Panel::draw_schedule(const PassMeans& passes) {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({display.x - 12, 12}, ImGuiCond_Once, {1, 0});

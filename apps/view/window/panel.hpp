@@ -1,5 +1,5 @@
 #pragma once
-/// The window's panel of figures and controls, in Dear ImGui.
+/// The panel of vip-view's window, with values and controls, drawn with Dear ImGui.
 
 #include <cstdint>
 #include <string>
@@ -21,47 +21,47 @@ namespace apps {
 struct Figures {
   int frame = 0;
   std::int64_t particles = 0;
-  double frame_ms = 0;  ///< of the last frame
+  double frame_ms = 0;  ///< time of the last frame
   stats::FpsMoments fps;
-  double tau = 0, beta = 1;  ///< of the frames shown
-  std::string model;         ///< source of a and b
+  double tau = 0, beta = 1;  ///< computed from the rate of the shown frames
+  std::string model;         ///< source of the PTPE model's a and b
   FrameStrip strip;
-  std::string legend;              ///< of the values painted over the water
-  std::vector<std::string> price;  ///< cost and errors of the setting; empty without a sweep
-  PassMeans passes;                ///< only while the schedule is shown
-  std::string said;                ///< the last error, or the path of a screenshot
+  std::string legend;              ///< legend of the values painted over the water
+  std::vector<std::string> price;  ///< lines with cost and errors of the setting; empty without a sweep
+  PassMeans passes;                ///< filled only while the schedule is shown
+  std::string said;                ///< text of the last error, or the path of the last screenshot
 };
 
-/// Values that the panel sets.
+/// Values that the user sets in the panel.
 struct Controls {
   ViewOptions chosen;
-  double alpha = 0;    ///< of the running fluid
-  int iterations = 1;  ///< of the running fluid
+  double alpha = 0;    ///< weight of the temporal feature in the running fluid
+  int iterations = 1;  ///< iterations per substep of the running fluid
   bool paused = false;
   bool step_once = false;
-  bool mouse_gaze = true;  ///< if false, the scene's gaze keys
+  bool mouse_gaze = true;  ///< false: the gaze follows the scene's gaze keys
   bool screenshot = false;
   bool restart = false;
   OverlayKind overlay = OverlayKind::None;
-  bool schedule = false;               ///< shown, and therefore timed
-  std::vector<EffectSwitch> switches;  ///< of the scene's effects, also while a slider is dragged
+  bool schedule = false;               ///< true: the schedule is shown and its passes are timed
+  std::vector<EffectSwitch> switches;  ///< one per effect that the scene lists
 };
 
 class Panel {
  public:
-  /// `opened` is the scene of the command line.
+  /// `opened`: the options of the command line.
   Panel(GLFWwindow* window, const ViewOptions& opened);
   ~Panel();
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Draws it over the current framebuffer.
+  /// Draws the panel over the current framebuffer.
   void draw(Controls& controls, const Figures& figures);
   /// Draws the progress of a new fluid: a text and a bar from 0 to 1.
   void draw_progress(const std::string& text, float done);
-  /// True if the mouse is over the panel, so that it is not a gaze.
+  /// True if the mouse is over the panel. The mouse is then no gaze.
   bool has_mouse() const;
-  /// True while a number is typed.
+  /// True while the user types a number in the panel.
   bool has_keys() const;
 
  private:
@@ -72,7 +72,7 @@ class Panel {
 
   std::vector<std::string> scenes_, methods_, sizes_;
   int size_ = 0;    ///< position of the n_* slider while it is dragged
-  int levels_ = 4;  ///< of the N slider, likewise
+  int levels_ = 4;  ///< position of the slider of N while it is dragged
 };
 
 }  // namespace apps

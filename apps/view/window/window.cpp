@@ -1,4 +1,4 @@
-// epoxy first: GLFW then does not include GL's headers.
+// epoxy must be included before GLFW, so that GLFW does not include the system's GL headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -26,10 +26,10 @@ namespace {
 
 constexpr double progress_every_s = 0.1;
 
-/// Thrown from the settling callback when the window was closed.
+/// Thrown by the settling callback if the user closed the window.
 struct Closed {};
 
-/// The scene with all listed effects, any of which may be turned on later.
+/// The scene with all listed effects, because the user may turn on any of them later.
 sim::Scene as_listed(const PreparedFluid& prepared) {
   sim::Scene out = prepared.scene;
   out.effects = prepared.listed;
@@ -47,11 +47,11 @@ struct Running {
   sim::FluidPicture picture;
   OverlayPainter painter;
   stats::FpsWindow fps{30};
-  bool timed = false;   ///< its passes are timed
-  double shown_s = -1;  ///< when the last frame was shown; < 0 after a pause
+  bool timed = false;   ///< the passes of the fluid are timed
+  double shown_s = -1;  ///< time at which the last frame was shown; < 0 after a pause
 };
 
-/// The options with names as the combo boxes spell them.
+/// The options with method and preset in the spelling of the combo boxes.
 ViewOptions spelled_out(ViewOptions options) {
   options.method = sim::method_name(sim::parse_method(options.method));
   options.preset = sim::preset_name(sim::parse_preset(options.preset));
@@ -139,9 +139,9 @@ void Viewer::take(std::unique_ptr<Running> fluid) {
   figures_.price = price_lines(controls_.chosen, prepared.setting, prepared.scene);
 }
 
-/// Keeps the old fluid if the new one cannot be made.
+/// Makes a fluid for the chosen options. If this fails, the old fluid remains and the panel shows the error.
 void Viewer::begin_anew() {
-  // Another scene lists other effects.
+  // The chosen effects belong to the old scene.
   if (controls_.chosen.scene != running_.scene) {
     controls_.chosen.effects.reset();
     controls_.chosen.effects_off.clear();
@@ -174,7 +174,7 @@ void Viewer::follow_keys() {
   }
 }
 
-/// Times passes only while the schedule is shown.
+/// Starts or stops the timing of passes; they are timed only while the schedule is shown.
 void Viewer::follow_schedule() {
   if (fluid_->timed == controls_.schedule) return;
   fluid_->prepared.fluid->time_passes(controls_.schedule);
@@ -182,7 +182,8 @@ void Viewer::follow_schedule() {
   figures_.passes.clear();
 }
 
-/// Keeps the old effects if the new ones are refused.
+/// Gives the fluid the chosen effects. If the fluid refuses them, the old effects remain and the panel shows
+/// the error.
 void Viewer::exchange_effects() {
   PreparedFluid& prepared = fluid_->prepared;
   const auto chosen = controls_.chosen.effects.value_or(prepared.scene.effects);
@@ -229,7 +230,7 @@ void Viewer::step(const sim::View& view) {
       prepared.camera, sim::gaze_point(prepared.scene, sim::scene_frame(prepared.scene, figures_.frame + 1,
                                                                         prepared.frame_dt_s)));
   if (controls_.mouse_gaze) {
-    // If the mouse is over the panel or outside the window, the gaze counts as lost.
+    // If the mouse is over the panel or outside the window, the gaze is invalid.
     double x = 0, y = 0;
     const bool looks = window_.mouse(x, y) && !panel_.has_mouse();
     gaze = looks ? sim::gaze_through(view, x, y) : sim::Gaze{};
@@ -240,7 +241,7 @@ void Viewer::step(const sim::View& view) {
   controls_.step_once = false;
 }
 
-/// Counts only the time from one step to the next, without pauses and settling.
+/// Records the time from one step to the next; ignores pauses and settling.
 void Viewer::note_time(bool stepped) {
   const double now_s = glfwGetTime();
   const double interval_s = now_s - fluid_->shown_s;
@@ -273,7 +274,7 @@ void Viewer::run() {
   while (!window_.asked_to_close()) {
     glfwPollEvents();
     const auto [width, height] = window_.size();
-    if (width < 1 || height < 1) {  // minimised
+    if (width < 1 || height < 1) {  // the window is minimised
       glfwWaitEvents();
       fluid_->shown_s = -1;
       continue;
@@ -303,7 +304,7 @@ void run_window(const ViewOptions& options) {
   try {
     Viewer(options).run();
   } catch (const Closed&) {
-    // Closed while a fluid settled: nothing left to do.
+    // The user closed the window while a fluid settled.
   }
 }
 

@@ -8,15 +8,15 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Share of its nominal work that the pull yields: calibrated by the contact angles of drops of level 0
-/// (docs/decisions.md).
+/// Factor on the strength of the sampled attraction (see Adhesion), calibrated with the contact angles of
+/// drops of level 0 (docs/decisions.md).
 constexpr float pull_share = 0.75f;
-/// Constant c of f below.
+/// Constant c = 315 / 256 of the function f (see Adhesion).
 constexpr float poly6_behind = 1.23046875f;
 
-/// Correction of a plane's f for a round surface; the plane's second derivatives are along the normal only.
-/// With the curvature k = h / R about one axis or two, f' becomes f' (1 + k q)^(-1/2) or f' / (1 + k q), and
-/// f'' has f' k / (1 + k q) perpendicular to the normal.
+/// Corrects the derivatives of a plane's f (see Adhesion) for a round surface of radius R, with k = h / R. f'
+/// becomes f' (1 + k q)^(-1/2) at a cylinder and f' / (1 + k q) at a sphere. f'' gets an additional part f' k
+/// / (1 + k q) perpendicular to the normal; a plane's f'' acts only along the normal.
 struct Rounding {
   float share = 1, share_slope = 0, turn = 0;
   Vec3 straight{0, 0, 0};  ///< direction in which the surface is not curved
@@ -34,22 +34,24 @@ struct Rounding {
   SIM_FN Vec3 across(Vec3 n) const { return n - dot(n, straight) * straight; }
 };
 
-/// Change of a velocity by a body.
+/// Change of a particle's velocity by a body, m/s: normal part (along) and tangential part (across).
 struct Pulled {
   Vec3 along, across;
 };
 
-/// A wall acts like fixed water: tension's pairs act between it and the water in front of it, where only the
-/// latter has a surface. For a plane their sum over the half-space behind it is
+/// A wall acts like fixed water that has no surface itself: the pair forces of surface tension act between
+/// the wall and the water in front of it. For a plane wall their sum over the half-space behind the wall is
 ///   m_i dv_i / dt = sigma V_i / h^2 [pull s_i f'(q) - smoothing f''(q) n_i] along the wall's normal,
-/// with f the share of poly6 behind it (Walls::behind). It acts where the surface meets the wall, and does
-/// the work sigma: a contact angle of 90 degrees. Works below sigma use a share of it.
+/// with f the share of poly6 behind the wall (Walls::behind) and q the distance from the wall divided by h.
+/// This force acts where the water's surface meets the wall. Its work of adhesion is sigma, which gives a
+/// contact angle of 90 degrees. For a smaller work the force is multiplied by (work / sigma)^2.
 ///
-/// The rest of the work comes from the published attraction of wall samples, A(q) = (-4 q^2 + 6 q - 2)^(1/4)
-/// for 1/2 < q < 1, summed over a whole plane at the distance s: g(q) = q int_q^1 A, along the normal. dv =
-/// -dt w / (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that removing a unit area of water from
-/// the wall costs the work w, for any particle size. An obstacle does the same along its normal, per unit
-/// area of its own. Water too coarse for tension is not attracted.
+/// Work above sigma comes from the published attraction by wall samples, A(q) = (-4 q^2 + 6 q - 2)^(1/4) for
+/// 1/2 < q < 1, summed over a plane at the distance s: g(q) = q int_q^1 A, along the normal. dv = -dt w /
+/// (rho_0 h^2) g(s / h) / G with G = int_0^1 q g(q) dq, so that removing a unit area of water from the wall
+/// costs the additional work w, for any particle size. An obstacle attracts along its surface normal, in
+/// proportion to its own surface area. Particles that are too coarse for the effect cohesion are not
+/// attracted.
 template <class Bodies>
 struct Adhesion {
   const Vec4* position;
@@ -58,9 +60,9 @@ struct Adhesion {
   Walls walls;
   Bodies bodies;
   Vec4* velocity;
-  float held;      ///< dt sigma / rho_0 times the share of the pairs, m3/s
-  float strength;  ///< dt w / rho_0, m3/s
-  float whole;     ///< int_1/2^1 A
+  float held;      ///< dt sigma / rho_0 times (work / sigma)^2, at most 1, m3/s
+  float strength;  ///< dt w / rho_0 times pull_share, m3/s
+  float whole;     ///< integral of A from 1/2 to 1
   float per_g;     ///< 1 / G
   float widest;    ///< largest support that takes part, m
 
@@ -90,7 +92,7 @@ struct Adhesion {
   SIM_FN Pulled pulled_by(const Body& body, Vec4 at, const Body::Near& near, float skin, Vec3 n) const {
     const float q = at_least(near.distance / at.w, 0.0f);
     const Rounding round(body, xyz(at), q, at.w);
-    const float share = face_share(body, xyz(at), near.distance / 2);  // of the space between
+    const float share = face_share(body, xyz(at), near.distance / 2);  // halfway to the particle
     const float t = 1 - q * q;
     const float slope = -poly6_behind * t * t * t * t;
     const float bend = 8 * poly6_behind * q * t * t * t;
@@ -104,13 +106,15 @@ struct Adhesion {
             -scale * held * smoothing_strength * f1 * round.turn * round.across(n - out * near.normal)};
   }
 
-  /// f' = -c (1 - q^2)^4 and f'' = 8 c q (1 - q^2)^3, c = 315 / 256.
+  /// Attraction by the fixed water behind a wall. f' = -c (1 - q^2)^4 and f'' = 8 c q (1 - q^2)^3, c = 315 /
+  /// 256.
   SIM_FN static float tied(float q, float skin, float normal) {
     const float t = 1 - q * q;
     return poly6_behind * t * t * t * (pull_strength * skin * t + 8 * smoothing_strength * q * normal);
   }
 
-  /// With 4 q - 3 = sin t, A dq = cos^(3/2) t dt / (4 sqrt 2): Simpson's rule over t.
+  /// The function g(q). With 4 q - 3 = sin t, A dq = cos^(3/2) t dt / (4 sqrt 2), which is integrated over t
+  /// by Simpson's rule.
   SIM_FN float sampled(float q) const {
     if (q <= 0.5f) return q * whole;
     return q * beyond(q);
@@ -136,7 +140,8 @@ struct PullingBodies {
   static constexpr bool there = true;
   Solids solids;
   BodyListener to;
-  /// Tension does not turn a body about an axis about which it is round: the tangential part has no moment.
+  /// Records the reaction on the body. The tangential part acts at the body's centre, without a moment,
+  /// because tension cannot turn a body about an axis about which it is round.
   SIM_FN Vec3 visit(int body, Vec4 at, Pulled change) const {
     if (to.sums) {
       const float way = solids.dt * mass_units_of(at.w, to.finest_support);

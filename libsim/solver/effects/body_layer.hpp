@@ -28,8 +28,8 @@ SIM_FN void for_bodies_within(const Solids& solids, Vec3 x, float reach, Then th
   }
 }
 
-/// Ratio of the body's surface area to the area of its layer at x: around a sphere the layer is larger than
-/// the surface.
+/// Ratio of an area of the body's surface to the area opposite to it at `distance` from the surface. It is
+/// below 1 at round surfaces.
 SIM_FN float face_share(const Body& body, Vec3 x, float distance) {
   if (body.radius == 0) return 1;
   const float share = body.radius / (body.radius + at_least(distance, 0.0f));

@@ -1,6 +1,6 @@
 /// Surface tension: an attraction between pairs, and a smoothing of the surface. As published, the attraction
-/// also acts inside the water, where the resulting pressure makes particles stick (docs/decisions.md).
-/// Here both terms come from energies that are constant inside.
+/// also acts inside the water, where the resulting pressure makes particles stick (docs/decisions.md). Here
+/// both terms come from energies that are constant inside the water, and so exert no force there.
 
 #include "libsim/solver/effects/loops/surface_normals.hpp"
 #include "libsim/solver/effects/surface_energy.hpp"
@@ -12,10 +12,10 @@ namespace {
 /// m_i dv_i / dt = sigma sum_j V_i V_j [pull / hbar (s_i + s_j) grad W_ij
 ///                                     - smoothing grad grad W_ij (n_i - n_j)],
 /// the forces of the energies of missing density and of |n|^2; s = skin(rho / rho_0). Both are antisymmetric,
-/// so that momentum is conserved. A pair of any size attracts with a force of sigma hbar, and a surface of
-/// any sampling with sigma per length. Pairs with unsolved particles are skipped: their pressure would not
-/// balance the attraction, and they would not receive the reaction. Pairs with particles too coarse for the
-/// effect are skipped too.
+/// so that momentum is conserved. hbar is the mean support of a pair. A pair attracts with a force of sigma
+/// hbar at every particle size, and a surface with sigma per length at every sampling. Pairs with unsolved
+/// particles are skipped: no pressure of an unsolved particle would balance the attraction, and it would not
+/// receive the reaction. Pairs with particles too coarse for the effect are skipped too.
 template <bool OneLevel, class Selection>
 struct Cohesion {
   Selection select;
@@ -34,7 +34,7 @@ struct Cohesion {
     PairKernel<OneLevel> pair;
   };
 
-  /// Adds particle j, divided by 6 V_i; see SIM_LANES.
+  /// Adds the velocity change by particle j, divided by 6 V_i; see SIM_LANES.
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);

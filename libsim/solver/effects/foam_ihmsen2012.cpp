@@ -20,7 +20,7 @@ FoamRules rules_of(const FluidState& state) {
           .crest_depth = e[EffectOption::FoamCrestWeight] * state.foam.cells.grid.frame.edge,
           .energy = {e[EffectOption::FoamEnergyFrom], e[EffectOption::FoamEnergySpan]},
           .coarsest = coarsest,
-          // Graded levels of neighbours differ by one.
+          // With graded targets, levels of neighbours differ by at most one.
           .coarsest_seen = state.levels.rules.graded ? coarsest + 1 : most_levels - 1,
           .lifetime = e[EffectOption::FoamLifetime],
           .volume = pi / 6 * diameter * diameter * diameter,

@@ -10,9 +10,9 @@ namespace {
 
 /// A wall brakes water that slides along it at the speed u with the stress rho_0 c u (Navier's law of slip;
 /// nu / c is its slip length), so that a sheet of depth H slides a distance u H / c. The stress acts on the
-/// layer within a particle's own spacing d of the wall: there u decreases at the rate c / d. Any lattice and
-/// any disordered water have one particle per area d^2 there, whatever their level. A substep removes at most
-/// all of u, so that it is stable for any step: a large c stops the layer.
+/// layer of particles within their spacing d of the wall, in which u decreases at the rate c / d. This layer
+/// has one particle per area d^2, in a lattice and in disordered water, at every level. A substep removes at
+/// most all of u, and so is stable for any step; a large c stops the layer.
 SIM_FN Vec3 slowed(Vec3 v, Vec3 wall_velocity, Vec3 normal, float steps) {
   const Vec3 slip = v - wall_velocity;
   return v - at_most(steps, 1.0f) * (slip - dot(slip, normal) * normal);
@@ -27,14 +27,15 @@ SIM_FN Vec3 slowed_by(const Walls& walls, Vec4 at, Vec3 v, float way) {
   return v;
 }
 
-/// Obstacles; what they brake is recorded for them.
+/// Obstacles that brake water. The reaction on each obstacle is recorded.
 struct BrakingBodies {
   Solids solids;
   const FreeBody* free;  ///< nullptr: no body is free
   BodyListener to;
 
-  /// Limits steps for a free body that is lighter than the layer it brakes; it would oscillate. The limit is
-  /// where both have one speed, for the largest possible layer: around a ball that contains the body.
+  /// Maximum share of the slip that a substep removes at body b. A free body that is lighter than the layer
+  /// of water it brakes would otherwise oscillate. At the limit, body and layer get the same speed. The layer
+  /// is taken as large as possible: around a ball that contains the body.
   SIM_FN float most_steps(int b, float d) const {
     if (!free || free[b].mass == 0) return 1;
     const float out = length(solids.bodies[b].half) + solids.bodies[b].radius + d;
@@ -58,8 +59,8 @@ SIM_FN Vec3 slowed_by(const BrakingBodies& bodies, Vec4 at, Vec3 v, float way) {
   return slowed_by(bodies.solids.walls, at, v, way);
 }
 
-/// All particles, including those that temporal acceleration does not solve: with the tuned readings no
-/// particle rests near a wall.
+/// Applies friction to all particles, solved or not. With the tuned readings all particles near a wall are
+/// solved.
 template <class Boundary>
 struct Slide {
   const Vec4* position;

@@ -6,10 +6,10 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A wall of the temperature T acts like water whose temperature continues along the line from the particle's
-/// through T at the wall: d theta / dt = 2 D (T - theta) / s int z F over the water behind it, which is 315 /
-/// 256 (1 - q^2)^4 / h for poly6, with q = s / h. Exact for a constant rate, so that it is stable for any
-/// step.
+/// A wall of temperature T acts like water behind it, whose temperature continues linearly from the
+/// particle's temperature theta through T at the wall. d theta / dt = 2 D (T - theta) / s int z F over this
+/// water, with s the distance to the wall and q = s / h. For poly6 the integral is 315 / 256 (1 - q^2)^4 / h.
+/// The step is exact for a constant rate, and so stable for any dt.
 struct WarmAtWalls {
   const Vec4* position;
   const std::uint8_t* level;
@@ -85,8 +85,8 @@ struct TakeWarmth {
 };
 
 /// Boussinesq: dv / dt = g beta (theta - mean theta) against gravity, with beta the expansion per kelvin and
-/// the mean by mass over the water that takes part. So uniform warmth changes nothing, and the lifts of that
-/// water sum to zero. It acts on the particles on which gravity acts.
+/// the mean by mass over the water that takes part in the effect. So a uniform temperature causes no motion,
+/// and the buoyancy forces sum to zero. Buoyancy acts only on particles on which gravity acts in this frame.
 template <class Selection>
 struct Rise {
   Selection select;

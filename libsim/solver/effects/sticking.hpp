@@ -7,21 +7,23 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Free bodies are rows of the same system as the particles: body and fluid hold each other, however light
-/// the body. So every step of the conjugate gradients conserves their total momentum and angular momentum.
-/// Rows of other bodies follow the same steps without contributing to the sums: they gain exactly what the
-/// fluid lost, however few the steps. Without rows, moves() is false for every body.
+/// Rows of bodies in the system of equations that the particles solve. A free body is an unknown of this
+/// system, so that fluid and body are coupled implicitly, even if the body is light. Every step of the
+/// conjugate gradients then conserves the total momentum and angular momentum. Rows of other bodies take the
+/// same steps, but do not count in the inner products: they record exactly the momentum that the fluid lost.
+/// Without rows, moves() is false for every body.
 struct BodyRows {
   BodyRow* rows;
   const Body* bodies;
   const FreeBody* free;  ///< nullptr: no body is free
   int count;             ///< number of rows
-  /// Unit of their sums, m_* m/s: residuals and directions exceed the fluid's speeds by as much as the
-  /// stiffest particle's term exceeds 1, and fixed point has a limited range.
+  /// Unit of the fixed-point sums in the rows, m_* m/s. Residuals and directions exceed the fluid's speeds by
+  /// as much as the stiffest particle's term exceeds 1, and the range of fixed point is limited.
   float unit;
 
   SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }
-  /// What particles gave to the residual or to A p, converted for this body; resets the sums.
+  /// The particles' sums for the residual, or for A p, of body b, as velocity and angular velocity if it is
+  /// free, otherwise as momentum and moment. Resets the sums.
   SIM_FN BodyTurn given(int b) const {
     BodyRow& row = rows[b];
     const Vec3 push = unit * row.push.value(), moment = unit * row.moment.value();
@@ -29,13 +31,14 @@ struct BodyRows {
     if (!moves(b)) return {push, moment};
     return {(1 / free[b].mass) * push, spin_of(free[b], bodies[b].turn, moment)};
   }
-  /// Inner product m a b of two rates.
+  /// Inner product m a b of two rates of body b; 0 unless it is free.
   SIM_FN float product(int b, BodyTurn a, BodyTurn other) const {
     if (!moves(b)) return 0;
     return free[b].mass * dot(a.along, other.along) +
            dot(a.round, momentum_of(free[b], bodies[b].turn, other.round));
   }
-  /// Sets residual and direction from the particles' first sums; returns the squared residual.
+  /// Sets residual and direction of all rows from the particles' first sums; returns the rows' part of the
+  /// squared residual.
   SIM_FN float begin() const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
@@ -45,7 +48,7 @@ struct BodyRows {
     }
     return out;
   }
-  /// Returns p A p.
+  /// Computes A p of all rows from the direction p; returns the rows' part of p A p.
   SIM_FN float bend() const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
@@ -55,7 +58,7 @@ struct BodyRows {
     }
     return out;
   }
-  /// Takes a step; returns the square of the new residual.
+  /// Takes a step in all rows; returns their part of the new squared residual.
   SIM_FN float advance(float step) const {
     float out = 0;
     for (int b = 0; b < count; ++b) {
@@ -74,22 +77,23 @@ struct BodyRows {
   }
 };
 
-/// Fluid within its own spacing d of a surface, one particle per area d^2 whatever its level, feels the shear
-/// stress rho_0 nu u / s at the distance s, where its slip speed is u. So both a lattice at any s and
-/// disordered fluid come to rest at the surface itself. u is tangential, relative to the body's rigid motion
-/// extended to the particle: fluid that rotates with a body is not braked. In the implicit step the terms
-/// stay symmetric and positive definite: each is the square of a difference.
+/// The shear stress rho_0 nu u / s acts on fluid within its spacing d of an obstacle's surface; s is the
+/// distance to the surface and u the slip speed. This layer has one particle per area d^2 at every level. The
+/// fluid then comes to rest at the surface itself, in a lattice at any s and in disordered fluid. u is
+/// tangential, relative to the body's rigid motion extended to the particle: fluid that rotates with a body
+/// is not braked. In the implicit step the terms stay symmetric and positive definite: each is the square of
+/// a difference.
 struct StickingBodies {
   static constexpr bool there = true;
   Solids solids;
   BodyRows rows;
   float rate;            ///< nu dt times the share that sticks, m2
-  float finest_support;  ///< support of m_*
-  /// Minimum s as a share of d: as near as particles come to walls.
+  float finest_support;  ///< support of the finest particles (mass m_*), m
+  /// Minimum s as a share of d, equal to the minimum distance between particles and walls.
   static constexpr float nearest = 0.1f;
 
-  /// Calls then(number, change of v that the body takes in dt). First: v are velocities, otherwise
-  /// directions.
+  /// Calls then(number, part of v that the body removes in dt) for each body near the particle. If First, v
+  /// is a velocity, otherwise a direction of the conjugate gradients.
   template <bool First, class Then>
   SIM_FN void each(Vec4 at, Vec3 v, Then then) const {
     const float d = 0.5f * at.w;
@@ -105,7 +109,7 @@ struct StickingBodies {
     const BodyTurn p = rows.rows[b].direction;
     return p.along + cross(p.round, x - solids.bodies[b].centre);
   }
-  /// The sum over all bodies; it is also added to their rows.
+  /// Sum of the parts of v that all bodies remove; each part is also added to its body's row.
   template <bool First>
   SIM_FN Vec3 taken(Vec4 at, Vec3 v) const {
     Vec3 out{0, 0, 0};
@@ -123,7 +127,8 @@ struct StickingBodies {
   }
 };
 
-/// Final steps of the sums: add the free bodies' share, and update all rows.
+/// TakeRest, TakeStep and TakeNext finish an inner product that was summed over the particles: they add the
+/// part of the free bodies, and update all rows.
 template <class Bodies>
 struct TakeRest {
   TakeTurn take;
@@ -153,7 +158,7 @@ struct TakeNext {
   }
 };
 
-/// Records in the bodies' sums what the rows gained.
+/// Adds the momentum that the rows gained to the recorded sums of the bodies.
 struct RecordGained {
   BodyRows rows;
   BodyListener to;

@@ -5,11 +5,13 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Both in units of sigma: calibrated together by the period of one drop of level 0 (docs/decisions.md).
-/// Tests measure sigma from other cases.
+/// Strengths of the two tension terms, attraction (pull) and smoothing, in units of sigma. They were
+/// calibrated together with the oscillation period of one drop of level 0 (docs/decisions.md). Tests measure
+/// sigma from other cases.
 inline constexpr float pull_strength = 12;
 inline constexpr float smoothing_strength = 2.6f;
-/// Water denser than 1 - skin_depth, in units of rho_0, pulls less.
+/// Width of a density range, in units of rho_0: the attraction is full up to a density of 1 - skin_depth, and
+/// decreases to 0 at 1.
 inline constexpr float skin_depth = 0.2f;
 
 /// Degree to which a particle of this rho / rho_0 belongs to the surface, 0 .. 1.

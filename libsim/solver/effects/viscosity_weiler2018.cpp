@@ -1,6 +1,7 @@
-/// Viscosity of fluids as thick as honey: implicit, so that it is stable for any step. It acts on velocities
-/// that hold the substep's forces, before the particles move: otherwise gravity would move them by g dt^2 in
-/// each substep however viscous they are. What projections add is damped in the next substep.
+/// Viscosity of fluids as thick as honey: implicit, so that it is stable for any step. It acts on the
+/// velocities after the substep's forces and before the particles move. Otherwise gravity would move
+/// particles by g dt^2 in each substep, however viscous the fluid is. Velocity that the projections add is
+/// damped in the next substep.
 
 #include <algorithm>
 #include <cmath>
@@ -27,17 +28,18 @@ SIM_FN float weight_of(const Kernel& kernel, float mass_ratio, float r2) {
   return mass_ratio * inverse * inverse * kernel.h * inverse * t * rough_root(t);
 }
 
-/// Behind a wall the fluid continues as its mirror image. If it slips, the image has the mirrored velocity.
-/// If it sticks, the image has the opposite one, so that the velocity along the wall is 0 there. Pairs with
-/// images are as symmetric as others. Images of images, behind edges, are left out.
+/// Behind a wall the fluid continues as its mirror image. If the fluid slips, the image has the mirrored
+/// velocity. If it sticks, the image has the negative of the mirrored velocity, so that the velocity along
+/// the wall is 0 at the wall. Pairs with images are symmetric like other pairs. Images of images, behind
+/// edges, are left out.
 struct Images {
   Walls walls;
   float turn;  ///< factor of the image's velocity: 1 slips, -1 sticks
 
-  /// True if a particle there may have a neighbour behind wall k. The coarsest neighbours have twice its
-  /// support.
+  /// True if an image behind wall k may be a neighbour of a particle at `at`. The coarsest neighbours have
+  /// twice the particle's support.
   SIM_FN bool near(int k, Vec4 at) const { return walls.distance(k, xyz(at)) < 1.5f * at.w; }
-  /// True if the wall acts on both.
+  /// True if wall k acts on both particles: neither is in front of an opening.
   SIM_FN bool between(int k, Vec4 a, Vec4 b) const {
     return !walls.absent(k, xyz(a)) && !walls.absent(k, xyz(b));
   }
@@ -50,10 +52,11 @@ struct Images {
   }
 };
 
-/// Resting particles are not part of the system: they later take the mean change of the particles around
-/// them. Pairs of solved particles are strengthened to make up for missing neighbours. w of `bent` becomes
-/// the weight of all neighbours divided by that of the solved ones, and 0 for particles that rest or are too
-/// coarse for the effect, which do not count as neighbours either.
+/// Computes factors that replace unsolved neighbours. Unsolved particles are not part of the system of
+/// equations; they later take the mean velocity change of the particles around them. Pairs of solved
+/// particles are strengthened instead. w of `bent` becomes the weight of all neighbours divided by the weight
+/// of the solved neighbours. It is 0 for particles that are unsolved or too coarse for the effect. Particles
+/// that are too coarse do not count as neighbours.
 template <bool OneLevel>
 struct Shares {
   ActiveParticles select;
@@ -62,7 +65,7 @@ struct Shares {
   Vec4* bent;
   float widest;  ///< largest support that takes part, m
 
-  /// Adds particle j; see SIM_LANES.
+  /// Adds the weight of particle j; see SIM_LANES.
   SIM_FN void add(int j, Vec4 self, const PairKernel<OneLevel>& pair, float& all, float& solved) const {
     const Vec4 other = position[j];
     const Vec3 offset = xyz(self) - xyz(other);
@@ -95,7 +98,7 @@ struct Shares {
     solved = team.sum(solved);
     if (team.rank() == 0) bent[i] = {0, 0, 0, all > 0 ? quotient(all, at_least(solved, all / most)) : 1};
   }
-  /// Upper bound of the strengthening, for neighbourhoods where nearly all rest.
+  /// Upper bound of the factor, for neighbourhoods in which almost no particle is solved.
   static constexpr float most = 4;
 };
 
@@ -116,7 +119,7 @@ struct Friction {
   Vec4* direction;
   Vec4* bent;    ///< A times direction
   float widest;  ///< largest support that takes part, m
-  // w of residual and direction: as in Shares.
+  // The fourth component w of residual and direction is the factor that Shares computes.
 
   struct Self {
     Vec4 at, moving;
@@ -144,7 +147,7 @@ struct Friction {
     y -= along * dy;
     z -= along * dz;
   }
-  /// Adds particle j; see SIM_LANES.
+  /// Adds the pull of particle j; see SIM_LANES.
   SIM_FN void add_one(int j, const Self& me, float& x, float& y, float& z) const {
     add(share_of(j), position[j], moving[j], me, x, y, z);
   }
@@ -197,7 +200,7 @@ struct Friction {
   }
 };
 
-/// m_i a_i b_i, masses in m_*.
+/// A particle's part of the inner product: m_i a_i b_i, with m_i in m_*.
 struct Product {
   const Vec4* position;
   const Vec4* a;
@@ -209,7 +212,7 @@ struct Product {
   }
 };
 
-/// x += alpha p, r -= alpha A p; then m_i r_i r_i.
+/// Step of the conjugate gradients: x += alpha p, r -= alpha A p. Returns m_i r_i r_i.
 struct Advance {
   const Vec4* position;
   const Vec4* direction;
@@ -227,7 +230,7 @@ struct Advance {
   }
 };
 
-/// p = r + beta p.
+/// Computes the next direction of the conjugate gradients: p = r + beta p.
 struct Turn {
   const Vec4* residual;
   Vec4* direction;
@@ -258,8 +261,9 @@ Friction<First, OneLevel, Selection, Bodies> friction_of(FluidState& state, Visc
           .widest = state.widest_support(EffectOption::ViscosityCoarsest)};
 }
 
-/// As many as the scene says, or as many as converge: in proportion to the root of the condition number, the
-/// stiffest pair's rate over that of the slowest shear between opposite walls (docs/decisions.md).
+/// Number of steps of the conjugate gradients: the scene's, or 16 to 200 as convergence requires. Convergence
+/// requires steps in proportion to the root of the condition number, which is the stiffest pair's rate
+/// divided by the rate of the slowest shear between opposite walls (docs/decisions.md).
 int steps_of(const FluidState& state) {
   const auto& k = state.parameters;
   const float asked = k.effects[EffectOption::ViscositySteps];

@@ -6,11 +6,13 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// If the gradient of |omega| times h is less than this share of |omega|, its direction is undefined.
+/// Share of |omega|. If the gradient of |omega| times h is smaller, its direction is uncertain, and the
+/// confinement is weakened.
 constexpr float least_slope = 0.03f;
 
 /// The mean of omega over the neighbours and the particle, weighted by poly6's slope over distance; its
-/// length in w. Curls scatter, most where levels meet, and gradients of scattered values point anywhere.
+/// length in w. The curls of single particles are noisy, most where levels meet, and the gradient of noisy
+/// values has a random direction.
 struct Smooth {
   static constexpr int sums = 4;
   static constexpr bool of_all = false;
@@ -37,10 +39,11 @@ struct Smooth {
   SIM_FN void skip(int i) const { smooth[i] = {0, 0, 0, Curl::unknown}; }
 };
 
-/// dv / dt = c f N x omega with N = grad |omega| normalised, omega the mean above: c is a speed, so that the
-/// force on a volume does not depend on its particles. A Lamb-Oseen vortex gains c omega(r) around its axis.
-/// f amplifies rotation faster than `from` and at most `most`, so that still water stays still and swirl
-/// stays bounded. The change of momentum is booked (Change::Effects); angular momentum increases.
+/// dv / dt = c f N x omega with omega the particle's curl and N the normalised gradient of the smoothed
+/// |omega| (Smooth). c is a speed, so that the force on a volume does not depend on its particles. A
+/// Lamb-Oseen vortex gains c omega(r) around its axis. f limits the force to rotation rates between `from`
+/// and `most`, so that still water stays still and swirl stays bounded. The change of momentum is recorded as
+/// Change::Effects; angular momentum increases.
 struct Confine {
   static constexpr int sums = 3;
   static constexpr bool of_all = false;
@@ -54,7 +57,7 @@ struct Confine {
   SIM_FN bool takes(float h) const { return h <= widest; }
   using Self = float;  ///< the particle's |mean of omega|
   SIM_FN Self self(int i) const { return smooth[i].w; }
-  /// Adds to grad |omega|, divided by 6 V_i.
+  /// Adds a neighbour's part of grad |omega|, divided by 6 V_i.
   SIM_FN void add(const NeighbourPair& pair, Self own, float& x, float& y, float& z, float&) const {
     const float there = smooth[pair.j].w;
     const float along = there < 0 ? 0.0f : pair.slope * (there - own);
@@ -82,7 +85,8 @@ struct Confine {
   }
 };
 
-/// Output for saliency. Unsolved particles keep their last value; particles too coarse for the effect get 0.
+/// Copies the smoothed |omega| to the column that saliency reads. Unsolved particles keep their last value;
+/// particles too coarse for the effect get 0.
 struct Show {
   const Vec4* smooth;
   const std::uint8_t* level;
@@ -118,8 +122,8 @@ std::string if_seen(const Demand& demand) {
   return demand.saliency && counts ? "saliency sees it" : "";
 }
 
-/// Saliency reads the swirl at most once per frame. It is unknown here if the next frame does: a gaze jump
-/// triggers a level update at once.
+/// Runs in a frame's last substep, because saliency reads the swirl at most once per frame. It runs in every
+/// frame: a gaze jump may trigger a level update in the next one.
 void show_swirl(FluidState& state, ShowView p) {
   const auto& k = state.parameters;
   if (state.substep + 1 < k.substeps) return;

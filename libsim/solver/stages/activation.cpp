@@ -16,7 +16,7 @@ struct ActivateAll {
   }
 };
 
-/// Algorithm 3, lines 8 and 9.
+/// Chooses the particles that the frame solves: Algorithm 3, lines 8 and 9.
 template <class Boundary>
 struct Choose {
   const Vec4* position;
@@ -54,8 +54,9 @@ struct Choose {
     }
   }
 
-  /// Counts the frames of a rest; then continues from longest_rest while the particle must be solved. 0: it
-  /// may rest.
+  /// Next value of the particle's counter. It counts inactive frames. When the particle is solved after them,
+  /// the counter continues from longest_rest until the particle has been solved least_work times. 0 = it may
+  /// be inactive.
   SIM_FN int count_after(int count, bool on) const {
     if (!on) return count < rest_count_mask ? count + 1 : count;
     if (rules.longest_rest <= 0 || count == 0) return 0;
@@ -79,7 +80,7 @@ using ActivationColumns =
                columns(Column::Active, Column::Rest, Column::StartCell, Column::Velocity),
                columns(Column::Saliency, Column::Age)>;
 
-/// Eq. 12-14 and their normalisation range.
+/// Measures the particles' importance, Eq. 12-14, and the range that normalises it.
 void measure(FluidState& state, ActivationColumns p) {
   auto& a = state.activation;
   const float spacing = 0.5f * state.finest_support;
@@ -121,7 +122,7 @@ void run_activation(FluidState& state, ActivationColumns p) {
   const int n = p.size();
   a.grid.fit(state.domain, cell_spacings * 0.5f * state.finest_support);
   a.near.fit(state.domain, a.rules.near_spacings * 0.5f * state.finest_support);
-  // Weightless water parts as a whole after splits and merges.
+  // After splits and merges in weightless water, the stage parting moves all particles.
   const bool parts = state.parameters.weightless() && state.levels.changed;
   state.all_active = a.beta >= 1 || n == 0 || parts;
   if (!a.columns_set || (state.all_active && !a.all_marked))

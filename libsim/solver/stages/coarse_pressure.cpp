@@ -6,7 +6,8 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 constexpr float fixed_point = CellWater::fixed_point;
-/// Higher values are not compression but overlapping particles, which the projections separate.
+/// Upper bound of rho / rho_0 - 1. Higher values come from overlapping particles, which the projections
+/// separate, and not from compression.
 constexpr float most_excess = 0.5f;
 
 /// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume. An unsolved
@@ -16,8 +17,8 @@ struct Gather {
   Selection select;
   const Vec4* predicted;
   const float* density;
-  const float* ease;  ///< share of a particle's density constraint that acts yet, [0, 1]; nullptr if nothing
-                      ///< splits or merges
+  const float* ease;  ///< share of its density constraint that a particle enforces, [0, 1]; nullptr if
+                      ///< nothing splits or merges
   PressureFrame frame;
   CellBlock block;
   CellSum* sums;
@@ -33,8 +34,8 @@ struct Gather {
     CellSum& sum = sums[block.index(x, y, z)];
     float volume = mass_of(p.w, 1) / unit_volume;
     float excess = at_most(at_least(density[i] - 1, -1.0f), most_excess);
-    // Only slightly reduced: the cells keep a tank that splits completely from becoming too dense, and
-    // remaining compression would later become speed.
+    // Near fresh particles the excess is reduced by at most a quarter. The cells must limit the density of a
+    // tank in which all particles split, and remaining compression would later become speed.
     if (ease) excess *= 0.75f + 0.25f * ease[i];
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
@@ -66,7 +67,8 @@ struct GatherVolume {
   }
 };
 
-/// Converts sums to the equation: the source is the mean C of a cell's particles times the cell's volume.
+/// Sets kind and source of each cell from its sums. The source is the mean C of the cell's particles times
+/// the cell's volume.
 struct Classify {
   PressureFrame frame;
   GridView grid;
@@ -87,9 +89,10 @@ struct Classify {
   }
 };
 
-/// The same with obstacles: their cells count as water at rest up to the water level beside them, and as air
-/// above, as if the displaced water were there. The pressure beside an obstacle carries the weight of this
-/// water; cells this wide resolve no more. The particles' constraint keeps the water out of the obstacle.
+/// Sets kind and source of each cell in scenes with obstacles. Cells in an obstacle count as water at rest up
+/// to the water level beside the obstacle, and as air above it. The pressure beside the obstacle then carries
+/// the weight of the displaced water. The cells are too wide for more detail. The particles' density
+/// constraint keeps water out of the obstacle.
 struct ClassifyRound {
   PressureFrame frame;
   GridView grid;
@@ -114,7 +117,8 @@ struct ClassifyRound {
     if (waterline.solids.nearest_body(at) > 0.5f * waterline.pitch()) return;
     const LevelBeside level = waterline.beside(x, y, z);
     if (level.mean > 0.5f) grid.kind[i] = CellKind::Fluid;
-    // A wall between water and dry space blocks the water: air cells in it would draw the water in.
+    // An obstacle between water and dry space is solid. If its cells were air, the water would flow into
+    // them.
     else if (level.most == 1)
       grid.kind[i] = CellKind::Solid;
   }
@@ -125,7 +129,7 @@ template <class Selection>
 struct Shift {
   Selection select;
   const Vec4* predicted;
-  Vec4* next;  ///< keeps the positions of particles that are neither solved nor pressed
+  Vec4* next;  ///< not written for particles that are neither solved nor moved by the coarse pressure
   CoarseSlope slope;
 
   SIM_FN void operator()(int slot) const {
@@ -141,9 +145,10 @@ struct Shift {
   }
 };
 
-/// Edge of the cells for the present particles: cells sized for the finest particles of the method would
-/// contain too few for a mean. It follows the mean mass in half levels, so that it rarely changes, and leaves
-/// at least three cells across the tank if cells for the lightest particles do.
+/// Edge of the cells for the present particles, m. Cells sized for the method's finest particles would
+/// contain too few coarser particles for a mean. So the edge follows the particles' mean mass, rounded to
+/// half levels, so that it rarely changes. At least three cells span the tank's shortest side, unless the
+/// cells for the lightest particles are wider.
 float cell_edge(const FluidState& state) {
   const int n = state.particles.size();
   const float finest = state.parameters.coarse_edge * state.lightest_support;
@@ -159,7 +164,7 @@ float cell_edge(const FluidState& state) {
 template <class Selection>
 void launch(FluidState& state, CoarsePressureView p, Selection select) {
   auto& coarse = state.coarse;
-  // While the water settles at one level, the shares are not written.
+  // While the water settles at one level, the column Ease is not written.
   const float* ease = state.one_level ? nullptr : p.ease();
   constrain_density(state, p);
   coarse.fit(state.domain, cell_edge(state), state.walls.have_lid());

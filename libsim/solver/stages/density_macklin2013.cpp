@@ -16,7 +16,7 @@ struct Density {
   const Vec4* predicted;
   Neighbours neighbours;
   Boundary walls;
-  const float* ease;  ///< share of its constraint; nullptr if all enforce the whole
+  const float* ease;  ///< share of its constraint that a particle enforces; nullptr = the whole constraint
   float* lambda;
   float* density;
   Guards* guards;
@@ -75,7 +75,7 @@ struct Density {
     squares = team.sum(squares);
     zero = team.sum(zero);
     if (team.rank() > 0) return;
-    // Each pair is counted twice, once from each side.
+    // Each coincident pair is counted twice, once for each of its particles.
     if (zero) atomic_add(&guards->coincident_pairs, static_cast<std::uint64_t>(zero));
     const float mass = mass_of(self.w, rest_density);
     const float volume = mass / rest_density;
@@ -131,7 +131,7 @@ void constrain(FluidState& state, DensityView p, const float* ease) {
 
 using EasedView = ColumnView<DensityView::reads, DensityView::writes, columns(Column::Ease)>;
 
-/// While the water settles at one level, the shares are not written.
+/// While the water settles at one level, the column Ease is not written.
 void run_density(FluidState& state, EasedView p) {
   constrain(state, p, state.one_level ? nullptr : p.ease());
 }

@@ -16,7 +16,7 @@ struct Displace {
   Boundary walls;
   Vec4* next;
   Guards* guards;
-  int half;  ///< of a substep, see TroubleKey
+  int half;  ///< index of the half substep, see TroubleKey
   float rest_density, tensile, wall_gap, momentum;
 
   /// Adds particle j to the step; see SIM_LANES. own: lambda of the particle itself.
@@ -86,9 +86,9 @@ struct Displace {
     return -tensile * mass_of(h_other, rest_density) * spacing * spacing * q * q * q * q;
   }
 
-  /// The loop gives coincident pairs no direction; here it comes from their ids, with a small step even if
-  /// the density alone would not separate them. Steps are weighted so that the pair's centre of mass does not
-  /// move.
+  /// Step that separates particle i from particles at the same position. Their offset has no direction, so
+  /// their ids determine one. The step is never zero, even if the density alone would not separate them.
+  /// Steps are weighted so that a pair's centre of mass does not move.
   SIM_FN Vec3 parted(int slot, Vec4 self, float own) const {
     const PairKernel<OneLevel> pair(self.w);
     Vec3 step{0, 0, 0};

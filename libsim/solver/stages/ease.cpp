@@ -4,7 +4,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Lists belong to slots; unsolved particles need no easing.
+/// Computes the column Ease (LevelRules::ease). Neighbour lists are indexed by slots. Unsolved particles get
+/// 1.
 template <class Selection>
 struct Ease {
   Selection select;

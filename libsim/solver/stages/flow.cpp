@@ -15,10 +15,10 @@ using NozzleColumns = ColumnView<columns(Column::Position, Column::Velocity, Col
                                  columns(Column::Target), columns(Column::Temperature)>;
 
 /// Places the particles of the layers that are due within the frame. A layer that passes the mouth `lead`
-/// seconds after the frame's start begins the frame where it falls freely through the mouth at the speed u:
-/// u lead - g lead^2 / 2 above it, at the speed u - g lead, if gravity points down.
+/// seconds after the frame's start begins the frame at the height u lead - g lead^2 / 2 above the mouth, with
+/// the speed u - g lead, if gravity points down. It then falls freely and passes the mouth at the speed u.
 struct Pour {
-  const int* which;  ///< the particles; null: all from index `first`
+  const int* which;  ///< indices of the particles to place; nullptr: consecutive indices from `first`
   int first;
   Vec4* position;
   Vec4* velocity;
@@ -30,7 +30,7 @@ struct Pour {
   double first_turn;            // full turns
   const std::uint8_t* level;
   float* temperature;
-  float warmth;      ///< of the jet, K above the reference
+  float warmth;      ///< temperature of the jet, K above the reference
   HeatLedger* heat;  ///< nullptr if particles have no temperature
 
   SIM_FN void operator()(int k) const {
@@ -50,7 +50,7 @@ struct Pour {
     velocity[i] = with_w(lead * lift - Vec3{0, speed, 0}, 0);
     if (heat) warm(i);
   }
-  /// If a particle taken from the corners is reused, its heat has not been booked yet.
+  /// Gives the particle the jet's temperature. The heat of a reused particle is first counted as taken.
   SIM_FN void warm(int i) const {
     if (which) atomic_add(&heat->taken, HeatLedger::of(temperature[i], level[i]));
     temperature[i] = warmth;
@@ -149,7 +149,7 @@ void pour_due_layers(FluidState& state, NozzleColumns p, const Nozzle& nozzle, P
   state.lists_hold = state.lists_hold && layers == 0;
   jets.poured += static_cast<std::int64_t>(layers) * layer.sites << jets.level;
   jets.waited += static_cast<std::uint64_t>(due.count - layers);
-  // Layers that could not be poured are left out of the jet.
+  // Layers that could not be poured are not poured later.
   before.length_m += due.count * layer.pitch_m;
   before.layers += due.count;
 }
@@ -158,7 +158,7 @@ void run_nozzle(FluidState& state, NozzleColumns p) {
   auto& jets = state.jets;
   const std::int64_t made = jets.made;
   for (std::size_t k = 0; k < jets.nozzles.size(); ++k) {
-    // At one level the schedule is a pure function of the frame.
+    // If the jet has a constant level, the layers poured so far depend on the frame number alone.
     if (!jets.by_target)
       jets.before[k] = poured_before(jets.nozzles[k], std::cbrt(1 << jets.level) * jets.finest_spacing_m,
                                      jets.frame, jets.frame_dt_s);
@@ -187,7 +187,7 @@ void run_outflow(FluidState& state, OutflowView p) {
   state.drained.particles += left.particles;
   state.drained.mass += left.mass;
   state.mass_units -= left.mass;
-  // Lists store indices, which have changed.
+  // Neighbour lists store particle indices, which have changed.
   state.lists_hold = false;
 }
 

@@ -25,7 +25,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Acceleration -strength r towards an axis (sim::CentralForce).
+/// Acceleration -strength r towards an axis, with r the vector from the axis (sim::CentralForce).
 struct CentralPull {
   float strength = 0;  ///< Omega^2, 1/s2; 0 removes the term from the kernel
   Vec3 centre{};
@@ -39,7 +39,7 @@ struct SolverParameters {
   CentralPull pull;       ///< in addition to gravity
   float dt = 1.0f / 180;  ///< substep, s
   int substeps = 3;       ///< per frame
-  /// No force holds the water together or down; cohesion does not count.
+  /// True without gravity and central force; cohesion does not count.
   bool weightless() const { return gravity.strength <= 0 && pull.strength <= 0; }
   double frame_s() const { return static_cast<double>(dt) * substeps; }
   int iterations = 4;  ///< constraint projections per substep
@@ -48,14 +48,14 @@ struct SolverParameters {
 #undef SIM_MEMBER
   /// Kinematic viscosity nu, m2/s; 0 omits the pass.
   float viscosity = 0;
-  EffectCoefficients effects;  ///< SI; 0 = no such stage runs
+  EffectCoefficients effects;  ///< coefficients in SI units; 0 = no stage of the effect runs
   /// Speed that no water exceeds by itself, m/s: faster particles are braked and counted.
   float most_speed = 0;
   /// Minimum distance to a wall, as a share of d.
   float wall_gap = 0.1f;
 };
 
-/// Limits a particle's velocity to what the guards allow, and counts each case.
+/// Limits the speed of particles to `most_speed`. Counts each case, and records the removed momentum.
 struct Brake {
   Witness witness;
   float most_speed, finest_support;
@@ -79,14 +79,15 @@ struct Brake {
 
 // State of the conjugate gradients between passes (libsim/solver/effects).
 
-/// Scalars of a step, on the device: the host decides nothing.
+/// Scalars of a step of the conjugate gradients. They stay on the device, so that the host need not wait for
+/// them.
 struct ConjugateStep {
   float rest;   ///< r r
   float along;  ///< step length of x along p
-  float turn;   ///< factor of p in the next direction
+  float turn;   ///< factor of p, the present direction, in the next direction
 };
 
-/// Empty until the first solve.
+/// Memory of the conjugate gradients; empty until the first solve.
 struct ConjugateGradient {
   OrderedSum sum;
   Array<ConjugateStep> step;
@@ -108,13 +109,13 @@ struct TakeTurn {
 
 // State of buoyancy between its passes.
 
-/// On the device, of the water that takes part in heat.
+/// Mass and mean temperature, on the device, of the water that takes part in the effect heat.
 struct MeanWarmth {
   float mass;    ///< m_*
   float warmth;  ///< mean by mass, K above the reference
 };
 
-/// Empty until the first pass.
+/// Memory of the effect heat's buoyancy; empty until the first pass.
 struct Buoyancy {
   OrderedSum sum;
   Array<MeanWarmth> mean;
@@ -125,7 +126,8 @@ struct Buoyancy {
 /// The parts of the paper's Table 2 to which stages are assigned.
 enum class Part { Saliency, Levels, Activation, Solve, count };
 
-/// Off until switched on. Waits for the device between parts.
+/// Measures the time of each part of a frame. Off until switched on. While on, it waits for the device
+/// between parts.
 class PartClock {
  public:
   void switch_on() { on_ = true; }
@@ -142,7 +144,7 @@ class PartClock {
   }
   void end_frame() { enter(Part::count); }
 
-  /// In the last frame.
+  /// Time of the part in the last frame, ms.
   double milliseconds(Part part) const { return 1e3 * seconds_[static_cast<std::size_t>(part)]; }
 
  private:
@@ -152,10 +154,10 @@ class PartClock {
   std::array<double, static_cast<std::size_t>(Part::count)> seconds_{};
 };
 
-/// The same for each pass of a schedule, by its index.
+/// Measures the time of each pass of a schedule, by the pass's index.
 class PassClock {
  public:
-  /// Discards earlier measurements. 0 passes: off.
+  /// Starts to measure this number of passes, and discards earlier times. 0 = off.
   void measure(std::size_t passes) {
     seconds_.assign(passes, 0);
     running_ = passes;
@@ -171,7 +173,7 @@ class PassClock {
   }
   void end_frame() { enter(seconds_.size()); }
 
-  /// In the last frame; 0 while off.
+  /// Time of the pass in the last frame, ms; 0 while off.
   double milliseconds(std::size_t pass) const { return seconds_.empty() ? 0 : 1e3 * seconds_[pass]; }
 
  private:
@@ -188,35 +190,35 @@ struct FluidState {
   Domain domain{};
   float finest_support = 0;  ///< h_* = 4 r_*, m: h of level 0, even if the method has no particles of level 0
   float lightest_support = 0;  ///< h of the lightest particles that the method can hold, m
-  /// Mass of the particles at the start minus the drained mass, in m_*; the mass that nozzles hold back is
-  /// negligible.
+  /// Mass of the particles at the start minus the drained mass, in m_*; mass that nozzles have taken but not
+  /// yet poured is negligible.
   std::int64_t mass_units = 0;
   LevelSupports supports{};
   Vec3 refuge{};           ///< position for particles whose own position is lost
   bool one_level = true;   ///< all particles have one level throughout the run
   bool compressed = true;  ///< the water is or may be compressed: frames begin with a pre-stabilisation
   int substep = 0;
-  bool forces_acted = false;  ///< the substep's forces are in the velocities: predict adds none
+  bool forces_acted = false;  ///< velocities already include the substep's forces: predict adds none
   int iteration = 0;          ///< projection within the substep
   Particles particles;
   Grid grid;
   NeighbourList neighbours;
-  /// The lists of the last substep hold all particles' neighbours in the present order: passes that read the
-  /// fluid before it moves need not search again. Between h and the list's margin they may be slightly out of
-  /// date.
+  /// The last substep's lists contain the neighbours of all particles in the present order, so that passes
+  /// before the particles move need no new search. List entries between h and the lists' margin may be
+  /// slightly out of date.
   bool lists_hold = false;
-  bool lists_by_slot = false;  ///< the lists belong to the slots of that substep
+  bool lists_by_slot = false;  ///< lists are indexed by the last substep's slots, not by particles
   CoarseGrid coarse;
   Jets jets;
   Outflow outflow;
-  Drained drained;         ///< since the run began
+  Drained drained;         ///< water that left through outlets since the run began
   Array<HeatLedger> heat;  ///< one element, if particles have a temperature
   Buoyancy buoyancy;
   FoamPool foam;  ///< capacity 0 if the scene lists none
   SaliencyState saliency;
   LevelState levels;
-  /// False while solving a frame that leaves particles out: its passes run over active() and lists belong to
-  /// slots. True between frames.
+  /// False during a frame that does not solve all particles. Passes then run over active(), and lists are
+  /// indexed by slots. True between frames.
   bool all_active = true;
   Activation activation;
   Array<Guards> guards;
@@ -240,15 +242,16 @@ struct FluidState {
   Solids solids() const {
     return {walls, obstacles.bodies.data(), obstacles.count(), parameters.dt, obstacles.meshes.data()};
   }
-  /// Supports above this, m, belong to levels that an effect's coarsest_level excludes: halfway to the next
-  /// level's support, or the maximum float.
+  /// Largest support, m, of particles on which an effect with this option coarsest_level acts: halfway
+  /// between the supports of this level and the next. The maximum float if the effect acts on all levels.
   float widest_support(EffectOption coarsest_level) const {
     const auto level = static_cast<std::size_t>(parameters.effects[coarsest_level]);
     if (level + 1 >= static_cast<std::size_t>(most_levels)) return std::numeric_limits<float>::max();
     return 0.5f * (supports.h[level] + supports.h[level + 1]);
   }
-  /// Gravity for the measures of rest, which go by sqrt(g d_*), m/s2. In a scene without gravity a value that
-  /// makes this speed a hundredth of d_* per frame: otherwise the smallest motion counts as fast.
+  /// The gravity g, m/s2, in the speed sqrt(g d_*) that decides which water counts as at rest. Without
+  /// gravity, a value that makes this speed 0.01 d_* per frame; otherwise the smallest motion would count as
+  /// fast.
   float gravity_of_rest() const {
     if (parameters.gravity.strength > 0) return parameters.gravity.strength;
     const auto frame = static_cast<float>(parameters.frame_s());
@@ -260,12 +263,14 @@ struct FluidState {
     return {recording() && obstacles.recorded() ? obstacles.sums.data() : nullptr, obstacles.bodies.data(),
             finest_support, times, obstacles.listening_patches()};
   }
-  /// For effects, whose pushes are summed apart from the constraint's; records nothing if those sums are off.
+  /// Records the pushes of effects on bodies. They are summed separately from the pushes of the density
+  /// constraint. Records nothing if the obstacles' pushes are not recorded.
   BodyListener effects_listener() {
     return {obstacles.recorded() ? obstacles.sums.data() + obstacles.count() : nullptr,
             obstacles.bodies.data(), finest_support, 1, obstacles.listening_patches()};
   }
-  /// For scenes with obstacles, while the coarse pressure's cells hold their sums.
+  /// The water level beside obstacles. Valid in scenes with obstacles, after the coarse pressure has summed
+  /// its cells.
   Waterline waterline() {
     return {{coarse.frame, mass_of(lightest_support, 1)},
             coarse.multigrid.finest().block,
@@ -275,7 +280,7 @@ struct FluidState {
             parameters.gravity.axis()};
   }
   Guards* guard() { return guards.data(); }
-  /// For a pass in the first (0) or second (1) half of the present substep.
+  /// Recorder of troubled particles for a pass in the first (0) or second (1) half of the present substep.
   Witness witness(const int* id, int half) { return {guards.data(), id, 2 * substep + half}; }
   Brake brake(const int* id, int half) { return {witness(id, half), parameters.most_speed, finest_support}; }
 };

@@ -1,4 +1,4 @@
-/// Obstacles moved by water and gravity, and those that meet others.
+/// Moves the obstacles that water and gravity move, including their contacts with other obstacles.
 
 #include "libsim/particles/free_body.hpp"
 #include "libsim/particles/meeting.hpp"
@@ -8,7 +8,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Moves each body to the substep's end, where contacts with water are computed.
+/// Moves each free body to its position at the substep's end. Contacts with water are computed at this
+/// position.
 struct Move {
   Body* bodies;
   FreeBody* free;
@@ -32,10 +33,11 @@ struct Move {
   }
 };
 
-/// Applies the water's push of the substep. A body lighter than the water it accelerates would oscillate: the
-/// water responds to its last acceleration a, with the force -m_a a of its added mass. Adding m_a as inertia
-/// of the body on both sides of Newton's law, m a' + m_a a' = F + m g + m_a a, removes this. With f = m (a -
-/// g), the force applied to the body, this is f' = s F + (1 - s) f, s = m / (m + m_a).
+/// Updates the force on each free body from F, the water's push in the substep. A body lighter than the water
+/// it accelerates would oscillate: the water responds to its last acceleration a, with the force -m_a a of
+/// its added mass. Adding m_a as inertia of the body on both sides of Newton's law for the next acceleration
+/// a', m a' + m_a a' = F + m g + m_a a, removes the oscillation. With f = m (a - g), the force applied to the
+/// body, the law becomes f' = s F + (1 - s) f, s = m / (m + m_a).
 struct Push {
   FreeBody* free;
   const Body* bodies;
@@ -43,12 +45,12 @@ struct Push {
   const BodySum* sums;
   const BodySum* by_effects;
   const std::uint64_t* wet;  ///< volume below the water level, per body; nullptr: the whole body
-  float per_dt;              ///< converts the sums' displacements
+  float per_dt;              ///< 1 / dt: converts sums of mass times displacement to momentum
   float per_dt2;
 
   /// Added mass divided by the mass of the displaced water: 0.5 for a sphere far from walls, 0.64 for a cube;
-  /// walls increase it. A value too small by half would oscillate; too large a value only makes bodies
-  /// respond slowly.
+  /// walls increase it. With half of the true value a light body would oscillate; a value that is too large
+  /// only makes bodies respond slowly.
   static constexpr float added_mass = 0.7f;
 
   SIM_FN void operator()(int b) const {
@@ -58,7 +60,7 @@ struct Push {
     const Vec3 moment =
         turning(bodies[b], mesh_of(meshes, b), -per_dt2 * (sums[b].moment - it.counted.moment).value());
     it.counted = sums[b];
-    // Effects themselves prevent oscillation of a light body.
+    // The pushes of effects act at once: the effects themselves prevent oscillation of a light body.
     it.momentum += -per_dt * (by_effects[b].push - it.counted_of_effects.push).value();
     it.spin += -per_dt * (by_effects[b].moment - it.counted_of_effects.moment).value();
     it.counted_of_effects = by_effects[b];

@@ -1,4 +1,5 @@
-/// Target levels of tests, the limit to one level between neighbours, and splits and merges.
+/// The stages that set target levels (for tests, at narrow outlets, graded between neighbours), and the stage
+/// that splits and merges.
 
 #include "libsim/levels/split_merge.hpp"
 #include "libsim/solver/stages/stages.hpp"
@@ -41,7 +42,7 @@ Stage forced_targets_stage() {
 
 namespace {
 
-/// A part of an outlet's surroundings and the coarsest level that fits through it.
+/// A box about a narrow outlet, and the coarsest level whose particles fit through the outlet.
 struct NarrowOpening {
   Vec3 low, high;
   int fits;
@@ -64,7 +65,7 @@ struct FitOpenings {
   }
 };
 
-/// Spacings of a particle that its way through an opening must be wide.
+/// Minimum width of an opening through which a particle fits, in spacings of the particle.
 constexpr float spacings_wide = 2;
 
 void run_opening_targets(FluidState& state,
@@ -115,7 +116,7 @@ Stage opening_targets_stage() {
 
 namespace {
 
-/// Keeps the level of particles that are not far enough beyond the border to a coarser one.
+/// Sets the target to the present level, unless N (1 - s) exceeds the next coarser level by `dead_band`.
 struct Hold {
   const std::uint8_t* level;
   const float* saliency;
@@ -128,7 +129,8 @@ struct Hold {
   }
 };
 
-/// l_i <= min_j l_j + 1 over the neighbours: one sweep propagates by one support radius.
+/// Limits the target level l_i to min_j l_j + 1 over the neighbours j. One sweep propagates a limit by one
+/// support radius.
 struct Grade {
   const Vec4* position;
   const std::uint8_t* target;
@@ -136,10 +138,10 @@ struct Grade {
   std::uint8_t* out;
   template <class Team>
   SIM_FN void operator()(int i, Team team) const {
-    const int wish = target[i] > 1 ? team.min(graded(i, team)) : target[i];  // 0 and 1 are never too coarse
+    const int wish = target[i] > 1 ? team.min(graded(i, team)) : target[i];  // targets 0 and 1 need no limit
     if (team.rank() == 0) out[i] = static_cast<std::uint8_t>(wish);
   }
-  /// Over this lane's neighbours.
+  /// The limited target of particle i, from this lane's share of the neighbours.
   template <class Team>
   SIM_FN int graded(int i, Team team) const {
     int wish = target[i];

@@ -10,12 +10,13 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Under pressure particles of one size form a lattice, which carries shear until it yields: a fluid so
-/// viscous that it damps its own jitter would stop on a slope. So each particle inside the fluid takes a
+/// viscous that its particles do not jitter would stop on a slope. So each particle inside the fluid takes a
 /// random step, and the next projections correct the density. Velocities do not change, and so momentum is
 /// conserved.
 constexpr float loosening = 0.04f;  ///< maximum step along each axis, in spacings
-/// Maximum nu dt / d^2 with steps of this length. Thicker fluid flows less in a substep, by 1 / nu, and
-/// random steps loosen by their square; longer ones would swell it faster than it flows (docs/decisions.md).
+/// Largest nu dt / d^2 at which steps have the full length `loosening`. A thicker fluid needs shorter steps:
+/// its flow per substep decreases as 1 / nu, and steps loosen the lattice in proportion to their square.
+/// Longer steps would make the fluid swell faster than it flows (docs/decisions.md).
 constexpr float loosened_in_full = 2;
 template <class Selection>
 struct Loosen {
@@ -24,7 +25,7 @@ struct Loosen {
   const float* density;
   const int* id;
   float widest;  ///< largest support that takes part, m
-  float less;    ///< maximum step along each axis if it is the smaller one, as a share of h^2, 1/m
+  float less;    ///< limit of the step of thick fluid along each axis, divided by h^2, 1/m
 
   SIM_FN void operator()(int slot) const {
     const int i = select(slot);
@@ -43,8 +44,9 @@ struct Loosen {
     const auto moment = static_cast<std::uint32_t>(static_cast<std::int64_t>(place * fine));
     return 2 * uniform_of(random_bits(static_cast<std::uint32_t>(id[i]), moment, axis)) - 1;
   }
-  static constexpr float fine = 1048576;  ///< 1/m: closer positions count as one
-  /// As a share of rho_0. Particles of lower density are at the surface and keep their velocity.
+  static constexpr float fine = 1048576;  ///< 1/m: positions closer than 1 / fine have the same hash
+  /// Minimum density inside the fluid, as a share of rho_0. Particles of lower density are at the surface and
+  /// do not move.
   static constexpr float inside = 0.95f;
 };
 
@@ -64,7 +66,8 @@ void loosen(FluidState& state, LoosenView p, Selection select) {
                              .less = loosening / 4 * std::sqrt(loosened_in_full / diffusion)});
 }
 
-/// Without gravity there is no pressure. Mixed sizes form no lattice.
+/// Does nothing in weightless fluid, which has no pressure, and with mixed particle sizes, which form no
+/// lattice.
 void run_loosen(FluidState& state, LoosenView p) {
   const auto& k = state.parameters;
   if (!state.one_level || k.weightless()) return;

@@ -17,14 +17,15 @@ void sort(FluidState& state) {
 using SubstepView = ColumnView<NeighboursView::reads, NeighboursView::writes, columns(Column::Active),
                                columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Only the particles that the frame solves need lists, unless the others conduct heat.
+/// Lists neighbours in a frame that does not solve all particles. Only solved particles need lists, unless
+/// all conduct heat, or the next frame's level update reads the lists.
 void list_active(FluidState& state, SubstepView p) {
   const Witness witness = state.witness(p.id(), 0);
   sort(state);
   state.lists_by_slot = true;
   state.lists_hold = false;
   state.activation.list_active(p);
-  // The next frame's level update compares all particles.
+  // The next frame's level update compares all particles, and so needs the lists of all.
   const bool hold = !state.one_level && state.substep + 1 == state.parameters.substeps;
   if (hold || state.parameters.effects[EffectKind::Heat] > 0) {
     state.neighbours.build(p, state.grid, EverySlot{state.activation.slots.data()}, witness);
@@ -42,8 +43,8 @@ using PresentView = ColumnView<columns(Column::Position, Column::Velocity, Colum
                                columns(Column::Predicted, Column::Neighbours), columns(Column::Active),
                                columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Later substeps use the lists of the one before: what the search found then covers the moves since. A frame
-/// searches anew, so that its lists depend on nothing but the particles.
+/// Searches in a frame's first substep. Later substeps use the lists of the substep before, whose margin
+/// covers the moves since then. Each frame searches anew, so that its lists depend on the particles alone.
 void run_present(FluidState& state, PresentView p) {
   if (state.substep > 0) return;
   p.copy<Column::Predicted, Column::Position>();
@@ -89,7 +90,7 @@ Stage frame_neighbours_stage() {
                                     .source = "neighbour list at the frame's start",
                                     .phase = Phase::FrameStart,
                                     .called_for = [](const Demand& demand) -> std::string {
-                                      // Saliency finds the neighbours itself.
+                                      // The stage saliency finds the neighbours itself.
                                       return demand.levels && !demand.saliency ? "levels compare neighbours"
                                                                                : "";
                                     },

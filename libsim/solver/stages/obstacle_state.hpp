@@ -10,27 +10,27 @@ namespace sim::SIM_BACKEND {
 
 struct ObstacleState {
   std::vector<Obstacle> obstacles;
-  double frame_begin_s = 0;  ///< since frame 0
+  double frame_begin_s = 0;  ///< time at the frame's beginning, since frame 0
   Array<Body> bodies;        ///< positions at the end of this substep
-  /// Of this frame: pushes of the constraint, one per body, then pushes of effects. Empty unless the
-  /// obstacles' pushes are recorded.
+  /// Pushes in this frame: first the pushes of the density constraint, one per body, then the pushes of
+  /// effects. Empty unless the obstacles' pushes are recorded.
   Array<BodySum> sums;
   /// The gauges on obstacles, then the whole of each body; empty without such gauges.
   Array<BodyPatch> patches;
   Array<PatchSum> patch_sums;  ///< of this frame
-  /// Volume of each body below the water level, in volumes of m_*, as CellWater counts.
+  /// Volume of each body below the water level, in volumes of m_*, in the fixed point of CellWater.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< one per body; empty if no obstacle is free
   Array<BodyRow> rows;   ///< one per body; empty until an effect solves for them
   // Empty if no obstacle is a mesh:
   Array<MeshGrid> meshes;     ///< one per body
-  Array<float> distances;     ///< of all grids
-  Array<Vec3> mesh_contacts;  ///< of all meshes
+  Array<float> distances;     ///< distance values of all grids
+  Array<Vec3> mesh_contacts;  ///< contact points of all meshes
   // Empty if no free obstacle meets another or has friction:
   Array<Vec3> by_others;              ///< momentum that each body received from others in this frame, m_* m/s
-  Array<float> friction;              ///< coefficient of each
-  bool rough = false;                 ///< true if a coefficient is not 0
-  int feelers = 0;                    ///< the largest number on one body
+  Array<float> friction;              ///< friction coefficient of each body
+  bool rough = false;                 ///< true if a friction coefficient is not 0
+  int feelers = 0;                    ///< the largest number of contact points on one body
   Array<unsigned char> meeting_room;  ///< scratch memory
 
   bool exists() const { return bodies.size() > 0; }
@@ -46,10 +46,10 @@ struct ObstacleState {
   }
 };
 
-/// Brings the grids of obstacles that are meshes to the device.
+/// Copies the distance grids and contact points of obstacles that are meshes to the device.
 void place_meshes(ObstacleState& state);
 
-/// The scene's obstacles at this time, with the velocities of a move within `dt`; at rest for dt = 0.
+/// The scene's obstacles at time_s, with their mean velocities over the last `dt`, s; at rest for dt = 0.
 std::vector<Body> bodies_at(const std::vector<Obstacle>& obstacles, double time_s, double dt);
 
 }  // namespace sim::SIM_BACKEND

@@ -1,6 +1,7 @@
 #pragma once
 /// One loop over each particle's neighbours that computes the sums of one stage, or of two that share it. The
-/// sharing is decided when the schedule is compiled (schedule.cpp); here it is a type.
+/// schedule decides which stages share a loop (schedule.cpp); here the terms of the loop are template
+/// parameters.
 
 #include "libsim/solver/stages/stages.hpp"
 

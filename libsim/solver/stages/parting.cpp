@@ -4,8 +4,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Applies the correction made at the substep's beginning to both the start and the predicted position, so
-/// that it adds no velocity.
+/// Adds the correction made at the substep's beginning to the position and to the predicted position, so that
+/// the correction adds no velocity.
 template <class Boundary>
 struct Follow {
   const Vec4* mended;
@@ -25,8 +25,8 @@ struct Follow {
   }
 };
 
-/// Lists the particles within the support of a particle that split or merged in this frame, including it:
-/// they have the smallest share of the constraint. With `widely` also their neighbours.
+/// Lists the fresh particles, which split or merged in this frame, and the particles within their support:
+/// all of these have the smallest share of the constraint. With `widely`, also lists their neighbours.
 template <class Selection>
 struct ListBesideFresh {
   Selection select;
@@ -53,7 +53,8 @@ struct ListBesideFresh {
 using Places = ColumnView<columns(Column::Predicted), columns(Column::Predicted, Column::PredictedNext,
                                                               Column::Position, Column::VelocityNext)>;
 
-/// Resets the solver to the substep's beginning; VelocityNext stores the predicted positions.
+/// Saves the predicted positions in VelocityNext, and resets them to the positions at the substep's
+/// beginning.
 void go_back(FluidState& state, Places p) {
   state.impulse.pause(true);
   p.copy<Column::VelocityNext, Column::Predicted>();
@@ -83,9 +84,9 @@ using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Colum
                                   columns(Column::Predicted, Column::PredictedNext, Column::Position,
                                           Column::VelocityNext, Column::Lambda, Column::Density)>;
 
-/// Moves those near fresh particles. Overlap that remains becomes speed in one substep, in proportion to d /
-/// dt. Where gravity moves a particle by a small share of its support in a substep, that speed is large
-/// beside the water's own: then more particles move, and farther.
+/// Separates the particles near fresh ones. Overlap that remains becomes speed in one substep, in proportion
+/// to d / dt. If gravity moves a particle by only a small share of its support in a substep, this speed is
+/// large compared with the water's speed. Then more particles move, in more projections.
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;
@@ -109,9 +110,9 @@ void launch(FluidState& state, PartingColumns p, Selection select) {
   }
 }
 
-/// Moves all particles until hardly any overlap is left. What those near fresh particles leave compresses the
-/// others, and the substep would turn it into speed. Gravity brings such water back; weightless water would
-/// fly apart.
+/// Separates all particles of weightless water until almost no overlap is left. If only the particles near
+/// fresh ones moved, they would compress the others, and the substep would turn this compression into speed.
+/// Under gravity such water falls back; weightless water would fly apart.
 void part_all(FluidState& state, PartingColumns p) {
   for (state.iteration = 0; state.iteration < state.levels.rules.weightless_partings; ++state.iteration) {
     constrain_density(state, p);
@@ -120,8 +121,8 @@ void part_all(FluidState& state, PartingColumns p) {
   state.iteration = 0;
 }
 
-/// Separates particles at the substep's beginning: there high density means overlap, whereas during the
-/// substep water is also compressed.
+/// Separates overlapping particles before the first substep moves them. At this time high density means
+/// overlap; during a substep water is also compressed.
 void run_parting(FluidState& state, PartingColumns p) {
   // Fresh particles exist in the frame's first substep; most frames of water at rest have none.
   if (!state.levels.changed || state.substep > 0) return;
@@ -140,9 +141,10 @@ using EveryonesColumns = ColumnView<columns(Column::Predicted, Column::Neighbour
                                             Column::VelocityNext, Column::Lambda, Column::Density),
                                     columns(Column::Ease)>;
 
-/// Compression before the substep moves anything is an error, caused for example by an uneven start or poured
-/// layers. If the substep itself removed it, it would become speed: a lattice of 80 layers shot up at 12 m/s,
-/// and in the jet of Faucet, which falls at 18 m/s, some particles were ejected at 35.
+/// Removes compression that exists before a frame's first substep. Such compression is an error, caused for
+/// example by an uneven start or by poured layers. If the substep removed the compression, it would become
+/// speed: a lattice of 80 layers shot up at 12 m/s, and in the jet of the scene Faucet, which falls at 18
+/// m/s, some particles were ejected at 35 m/s.
 void stabilise(FluidState& state, EveryonesColumns p) {
   const int rounds = state.compressed ? 3 : state.jets.pouring ? 1 : 0;
   if (rounds == 0 || state.substep > 0) return;

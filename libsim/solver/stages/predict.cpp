@@ -6,7 +6,7 @@ namespace {
 
 struct Weight {
   Vec3 lift;  ///< Fall::lift()
-  /// Changes v over a time dt.
+  /// Changes the velocity v by the acceleration during dt.
   SIM_FN void act(Vec3, Vec3& v, float dt) const { v = v - dt * lift; }
 };
 
@@ -20,12 +20,12 @@ struct WeightAndPull {
   }
 };
 
-/// Of a substep whose forces have acted.
+/// Used in a substep whose forces have already acted (the stage forces).
 struct NoForces {
   SIM_FN void act(Vec3, Vec3&, float) const {}
 };
 
-/// What acts on a velocity before the particle moves: quarantine, forces and speed limit.
+/// Changes a particle's velocity before the particle moves: quarantine, forces and speed limit.
 template <class Selection, class Forces, class Boundary>
 struct Drive {
   Selection select;
@@ -36,7 +36,7 @@ struct Drive {
   Vec3 refuge;
   Brake brake;
   float dt;
-  float reach;  ///< a position farther beyond a wall is lost, m
+  float reach;  ///< distance beyond a wall, m, from which a position counts as lost
 
   SIM_FN void operator()(int i) const {
     const float h = position[i].w;
@@ -67,7 +67,8 @@ struct Drive {
   }
 };
 
-/// An unsolved particle moves at its inherited velocity, which includes forces and pressure.
+/// Drives each particle and moves it to its predicted position. An unsolved particle moves too, at its
+/// inherited velocity.
 template <class Selection, class Forces, class Boundary>
 struct Predict {
   Drive<Selection, Forces, Boundary> drive;
@@ -87,7 +88,7 @@ struct Predict {
 using DriveColumns = ColumnView<columns(Column::Position, Column::Velocity, Column::Id),
                                 columns(Column::Position, Column::Velocity)>;
 
-/// Calls then(drive).
+/// Calls then(drive), with a Drive for this selection, these forces and this boundary.
 template <class Selection, class Forces, class Boundary, class Then>
 void with_drive(FluidState& state, DriveColumns p, Selection select, Forces forces, Boundary boundary,
                 Then then) {

@@ -9,7 +9,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Number of particles that a team sums, to reduce contention for one sum.
+/// Number of particles that a team sums before it adds to the total, to reduce contention for the total.
 constexpr int run_length = 64;
 
 struct SumPush {
@@ -38,13 +38,14 @@ struct SumPush {
   }
 };
 
-/// rho_0 q A of the cells at a wall along its normal: the sum of -rho_0 grad q over the water.
+/// Sums rho_0 q A over the cells at walls, along the wall's normal. By Gauss' theorem, walls and bodies
+/// together give the sum of -rho_0 grad q over the water.
 template <class Boundary>
 struct SumWalls {
   PressureFrame frame;
   GridView grid;
   Boundary boundary;
-  float unit_volume;  ///< of m_*, m3
+  float unit_volume;  ///< volume of m_*, m3
   PushBalance* out;
   SIM_FN void operator()(int i) const {
     if (grid.kind[i] != CellKind::Fluid || grid.q[i] <= 0) return;
@@ -56,8 +57,8 @@ struct SumWalls {
   }
 };
 
-/// The obstacles' share: the displaced water's weight in the pressure field, up to the water level beside
-/// them, and rho_0 q A at their solid cells.
+/// Sums the push of obstacles: -rho_0 grad q over the volume of water that they displace, up to the water
+/// level beside them, and rho_0 q A at their solid cells.
 struct SumBodies {
   static constexpr int samples = 4;  ///< samples along a cell's edge
   CoarseSlope slope;
@@ -67,7 +68,7 @@ struct SumBodies {
   float unit_volume;
   PushBalance* out;
 
-  /// Few cells contain a body, and those need much work.
+  /// Number of lanes per cell: few cells contain a body, but each of these needs much work.
   int lanes(int) const { return 8; }
 
   template <class Team>
@@ -102,7 +103,8 @@ struct SumBodies {
       const float up = dot(waterline.up, from);
       int body;
       if (solids.nearest_body(at, body) >= 0) continue;
-      // A sample is a layer of its own height, which the water level may cut.
+      // A sample represents a layer as high as the distance between samples; the water level may cut this
+      // layer.
       const float below = at_most(at_least((level - 0.5f - up) * samples + 0.5f, 0.0f), 1.0f);
       if (below == 0) continue;
       if (body != given.body) {
@@ -117,7 +119,7 @@ struct SumBodies {
     }
   }
 
-  /// Sums for one body, so that a cell adds to its totals once.
+  /// Sums of one cell for one body, so that the cell adds to the body's totals only once.
   struct Given {
     int body = -1;
     MassWay push{};
@@ -176,8 +178,8 @@ struct Balance {
     if (walls.project(x, xyz(from), wall_gap * to.w / 2))
       atomic_add(&guards->wall_projected, std::uint64_t{1});
     predicted[i] = with_w(x, to.w);
-    // A particle that no projection moves needs the same position in both buffers. A recording pass first
-    // needs its origin.
+    // Both buffers need the same position, for particles that no projection moves. While recording, `next`
+    // first keeps the old position, which clamp_and_listen needs.
     next[i] = recording ? from : predicted[i];
   }
 };
@@ -225,7 +227,8 @@ void balance_push(FluidState& state, ClampView p) {
   auto& coarse = state.coarse;
   coarse.balance.resize(1);
   coarse.balance.zero();
-  // If unsolved particles are not pressed, their share of the walls' push is not applied.
+  // Without `pressed`, unsolved particles do not move with the coarse pressure: the sums stay 0, and nothing
+  // is corrected.
   const bool pressed = state.all_active || state.activation.rules.pressed;
   if (pressed) {
     for_each_team("sum push", (p.size() + run_length - 1) / run_length,

@@ -8,7 +8,7 @@ using SurroundingsView =
     ColumnView<columns(Column::Position, Column::Velocity, Column::Id, Column::Level),
                columns(Column::Predicted, Column::Neighbours, Column::Lambda, Column::Density)>;
 
-/// Who reads saliency.
+/// The reason for computing saliency, as --explain prints it.
 std::string reader(const Demand& demand, const char* of_levels) {
   if (demand.levels) return of_levels;
   return demand.activation ? "the choice of solved particles weighs by it" : "an output asks for it";

@@ -15,17 +15,17 @@ namespace sim::SIM_BACKEND {
 /// What a scene, a method and the requested outputs require.
 struct Demand {
   SolverParameters parameters;
-  std::vector<Effect> effects;    ///< that the scene lists
-  int finest_level = 0;           ///< of all water that may be present: effects of finer levels are idle
-  bool nozzles = false;           ///< the scene has one
-  bool outlets = false;           ///< the scene has one
-  bool narrow_outlets = false;    ///< of which one is narrower than two spacings of the coarsest particles
-  bool moving_obstacles = false;  ///< the scene has one that moves along a given path
-  bool free_obstacles = false;    ///< the scene has one that is moved by the water
+  std::vector<Effect> effects;    ///< effects that the scene lists
+  int finest_level = 0;           ///< finest level of water that may be present
+  bool nozzles = false;           ///< the scene has a nozzle
+  bool outlets = false;           ///< the scene has an outlet
+  bool narrow_outlets = false;    ///< an outlet is narrower than two spacings of the coarsest particles
+  bool moving_obstacles = false;  ///< an obstacle moves along a given path
+  bool free_obstacles = false;    ///< an obstacle is moved by the water
   bool obstacles_meet = false;    ///< a free obstacle may meet another, or has friction
   bool settling = false;          ///< the gate is closed and the water comes to rest
   bool levels = false;            ///< particles split and merge
-  bool forced_targets = false;    ///< a test gives their targets
+  bool forced_targets = false;    ///< a test gives the target levels
   bool gaze_targets = false;      ///< targets follow the gaze alone
   bool saliency = false;          ///< targets follow saliency
   bool saliency_parts = false;    ///< an output needs the parts of saliency
@@ -33,7 +33,7 @@ struct Demand {
   bool wall_impulse = false;      ///< an output needs the walls' impulse on the water
 };
 
-/// True if the scene lists the effect with a coefficient, and not only for levels finer than all water.
+/// True if the scene lists the effect with a coefficient other than 0, for levels that its water may have.
 inline bool acts(const Demand& demand, EffectKind kind) {
   return std::any_of(demand.effects.begin(), demand.effects.end(), [&](const Effect& effect) {
     return effect.kind == kind && effect.coefficient != 0 &&
@@ -54,7 +54,8 @@ struct Stage {
   /// function; with one it runs only if the function also requires it.
   std::string (*called_for)(const Demand&) = nullptr;
   Part part = Part::Solve;
-  /// How its change of the water's momentum is booked; each stage that writes velocities has one.
+  /// Entry of the momentum account that records the stage's change of the water's momentum. Each stage that
+  /// writes velocities needs one.
   Change changes = Change::None;
   EffectKind effect = no_effect;  ///< the effect that alone requires the stage
   SharedTerm loop = SharedTerm::None;
@@ -97,7 +98,8 @@ inline std::string if_activation(const Demand& demand) {
   return demand.activation && !demand.settling ? "the method accelerates in time" : "";
 }
 
-/// Thick fluid must feel its viscosity before the forces have moved it.
+/// Reason for the stages that the effect viscosity needs before it: it acts on velocities before particles
+/// move.
 inline std::string if_thick(const Demand& demand) {
   return acts(demand, EffectKind::Viscosity) ? "viscosity acts before the particles move" : "";
 }
@@ -122,24 +124,24 @@ Stage graded_targets_stage();
 Stage split_and_merge_stage();
 /// Moves moving obstacles to their positions at the substep's end.
 Stage obstacles_stage();
-/// Moves free obstacles that meet only walls, without friction.
+/// Moves free obstacles that can touch only walls and have no friction.
 Stage bodies_move_stage();
-/// Moves free obstacles, and keeps them apart from others.
+/// Moves free obstacles that may touch other obstacles or have friction, and computes their contacts.
 Stage bodies_meet_stage();
-/// Applies what the water gave the free obstacles.
+/// Updates the forces on free obstacles from the water's push in the substep.
 Stage bodies_pushed_stage();
-/// Forces alone, without a move, for the effect viscosity, which comes next; with quarantine and speed limit.
+/// Applies forces, quarantine and speed limit without moving particles; the effect viscosity acts next.
 Stage forces_stage();
-/// Neighbours at the positions that the forces found, for the same effect.
+/// Neighbours at the positions before the substep's move, for the effect viscosity.
 Stage present_neighbours_stage();
 /// Forces, unless they have acted, and the explicit step to predicted positions; speed limit; quarantine of
 /// non-finite particles.
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
-/// Share of the constraint near fresh particles.
+/// Share of the density constraint that particles enforce near ones that just split or merged.
 Stage ease_stage();
-/// The low-frequency part of the pressure, solved on cells and applied first.
+/// The low-frequency part of the pressure, solved on cells and applied before the projections.
 Stage coarse_pressure_stage();
 /// Removes compression that existed before the substep, without adding velocity.
 Stage pre_stabilisation_stage();
@@ -149,19 +151,20 @@ Stage parting_stage();
 Stage density_stage();
 /// Position correction, which conserves momentum exactly, and wall projection.
 Stage displacement_stage();
-/// Accounts of what the walls give the water: holding back, missing density, pressure of cells.
+/// These three stages record the momentum that walls give the water: by holding particles back, by the
+/// density that they replace, and by the coarse pressure's cells.
 Stage held_at_walls_stage();
 Stage missing_density_stage();
 Stage wall_cells_stage();
-/// Velocity from the positions.
+/// Computes the velocities from the predicted positions.
 Stage velocity_stage();
 /// XSPH viscosity.
 Stage xsph_stage();
-/// The same for methods that split and merge: fresh particles are damped among their neighbours.
+/// XSPH viscosity for methods that split and merge, with a filter of velocity changes near fresh particles.
 Stage xsph_of_levels_stage();
-/// Velocity x 0.9 per frame while the water settles.
+/// Multiplies velocities by 0.9 per frame while the water settles.
 Stage settling_stage();
-/// Random steps of thick fluid; one of viscosity's stages.
+/// Moves the particles of thick fluid by random steps; a stage of the effect viscosity.
 Stage loosening_stage();
 
 /// Removes particles that passed an outlet; last in a frame.
@@ -185,7 +188,7 @@ using DensityView =
     ColumnView<columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density)>;
 /// Densities and multipliers at the predicted positions of the particles that the frame solves.
 void constrain_density(FluidState& state, DensityView particles);
-/// The same for all particles outside the schedule, with lists that belong to slots.
+/// Densities and multipliers of all particles, for callers outside the schedule; lists are indexed by slots.
 void constrain_density(FluidState& state, DensityView particles, EverySlot everyone);
 
 using DisplacementView =
@@ -198,7 +201,7 @@ using CoarsePressureView =
     ColumnView<columns(Column::Predicted, Column::Neighbours, Column::Id),
                columns(Column::Lambda, Column::Density, Column::PredictedNext, Column::Predicted),
                columns(Column::Ease)>;
-/// Shifts the predicted positions by the pressure on cells.
+/// Moves the predicted positions by the coarse pressure.
 void press(FluidState& state, CoarsePressureView particles);
 
 /// The forces that move free obstacles in the present substep.
@@ -213,15 +216,15 @@ using ClampView = ColumnView<ColumnSet{}, columns(Column::Predicted, Column::Pre
 /// Applies the clamp that kernels skipped; does nothing unless an account records. `from`: positions before
 /// the step. `times`: as in WallRecord. `in_both`: also write PredictedNext.
 void clamp_and_listen(FluidState& state, ClampView particles, const Vec4* from, float times, bool in_both);
-/// Ends the coarse pressure's push from Predicted to PredictedNext: gives the water the walls' share, and
-/// stops it at the walls. Afterwards both hold the same positions.
+/// Corrects the coarse pressure's move from Predicted to PredictedNext, so that its total equals the push of
+/// walls and obstacles, and stops particles at the walls. Afterwards both columns contain the same positions.
 void balance_push(FluidState& state, ClampView particles);
 /// Weight of a push of this projection, including the shares of it that later projections repeat as
 /// momentum steps.
 float times_taken(const SolverParameters& parameters, int iteration);
 
-/// The two halves of one projection of a few particles. The others need lambda = 0 and equal positions in
-/// both buffers.
+/// The two halves of one projection of a few particles. All other particles need lambda = 0 and equal
+/// positions in Predicted and PredictedNext.
 void constrain_density(FluidState& state, DensityView particles, Listed<AllParticles> few);
 void constrain_density(FluidState& state, DensityView particles, Listed<ActiveParticles> few);
 void displace(FluidState& state, DisplacementView particles, Listed<AllParticles> few);
@@ -231,11 +234,11 @@ void displace(FluidState& state, DisplacementView particles, Listed<ActivePartic
 /// and fills the given arrays in the new order.
 void measure_saliency(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                       Array<std::uint8_t>& target, Array<SaliencyParts>& parts);
-/// The same from the gaze alone, in the present order.
+/// Saliency and targets from the gaze alone, in the present order.
 void measure_gaze(FluidState& state, SaliencyState& observer, Array<float>& saliency,
                   Array<std::uint8_t>& target);
 
-/// A stage that combines two: its loop computes the sums of both.
+/// A stage that replaces two stages: one loop over neighbours computes the sums of both.
 struct SharedLoop {
   SharedTerm first, second;
   Stage stage;

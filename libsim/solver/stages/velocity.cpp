@@ -8,8 +8,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but without the rounding of x if nothing pushes.
-/// The fourth component is the degree of rest, 0 to 1, for the pass of viscosity, which sets it to 0.
+/// v += (x* - (x + dt v)) / dt: equal to (x* - x) / dt, but without the rounding of x if no projection moves
+/// the particle. The fourth component of the velocity becomes the degree of rest, 0 to 1. The viscosity pass
+/// reads it and resets it to 0.
 struct Advance {
   Vec4* position;
   const Vec4* predicted;
@@ -17,9 +18,9 @@ struct Advance {
   Vec4* kick;  ///< velocity change, for the filter near fresh particles; nullptr without one
   Brake brake;
   float dt;
-  Calm still;            ///< criterion for the finest water at rest
+  Calm still;            ///< criterion of rest for the finest particles
   float finest_support;  ///< m
-  bool before_kicks;     ///< water also rests where it rested before this substep's kicks
+  bool before_kicks;     ///< particles at rest before this substep's velocity change count as at rest
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);
@@ -28,13 +29,13 @@ struct Advance {
     const float now = rest(kept, predicted[i].w);
     velocity[i] = with_w(kept, before_kicks ? at_least(now, rest(v, predicted[i].w)) : now);
     if (kick) kick[i] = with_w(xyz(velocity[i]) - v, 0);
-    // No particle moves farther than the speed limit allows: a crowd in one place would otherwise hit others
-    // at once.
+    // No particle moves farther than the speed limit allows: many particles at one position would otherwise
+    // be thrown far into other water in one substep.
     position[i] = length(after) > brake.most_speed ? with_w(fused(xyz(position[i]), dt, kept), predicted[i].w)
                                                    : predicted[i];
   }
-  /// Degree of rest of a particle with support h: coarse particles rest below a larger speed, by the root of
-  /// their spacing.
+  /// Degree of rest of a particle with support h. The speed below which a particle counts as at rest
+  /// increases with the root of its spacing.
   SIM_FN float rest(Vec3 v, float h) const {
     const Vec3 finer = sqrtf(finest_support / h) * v;
     return still(finer.x, finer.y, finer.z);
@@ -45,7 +46,7 @@ using VelocityColumns =
     ColumnView<columns(Column::Predicted, Column::Position, Column::Velocity, Column::Id),
                columns(Column::Velocity, Column::Position), ColumnSet{}, columns(Column::PredictedNext)>;
 
-/// h / (g dt^2) from which substeps are short (docs/decisions.md, "Still water of one size").
+/// Minimum h / (g dt^2) of short substeps (docs/decisions.md, "Still water of one size").
 constexpr double short_from = 800;
 
 void run_velocity(FluidState& state, VelocityColumns p) {
@@ -53,11 +54,11 @@ void run_velocity(FluidState& state, VelocityColumns p) {
   const double gravity = static_cast<double>(k.gravity.strength);
   const double dt = static_cast<double>(k.dt);
   // The projections leave a jitter of a small share of d, which is a speed in proportion to d / dt. In short
-  // substeps a single one exceeds the speed of rest.
+  // substeps this speed exceeds the limit of rest, so the limit is raised.
   const double shorter =
       gravity > 0 ? static_cast<double>(state.finest_support) / (gravity * dt * dt * short_from) : 0;
   const double still_speed = static_cast<double>(k.still_speed) * std::pow(std::max(1.0, shorter), 0.25);
-  // The old positions in PredictedNext are no longer needed.
+  // PredictedNext stores the velocity changes, because its positions are no longer needed.
   Vec4* kick = p.has(Column::Ease) ? p.predicted_next() : nullptr;
   for_each("velocity", p.size(),
            Advance{.position = p.position(),

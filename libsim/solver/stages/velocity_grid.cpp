@@ -4,12 +4,13 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Mean velocity change of a cell and level's active particles over the frame, minus the change that the
-/// cell's other particles already have; empty entries take the mean of the other levels.
+/// Mean velocity change, over the frame, of the solved particles of a cell and level, minus the mean change
+/// that the cell's unsolved particles already have. An entry without solved particles takes the mean of the
+/// cell's other levels.
 struct MeanChange {
   const MomentumSum* before;
   const MomentumSum* after;
-  const MomentumSum* others_before;  ///< nullptr unless the others moved too
+  const MomentumSum* others_before;  ///< nullptr unless forces act on unsolved particles
   const MomentumSum* others_after;
   Vec4* change;
   int cells;
@@ -40,8 +41,9 @@ struct MeanChange {
   }
 };
 
-/// Algorithm 3, line 15, after all active particles are done: unsolved particles take their velocity from the
-/// grid. Their displacement is corrected as if the change had come in equal parts in the frame's substeps.
+/// Algorithm 3, line 15, after all solved particles have moved: unsolved particles take their velocity from
+/// the grid. Their displacement is corrected as if the change had come in equal parts in the frame's
+/// substeps.
 template <class Boundary>
 struct Inherit {
   const std::uint8_t* active;
@@ -78,7 +80,8 @@ struct Inherit {
   }
 };
 
-/// Marks spray, which must not be moved by a grid.
+/// Marks solved particles of low density: spray and, with surface tension, the surface. Their velocity must
+/// not come from a grid.
 struct MarkSparse {
   const std::uint8_t* active;
   const float* density;
@@ -96,7 +99,7 @@ using VelocityGridColumns =
                        Column::Rest, Column::StartCell),
                columns(Column::Velocity, Column::Position, Column::Rest)>;
 
-/// Computes V, the changes that resting particles inherit, and the sparse marks: one launch over the
+/// Computes V, the changes that unsolved particles inherit, and the sparse marks: one launch over the
 /// particles, one over the cells' sums.
 void find_means(FluidState& state, VelocityGridColumns p) {
   auto& a = state.activation;
@@ -130,7 +133,7 @@ template <class Boundary>
 void inherit(FluidState& state, VelocityGridColumns p, Boundary boundary) {
   auto& a = state.activation;
   const auto& k = state.parameters;
-  // As in the paper, the mean velocities are those of V.
+  // Without inherit_change the mean velocities come from the grid V, as in the paper.
   const VelocityGrid& from = a.rules.inherit_change ? a.near : a.grid;
   const auto substeps = static_cast<float>(k.substeps);
   const float idle = 1 - a.beta;

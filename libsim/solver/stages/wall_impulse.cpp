@@ -1,4 +1,4 @@
-/// Records what the walls give the water (libsim/impulse), in passes beside those that do it.
+/// Records the momentum that walls give the water (libsim/impulse), in passes of their own.
 
 #include "libsim/solver/stages/stages.hpp"
 
@@ -30,7 +30,7 @@ Records records(FluidState& state, float times) {
   return {state.impulse.record_to(times), state.impulse.on(), state.body_record(times)};
 }
 
-/// Repeats the hold-back of Predict in order to record it.
+/// Repeats how Predict holds particles back at walls, in order to record the momentum.
 template <class Boundary, class Recorder>
 struct HeldBack {
   const Vec4* position;
@@ -58,7 +58,7 @@ void held_back(FluidState& state, MovingView p, Boundary boundary, Recorder to) 
                                         .wall_gap = state.parameters.wall_gap});
 }
 
-/// The squares of the particles beside each patch.
+/// Sums, for each patch, the wetted area: a square of side d for each particle beside the patch.
 struct Wetted {
   const Vec4* position;
   Solids solids;
@@ -108,7 +108,7 @@ struct MissingDensity {
   }
 };
 
-/// The same for bodies.
+/// Records Delta p_i = w_i lambda_i grad_i C_body of the next displacement, for each body.
 struct MissingInBodies {
   const Vec4* predicted;
   const float* lambda;
@@ -159,7 +159,7 @@ struct WallCells {
   GridView grid;
   Boundary boundary;
   WallRecord to;
-  float unit_volume;  ///< of m_*, m3
+  float unit_volume;  ///< volume of m_*, m3
 
   SIM_FN void operator()(int i) const {
     if (grid.kind[i] != CellKind::Fluid || grid.q[i] <= 0) return;
@@ -178,7 +178,7 @@ struct WallCells {
         for (int b = 0; b < patches; ++b) {
           const float first = middle(a) / patches - 0.5f;
           const float second = middle(b) / patches - 0.5f;
-          // Varies along the wall; across it a patch is at its cell's position.
+          // Offset of the patch from the cell's centre, in cells; 0 across the wall.
           const Vec3 from = normal.x != 0   ? Vec3{0, first, second}
                             : normal.y != 0 ? Vec3{first, 0, second}
                                             : Vec3{first, second, 0};
@@ -201,14 +201,15 @@ struct WallCells {
 };
 
 /// The pressure of the cells on the patches of bodies: rho_0 q A, on the faces between samples inside and
-/// outside a body. What push_balance.cpp gives the whole body differs a little (count_obstacles).
+/// outside a body. The push on the whole body in push_balance.cpp differs slightly; count_obstacles
+/// distributes the difference.
 struct BodyCells {
   PressureFrame frame;
   GridView grid;
   Solids solids;
   BodyListener to;
   float unit_volume;
-  static constexpr int samples = 4;  ///< along a cell's edge
+  static constexpr int samples = 4;  ///< samples along a cell's edge
 
   SIM_FN void operator()(int i) const {
     const CellBlock& block = grid.block;
@@ -237,7 +238,7 @@ struct BodyCells {
     const float area = cell_face / (samples * samples);
     to.add_to_patches(body, at, sqrtf(area), at, (q * area / unit_volume) * out);
   }
-  /// q between the cells' middles; solid cells have none.
+  /// q interpolated between the centres of cells; solid cells are left out.
   SIM_FN float pressure(Vec3 place) const {
     const Vec3 local = frame.in_cells(place) - Vec3{0.5f, 0.5f, 0.5f};
     const Vec3 base{floorf(local.x), floorf(local.y), floorf(local.z)};
@@ -284,7 +285,7 @@ template <class Boundary, class Recorder>
 struct Clamp {
   Vec4* predicted;
   const Vec4* from;
-  Vec4* next;  ///< nullptr if it must keep other positions
+  Vec4* next;  ///< nullptr if PredictedNext must not change
   Boundary walls;
   Recorder to;
   Guards* guards;

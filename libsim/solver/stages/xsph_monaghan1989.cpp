@@ -5,13 +5,14 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// A filter of velocities in addition to the viscosity. Water of one level has none (docs/decisions.md,
-/// "Still water of one size", describes what calms it). With levels one calms resting water after splits and
-/// merges. New particles overlap their neighbours, the projections separate them, and the velocity of that
-/// separation is not a motion of the fluid. Velocity changes near new particles are averaged over neighbours.
-/// The average conserves momentum and common changes, such as gravity and pressure. The remaining
-/// irregularities sink for a second or two and stir the water; a stronger viscosity damps them. Water that
-/// moved before is filtered less and has no such viscosity, because it would lose energy.
+/// Filters of velocities in addition to the viscosity. Water of one level uses NoFilter; docs/decisions.md,
+/// "Still water of one size", describes how it comes to rest. Water with levels uses RestingWater. New
+/// particles of a split or a merge overlap their neighbours. The projections separate them, and the velocity
+/// of this separation is not a motion of the fluid. So velocity changes near new particles are averaged over
+/// neighbours. The average conserves momentum, and does not alter changes that all particles share, such as
+/// those by gravity and pressure. The remaining irregularities sink for a second or two and move the water;
+/// an additional viscosity damps them. Water that moved before is filtered less and gets no additional
+/// viscosity, because it would lose energy.
 struct NoFilter {
   static constexpr bool filters = false;
 };
@@ -21,12 +22,13 @@ struct RestingWater {
   const float* ease;
   float strength;
   Calm calm;
-  /// Share of the filter for moving water: with the full filter dams lose 4 % of their energy; without it a
-  /// deep pool of levels stirs itself beyond the speed of rest. Without gravity no water rests, and it is 1.
+  /// Share of the filter that moving water gets. With 1 dams lose 4 % of their energy; with 0 splits and
+  /// merges move a deep pool faster than the limit of rest. Without gravity no water counts as at rest, and
+  /// the share is 1.
   float in_motion;
-  float viscosity;  ///< additional viscosity of water at rest, as a multiple of its own
+  float viscosity;  ///< additional viscosity of water at rest, as a multiple of the fluid's viscosity
 
-  /// Degree to which the particle was at rest before the substep's kicks.
+  /// Degree to which the particle was at rest before the substep's velocity change (kick).
   SIM_FN float rest(Vec4 v, int i) const {
     const Vec4 k = kick[i];
     return calm(v.x - k.x, v.y - k.y, v.z - k.z);
@@ -36,12 +38,13 @@ struct RestingWater {
   }
 };
 
-/// Upper bound for the share of the difference removed in one substep, for stability of the explicit step.
+/// Upper bound for the share of a pair's velocity difference that one substep removes, for stability of the
+/// explicit step.
 constexpr float most_share = 0.5f;
 
-/// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: momentum-exact for mixed masses.
-/// The second moment of poly6 is h^2 / 11 along each axis, so that one substep diffuses velocity by c h^2 /
-/// 22 and c_ij = 22 nu dt / h_ij^2 is the kinematic viscosity nu at every size and time step. Unsolved
+/// v_i += sum_j c_ij 2 m_j / (rho_i + rho_j) (v_j - v_i) W_ij: conserves momentum exactly, also for mixed
+/// masses. The second moment of poly6 is h^2 / 11 along each axis, so that one substep diffuses velocity by c
+/// h^2 / 22 and c_ij = 22 nu dt / h_ij^2 is the kinematic viscosity nu at every size and time step. Unsolved
 /// particles keep their velocity and count as having the rest density.
 template <bool OneLevel, class Filter, class Selection>
 struct Xsph {
@@ -62,8 +65,8 @@ struct Xsph {
     float density;
     float still;  ///< degree of rest, 0 to 1
     PairKernel<OneLevel> pair;
-    Vec4 kick{};     ///< with a filter
-    float rest = 0;  ///< with a filter
+    Vec4 kick{};     ///< velocity change in the substep; only with a filter
+    float rest = 0;  ///< degree of rest before this change; only with a filter
   };
 
   /// Adds particle j to the change of velocity; see SIM_LANES.

@@ -20,7 +20,8 @@ constexpr std::size_t largest_record = 1 << 26;
       "restore the record from a copy, or move it away to begin a new one; nothing was written");
 }
 
-/// Checks that every line is complete and follows the one before. Returns the last one, or null.
+/// Checks that every line is a complete JSON object and holds the SHA-256 of the line before it. Returns the
+/// last line's object, or null for an empty record.
 Json last_of(const std::filesystem::path& path, const std::string& record) {
   std::istringstream lines(record);
   std::string line, before;
@@ -28,7 +29,7 @@ Json last_of(const std::filesystem::path& path, const std::string& record) {
   for (int number = 1; std::getline(lines, line); ++number) {
     last = base::parse_json(line);
     if (!last.is_object() || !last.contains("file_sha256") || !last.contains("previous_sha256"))
-      damaged(path, number, "is no calibration");
+      damaged(path, number, "does not describe a calibration");
     if (last["previous_sha256"] != (before.empty() ? "" : base::sha256_hex(before)))
       damaged(path, number, "does not follow the line before it");
     before = line;

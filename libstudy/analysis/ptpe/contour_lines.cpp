@@ -17,8 +17,8 @@ using Polyline = std::vector<ContourPoint>;
 
 constexpr int pieces = 12;
 
-/// A side of a small triangle: the ids of its two corners, smaller first. Neighbouring triangles share it
-/// exactly.
+/// A side of a small triangle: the ids of its two corners, the smaller id first. Two neighbouring triangles
+/// have one Side in common.
 using Side = std::pair<std::size_t, std::size_t>;
 
 struct Corner {
@@ -26,7 +26,7 @@ struct Corner {
   GridNode node;
 };
 
-/// The isoparametric bilinear patch between four nodes at (s, t) in [0, 1]^2.
+/// Bilinear interpolation of mu, delta and score between four nodes, at (s, t) in [0, 1]^2.
 GridNode patch(const std::array<GridNode, 4>& corner, double s, double t) {
   const std::array<double, 4> w{(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
   GridNode node;
@@ -38,7 +38,8 @@ GridNode patch(const std::array<GridNode, 4>& corner, double s, double t) {
   return node;
 }
 
-/// Points where the contour crosses sides, and the sides that it connects within a triangle.
+/// The contour in pieces: the point at which it crosses each side (`at`), and for each side the other sides
+/// to which a segment within a triangle leads (`joined`).
 struct Pieces {
   std::map<Side, ContourPoint> at;
   std::map<Side, std::vector<Side>> joined;
@@ -59,7 +60,7 @@ struct Pieces {
     joined[ends[1]].push_back(ends[0]);
   }
 
-  /// Removes the line that begins at a side from `joined` and returns it.
+  /// Follows the segments in `joined` from a side to their end, removes them and returns them as one line.
   Polyline take(Side side) {
     Polyline line{at[side]};
     while (!joined[side].empty()) {
@@ -101,7 +102,7 @@ std::vector<Polyline> contour_polylines(const ScoreGrid& grid, double level) {
   std::vector<Side> ends, all;
   for (const auto& [side, others] : found.joined) (others.size() == 1 ? ends : all).push_back(side);
   std::vector<Polyline> lines;
-  // Takes open lines from their ends first; the rest are loops.
+  // Open lines are followed first, from one of their ends. The segments then left are closed loops.
   ends.insert(ends.end(), all.begin(), all.end());
   for (const auto& side : ends) {
     if (!found.joined[side].empty()) lines.push_back(found.take(side));

@@ -1,5 +1,5 @@
 #pragma once
-/// Contours as polylines for drawing.
+/// Lines of equal score as polylines, for drawing.
 
 #include <vector>
 
@@ -7,8 +7,9 @@
 
 namespace study {
 
-/// The contour over every cell with all four nodes, as polylines in frames/s. Each cell's patch is divided
-/// into 12 x 12 pairs of triangles.
+/// The line on which the mean score is `level`, as polylines over (delta, mu) in frames/s. Cells of the grid
+/// that lack one of their four nodes are skipped. Each cell is interpolated bilinearly and divided into 12 x
+/// 12 pairs of triangles.
 std::vector<std::vector<stats::ContourPoint>> contour_polylines(const stats::ScoreGrid& grid, double level);
 
 }  // namespace study

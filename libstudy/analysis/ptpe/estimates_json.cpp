@@ -25,7 +25,8 @@ Json contour_json(const stats::Contour& contour) {
           {"points_delta_mu", points}};
 }
 
-/// Spread must have a_ci, b_ci, a_se and b_se.
+/// Adds standard errors and intervals; null if `spread` is refused. Spread must have the members a_ci, b_ci,
+/// a_se and b_se.
 template <class Spread>
 void add_spread(Json& json, const Result<Spread>& spread) {
   json["a_se"] = spread ? Json(spread->a_se) : Json();

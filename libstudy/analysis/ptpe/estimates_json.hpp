@@ -6,20 +6,23 @@
 
 namespace study {
 
-/// a, b, their standard errors and intervals; null where undefined.
+/// Adds a, b, their standard errors and intervals to `json`; null where undefined.
 void add_estimate(base::Json& json, const MainEstimate& estimate);
-/// The direct estimate with jackknife, bootstrap, lack-of-fit test and straight form.
+/// The direct estimate with its jackknife and bootstrap.
 base::Json direct_json(const stats::DirectEstimate& estimate);
-/// The contour with its curve and bootstrap.
+/// The contour estimate: the contour's points, the curve fitted to them, and its bootstrap.
 base::Json contour_estimate_json(const stats::PilotEstimate& estimate);
-/// All three estimators at every level, one entry each, with the harmonic mean as predictor.
+/// A list with one entry for each level and each of the three estimators (direct, contour, ordinal). All use
+/// the harmonic mean as predictor.
 base::Json estimators_json(const PilotFit& fit);
-/// mu(delta) of the direct estimate with pointwise and simultaneous intervals, at every whole frame/s of
-/// delta from the smallest to the largest shown, at every level.
+/// A list of mu(delta) by the direct estimate, with its pointwise and simultaneous interval and the band for
+/// the solver. For each level, delta goes from the smallest to the largest shown in steps of 1 frame/s.
 base::Json bands_json(const PilotFit& fit);
-/// "form": the test of the exponential at the fit's level, and the free curve at every whole frame/s.
+/// The entry "form": the test that mu(delta) is an exponential, at the fit's level, and the curve fitted
+/// without this assumption in steps of 1 frame/s.
 base::Json form_json(const PilotFit& fit);
-/// The test that tells if the straight form may be used.
+/// The lack-of-fit test of the straight form (m = q = 0), with the a and b of this form. The straight form
+/// may be used if p >= 0.05.
 base::Json lack_of_fit_json(const stats::DirectEstimate& estimate);
 
 }  // namespace study

@@ -20,7 +20,7 @@ constexpr const char* estimator =
 constexpr const char* direct_interval =
     "jackknife over participants with Student's t, for a on the log scale";
 
-/// The method of the main intervals of a and b.
+/// Name of the method that gave the intervals of a and b in the main estimate.
 std::string interval_method(const MainEstimate& main) {
   if (main.spread && !main.spread->spans_contour) return direct_interval;
   return std::string("the range that two intervals span together: the direct estimate's (") +
@@ -31,7 +31,7 @@ constexpr const char* mean_caveat =
     "mean run "
     "at a lower harmonic one. The solver's tau uses the harmonic mean.";
 
-/// The paper's estimate at each level, containing the direct one with the same mean.
+/// A list with one entry for each level: the paper's estimate, and within it as "direct" the direct estimate.
 Json levels_json(const std::map<double, LevelFit>& estimates) {
   Json list = Json::array();
   for (const auto& [level, estimate] : estimates) {
@@ -43,7 +43,7 @@ Json levels_json(const std::map<double, LevelFit>& estimates) {
   return list;
 }
 
-/// For each setting, one value for each participant.
+/// A list with one entry for each setting of (mu, delta), from the participants' mean scores there.
 Json cells_json(const PilotFit& fit) {
   const auto& grid = fit.grid;
   Json cells = Json::array();
@@ -67,7 +67,8 @@ Json cells_json(const PilotFit& fit) {
   return cells;
 }
 
-/// Counts of analysed showings by verdict and grade, and of what was left out.
+/// The protocol, counts of analysed showings by timing verdict and by grade, and counts of excluded answers
+/// by rule.
 Json data_json(const TaskData& data) {
   std::map<std::string, int> verdicts, grades, rules;
   for (const auto& one : data.showings) {

@@ -24,7 +24,7 @@ using svg::Point;
 using svg::rectangle;
 using svg::text;
 
-/// Borders of the cells around ascending axis values: half way to the neighbour.
+/// Borders of the cells around ascending axis values. An inner border is half way between two values.
 std::vector<double> borders(const std::vector<double>& axis) {
   const std::size_t n = axis.size();
   if (n == 1) return {axis[0] - 1, axis[0] + 1};
@@ -34,7 +34,7 @@ std::vector<double> borders(const std::vector<double>& axis) {
   return edges;
 }
 
-/// Converts coordinates in frames/s to places of the drawing, in pixels.
+/// Converts coordinates in frames/s to positions in the drawing, in pixels.
 struct Frame {
   std::vector<double> x_edges, y_edges;
   double left = 78, top = 58, width = 500, height = 420;
@@ -51,7 +51,8 @@ struct Colour {
   double r, g, b;
 };
 
-/// Purple - white - green (PRGn of Brewer 2003), distinguishable with all common types of colour vision.
+/// Colour of a share between 0 and 1: purple - white - green (PRGn of Brewer 2003), distinguishable with all
+/// common types of colour vision.
 Colour colour_of(double share) {
   constexpr std::array<Colour, 9> anchors{{{118, 42, 131},
                                            {153, 112, 171},
@@ -113,7 +114,7 @@ std::string contour_style(double level) {
   return "fill=\"none\" stroke=\"#000000\" stroke-width=\"1.8\"" + dash;
 }
 
-/// The data-field attribute for a number of the results.
+/// The SVG attribute data-field: a JSON pointer to a number of the results. Empty if `pointer` is empty.
 std::string field_attribute(const std::string& pointer, const std::string& member) {
   return pointer.empty() ? "" : svg::attribute("data-field", pointer + member);
 }
@@ -145,7 +146,7 @@ std::string cell_values(const HeatMap& map, const Frame& frame) {
       const auto& node = map.grid.at(row, column);
       if (!node) continue;
       const auto colour = colour_of(share_of(map, node->score));
-      // In the corner, away from the curves, which pass near the cells' middles.
+      // The number is in the cell's lower right corner, since the curves pass near the cell's centre.
       auto at = frame.at(frame.x_edges[column + 1], frame.y_edges[row]);
       at.x -= 8;
       at.y -= 9;
@@ -201,14 +202,14 @@ std::string colour_bar(const HeatMap& map, const Frame& frame) {
   return out;
 }
 
-/// A number of the estimate with its JSON pointer.
+/// A number of the estimate as SVG text, with its JSON pointer as attribute.
 std::string number_of(const HeatMap& map, double value, int decimals, const std::string& member) {
   const std::string text =
       std::isinf(value) ? value > 0 ? "\xE2\x88\x9E" : "\xE2\x88\x92\xE2\x88\x9E" : number(value, decimals);
   return "<tspan" + field_attribute(map.estimate_field, member) + ">" + text + "</tspan>";
 }
 
-/// "a = 23.4 [22.1, 24.6]".
+/// A coefficient with its interval: "a = 23.4 [22.1, 24.6]".
 std::string interval(const HeatMap& map, const std::string& name, double value,
                      const std::array<double, 2>& ci, int decimals) {
   const std::string member = "/" + name;

@@ -1,6 +1,6 @@
 #pragma once
-/// The pilot's figure (paper Fig. 6): mean scores over (delta, mu), contours at the fit's levels, the fitted
-/// curve.
+/// The pilot's figure (paper Fig. 6) shows mean scores over (delta, mu), contours at the fit's levels and the
+/// fitted curve.
 
 #include <array>
 #include <string>
@@ -18,14 +18,15 @@ struct HeatMap {
   std::string title;
   stats::ScoreGrid grid;
   double scale_min = 1, scale_max = 7;
-  std::vector<double> levels;                   ///< of the contours
-  std::vector<stats::ContourPoint> points;      ///< points that the curve is fitted to
-  std::vector<stats::ContourPoint> free_curve;  ///< by ascending delta; not drawn if empty
-  double a = 0, b = 0;                          ///< of mu = a exp(b delta); frames/s and s/frame
+  std::vector<double> levels;               ///< scores at which contours are drawn
+  std::vector<stats::ContourPoint> points;  ///< points of the contour, to which the contour's curve is fitted
+  /// Curve fitted without the assumption of an exponential, by ascending delta; empty: not drawn.
+  std::vector<stats::ContourPoint> free_curve;
+  double a = 0, b = 0;  ///< of the curve mu = a exp(b delta); a in frames/s, b in s/frame
   std::array<double, 2> a_ci{}, b_ci{};
   double confidence = 0.95;
-  /// JSON pointers to the numbers' sources, written as data-field: to the list of cells and to the estimate;
-  /// empty = none.
+  /// JSON pointers to the list of cells and to the estimate in the results. The figure's numbers carry them
+  /// as attribute data-field; empty: no attribute.
   std::string cells_field, estimate_field;
 };
 

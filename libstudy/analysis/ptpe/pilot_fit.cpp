@@ -21,7 +21,8 @@ std::string count_words(int n, const std::string& thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-/// `fitted`: true if the contour has a curve.
+/// Adds a flag for each kind of line (of constant delta) on which the scores do not cross the level exactly
+/// once. `fitted`: true if a curve was fitted to the contour.
 void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour, bool fitted) {
   const std::string inner = fitted ? "; the contour's curve goes by the others" : "";
   const auto lines = [&](int n) { return std::to_string(n) + " of " + count_words(contour.lines, "line"); };
@@ -52,7 +53,7 @@ void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour, bo
   }
 }
 
-/// "3 answers left out: 1 by timing, 2 by straight lining".
+/// Adds a flag like "3 answers left out by rule or by hand: straight_lining 2, timing 1".
 void flag_exclusions(std::vector<FitFlag>& flags, const TaskData& data) {
   std::map<std::string, int> by_rule;
   int all = 0;
@@ -140,7 +141,8 @@ void flag_main(std::vector<FitFlag>& flags, const MainEstimate& main, const Pilo
   }
 }
 
-/// Why the fit is not usable, as when the solver's file could not hold it; empty if it is usable.
+/// The reason why the fit cannot be used, for example a or b outside the range that a solver accepts; empty
+/// if it can be used.
 std::string unusable(const PilotFit& fit, const TaskData& data, const stats::PilotTable& table) {
   if (table.ratings() == 0) return "no answered trial is left to analyse";
   if (!within_scale(fit.level, data.question)) return outside_scale(fit.level, data.question);
@@ -155,17 +157,18 @@ std::string unusable(const PilotFit& fit, const TaskData& data, const stats::Pil
   return "";
 }
 
-/// True if the scale is that of the paper, so that its levels 4 and 5 apply.
+/// True if the scale is the paper's, 1 to 7. The pilot is then also fitted at the paper's levels 4 and 5.
 bool on_papers_scale(const Question& question) { return question.scale_min == 1 && question.scale_max == 7; }
 
-/// The ratings as categories for the ordinal model: reverse coders are left out by the rules, but scores are
-/// not corrected.
+/// The ratings as categories for the ordinal model. Reverse coders are left out if the plan excludes them.
+/// Scores are not corrected for drift or lapses, since a corrected score is no category.
 struct Categories {
   std::vector<stats::PilotRating> ratings;
   double lapse_rate = 0, lowest = 1;
   stats::ScaleEnds ends;
 
-  /// The mean score with lapses that corresponds to `level` without lapses.
+  /// Expected mean score of all answers, lapses included, if the mean of the answers without lapses is
+  /// `level`.
   double with_lapses(double level) const { return (1 - lapse_rate) * level + lapse_rate * lowest; }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The fit of a pilot, from its ratings to the contents of its files.
+/// Fits a pilot's ratings and makes the contents of its files fit.json and the solver's file.
 
 #include <array>
 #include <map>
@@ -21,16 +21,18 @@ namespace study {
 
 /// A remark that a reader of the fit needs to know.
 struct FitFlag {
-  std::string code;  ///< stable, snake_case
+  std::string code;  ///< in snake_case; does not change between versions
   std::string text;
 };
 
-/// All estimates at one level, with one of the realised means as predictor.
+/// All estimates at one level of the scale. The predictor is either the harmonic or the arithmetic mean of
+/// the realised frame rate.
 struct LevelFit {
-  stats::DirectEstimate direct;  ///< the main one
-  stats::PilotEstimate contour;  ///< the paper's
+  stats::DirectEstimate direct;  ///< the main estimate
+  stats::PilotEstimate contour;  ///< the paper's estimate
   stats::OrdinalPilotEstimate ordinal;
-  /// The bands of mu(delta) for the solver's file (scale_end_fit.hpp); with the harmonic mean only.
+  /// Confidence bands of mu(delta) for the solver's file (scale_end_fit.hpp); computed for the harmonic mean
+  /// only.
   stats::Result<stats::CurveSpread> band = stats::Refusal{"not computed"};
 };
 
@@ -38,56 +40,59 @@ struct MainFit {
   double a = 0, b = 0;
 };
 struct MainSpread {
-  std::array<double, 2> a_ci{}, b_ci{};  ///< span the contour's intervals too
-                                         ///< (stats/ptpe/solver_interval.hpp)
-  double a_se = 0, b_se = 0;             ///< of the direct estimate
+  std::array<double, 2> a_ci{}, b_ci{};  ///< intervals of a and b; if spans_contour, they cover the direct
+                                         ///< and the contour's interval (stats/ptpe/solver_interval.hpp)
+  double a_se = 0, b_se = 0;             ///< standard errors of the direct estimate
   bool spans_contour = false;
 };
-/// The estimate for the solver.
+/// The estimate that is written into the solver's file.
 struct MainEstimate {
   stats::Result<MainFit> fit;
   stats::Result<MainSpread> spread;
 };
 
-/// The estimates at the level of the study, with the harmonic and with the arithmetic realised mean; on the
-/// paper's scale of 1 to 7 also at the paper's two levels, 4.0 and 5.0. The ordinal estimate uses only the
-/// harmonic mean.
+/// A pilot's estimates at `level`, with the harmonic and with the arithmetic mean of the realised frame rate.
+/// On the paper's scale of 1 to 7 the pilot is also fitted at the paper's levels, 4.0 and 5.0. The ordinal
+/// estimate uses only the harmonic mean.
 struct PilotFit {
   TaskData data;
   double level = 4;
   stats::BootstrapOptions bootstrap;
   int participants = 0;
   std::size_t settings = 0;
-  stats::ScoreGrid grid;                    ///< harmonic
-  std::vector<std::vector<double>> scores;  ///< for each node of the grid: one mean for each participant
-  std::vector<double> deltas;               ///< nominal, ascending
-  std::map<double, LevelFit> harmonic, arithmetic;  ///< by level
-  stats::PilotPeople people;                        ///< from all analysed ratings, before the rules
-  stats::PilotRules rules;  ///< the plan's rules for it; `data` holds the ratings after them
+  stats::ScoreGrid grid;                    ///< mean scores, by the harmonic mean of the realised frame rate
+  std::vector<std::vector<double>> scores;  ///< for each node of the grid, the mean score of each participant
+  std::vector<double> deltas;  ///< nominal standard deviations of the frame rate in frames/s, ascending
+  std::map<double, LevelFit> harmonic, arithmetic;  ///< estimates by level, for the two kinds of mean
+  stats::PilotPeople people;  ///< tests of how participants used the scale, on all analysed ratings before
+                              ///< `rules` are applied
+  stats::PilotRules rules;    ///< the plan's rules for reverse coders, drift and lapses; `data` holds the
+                              ///< ratings after these rules
   std::vector<FitFlag> flags;
-  std::string reason;                     ///< why there is no usable fit; empty if there is one
-  std::vector<stats::PilotDoubt> doubts;  ///< why the fit must not be used by a solver
+  std::string reason;                     ///< the reason why the fit cannot be used; empty if it can be used
+  std::vector<stats::PilotDoubt> doubts;  ///< reasons why a solver must not use the fit
 
   bool ok() const { return reason.empty(); }
   bool level_within_scale() const;
   const LevelFit& chosen() const { return harmonic.at(level); }
-  /// The direct estimate at `level`, with the harmonic mean as in the solver's mu.
+  /// The direct estimate at `level`. Its predictor is the harmonic mean, since mu in the solver is a harmonic
+  /// mean.
   MainEstimate main() const;
-  /// Largest half width of the direct curve's 95 % band, as a share of mu(delta), over the deltas shown at
-  /// which the curve is in reach; beyond them it is extrapolated and flagged. Requires ok().
+  /// Largest half width of the direct curve's band, as a share of mu(delta). Only deltas are used at which
+  /// mu(delta) lies within the mean frame rates shown. Requires ok().
   double relative_half_width() const;
 };
 
-/// `level` must be finite; outside the rating scale there is no fit.
+/// Fits the pilot at the score `level`, which must be finite. A level outside the rating scale gives a fit
+/// with ok() = false.
 PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& bootstrap,
                    const stats::PilotRules& rules = {});
 
-/// fit.json for a database without usable data: only the reason is known.
+/// The content of fit.json if the database has no data to fit. It holds the reason.
 base::Json failed_fit_json(std::optional<double> level, const std::string& reason);
-/// Every number of the fit, for fit.json. It has no NaN: undefined values are null, with the reason beside
-/// them.
+/// The content of fit.json: every number of the fit. An undefined value is null and has its reason beside it.
 base::Json fit_json(const PilotFit& fit);
-/// The solver's file. Requires fit.ok().
+/// The content of the solver's file. Requires fit.ok().
 sim::PtpeFile ptpe_file(const PilotFit& fit);
 
 }  // namespace study

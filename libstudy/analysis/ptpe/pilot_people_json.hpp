@@ -1,5 +1,5 @@
 #pragma once
-/// How a pilot's participants used the scale, as JSON and in sentences.
+/// Reports how a pilot's participants used the rating scale, as JSON and in sentences.
 
 #include <string>
 #include <vector>
@@ -9,12 +9,13 @@
 
 namespace study {
 
-/// "raters": reverse coders, drift and lapses, each with its test, the plan's rule and a text. It covers all
-/// people and names no single one, since a withdrawal does not reach the file of a fit.
+/// The entry "raters": reverse coders, drift and lapses, each with its test, the plan's rule and a text. It
+/// identifies no participant, since a withdrawal cannot erase data from a file that was already written.
 base::Json raters_json(const PilotFit& fit);
-/// Codes of the reverse coders with their slopes, only for the console.
+/// Codes of the reverse coders with their slopes. They are printed on the console and never written to a
+/// file.
 std::vector<std::string> reverse_coders(const PilotFit& fit);
-/// Flags for the effects found, with the plan's rule for each.
+/// A flag for each of reverse coding, drift and lapses that the tests found, with the plan's rule for it.
 std::vector<FitFlag> rater_flags(const PilotFit& fit);
 
 }  // namespace study

@@ -9,13 +9,14 @@
 
 namespace study {
 
-/// For each interval of the main estimate: true if it covers the true value.
+/// True parameters, and for each interval of the main estimate: true if it covers the true value.
 struct Recovery {
   stats::PtpeModel truth;
   bool a_held = false, b_held = false;
 };
 
-/// a and b of an observer, spelt as for vip-study run: "ptpe:a=24,b=0.02". base::Error otherwise.
+/// Reads a and b of an observer model from the text that `vip-study run --observer` takes, such as
+/// "ptpe:a=24,b=0.02". base::Error for any other text.
 stats::PtpeModel parse_truth(const std::string& observer);
 
 /// base::Error if the fit's level is not the middle of the scale, which is the level of an observer's curve.
@@ -24,7 +25,8 @@ void check_comparable(const PilotFit& fit, const std::string& observer);
 /// Requires fit.ok().
 Recovery check_recovery(const PilotFit& fit, const stats::PtpeModel& truth);
 
-/// Two lines for the console, and the same for fit.json.
+/// Lines for the console: a heading, then for a and for b the interval, which is said to hold or not to hold
+/// the true value.
 std::string format_recovery(const PilotFit& fit, const Recovery& recovery);
 base::Json recovery_json(const Recovery& recovery);
 

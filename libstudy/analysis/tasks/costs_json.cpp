@@ -15,7 +15,7 @@ namespace study {
 
 namespace {
 
-/// A mean of values that some sessions have.
+/// Mean of the added values; null in JSON if no value was added.
 struct RunningMean {
   double sum = 0;
   int count = 0;
@@ -26,15 +26,16 @@ struct RunningMean {
   Json json() const { return count > 0 ? Json(sum / count) : Json(); }
 };
 
-/// The sessions' data on one stimulus.
+/// All sessions' measurements of one stimulus, and the answers to it.
 struct Shown {
   StimulusSpec what;
   int sessions = 0, measured = 0;
-  RunningMean made_ms, made_p95_ms;     ///< as measured by the stations
-  RunningMean interval_ms;              ///< frame interval of showings without a schedule
-  std::map<std::string, int> settings;  ///< sessions by text of the setting; "" = the default setting
-  std::set<std::string> stimuli;        ///< the stimuli that the sessions recorded as shown
-  RunningMean said;                     ///< Task 1: scores; Task 2: 1 = chosen
+  /// Mean and 95th percentile of the time in ms that the station needs to compute and draw a frame.
+  RunningMean made_ms, made_p95_ms;
+  RunningMean interval_ms;  ///< mean frame interval in ms, over showings without a schedule of frames
+  std::map<std::string, int> settings;  ///< number of sessions by setting text; "" = default setting
+  std::set<std::string> stimuli;        ///< texts by which the sessions recorded what they showed
+  RunningMean said;                     ///< Task 1: scores; Task 2: 1 if the stimulus was chosen, else 0
 };
 using Stimuli = std::map<std::array<int, 3>, Shown>;  // scene, n_*, method
 
@@ -43,7 +44,7 @@ std::array<int, 3> key_of(const TaskProtocol& protocol, const StimulusSpec& what
           place_in(protocol.methods, treatment_name(what))};
 }
 
-/// The text of the session's setting for this method and n_*; empty for the default setting.
+/// Text of the setting file with which the session ran this method at this n_*; empty: default setting.
 std::string setting_text(const TaskSession& session, const StimulusSpec& what) {
   for (const auto& one : session.settings) {
     const auto setting = sim::parse_setting_file(one.text, "setting " + one.sha256.substr(0, 12)).setting;
@@ -85,14 +86,14 @@ void add_session(const TaskProtocol& protocol, const TaskSession& session, Stimu
   }
 }
 
-/// Adds the analysed answers.
+/// Adds the analysed answers to the stimuli in `out`.
 void add_answers(const TaskData& data, Stimuli& out) {
   for (const auto& report : data.reports) {
     const auto answer = report.answers.find(data.question.id);
     if (answer != report.answers.end())
       out[{report.scene, report.n_star, report.method}].said.add(answer->second);
   }
-  // A pair has one n_*, but the choices do not say which if the study has several.
+  // A choice does not record its pair's n_*. It can be assigned only if the study has one n_*.
   if (data.protocol.n_stars.size() > 1) return;
   for (const auto& choice : data.choices) {
     out[{choice.scene, 0, choice.first}].said.add(choice.first_chosen ? 1 : 0);
@@ -100,7 +101,8 @@ void add_answers(const TaskData& data, Stimuli& out) {
   }
 }
 
-/// The scene's file as it is now, if the sessions recorded that they showed it.
+/// The stimulus's scene file as it is now. Refused if it is missing, if a session did not record this file's
+/// SHA-256, or if the stimulus has a level of effects other than the scene's.
 stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const Shown& shown) {
   if (!what.effects.empty() && what.effects != scene_effects_level)
     return stats::Refusal{"errors are measured with the scene's own effects, and this is level " +
@@ -124,7 +126,7 @@ Json spread_json(const Spread& spread) {
           {"high", json_number(spread.high)}};
 }
 
-/// The error measured in the recorded setting file.
+/// The error that the recorded setting file states for its setting.
 Json recorded_error_json(const sim::SettingFile& file, const stats::Result<sim::Scene>& scene) {
   if (!scene) return json_refused(scene.reason());
   if (file.measured.scene_sha256 != scene->sha256)

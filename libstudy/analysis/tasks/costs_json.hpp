@@ -1,6 +1,5 @@
 #pragma once
-/// The cost and error of each method's frames, and people's answers about them (docs/report.md: costs,
-/// sweep).
+/// Time per frame and error of each stimulus, beside the answers to it (docs/report.md: costs, sweep).
 
 #include <string>
 
@@ -10,11 +9,12 @@
 
 namespace study {
 
-/// A list with one entry for each scene, n_* and method shown. `sweep`: null if none was given.
+/// A list with one entry for each scene, n_* and method that was shown; empty for a pilot. `sweep`: tables of
+/// an accuracy sweep, or null.
 Json costs_json(const TaskData& data, const SweepTables* sweep);
 
-/// "sweep": the file's name for display, the errors' headings by name, and why cells of the sweep are in no
-/// table.
+/// The entry "sweep": the sweep file's name for display, the heading of each error column, and the reasons
+/// why cells of the sweep are in no table.
 Json sweep_json(const std::string& file, const SweepTables& sweep);
 
 }  // namespace study

@@ -16,8 +16,8 @@ const std::vector<std::string> exclusion_columns{"task", "participant", "visit",
 
 using Fields = std::vector<std::pair<std::string, std::string>>;
 
-/// A JSON value as a field. "-Inf", the only number stored as text that a spreadsheet would take for a
-/// formula, is not guarded.
+/// A JSON value as a CSV field. A text that a spreadsheet would take for a formula is guarded, except "-Inf",
+/// which is a number.
 std::string scalar(const Json& value) {
   if (value.is_null()) return {};
   if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
@@ -30,7 +30,7 @@ bool all_texts(const Json& list) {
   return std::all_of(list.begin(), list.end(), [](const Json& one) { return one.is_string(); });
 }
 
-/// True if the list is an interval. Recognised by name, since open ends are texts.
+/// True if the list is an interval. Its name decides, since an infinite end is a text and not a number.
 bool is_interval(const std::string& name, const Json& list) {
   return list.size() == 2 && (name.ends_with("ci") || name.ends_with("bca") || name == "clopper_pearson" ||
                               name == "wilson" || name == "range");
@@ -52,7 +52,8 @@ void flatten(const std::string& name, const Json& value, Fields& fields) {
   }
 }
 
-/// True if `name` is an interval in another line: this line's null then has no column of its own.
+/// True if another line has an interval of this name, so that the columns `name`_low and `name`_high exist. A
+/// null of this name then gets no column.
 bool names_interval(const std::vector<std::string>& columns, const std::string& name) {
   return std::find(columns.begin(), columns.end(), name + "_low") != columns.end();
 }
@@ -70,7 +71,7 @@ std::vector<std::string> columns_of(const std::vector<Fields>& lines) {
   return out;
 }
 
-/// The tests of each hypothesis, each with the hypothesis's fields first.
+/// One line for each test of each hypothesis: first the hypothesis's fields, then the test's.
 Json tests_of(const Json& hypotheses) {
   Json list = Json::array();
   for (const auto& one : hypotheses) {
@@ -87,7 +88,8 @@ Json tests_of(const Json& hypotheses) {
   return list;
 }
 
-/// The entries of a list of each model, such as its effects, one per line.
+/// One line for each entry of the list `name` in each model, such as "effects": the model's other fields,
+/// then the entry's. A model without the list gets one line.
 Json entries_of(const Json& models, const std::string& name) {
   Json list = Json::array();
   for (const auto& model : models) {
@@ -127,7 +129,8 @@ Json sensitivity_lines(const Json& variants) {
   return list;
 }
 
-/// One line for each entry of the list at `pointer` in the parts of "sickness".
+/// One line for each entry of the list at `pointer` in each part of "sickness", with the part's protocol
+/// first.
 Json sickness_lines(const Json& parts, const Json::json_pointer& pointer) {
   Json list = Json::array();
   for (const auto& part : parts) {
@@ -141,7 +144,7 @@ Json sickness_lines(const Json& parts, const Json::json_pointer& pointer) {
   return list;
 }
 
-/// One line for each stimulus and table of the sweep that holds its setting.
+/// One line for each stimulus and each table of the sweep in which the stimulus's setting was measured.
 Json sweep_lines(const Json& costs) {
   Json list = Json::array();
   for (const auto& one : costs) {

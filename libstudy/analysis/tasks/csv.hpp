@@ -1,5 +1,5 @@
 #pragma once
-/// Lists of the results as CSV, with the same fields under the same names.
+/// Writes the lists of the results as CSV tables; columns have the names of the JSON fields.
 
 #include <filesystem>
 #include <functional>
@@ -10,19 +10,21 @@
 
 namespace study {
 
-/// One line for each object of a list, as in RFC 4180. A nested object's fields are named outer_inner, an
-/// interval's ends name_low and name_high. Other lists are left out, except lists of texts, which are joined
-/// by spaces. Null is an empty field; numbers are not rounded; texts pass study::formula_guarded(). The
-/// columns are those of any line, in the order of first appearance; for an empty list they are `if_empty`.
+/// CSV text by RFC 4180 with one line for each object of `list`. A nested object's fields are named
+/// outer_inner, an interval's ends name_low and name_high. A list of texts is joined by spaces; other lists
+/// are left out. Null is an empty field. Numbers are not rounded. Texts pass study::formula_guarded(). There
+/// is a column for each field that any line has, in the order of first appearance. An empty list has the
+/// columns `if_empty`.
 std::string csv_text(const Json& list, const std::vector<std::string>& if_empty = {});
 
-/// The folders that write_csv_folder() fills: the given one first, then "apart_1" and so on within it for the
-/// documents in "apart".
+/// The folders that write_csv_folder() fills: `folder`, and within it "apart_1", "apart_2" and so on for the
+/// documents in the results' list "apart".
 std::vector<std::filesystem::path> csv_folders(const Json& results, const std::filesystem::path& folder);
 
-/// Writes every list of the results into csv_folders(), which must exist: task1_cells.csv and the like. Empty
-/// or absent lists make no file, except that exclusions.csv is always written.
+/// A function that writes `bytes` to the file at the given path.
 using WriteFile = std::function<void(const std::filesystem::path&, const std::string& bytes)>;
+/// Writes each list of the results as a table, such as task1_cells.csv, into csv_folders(), which must exist.
+/// An empty or absent list makes no file; only exclusions.csv is always written.
 void write_csv_folder(const Json& results, const std::filesystem::path& folder, const WriteFile& write);
 
 }  // namespace study

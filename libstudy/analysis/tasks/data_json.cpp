@@ -57,8 +57,8 @@ Json protocol_json(const TaskData& data) {
   return json;
 }
 
-/// True if a method refines by gaze. The pilot's single method does not, and other designs may have none that
-/// does.
+/// True if the results depend on gaze. This is assumed of Task 1 and Task 2, and not of a pilot. Another
+/// design depends on gaze if it shows a method other than LoRes and HiRes.
 bool refines(const TaskData& data) {
   if (data.task != TaskKind::Own) return data.task != TaskKind::Pilot;
   return std::any_of(data.protocol.methods.begin(), data.protocol.methods.end(), [](const std::string& one) {
@@ -95,7 +95,7 @@ std::vector<std::string> notes_of(const TaskData& data) {
   return notes;
 }
 
-/// Mean of values that may be missing.
+/// Mean of the values present; null in JSON if none is present.
 struct Mean {
   int count = 0;
   double sum = 0;
@@ -106,14 +106,14 @@ struct Mean {
   Json json() const { return count > 0 ? Json(sum / count) : Json(); }
 };
 
-/// One line of the timing certificate.
+/// Sums over the showings of one scene, n_*, method and frame rate: one line of the timing table.
 struct TimedCell {
   int showings = 0, pass = 0, degraded = 0, fail = 0, unjudged = 0;
   std::map<std::string, int> grades;
   FpsSetting nominal;
   double mean = 0, sd = 0, longest_ms = 0;
   std::int64_t late = 0;
-  Mean active_fraction, tau_fps;  ///< over the showings with measurements
+  Mean active_fraction, tau_fps;  ///< over the showings in which they were measured
 
   void add(const TaskShowing& shown) {
     ++showings;

@@ -1,5 +1,5 @@
 #pragma once
-/// The data that were analysed and that were not (docs/report.md: study, flow, exclusions, timing).
+/// Describes the analysed and the excluded data (docs/report.md: study, flow, roster, exclusions, timing).
 
 #include <map>
 #include <string>
@@ -10,20 +10,21 @@
 
 namespace study {
 
-/// "study" of one or two tasks; `database`: name for display.
+/// The entry "study" for the given tasks. `database`: the database's name for display.
 Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks);
-/// Names of the exclusion rules that could exclude some of these data, whatever the answers; not those that
-/// need something that was not shown or asked.
+/// Names of the exclusion rules that could exclude some of the data for some answers. A rule is missing if
+/// the data lack what it checks: timing verdicts, catch pages, repeated trials or enough trials.
 Json acting_rules_json(const TaskData& data, const stats::ExclusionRules& rules);
 Json flow_json(const TaskFlow& flow);
-/// "roster": every session of the database, by protocol. `sections`: the section that analyses a protocol, by
-/// SHA-256.
+/// The entry "roster": counts of all participants and sessions of the database, by protocol. `sections`:
+/// SHA-256 of a protocol -> section of the report that analyses the protocol.
 Json roster_json(const TaskStudy& study, const std::multimap<std::string, std::string>& sections);
-/// Lists.
+/// A list with one entry for each exclusion.
 Json exclusions_json(const TaskData& data);
+/// A list with one entry for each scene, n_*, method and frame rate: the timing of its showings.
 Json timing_json(const TaskData& data);
-/// One entry for each part in a list of timing_json(): its sums, and the number of cells in which every
-/// showing passed.
+/// Sums of the lists of timing_json(), one entry for each task. "flawed_cells" counts the cells in which the
+/// timing of a showing was degraded or failed.
 Json timing_totals_json(const Json& timing);
 
 }  // namespace study

@@ -12,29 +12,31 @@ namespace study {
 
 namespace {
 
-constexpr int most_listed_scores = 21;  ///< largest scale for which all scores are listed, including those
-                                        ///< never given
+/// A scale with at most so many scores is listed in full, including scores that were never given.
+constexpr int most_listed_scores = 21;
 
-/// One stimulus of a trial: its method as an index in the protocol's list, and its frame rate.
+/// One stimulus of a trial: its method (index in the protocol's list), and mean and SD of its nominal frame
+/// rate in frames/s. Mean and SD are 0 if all trials have the same frame rate.
 struct ShownSetting {
   std::size_t method = 0;
   double mean = 0, sd = 0;
-  auto operator<=>(const ShownSetting&) const = default;
+  auto operator<=>(const ShownSetting&) const = default;  // NOLINT(modernize-use-nullptr): false positive
 };
 
-/// A line of the table; for a pair both stimuli, the earlier in the protocol first. An answer that does not
-/// name one of the two may be about the order, so each order then has its own line.
+/// A line of the table. For a pair it holds both stimuli, sorted by their index in the protocol. Only a
+/// choice between the two stimuli is independent of their order. For any other question each order has a
+/// separate line.
 struct Cell {
   std::size_t scene = 0, n_star = 0;
   std::vector<ShownSetting> shown;
-  bool by_order = false;  ///< of a pair: only one order of showing
-  bool turned = false;    ///< the order that shows the later stimulus first
-  auto operator<=>(const Cell&) const = default;
+  bool by_order = false;  ///< pair: the line covers one order of showing only
+  bool turned = false;    ///< with by_order: true for the order that shows shown[1] first
+  auto operator<=>(const Cell&) const = default;  // NOLINT(modernize-use-nullptr): false positive
 };
 
 struct Given {
   std::vector<double> scores;
-  std::vector<bool> first_stands_first;  ///< of a pair: true if shown in the order of Cell::shown
+  std::vector<bool> first_stands_first;  ///< pair: true if shown in the order of Cell::shown
   std::set<std::string> participants;
 };
 
@@ -95,7 +97,8 @@ class Describer {
     return several_settings_ ? fmt::format("{}, {:g} frames/s, SD {:g}", method, one.mean, one.sd) : method;
   }
 
-  /// "LoRes", "LoRes and HiRes" for both orders, or "first HiRes, then LoRes".
+  /// The cell in words: "LoRes" for one stimulus, "LoRes and HiRes" for a pair in both orders, "first HiRes,
+  /// then LoRes" for a pair in one order.
   std::string name(const Cell& cell) const {
     if (cell.shown.size() == 1) return name(cell.shown[0]);
     if (!cell.by_order) return name(cell.shown[0]) + " and " + name(cell.shown[1]);
@@ -103,7 +106,7 @@ class Describer {
            name(cell.shown[cell.turned ? 0 : 1]);
   }
 
-  /// True if the question asks which of a pair is chosen.
+  /// True if the question asks the participant to choose one stimulus of a pair.
   bool is_choice_of_pair(const Question& question, const Cell& cell) const {
     return traits_of(question.kind).labelled && question.anchors.size() == 2 && cell.shown.size() == 2;
   }

@@ -10,8 +10,8 @@
 
 namespace study {
 
-/// A list with an entry for each of these questions (ids) and each cell with answers to it, over the analysed
-/// trials.
+/// A list with one entry for each question in `questions` (ids). An entry's "cells" describe the question's
+/// answers in analysed trials.
 Json descriptives_json(const TaskData& data, const std::vector<std::string>& questions);
 
 }  // namespace study

@@ -21,7 +21,8 @@ namespace {
 using Scores = std::vector<double>;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// "n" and the count of each score of the question's scale.
+/// Adds "n", the number of scores, and "counts", the number of times each score of the question's scale was
+/// given.
 void add_counts(Json& json, const Question& question, const Scores& scores) {
   json["n"] = scores.size();
   json["counts"] = Json::array();
@@ -41,7 +42,8 @@ Json pilot_distributions(const TaskData& data) {
   return list;
 }
 
-/// Mean answer of each participant to each item at one n_*, participants by items; NaN without an answer.
+/// Mean answer of each participant to each item at one n_*; NaN without an answer. Row-major: the row is the
+/// participant, the column the item.
 Scores item_means(const TaskData& data, const std::vector<std::string>& items, int n_star) {
   const std::size_t k = items.size();
   Scores sums(data.participants.size() * k, 0.0), counts(sums.size(), 0.0);
@@ -59,7 +61,8 @@ Scores item_means(const TaskData& data, const std::vector<std::string>& items, i
   return sums;
 }
 
-/// (a - b at one n_*) minus (a - b at another), for the participants with all four values.
+/// Difference of methods a - b at the first n_* minus a - b at the second n_*, one value for each participant
+/// with all four scores.
 Scores double_differences(const stats::ScoreTable& table, std::pair<int, int> n_stars, int a, int b) {
   const auto a1 = table.column(n_stars.first, a), b1 = table.column(n_stars.first, b);
   const auto a2 = table.column(n_stars.second, a), b2 = table.column(n_stars.second, b);
@@ -71,7 +74,7 @@ Scores double_differences(const stats::ScoreTable& table, std::pair<int, int> n_
   return out;
 }
 
-/// Adds all pairs of methods of one score between two n_*, with Holm over these pairs.
+/// Compares two n_*: adds one test for each pair of methods, corrected by Holm's method over these pairs.
 void add_pair_of_n_stars(Json& list, const stats::ScoreTable& table, std::pair<int, int> n_stars,
                          const stats::AnalysisPlan& plan) {
   const auto name = [](const std::vector<std::string>& names, int i) { return names.at(std::size_t(i)); };
@@ -106,7 +109,8 @@ void add_pair_of_n_stars(Json& list, const stats::ScoreTable& table, std::pair<i
   }
 }
 
-/// Median of the standard deviations of the pairs' differences; NaN if none is known.
+/// Median, over the pairs of methods at this n_*, of the standard deviation of the participants' differences.
+/// NaN without any.
 double median_sd(const stats::ScoreAnalysis& analysis, int n_star) {
   Scores sds;
   for (const auto& one : analysis.comparisons) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Descriptive and exploratory results of a part (docs/report.md: distributions, response_times,
+/// Descriptive and exploratory results of one analysis (docs/report.md: distributions, response_times,
 /// reliability, by_n_star, detectable, retest).
 
 #include <vector>
@@ -13,33 +13,38 @@
 
 namespace study {
 
-/// Counts of each score by question, n_* and method; for the pilot by setting. Empty for pairs.
+/// Counts of each score by question, n_* and method; for a pilot by frame-rate setting. Empty for pairs.
 Json distributions_json(const TaskData& data);
 
-/// One entry for each answered question about trials; null times were not recorded.
+/// One entry for each question with recorded response times in s. The times are null if a participant was
+/// simulated.
 Json response_times_json(const TaskData& data);
 
-/// One entry for each score of several items and each n_*: Cronbach's alpha of participants' means of each
-/// item over their reports.
+/// Cronbach's alpha of each score that has several items, at each n_*. It is computed from each participant's
+/// mean answer to each item.
 Json reliability_json(const TaskData& data, const std::vector<stats::ScoreTable>& tables,
                       const stats::AnalysisPlan& plan);
 
-/// Single reports of one score by n_*, scene and method; the interval is of participants' means.
+/// Mean and SD of one score over single reports, by n_*, scene and method. The confidence interval is that of
+/// the mean over participants' means.
 Json score_by_scene_json(const TaskData& data, const stats::ScoreTable& table, double confidence);
 
-/// Tests if the difference of two methods depends on n_*: for each score, pair of n_* and pair of methods.
+/// Tests if the difference of two methods depends on n_*. One entry for each score, pair of n_* and pair of
+/// methods.
 Json n_star_differences_json(const std::vector<stats::ScoreTable>& tables, const stats::AnalysisPlan& plan);
 
-/// The smallest effects are those that the tests of the given number of people detect with this power.
+/// Power with which a test must detect an effect for detectable_scores_json() and
+/// detectable_preference_json().
 inline constexpr double detectable_power = 0.8;
 Json detectable_scores_json(const std::vector<stats::ScoreTable>& tables,
                             const std::vector<stats::ScoreAnalysis>& analyses,
                             const stats::AnalysisPlan& plan);
 Json detectable_preference_json(const stats::PreferenceAnalysis& analysis, const stats::AnalysisPlan& plan);
 
-/// Task 1: a list with one entry for each question asked about repeated showings; empty without repeats.
+/// Task 1: a list with one entry for each question answered in a trial and in its repeat; empty without
+/// repeats.
 Json rating_retest_json(const TaskData& data);
-/// Task 2: number of pairs and share of equal choices; null without repeats.
+/// Task 2: number of repeated pairs and the share in which both choices agree; null without repeats.
 Json choice_retest_json(const TaskData& data);
 
 }  // namespace study

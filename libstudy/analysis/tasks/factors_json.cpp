@@ -8,7 +8,8 @@ namespace study {
 
 namespace {
 
-/// A factor: its levels, and the level and rest of each treatment.
+/// A factor of the design: the names of its levels, and for each treatment its level and the index of its
+/// level of the other factor.
 struct Factor {
   const char* name;
   std::vector<std::string> levels;
@@ -19,7 +20,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// The factors effects and method, if they have several levels; empty if effects are not a factor.
+/// Those of the factors "effects" and "method" that have several levels; empty if effects are not a factor.
 std::vector<Factor> factors_of(const TaskProtocol& protocol) {
   if (protocol.effects.empty()) return {};
   Factor effects{"effects", {}, {}}, methods{"method", {}, {}};
@@ -41,7 +42,7 @@ const std::string& level(const Factor& factor, int index) {
   return factor.levels[static_cast<std::size_t>(index)];
 }
 
-/// The test of one value for each participant.
+/// A test of the mean of one value per participant: a t test, or an exact sign test if all values are equal.
 Json t_test_json(const stats::Result<stats::OneSampleTTest>& test,
                  const std::optional<stats::Unanimous>& all_alike, const std::optional<double>& p,
                  const std::optional<double>& p_holm) {

@@ -1,5 +1,6 @@
 #pragma once
-/// "factors" of a task's results: the effect of each level of each factor, if effects are a factor.
+/// The list "factors" of a task's results: comparisons of each two levels of the factors "effects" and
+/// "method".
 
 #include <vector>
 
@@ -10,9 +11,9 @@
 
 namespace study {
 
-/// For Task 2. Empty if effects are not a factor.
+/// Task 2: preference between two levels of a factor. Empty if effects are not a factor.
 Json preference_factors_json(const TaskData& data, const stats::AnalysisPlan& plan);
-/// For every score of Task 1.
+/// Task 1: difference of each score between two levels of a factor. Empty if effects are not a factor.
 Json score_factors_json(const TaskData& data, const std::vector<stats::ScoreTable>& tables,
                         const stats::AnalysisPlan& plan);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// H1 to H6 in the results (docs/report.md).
+/// Writes hypotheses H1 to H6 as JSON for the results (docs/report.md).
 
 #include <vector>
 
@@ -9,7 +9,7 @@
 namespace study {
 
 Json hypothesis_json(const stats::Hypothesis& hypothesis);
-/// Only the fields that a sensitivity analysis shows.
+/// The hypothesis with only the fields that a sensitivity analysis shows.
 Json hypothesis_outline_json(const stats::Hypothesis& hypothesis);
 
 }  // namespace study

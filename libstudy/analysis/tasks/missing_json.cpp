@@ -13,7 +13,7 @@ Json contrast_json(const stats::MixedContrast& one) {
           {"ci", json_interval(one.ci)}, {"p", one.p}};
 }
 
-/// Label of a term of the model: "scene jet_impact", "position" or "period 2".
+/// Label of one term of the mixed model: "scene jet_impact", "position" or "period 2".
 std::string term_label(const TaskData& data, const std::string& term) {
   const auto number = [&](std::size_t prefix) { return std::stoul(term.substr(prefix)); };
   if (term.starts_with("scene")) return "scene " + data.scenes[number(5)];
@@ -43,7 +43,8 @@ Json answers_json(const stats::MissingAnswers& one) {
           {"within_scale", one.within_scale()}};
 }
 
-/// Tipping point of the decision by the paired t test, or by the exact sign test in its place.
+/// Tipping point of a comparison's decision, by the paired t test, or by the exact sign test if all
+/// differences are equal.
 Json pair_tipping_json(const ScoreTable& table, const stats::MethodComparison& one, double alpha) {
   if (one.unanimous)
     return json_result(stats::no_tipping_point(table, one.n_star, one.a, one.b, *one.p() < alpha),

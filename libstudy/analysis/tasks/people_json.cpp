@@ -13,10 +13,11 @@ namespace {
 
 using Counts = std::vector<std::pair<std::string, int>>;
 
-/// Ranges are rounded outwards to multiples of this, since each exact end is one person's answer.
+/// The ends of a range are rounded outwards to multiples of this step, since an exact end would be one
+/// person's answer.
 constexpr double range_step = 5;
 
-/// The answers of a part's participants to one question.
+/// Answers of the analysed participants to one question, without empty answers.
 std::vector<std::string> answers_to(const Question& question, const TaskData& data,
                                     const std::vector<PersonalEntry>& answers) {
   std::map<std::string, std::string> by_person;
@@ -31,15 +32,14 @@ std::vector<std::string> answers_to(const Question& question, const TaskData& da
   return out;
 }
 
-/// The score of a scale's answer, if the file of personal data holds its anchor's words; else the answer
-/// itself.
+/// The score as text if the answer is the text of an anchor of the scale; otherwise the answer itself.
 std::string score_of(const Question& question, const std::string& answer) {
   for (const auto& [score, words] : question.anchors)
     if (words == answer) return std::to_string(score);
   return answer;
 }
 
-/// The range is shown only for typed numbers, since a scale's range is known.
+/// Adds mean, SD and range of the answers. The range is added only for typed numbers.
 void add_numbers(Json& json, const Question& question, std::vector<std::string> answers) {
   for (std::string& answer : answers) answer = score_of(question, answer);
   std::vector<double> values;

@@ -1,5 +1,6 @@
 #pragma once
-/// "people" of the results: summaries of the participants that do not identify a single person.
+/// The entry "people" of the results: summaries of the participants' answers about themselves. They do not
+/// reveal the answer of a single person.
 
 #include <string>
 #include <utility>
@@ -10,23 +11,24 @@
 
 namespace study {
 
-/// Smallest group of people that is shown separately.
+/// Smallest number of people with the same answer whose count is shown separately.
 inline constexpr int smallest_group = 3;
-/// Fewest numbers for which mean, SD and range are shown; fewer would nearly reveal the numbers themselves.
+/// Fewest numbers for which mean, SD and range are shown. With fewer, these would nearly reveal the numbers
+/// themselves.
 inline constexpr int fewest_numbers = 5;
 
-/// Answers and the number of people who gave each. `pooled`: answers of fewer than smallest_group people,
-/// combined with the next smallest groups until they are that many, so that no small group can be derived
-/// from the sum.
+/// Answers and the number of people who gave each. Answers of fewer than smallest_group people are pooled.
+/// The next smallest groups are pooled with them until pooled_people is at least smallest_group. So the count
+/// of a small group cannot be derived from the total.
 struct GroupCounts {
-  std::vector<std::pair<std::string, int>> shown;  ///< in the order given
+  std::vector<std::pair<std::string, int>> shown;  ///< answers with their counts, in the order given
   std::vector<std::string> pooled;
   int pooled_people = 0;
 };
 GroupCounts pool_small_groups(std::vector<std::pair<std::string, int>> counts);
 
-/// One entry for each part of the study that asks its participants about themselves, over the analysed ones.
-/// `answers`: TaskStudy::about_people.
+/// One entry for each of `parts` that asks participants about themselves. Only analysed participants are
+/// counted. `answers`: TaskStudy::about_people.
 Json people_json(const std::vector<const TaskData*>& parts, const std::vector<PersonalEntry>& answers);
 
 }  // namespace study

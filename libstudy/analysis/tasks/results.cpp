@@ -20,17 +20,17 @@ namespace study {
 
 namespace {
 
-/// One analysis, with its parts of the document.
+/// One analysis with the entries that it adds to the results document.
 struct TaskPart {
   TaskData data;
   std::vector<std::string> described;  ///< ids of the questions whose answers are described
-  Json results = {};                   ///< refused if no answer can be analysed
+  Json results = {};                   ///< entry named after the task, or {"refused": reason}
   std::vector<stats::Hypothesis> hypotheses = {};
   std::vector<stats::ShownClaims::LeftOut> not_analysed = {};
   Json sensitivity = Json::array();
 };
 
-/// Why no built-in analysis applies to a design.
+/// A sentence on what the protocol of a design lacks for the built-in analyses.
 std::string what_it_lacks(const TaskData& data) {
   const auto& protocol = data.protocol;
   const std::string lacks =
@@ -46,7 +46,7 @@ std::string why_not_analysed(const TaskData& data) {
   return what_it_lacks(data) + ", so no shipped analysis covers it; its answers are described by cell";
 }
 
-/// The parts of such a design that no built-in analysis covers.
+/// The analysis and the hypotheses that are left out for a design without a built-in analysis, with reasons.
 std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
   std::vector<stats::ShownClaims::LeftOut> out{{"own design", why_not_analysed(data)}};
   const std::string lacks = what_it_lacks(data);
@@ -59,7 +59,8 @@ std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
   return out;
 }
 
-/// Makes the results under the task's own name, and the hypotheses. Refused with the reason.
+/// Makes the entry named after the task, such as "task1", and sets the part's hypotheses and not_analysed.
+/// Refused with the reason if no answer can be analysed or no built-in analysis applies.
 stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   const TaskData& data = part.data;
   const stats::AnalysisPlan& plan = request.plan.plan;
@@ -83,7 +84,7 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());
   const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
-  // The paper's claims are only about methods.
+  // The paper's hypotheses compare methods, so they are not tested if effects vary.
   if (data.protocol.effects.empty()) {
     auto claims = stats::claims_about(
         stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem()),
@@ -94,8 +95,9 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   return task2_json(data, analysis, plan);
 }
 
-/// Questions that this analysis describes. Each question is described once: with its own analysis, or with
-/// the first analysis of its protocol.
+/// Ids of the questions whose answers this analysis describes, so that each is described once: a main
+/// question in its own analysis, any other in the first analysis of its protocol. `only`: the question that
+/// the user selected; empty: all.
 std::vector<std::string> described_questions(const ChosenTask& chosen, const std::string& only) {
   std::vector<std::string> out;
   for (const Question& question : chosen.protocol.questions) {
@@ -108,7 +110,8 @@ std::vector<std::string> described_questions(const ChosenTask& chosen, const std
   return out;
 }
 
-/// Even without an answer to analyse, the part reports who left and why.
+/// Analyses one protocol and question. Without an answer to analyse, the part still counts the participants
+/// and exclusions, and the reason is added to `missing`.
 TaskPart analyse(const TaskStudy& study, const ChosenTask& chosen, const ResultsRequest& request,
                  std::vector<MissingTask>& missing) {
   const TaskSelection selection{kind_of(chosen.protocol), request.protocol, request.plan.plan};
@@ -187,11 +190,11 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
   return json;
 }
 
-/// Name of the document at this index in "apart".
+/// Name of the document at this index (from 0) of the list "apart": "apart 1" for index 0.
 std::string apart_name(std::size_t index) { return "apart " + std::to_string(index + 1); }
 
-/// Number of simulated participants with answers, analysed or not; each counts once, since one may be in
-/// several protocols.
+/// Number of simulated participants with answers, analysed or not. A participant of several protocols counts
+/// once.
 std::size_t simulated_people(const TaskStudy& study) {
   std::set<std::string> people;
   for (const TaskProtocol& protocol : study.protocols)
@@ -200,7 +203,7 @@ std::size_t simulated_people(const TaskStudy& study) {
   return people.size();
 }
 
-/// The section in which each protocol is analysed, by SHA-256.
+/// SHA-256 of each analysed protocol -> the section that analyses it: a task's name or apart_name().
 std::multimap<std::string, std::string> sections_of(const std::vector<TaskPart>& first,
                                                     const std::vector<TaskPart>& others) {
   std::multimap<std::string, std::string> out;

@@ -16,17 +16,20 @@ namespace study {
 
 struct ResultsRequest {
   std::filesystem::path database;
-  std::vector<TaskKind> tasks;  ///< tasks without a protocol in the database are left out
-  std::string protocol;         ///< name, with or without version, or leading digits of a SHA-256; empty: all
+  std::vector<TaskKind> tasks;  ///< kinds of analysis to make; one without a protocol in the database is
+                                ///< listed in Results::missing
+  std::string protocol;  ///< the protocol's name, with or without version, or leading digits of its SHA-256;
+                         ///< empty: all protocols
   PlanInForce plan;
-  std::shared_ptr<const SweepTables> sweep = {};  ///< null if not requested
-  std::string sweep_file = {};                    ///< its name for display
-  bool incomplete = false;                        ///< continue if the journal holds more than the database
-  std::string question = {};                      ///< its id; empty: all
-  std::optional<double> level = {};               ///< of a pilot's curve; empty: see level_of()
+  std::shared_ptr<const SweepTables> sweep = {};  ///< tables of an accuracy sweep; null: none
+  std::string sweep_file = {};                    ///< the sweep file's name for display
+  bool incomplete = false;  ///< true: make the results although the journal of answers holds answers that the
+                            ///< database lacks
+  std::string question = {};         ///< the question's id; empty: all main questions
+  std::optional<double> level = {};  ///< score at which a pilot's curve is fitted; empty: see level_of()
 };
 
-/// A task of the request that has no results.
+/// A requested analysis without results.
 struct MissingTask {
   TaskKind task = TaskKind::Task1;
   std::string reason;
@@ -34,15 +37,15 @@ struct MissingTask {
 };
 
 struct Results {
-  /// The first analysis of each task. Further analyses, of another protocol of a task or another question,
-  /// are in "apart": a list of documents of the same form, each with one analysis.
+  /// The document. Its own entries hold the first analysis of each task. Analyses of further protocols or
+  /// questions of a task are in the list "apart", each as a document of the same form.
   Json json;
   std::vector<MissingTask> missing;
 };
 
-/// Results of a study that was already read; the request's database only gives its name.
+/// Makes the results of a study that was already read. `request.database` is used only for its name.
 Results make_results(const TaskStudy& study, const ResultsRequest& request);
-/// Reads the database; base::Error if that fails.
+/// Reads the database and makes its results. base::Error if the database cannot be read.
 Results study_results(const ResultsRequest& request);
 
 }  // namespace study

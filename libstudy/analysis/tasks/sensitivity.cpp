@@ -30,7 +30,7 @@ Json changed(const Verdicts& planned, const Verdicts& other) {
   return ids;
 }
 
-/// Writes one entry for each variant of the analysis.
+/// Collects one entry for each variant of the analysis.
 class Writer {
  public:
   Writer(TaskKind task, const Verdicts& planned) : task_(task), planned_(planned) {}
@@ -58,14 +58,15 @@ class Writer {
   Json list_ = Json::array();
 };
 
-/// Only sessions with tracked gaze.
+/// The study with only those sessions in which gaze was tracked.
 TaskStudy with_tracked_gaze(TaskStudy study) {
   for (auto& protocol : study.protocols)
     std::erase_if(protocol.sessions, [](const TaskSession& one) { return one.gaze_source != "tracked"; });
   return study;
 }
 
-/// The data with every block treated as a separate participant.
+/// The data with each block (one participant's reports on one scene at one n_* in one visit) treated as a
+/// separate participant.
 TaskData with_blocks_pooled(TaskData data) {
   std::map<std::tuple<int, int, int, int>, int> blocks;
   for (Report& report : data.reports) {
@@ -76,11 +77,12 @@ TaskData with_blocks_pooled(TaskData data) {
             .first->second;
   }
   data.participants.resize(blocks.size());
-  data.unanswered.clear();  // these refer to people, not blocks
+  data.unanswered.clear();  // their participant numbers refer to people, not to blocks
   return data;
 }
 
-/// True if a participant has several reports at one n_* on one method, so that averaging has an effect.
+/// True if a participant has several reports on one method at one n_*. The analysis averages these, so
+/// pooling blocks gives other results.
 bool averages_blocks(const TaskData& data) {
   std::map<std::tuple<int, int, int>, int> reports;
   return std::any_of(data.reports.begin(), data.reports.end(), [&](const Report& one) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The hypotheses tested again under other rules, to show if verdicts depend on an exclusion.
+/// Tests the hypotheses again under other rules, to show if a verdict depends on exclusions or on pooling.
 
 #include <vector>
 
@@ -9,7 +9,8 @@
 
 namespace study {
 
-/// "sensitivity" of one task (docs/report.md); `planned`: the verdicts of `data`.
+/// The list "sensitivity" of one task (docs/report.md). `planned`: the hypotheses as tested on `data` by the
+/// plan.
 Json sensitivity_json(const TaskStudy& study, const TaskSelection& selection, const TaskData& data,
                       const std::vector<stats::Hypothesis>& planned);
 

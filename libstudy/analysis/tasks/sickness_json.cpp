@@ -11,7 +11,7 @@ namespace study {
 namespace {
 
 using Sessions = std::vector<const SicknessSession*>;
-/// Sessions by participant, in the order of visits.
+/// Sessions by participant code, in the order of visits.
 using People = std::map<std::string, Sessions>;
 
 bool is_simulated(const SicknessSession& session) { return !session.observer.empty(); }
@@ -32,8 +32,8 @@ Json change_json(const stats::SicknessChange& change) {
   return json;
 }
 
-/// Mean sums of one person before and after, over the sessions with both; if there are none, over those with
-/// either.
+/// One person's mean score before and after, over the sessions that have both scores. If no session has both,
+/// each mean is over the sessions that have this score.
 struct Occasions {
   stats::ExactMean before, after;
 };
@@ -71,7 +71,7 @@ Occasions ssq_occasions(const Sessions& sessions, stats::SsqScale scale) {
 Occasions fms_occasions(const Sessions& sessions) {
   std::vector<std::array<std::optional<double>, 2>> ends;
   for (const auto* session : sessions) {
-    // A single answer cannot be compared.
+    // The first answer is compared with the last one, so a session needs two.
     if (session->fms.size() > 1) ends.push_back({session->fms.front().score, session->fms.back().score});
   }
   return mean_of(ends);
@@ -140,7 +140,8 @@ std::vector<double> scores_of(const Sessions& sessions, const std::string& block
   return scores;
 }
 
-/// Statistics over people of each person's mean and peak, in a block or (if empty) in the whole session.
+/// Statistics over people of each person's mean and largest FMS score. `block`: the block whose answers are
+/// used; empty: all blocks.
 Json course_json(const People& people, const std::string& block) {
   std::vector<double> means, peaks;
   for (const auto& [code, sessions] : people) {
@@ -152,7 +153,7 @@ Json course_json(const People& people, const std::string& block) {
   return {{"mean", summary_json(stats::describe(means))}, {"peak", summary_json(stats::describe(peaks))}};
 }
 
-/// Blocks by the earliest position at which a session asks.
+/// Names of the blocks, sorted by the earliest position at which a session asked for the FMS in the block.
 std::vector<std::string> blocks_of(const People& people) {
   std::map<std::string, int> first;
   for (const auto& [code, sessions] : people) {
@@ -170,7 +171,8 @@ std::vector<std::string> blocks_of(const People& people) {
   return blocks;
 }
 
-/// For each n, the n-th answers of all sessions that have as many.
+/// A list with one entry for each n: statistics of the n-th FMS answer over all sessions with at least n
+/// answers.
 Json times_json(const People& people) {
   Json list = Json::array();
   for (std::size_t asked = 0;; ++asked) {
@@ -179,7 +181,7 @@ Json times_json(const People& people) {
       for (const auto* session : sessions) {
         if (asked >= session->fms.size()) continue;
         scores.push_back(session->fms[asked].score);
-        // A model's minutes are the program's run time, not session time.
+        // The minutes of an observer model's session are the program's run time and are left out.
         if (!is_simulated(*session)) minutes.push_back(session->fms[asked].minutes);
       }
     }
@@ -211,7 +213,7 @@ Json fms_json(const People& people, const stats::AnalysisPlan& plan) {
   return json;
 }
 
-/// One line for each participant, with the scores that are compared.
+/// One entry for each participant: SSQ scores before and after, and the mean and largest FMS score.
 Json participants_json(const People& people) {
   Json list = Json::array();
   for (const auto& [code, sessions] : people) {

@@ -1,5 +1,5 @@
 #pragma once
-/// "sickness" of the results: SSQ before and after, FMS over the session.
+/// The entry "sickness" of the results: SSQ before and after the session, and FMS during the session.
 
 #include <vector>
 
@@ -9,9 +9,9 @@
 
 namespace study {
 
-/// One entry for each protocol that asked for either. Test data are left out if real data exist, and within a
-/// protocol observer models if people exist. No other rule excludes anything, since all of these data concern
-/// safety.
+/// One entry for each protocol that asked for SSQ or FMS. Test data are left out if real data exist. Observer
+/// models are left out if the protocol has sessions of people. No other rule excludes data, since every
+/// answer matters for safety. `sessions`: sorted by protocol.
 Json sickness_json(std::vector<SicknessSession> sessions, const stats::AnalysisPlan& plan);
 
 }  // namespace study

@@ -40,7 +40,7 @@ Json normality_json(const stats::Result<stats::ShapiroWilk>& test) {
   return json_result(test, [](const stats::ShapiroWilk& one) { return Json{{"w", one.w}, {"p", one.p}}; });
 }
 
-/// The BCa interval; if there is none, null and the reason.
+/// Adds the BCa interval; if it is refused, null and the reason.
 void add_bootstrap(Json& json, const stats::Result<stats::BootstrapInterval>& bootstrap) {
   json["bca"] = bootstrap ? json_interval(bootstrap->bca.ci) : Json();
   if (!bootstrap) json["bca_reason"] = bootstrap.reason();
@@ -91,7 +91,8 @@ Json equivalence_json(const stats::Result<stats::EquivalenceTest>& test, double 
   });
 }
 
-/// Values are null if the t test is refused; for equal differences the exact sign test gives p.
+/// Adds the paired t test. If all differences are equal, the exact sign test gives p instead. The other
+/// values are null if the t test is refused.
 void add_t_test(Json& json, const stats::MethodComparison& comparison) {
   const bool ok = static_cast<bool>(comparison.t);
   const auto number = [&](double stats::PairedTTest::*field) {
@@ -163,7 +164,7 @@ Json omnibus_json(const ScoreTable& table, const stats::Omnibus& one) {
           {"anova", json_result(one.anova, anova_json)}};
 }
 
-/// One line for each participant, n_* and method with a score.
+/// One entry for each participant, n_* and method with at least one score.
 Json participant_means_json(const TaskData& data, const std::vector<ScoreTable>& tables) {
   Json list = Json::array();
   for (std::size_t person = 0; person < data.participants.size(); ++person) {

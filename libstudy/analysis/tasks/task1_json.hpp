@@ -7,7 +7,7 @@
 namespace study {
 
 Json task1_json(const TaskData& data, const Task1Results& results, const stats::AnalysisPlan& plan);
-/// Without corrections for multiple tests.
+/// One signed-rank test, without p values corrected for multiple tests.
 Json signed_rank_json(const stats::SignedRank& test);
 
 }  // namespace study

@@ -29,7 +29,8 @@ const Question* find_question(const TaskData& data, const std::string& id) {
   return nullptr;
 }
 
-/// Sets the scale's range from the questions; false if an item is not asked.
+/// Sets the scale's range to that of its items' questions. Returns false if the trials do not ask for an
+/// item.
 bool fit_scale(ScoreScale& scale, const TaskData& data) {
   for (const std::string& item : scale.items) {
     const Question* question = find_question(data, item);
@@ -79,7 +80,8 @@ const stats::ScoreTable* find_table(const std::vector<stats::ScoreTable>& tables
   return nullptr;
 }
 
-/// H1 to H3 need both scores, though each score is analysed without the other.
+/// Tests H1 to H3. They need both realism and cybersickness; if one was not asked, they are left out with the
+/// reason.
 stats::ShownClaims shown_claims(const std::vector<stats::ScoreTable>& tables, const TaskData& data,
                                 const stats::AnalysisPlan& plan) {
   const auto* realism = find_table(tables, "realism");
@@ -120,7 +122,7 @@ std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats:
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
   Task1Results out;
   out.tables = score_tables(data, plan);
-  // The paper's claims are only about methods.
+  // The paper's hypotheses compare methods, so they are not tested if effects vary.
   if (data.protocol.effects.empty()) {
     auto hypotheses = shown_claims(out.tables, data, plan);
     out.hypotheses = std::move(hypotheses.claims);

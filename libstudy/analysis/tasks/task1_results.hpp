@@ -1,5 +1,5 @@
 #pragma once
-/// Task 1 from its answers to its results.
+/// Analyses Task 1: scores, their comparisons, and H1 to H3.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace study {
 
-/// A cumulative-link model of one question at one n_*.
+/// A cumulative-link model of the answers to one question at one n_*.
 struct OrdinalModel {
   std::string question;
   int n_star = 0;
@@ -23,21 +23,23 @@ struct Task1Results {
   std::vector<stats::ScoreAnalysis> analyses;
   std::vector<OrdinalModel> ordinal;
   std::vector<stats::Hypothesis> hypotheses;
-  std::vector<stats::ShownClaims::LeftOut> left_out;  ///< hypotheses that are not tested
+  std::vector<stats::ShownClaims::LeftOut> left_out;  ///< hypotheses that are not tested, with reasons
 };
 
-/// Realism and the cybersickness scores. A score is the mean of its items; a report that lacks an item has no
-/// score. Scores with an item that is not asked are left out.
+/// One table for each of realism, cybersickness, and cybersickness without unrealism. A score is the mean of
+/// its items; a report that lacks an item has no score. A score is left out if the trials do not ask for one
+/// of its items.
 std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// A table's scores before scenes are averaged: one for each report; NaN for reports planned but not given.
+/// One value for each report and each planned trial without a report, before scenes are averaged: the sum of
+/// the answers to `items`; NaN if one is unanswered.
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
 
-/// Analyses each score whose items are asked, and those of H1 to H3 whose methods the protocol shows; no
-/// hypotheses if effects are a factor or an item of a score is not asked.
+/// Analyses each score whose items are asked, and tests those of H1 to H3 whose methods the protocol shows.
+/// No hypothesis is tested if effects are a factor, or if an item of realism or cybersickness is not asked.
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// Only H1 to H3, as far as the protocol shows their methods: for the sensitivity analysis.
+/// Tests only those of H1 to H3 whose methods the protocol shows. Used by the sensitivity analysis.
 std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats::AnalysisPlan& plan);
 
 }  // namespace study

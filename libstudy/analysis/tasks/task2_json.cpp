@@ -34,7 +34,8 @@ const char* repeated_rule(stats::RepeatedPairs rule) {
          "half, by an exact test over people.";
 }
 
-/// Counts of people who answered a pair more than once.
+/// Number of people who answered a pair more than once ("participants"), of all people ("of"), and the most
+/// answers of one person to one pair.
 Json several_answers_json(const TaskData& data) {
   std::map<std::tuple<int, int, int>, int> answers;
   for (const auto& one : data.choices)
@@ -48,7 +49,7 @@ Json several_answers_json(const TaskData& data) {
   return {{"participants", people.size()}, {"of", data.participants.size()}, {"most", most}};
 }
 
-/// Names the tests that were used, and the rules that applied to these answers.
+/// Sentences that name the tests used and the rules of the plan that had an effect on the answers.
 Json preference_rules_json(const stats::PreferenceAnalysis& analysis, const stats::AnalysisPlan& plan,
                            bool several) {
   const auto& pairs = analysis.pairs;
@@ -147,7 +148,8 @@ Json interval_json(const stats::IntervalBias& bias) {
           {"by_participant", by_participant_json(bias)}};
 }
 
-/// The bias to an interval and its drift over the session, within the Bradley-Terry model.
+/// Bias towards the first or second interval, and its drift over the session, as terms of the Bradley-Terry
+/// model.
 Json order_json(const stats::Result<stats::OrderBias>& model, const Names& methods) {
   if (!model) return json_refused(with_names(model.reason(), methods));
   return json_result(model, [](const stats::OrderBias& bias) {
@@ -188,7 +190,8 @@ Json differences_json(const stats::BradleyTerry& model, const Names& methods) {
   return list;
 }
 
-/// The kind of the model's errors, and Wald's test of equal methods over people.
+/// How the model's standard errors were computed (over people, or as if answers were independent), and Wald's
+/// test over people that all methods are equal.
 Json people_json(const stats::BradleyTerry& model) {
   const auto& test = model.equal_over_people;
   return {{"errors", model.people_df ? "people" : "independent answers"},

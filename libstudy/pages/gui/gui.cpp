@@ -26,12 +26,13 @@ const unsigned background = IM_COL32(38, 38, 40, 255), panel = IM_COL32(48, 48, 
 
 namespace {
 
-// Fractions of the screen's height. 32 px on a screen of 1080: about 0.6 degrees at arm's length.
+// Heights of the type as fractions of the screen's height. Body text is 32 px high on a screen of 1080 px,
+// about 0.6 degrees at arm's length.
 constexpr float body_share = 0.0296F, title_share = 0.045F, huge_share = 0.13F;
 
 const ImWchar digits[] = {0x20, 0x3A, 0};
 
-/// Adds only the font of find_font().
+/// Adds the font of find_font() to the atlas, or Dear ImGui's default font if there is none.
 ImFont* add_font(ImFontAtlas& atlas, float size, const ImWchar* ranges) {
   const std::string file = find_font();
   ImFontConfig config;
@@ -64,7 +65,7 @@ TypeSizes type_for_x_height(float x_height_px) {
   const ImWchar letter[] = {'x', 'x', 0};
   const ImFont* font = add_font(atlas, tried, letter);
   atlas.Build();
-  // One px more, because glyphs end at whole pixels.
+  // Adds 1 px, because glyphs end at whole pixels.
   const float body = std::ceil(tried * (x_height_px + 1) / x_height_of(*font));
   return {body, std::round(body * title_share / body_share), std::round(body * huge_share / body_share)};
 }
@@ -144,26 +145,26 @@ void draw_wrapped(const std::string& words, unsigned colour) {
 
 namespace {
 
-/// Punctuation that must not begin a line.
+/// True for punctuation that must not begin a line.
 bool closes(char32_t c) {
   return std::u32string_view(
              U"\u3001\u3002\uFF0C\uFF0E\uFF1A\uFF1B\uFF1F\uFF01\uFF09\u300B\u300D\u300F\u3011"
              U"\u2019\u201D\u30FC")
              .find(c) != std::u32string_view::npos;
 }
-/// Punctuation that must not end a line.
+/// True for punctuation that must not end a line.
 bool opens(char32_t c) {
   return std::u32string_view(U"\uFF08\u300A\u300C\u300E\u3010\u2018\u201C").find(c) !=
          std::u32string_view::npos;
 }
 
-/// An unbreakable part of a text, and whether a space precedes it.
+/// An unbreakable part of a text; `spaced`: a space precedes it.
 struct Part {
   std::string text;
   bool spaced = false;
 };
 
-/// Splits at spaces, and between characters of scripts without spaces.
+/// Splits a text at spaces, and between characters of scripts that are written without spaces.
 std::vector<Part> parts_of(const std::string& words) {
   std::vector<Part> out;
   std::istringstream all(words);
@@ -210,7 +211,7 @@ float draw_centred(const std::string& words, ImVec2 at, float width, unsigned co
 
 namespace {
 
-/// Draws each line of a text centred about x, an empty line at half height; returns the y below them.
+/// Draws each line of a text centred at at.x, empty lines with extra space; returns the y below the text.
 float draw_paragraphs(const std::string& text, ImVec2 at, float width, unsigned colour) {
   std::istringstream all(text);
   for (std::string line; std::getline(all, line);) {
@@ -220,7 +221,8 @@ float draw_paragraphs(const std::string& text, ImVec2 at, float width, unsigned 
   return at.y;
 }
 
-/// Draws digits (none: nullptr), title and text from y down; returns the y below them.
+/// Draws the time left (null: none), title and text below each other from y down; returns the y below the
+/// text.
 float draw_pause(const Gui& gui, ImFont* font, const char* left, const PauseWords& words, float y) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float middle = screen.x / 2, column = std::min(0.86F * screen.x, 36 * gui.size_px());
@@ -238,7 +240,8 @@ float draw_pause(const Gui& gui, ImFont* font, const char* left, const PauseWord
   return y;
 }
 
-/// Draws in the middle of the window, with digits as large as the words allow.
+/// Draws the time left and the words in the middle of the window. The digits are small if large ones leave
+/// too little space for the words.
 void draw_on_black(Gui& gui, const char* left, const PauseWords& words, const std::string& corner) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0, 0});
@@ -246,7 +249,7 @@ void draw_on_black(Gui& gui, const char* left, const PauseWords& words, const st
   ImGui::Begin("countdown", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground |
                    (gui.by_hand() ? ImGuiWindowFlags_NoNav : ImGuiWindowFlags_NoInputs));
-  // Measures the height by drawing invisibly below the window.
+  // Measures the height by drawing below the window, where nothing is visible.
   const auto height = [&](ImFont* font) {
     return draw_pause(gui, font, left, words, 2 * screen.y) - 2 * screen.y;
   };

@@ -11,7 +11,8 @@ constexpr const char* minus = "\u2212";
 std::vector<std::string> letters(const std::string& row) {
   std::vector<std::string> keys;
   for (const char letter : row) {
-    const bool begins = (static_cast<unsigned char>(letter) & 0xC0U) != 0x80U;  // of a character in UTF-8
+    const bool begins =
+        (static_cast<unsigned char>(letter) & 0xC0U) != 0x80U;  // first byte of a UTF-8 character
     if (begins) keys.emplace_back();
     keys.back() += letter;
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// An on-screen keyboard for participants without a keyboard.
+/// An on-screen keyboard (pad) for participants without a keyboard.
 
 #include <cstdint>
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace study {
 
-/// Digits for a Number; letters, digits and signs for a Text. Arrows move between keys.
+/// Has digits for a Number, and letters, digits and punctuation for a Text. The arrow keys move a marker
+/// between the pad's keys.
 class Pad {
  public:
   static constexpr const char* erase = "\u2190";
@@ -17,17 +18,17 @@ class Pad {
   explicit Pad(const Question& question);
 
   const std::vector<std::vector<std::string>>& rows() const { return rows_; }
-  /// True if the arrows are on this key.
+  /// True if the marker is on this key.
   bool marked(std::size_t row, std::size_t column) const { return row_ == row + 1 && column_ == column; }
   /// Types a key into the focused question.
   void type(const std::string& key, PageState& state, std::int64_t now_ns) const;
-  /// Moves the arrows, or types the key under them. False if the pad does not use the key: Enter before any
-  /// arrow, and arrows that leave the pad at its top or bottom.
+  /// Arrow keys move the marker; Enter types the marked key. Returns false if the pad does not use the key:
+  /// Enter without a marker, and arrows that move the marker off the pad at its top or bottom.
   bool press(PageKey key, PageState& state, std::int64_t now_ns);
 
  private:
   std::vector<std::vector<std::string>> rows_;
-  std::size_t row_ = 0, column_ = 0;  ///< row from 1; 0: the arrows are not on the pad
+  std::size_t row_ = 0, column_ = 0;  ///< marker; row from 1, 0: no marker on the pad
 };
 
 }  // namespace study

@@ -24,7 +24,8 @@ namespace {
 
 static_assert(std::is_same_v<ImWchar, unsigned short>, "script_limit() knows characters of 16 bits");
 
-/// Latin with its extensions, Greek, Cyrillic, punctuation, arrows and signs.
+/// Ranges (first, last) of characters for every page: Latin with extensions, Greek, Cyrillic, punctuation,
+/// arrows, signs.
 constexpr std::array<ImWchar, 16> usual{0x20,   0x24F,  0x370,  0x52F,  0x1E00, 0x1EFF, 0x2010, 0x2044,
                                         0x20AC, 0x20AC, 0x2190, 0x2193, 0x2212, 0x2212, 0x2264, 0x2265};
 constexpr const char* folder = "/usr/share/fonts/";
@@ -68,7 +69,7 @@ bool is_readable(FcPattern* font) {
   return scalable && !variable && !colour && (name == "TrueType" || name == "CFF");
 }
 
-/// System fonts in fontconfig's order of preference for this language.
+/// System fonts that together have the characters, in fontconfig's order of preference for the language.
 std::vector<FontFile> system_fonts(const std::u32string& characters, const std::string& language) {
   if (!FcInit()) return {};
   CharSet missing(FcCharSetCreate());
@@ -100,7 +101,7 @@ std::vector<FontFile> system_fonts(const std::u32string& characters, const std::
 
 #else
 
-/// Font files of Debian packages, without checking their characters.
+/// Existing font files of Debian packages. Without fontconfig, their characters are not checked.
 std::vector<FontFile> system_fonts(const std::u32string&, const std::string&) {
   std::vector<FontFile> out;
   for (const char* name : {"truetype/dejavu/DejaVuSans.ttf", "opentype/noto/NotoSansCJK-Regular.ttc",

@@ -11,43 +11,45 @@ struct ImFontAtlas;
 
 namespace study {
 
-/// Characters that pages need besides the usual ones, and the protocol's language ("zh", "ja", "en"), which
-/// selects between fonts that draw a character differently.
+/// The characters of a protocol's pages, and the protocol's language ("zh", "ja", "en"). The language selects
+/// between fonts that draw a character differently.
 struct PageCharacters {
   std::u32string characters;
   std::string language;
 };
 PageCharacters page_characters(const Protocol& protocol);
 
-/// A system font, or "" if none is found (Dear ImGui's own is then used). $VIP_FONT overrides it.
+/// The file of $VIP_FONT, else of a system font; "" if there is none: Dear ImGui's default font is then used.
 std::string find_font();
 
-/// A font's file and its index in a file with several fonts.
+/// A font's file, and the font's index in a file with several fonts.
 struct FontFile {
   std::string path;
   int number = 0;
 };
-/// find_font() first, then system fonts (by fontconfig, if built with it) until all characters are found or
-/// no other font has one.
+/// Fonts that together have the needed characters: first find_font(), then system fonts (chosen by
+/// fontconfig, if built with it). The list ends when all characters are found, or when no other font has a
+/// missing one.
 std::vector<FontFile> find_fonts(const PageCharacters& needed);
 
-/// Adds fonts to an atlas, which the caller builds: the usual characters (Latin, Greek, Cyrillic,
-/// punctuation, arrows, signs) and those of `needed`, `size` px high from the highest ascent to the lowest
-/// descent.
+/// Adds the pages' fonts to an atlas of Dear ImGui, which the caller then builds. They have the usual
+/// characters (Latin, Greek, Cyrillic, punctuation, arrows, signs) and those of `needed`. `size`: height, px
+/// from the highest ascent to the lowest descent.
 class PageType {
  public:
   explicit PageType(const PageCharacters& needed);
   ImFont* add(ImFontAtlas& atlas, float size) const;
-  /// Characters that the fonts lack.
+  /// Those of the characters that no font has.
   std::u32string undrawn(const std::u32string& characters) const;
 
  private:
   std::vector<FontFile> files_;
-  std::vector<unsigned short> ranges_;  ///< in Dear ImGui's format; must live until the atlas is built
+  std::vector<unsigned short> ranges_;  ///< of characters, for Dear ImGui; must outlive the atlas's build
 };
 
-/// base::Error if a page's text cannot be drawn correctly: names the text, the character, and the package
-/// with a font or the limit. A program without Dear ImGui draws no pages and refuses nothing.
+/// Checks that the pages can draw all texts of a protocol. base::Error otherwise: names the text, the
+/// character, and either a package with a font or why no font helps. A program built without Dear ImGui has
+/// no pages and never throws.
 void check_pages(const Protocol& protocol);
 
 }  // namespace study

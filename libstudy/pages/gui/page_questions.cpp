@@ -1,4 +1,4 @@
-/// PageView: draws the questions of a page.
+/// The part of class PageView that draws the questions of a page.
 #include <fmt/core.h>
 #include <imgui.h>
 
@@ -82,7 +82,8 @@ void PageView::draw_scale(PageState& state, std::size_t i, std::int64_t now_ns) 
   draw_anchors(question, left, cell);
 }
 
-/// Draws the words below (or above) the scores, each as wide as its neighbours allow.
+/// Draws the anchors (words at scores) below or above the scores. Each anchor is as wide as the distance to
+/// the next anchor allows.
 void PageView::draw_anchors(const Question& question, float left, float cell) {
   const float y = ImGui::GetCursorScreenPos().y, x = ImGui::GetCursorScreenPos().x;
   float bottom = y;
@@ -142,7 +143,7 @@ void PageView::draw_number(PageState& state, std::size_t i, std::int64_t now_ns)
   if (focused) draw_pad(state, i, now_ns);
 }
 
-/// Draws keys below a field if there is no keyboard.
+/// Draws the on-screen keyboard below a field if the participant has no keyboard.
 void PageView::draw_pad(PageState& state, std::size_t i, std::int64_t now_ns) {
   const Pad* pad = pad_of(state);
   if (!pad) return;
@@ -163,12 +164,13 @@ void PageView::draw_pad(PageState& state, std::size_t i, std::int64_t now_ns) {
                           pad->marked(row, column)};
       if (!target(button, key)) continue;
       pad->type(key, state, now_ns);
-      return;  // the focus may have moved
+      return;  // the key may have moved the focus
     }
   }
 }
 
-/// Draws an edit field if it has focus and keyboard, else its words in a box.
+/// Draws an edit field if the question has the focus and the participant a keyboard; else the typed words in
+/// a box.
 void PageView::draw_words(PageState& state, std::size_t i, std::int64_t now_ns) {
   const float size = gui_.size_px();
   const ImVec2 box{column_, 4.5F * size};
@@ -232,7 +234,7 @@ void PageView::draw_matrix(PageState& state, std::size_t first, std::size_t end,
   pinned_until_ = -1;
 }
 
-/// Draws a table's words again at the window's top after they scrolled out of it.
+/// Draws the anchors of a table again at the window's top once they have scrolled out of the window.
 void PageView::pin_anchors(const Question& question, float left, float cell) {
   const ImVec2 cursor = ImGui::GetCursorScreenPos(), edge = ImGui::GetWindowPos();
   ImGui::GetWindowDrawList()->AddRectFilled(edge, {edge.x + ImGui::GetWindowWidth(), pinned_until_},

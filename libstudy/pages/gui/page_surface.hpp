@@ -1,5 +1,5 @@
 #pragma once
-/// Interface for showing pages and reading input: a window, or a page in a headset.
+/// Interface of a surface that shows pages and reads input: a window, or a page in a headset.
 
 #include <cstdint>
 #include <optional>
@@ -14,51 +14,54 @@
 
 namespace study {
 
-/// Input of a participant except for the pointer, which Dear ImGui handles.
+/// One input event of a participant. Dear ImGui handles the pointer.
 struct PageEvent {
   std::optional<PageKey> key{};
   int digit = -1;
   bool minus = false;
-  bool stop = false;       ///< opens the stop dialog
+  bool stop = false;       ///< true: opens the stop dialog
   float lines = 0;         ///< number of lines to scroll down
-  bool text_only = false;  ///< scrolls only a text without questions
-  /// Keyboard events go to the field with the keyboard focus, unless they leave the field.
+  bool text_only = false;  ///< true: `lines` applies only to pages without questions
+  /// Input device. A keyboard event is ignored while a field has the keyboard focus, unless its key leaves
+  /// the field.
   AnswerInput input = AnswerInput::Keyboard;
-  std::string letters{};  ///< if the surface itself types into fields
+  std::string letters{};  ///< typed letters, from surfaces without Dear ImGui's keyboard
 };
 
-/// All calls come from the session's thread.
+/// A surface that shows pages and reads input. All calls come from the session's thread.
 class PageSurface {
  public:
   virtual ~PageSurface() = default;
   virtual Gui& gui() = 0;
-  /// Text of a session's first page on how to answer and to stop.
+  /// Text about how to answer and how to stop, for the first page of a session.
   virtual std::string beginning(const DeskWords& words) const { return words.begin; }
 
   /// Input device that moves the pointer.
   virtual AnswerInput pointer() const { return AnswerInput::Mouse; }
 
-  /// Processes input, waiting about wait_s for it. base::Error if the surface is gone.
+  /// Waits for input for about wait_s seconds and processes it. base::Error if the surface is gone.
   virtual void poll(double wait_s) = 0;
   /// Returns the events since the last call.
   virtual std::vector<PageEvent> take_events() = 0;
   virtual void forget_input() = 0;
-  /// A period, ended since the last call, in which no answer was possible, on the session's clock.
+  /// A period (begin, end; ns on the session's clock) without a possibility to answer, if one ended since the
+  /// last call.
   virtual std::optional<std::pair<std::int64_t, std::int64_t>> take_away() { return {}; }
 
   virtual void begin(unsigned clear_colour) { gui().begin(clear_colour); }
-  /// Finishes the picture that was begun; show() then presents it.
+  /// Finishes the picture that begin() began; show() then presents it.
   virtual void end() { gui().end(); }
   virtual void show() = 0;
   /// Presents black now.
   virtual void show_black() = 0;
   virtual void show_cursor(bool /*shown*/) {}
 
-  /// Why the picture could not be seen at some time since the last call; none: it was seen.
+  /// Why the picture could not be seen at some time since the last call; none: it could always be seen.
   virtual std::optional<CutCause> take_unseen() = 0;
   /// True if the picture cannot be seen now.
   virtual bool unseen() const { return false; }
-  /// The session is over (true) or another one begins (false). Once over, closing the surface is no error.
+  /// Call it when the session is over (true) or another one begins (false). After `true`, closing the surface
+  /// is no error.
   virtual void set_over(bool /*over*/) {}
 };
 

@@ -17,7 +17,7 @@ using study::Question;
 constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
                                    ImGuiWindowFlags_NoNav;
-/// At least this many consecutive questions with equal layout become a table.
+/// This many or more consecutive questions with equal layout are drawn as a table.
 constexpr std::size_t fewest_rows = 3;
 
 bool looks_like(const Question& a, const Question& b) {
@@ -25,7 +25,8 @@ bool looks_like(const Question& a, const Question& b) {
          a.scale_max == b.scale_max && a.anchors == b.anchors;
 }
 
-/// End of the consecutive questions with the layout of `first`.
+/// One past the last of the consecutive questions with the layout of question `first`; first + 1 if they are
+/// too few for a table.
 std::size_t end_of_table(const PageState& state, std::size_t first) {
   std::size_t end = first + 1;
   while (end < state.size() && looks_like(state.question(first), state.question(end))) ++end;
@@ -79,7 +80,8 @@ void PageView::draw(PageState& state, std::int64_t now_ns) {
   ImGui::PopStyleVar();
 }
 
-/// A mouse that has not moved highlights nothing, and its button is ignored until it was up once.
+/// Notes the state of the mouse. A mouse that has not moved since the page appeared highlights nothing.
+/// Clicks count only once the button was up while input is accepted (`counts`).
 void PageView::look_at_mouse(bool counts) {
   const ImVec2 at = ImGui::GetMousePos();
   if (!begun_) {
@@ -140,7 +142,7 @@ void PageView::draw_questions(PageState& state, std::int64_t now_ns) {
   if (state.focus() == state.size()) seen_focus_ = state.focus();
 }
 
-/// Scrolls to a question when it gets the focus, and marks it if there are several.
+/// Scrolls to question i when it gets the focus, and marks it if the page has several questions.
 void PageView::follow_focus(const PageState& state, std::size_t i, float top) {
   if (state.focus() != i) return;
   const float size = gui_.size_px();
@@ -190,7 +192,7 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   draw_corner(gui_, text_.corner);
 }
 
-/// Draws buttons at the right of the button to go on that scroll most of a page up or down.
+/// Draws two buttons, to the right of the button to go on, that scroll most of a page up or down.
 void PageView::draw_scroll_buttons(float room) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float size = gui_.size_px(), side = 2 * size, gap = 0.4F * size;

@@ -1,5 +1,5 @@
 #pragma once
-/// Draws a page: title, text, questions and the button to go on; passes clicks to its state.
+/// Draws a page: title, text, questions and the button to go on; passes clicks to the page's state.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,13 +16,14 @@ namespace study {
 /// Texts of a page besides its questions.
 struct PageText {
   std::string title, text;
-  std::string button{};  ///< label of the button to go on; empty: the default
-  std::string corner{};  ///< small, in the lower left corner
+  std::string button{};  ///< label of the button to go on; empty: default label
+  std::string corner{};  ///< small words in the lower left corner
 };
 
 class PageView {
  public:
-  /// layer: unique for each of stacked pages, so that the lower one keeps its scroll position.
+  /// layer: unique name among pages that are open at the same time. With it, a page below a dialog keeps its
+  /// scroll position.
   PageView(Gui& gui, const DeskWords& words, PageText text, const char* layer = "body")
       : gui_(gui), words_(words), text_(std::move(text)), layer_(layer) {}
 
@@ -32,9 +33,9 @@ class PageView {
   void press(PageState& state, PageKey key, std::int64_t now_ns);
   /// Scrolls a long text by lines; down is positive.
   void scroll(float lines) { scroll_lines_ += lines; }
-  /// True if a field has the keyboard, so that letters and Enter go to it.
+  /// True if a field has the keyboard focus: letters and Enter then go to the field.
   bool typing(const PageState& state) const;
-  /// True if letters go to the focused question.
+  /// True if the focused question is a Text, to which typed letters go.
   static bool fills_words(const PageState& state);
 
  private:
@@ -53,7 +54,8 @@ class PageView {
   void draw_footer(PageState& state, std::int64_t now_ns);
   void draw_scroll_buttons(float room);
   void look_at_mouse(bool counts);
-  /// True if the last widget is under a real pointer.
+  /// True if the last drawn widget is under the pointer. A mouse counts only if it moved since the page
+  /// appeared.
   bool hovered() const;
   Pad* pad_of(const PageState& state);
   void follow_focus(const PageState& state, std::size_t i, float top);
@@ -61,7 +63,7 @@ class PageView {
   bool score_button(const PageState& state, std::size_t i, int score, const std::string& label, float width,
                     float height, bool left_aligned);
   struct Target {
-    const char* kind;  ///< forms its name with row and column
+    const char* kind;  ///< with row and column, the ImGui ID
     std::size_t row;
     int column;
     float width, height;
@@ -75,18 +77,18 @@ class PageView {
   PageText text_;
   const char* layer_;
   bool begun_ = false;  ///< the page was drawn before
-  float pinned_until_ =
-      -1;             ///< lower edge of the words pinned above a table, px; rows ignore clicks above it
-  float column_ = 0;  ///< width of the text, px
-  float height_ = 0;  ///< of the last drawn content, px
+  /// Lower edge of the anchors pinned above a table, px; -1: none. Rows ignore clicks above this edge.
+  float pinned_until_ = -1;
+  float column_ = 0;  ///< width of the text column, px
+  float height_ = 0;  ///< height of the last drawn content, px
   float scroll_lines_ = 0;
-  bool armed_ = false;                    ///< the mouse button was up since input is accepted
+  bool armed_ = false;                    ///< the mouse button was up while input was accepted
   bool pointed_ = false;                  ///< the mouse moved since the page appeared
-  float mouse_x_ = -1, mouse_y_ = -1;     ///< its position when the page appeared
-  std::size_t seen_focus_ = 0;            ///< the focus to which the page has scrolled
-  std::size_t editing_ = ~std::size_t{};  ///< Text whose field has the keyboard
-  std::string edited_;                    ///< its content, with room to grow
-  std::optional<Pad> pad_;                ///< of the focused question
+  float mouse_x_ = -1, mouse_y_ = -1;     ///< mouse position when the page appeared
+  std::size_t seen_focus_ = 0;            ///< question to which the page has scrolled
+  std::size_t editing_ = ~std::size_t{};  ///< Text whose field has the keyboard focus
+  std::string edited_;                    ///< content of this field, padded to most_bytes
+  std::optional<Pad> pad_;                ///< on-screen keyboard of pad_question_
   std::size_t pad_question_ = 0;
 };
 

@@ -7,10 +7,10 @@ namespace study {
 
 namespace {
 
-// Less than 50 ms, the interval in which the session's check must run.
+// s; less than 50 ms, the interval in which the session's check must run.
 constexpr double poll_s = 0.03;
 
-/// Aborts the stop dialog when the session ends for another reason.
+/// Exception that closes the stop dialog when the session ends for another reason.
 struct Overruled {
   Request request;
 };
@@ -32,7 +32,8 @@ bool leaves_field(const PageEvent& event) {
   return event.key == PageKey::Next || event.key == PageKey::Previous;
 }
 
-// Longer than measuring the beat of a 50 Hz screen.
+// Time before the end of a black pause for before_stimulus_: on a 50 Hz screen, finding the beat (the instant
+// of a refresh) takes 10 swaps, 200 ms.
 constexpr std::int64_t before_stimulus_ns = 250'000'000;
 
 }  // namespace
@@ -51,7 +52,7 @@ void Pages::draw(PageView& view, PageState& state) {
   surface_.end();
 }
 
-/// Returns true if a request to stop was among them.
+/// Applies the surface's events to the page. Returns true if one of them is a request to stop.
 bool Pages::handle_events(PageState& state, PageView& view) {
   const std::int64_t now_ns = this->now_ns();
   bool stop = false;
@@ -70,7 +71,7 @@ bool Pages::handle_events(PageState& state, PageView& view) {
     if (event.key && by_keyboard) state.press(*event.key, now_ns);
     if (event.key && !by_keyboard) view.press(state, *event.key, now_ns);
   }
-  state.use(surface_.pointer());  // clicks come while the page is drawn
+  state.use(surface_.pointer());  // for clicks, which the page handles while it is drawn
   return stop;
 }
 
@@ -80,7 +81,7 @@ std::vector<TimedAnswer> Pages::run_page(PageText text, std::span<const Question
   surface_.show_cursor(true);
   text.corner = corner();
   PageView view(surface_.gui(), words_, std::move(text));
-  // Draw twice before showing it: the first time measures sizes.
+  // Draws the page twice before showing it: the first drawing measures sizes.
   PageState unseen(questions, least_s, now_ns());
   for (int i = 0; i < 2; ++i) draw(view, unseen);
   surface_.show();
@@ -102,7 +103,7 @@ std::vector<TimedAnswer> Pages::run_page(PageText text, std::span<const Question
     surface_.show();
   }
   surface_.show_black();
-  surface_.take_unseen();  // an unseen page does no harm
+  surface_.take_unseen();  // discards the cause: a page that was not seen cuts no trial
   return state.answers();
 }
 
@@ -190,7 +191,7 @@ void Pages::set_over(bool over) {
 }
 
 Request Pages::wait_while_unseen(const std::function<Request()>& others) {
-  do {  // at least once: a frame may be reported unseen before its cause
+  do {  // at least once: the surface may report the cause later
     surface_.poll(poll_s);
     const Request other = others ? others() : Request::GoOn;
     if (other == Request::Stop || other == Request::EndSession) return other;
@@ -208,7 +209,7 @@ Request Pages::request(const std::function<Request()>& others) {
   if (away_) return wait_while_unseen(others);
   const auto unseen = surface_.take_unseen();
   away_ = unseen.has_value();
-  if (unseen) return *unseen;  // the cut is stored first, then this waits for the surface
+  if (unseen) return *unseen;  // the session stores the cut; the next call waits
   const auto events = surface_.take_events();
   if (std::none_of(events.begin(), events.end(), [](const PageEvent& event) { return event.stop; }))
     return request;

@@ -1,5 +1,5 @@
 #pragma once
-/// The screens between stimuli: pages, pauses and the stop dialog, and the person who answers on them.
+/// The screens between stimuli (pages, pauses and the stop dialog), and the participant who answers on them.
 
 #include <cstdint>
 #include <functional>
@@ -17,33 +17,35 @@
 
 namespace study {
 
-/// The screens of one session. All calls on the surface's thread. `clock` is the session's; surface and clock
-/// must outlive this.
+/// The screens of one session. All calls come from the surface's thread. `clock` is the session's clock.
+/// Surface and clock must outlive the object.
 class Pages {
  public:
   Pages(PageSurface& surface, const std::string& language, const Clock& clock);
 
-  /// Shows a page until it is confirmed. A request to stop opens the stop dialog; request() reports its
-  /// result.
+  /// Shows a page until it is confirmed. A request to stop opens the stop dialog; if the participant stops,
+  /// request() reports it.
   std::vector<TimedAnswer> run_page(PageText text, std::span<const Question> questions, double least_s,
                                     const Check& check);
-  /// Asks for one of two; true if the first was chosen.
+  /// Shows a page with a choice of two answers; true if the first was chosen.
   bool choose_first(const DeskChoice& choice, const Check& check);
-  /// Shows black until until_ns, with the words and the time left if there are words.
+  /// Shows black until until_ns; if there are words, shows them and the time left.
   void wait(const PauseWords& words, std::int64_t until_ns, const Check& check);
-  /// Shows the words on black, without a time, until `over` returns true.
+  /// Shows the words on black, without the time left, until `over` returns true.
   void show_words(const PauseWords& words, const std::function<bool()>& over, const Check& check);
-  /// The session is over (true) or another one begins (false). Once over, requests to stop are ignored.
+  /// Call it when the session is over (true) or another one begins (false). After `true`, requests to stop
+  /// are ignored.
   void set_over(bool over);
 
-  /// Polled by the session: returns the request of `others`, or the end of the session if the participant
-  /// chose it. A request to stop during a stimulus opens the dialog here; then the session ends or the trial
-  /// is shown again. A trial is also shown again if its stimulus could not be seen, as soon as it can.
+  /// The session polls this. Returns the request of `others`, or the end of the session if the participant
+  /// stopped. A request to stop during a stimulus opens the stop dialog here; afterwards the session ends, or
+  /// the trial is cut and shown again. A trial is also cut if its stimulus could not be seen; then this waits
+  /// until the surface is visible, and the trial is shown again.
   Request request(const std::function<Request()>& others);
 
   const DeskWords& words() const { return words_; }
   std::int64_t now_ns() const { return clock_.now_ns(); }
-  /// Text of the first page on how to answer and to stop.
+  /// Text about how to answer and how to stop, for the first page of a session.
   std::string beginning() const { return surface_.beginning(words_); }
 
  private:
@@ -51,28 +53,29 @@ class Pages {
   void draw(PageView& view, PageState& state);
   /// Opens the stop dialog; true if the participant wants to stop.
   bool ask_to_stop(const Check& check);
-  /// Asks for one of two on a page above others; none: closed by another request to stop.
+  /// Shows a choice of two answers above other pages; true if the first was chosen. None: the participant
+  /// closed it with another request to stop.
   std::optional<bool> ask_first(const DeskChoice& choice, const char* layer, const Check& check);
-  /// Waits a moment and processes input; true if the stop dialog was opened.
+  /// Waits for wait_s and processes input; true if the stop dialog was opened.
   bool look_up(double wait_s, const Check& check);
   std::string corner() const;
-  /// Waits until the surface can be seen or others request the end.
+  /// Waits until the surface can be seen, or until `others` requests the end of the session.
   Request wait_while_unseen(const std::function<Request()>& others);
 
   PageSurface& surface_;
   const DeskWords& words_;
   const Clock& clock_;
-  bool in_page_ = false;  ///< a page is shown, which handles requests to stop
+  bool in_page_ = false;  ///< true: a page is shown and handles requests to stop
   bool stop_requested_ = false;
   bool over_ = false;  ///< see set_over()
-  bool away_ = false;  ///< the last request was a cut because the surface was unseen, as it may still be
+  bool away_ = false;  ///< the last request was a cut because the surface was not visible
 };
 
 /// A person who answers on pages.
 class PageParticipant final : public Participant {
  public:
   /// last_block: id of the protocol's last block. before_stimulus: called shortly before the end of each
-  /// black pause, since a stimulus may follow.
+  /// black pause, because a stimulus may follow.
   PageParticipant(std::shared_ptr<Pages> pages, std::string last_block, std::function<void()> before_stimulus)
       : pages_(std::move(pages)),
         last_block_(std::move(last_block)),
@@ -87,7 +90,8 @@ class PageParticipant final : public Participant {
   bool offer(Offer offer, Clock& clock, const Check& check) override;
 
  private:
-  /// The texts of a block's page: the first page of a session says how to stop, the last one that it ends.
+  /// The texts of a block's page. The session's first page says how to stop; the button of the last one says
+  /// Finish.
   PageText page_of(const Block& block);
 
   std::shared_ptr<Pages> pages_;

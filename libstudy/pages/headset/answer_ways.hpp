@@ -6,21 +6,21 @@
 namespace study {
 
 struct AnswerWays {
-  bool ray = false;       ///< a hand controller points, select chooses
-  bool stick = false;     ///< a thumbstick moves between choices, select chooses
+  bool ray = false;       ///< pointing with a controller; the select button chooses
+  bool stick = false;     ///< a thumbstick moves between choices; select chooses
   bool dwell = false;     ///< looking at a choice for a while chooses it
-  bool keyboard = false;  ///< of the terminal that started the program
+  bool keyboard = false;  ///< keys of the terminal that started the program
 };
 
-/// All but dwell.
+/// The ways if the user names none: all but dwell.
 extern const char* const usual_answer_ways;
 
-/// Parses comma-separated words such as "ray,stick". base::Error for unknown words, for none, and for ray
-/// with dwell, because both point.
+/// Parses comma-separated words such as "ray,stick". base::Error for unknown words, for no word, and for ray
+/// together with dwell, because both move the pointer.
 AnswerWays parse_answer_ways(const std::string& words);
 
-/// base::Error if the only way to answer is the keyboard and the console uses it. Empty `words`:
-/// usual_answer_ways.
+/// base::Error if the keyboard is the only way to answer and the experimenter's console uses the keyboard.
+/// Empty `words` stand for usual_answer_ways.
 void check_keys_are_free(const std::string& words, bool console);
 
 }  // namespace study

@@ -1,5 +1,5 @@
 #pragma once
-/// Chooses a target by looking at it for a while.
+/// Lets a participant choose a target (button) by looking at it for a second.
 
 #include <cstdint>
 
@@ -8,13 +8,14 @@ namespace study {
 class Dwell {
  public:
   static constexpr std::int64_t whole_ns = 1'000'000'000;
-  /// A shorter gap (a blink) pauses the dwell; a longer one restarts it.
+  /// A gap in the tracking of the eyes: a shorter gap (a blink) pauses the dwell, a longer gap restarts it.
   static constexpr std::int64_t blink_ns = 300'000'000;
 
-  /// target: looked at since the last call, 0 for none; seen: the eyes are tracked. True once a target was
-  /// looked at for long enough; it must then be left before it can be chosen again.
+  /// target: the target looked at since the last call, 0 for none. seen: true if the eyes are tracked.
+  /// Returns true once the target was looked at for whole_ns. To choose it again, the gaze must leave it
+  /// first.
   bool look(unsigned target, bool seen, std::int64_t now_ns);
-  /// Progress at the current target, 0 to 1.
+  /// Fraction of whole_ns spent on the current target, 0 to 1; 0 once it was chosen.
   float progress() const;
   void reset() { *this = {}; }
 

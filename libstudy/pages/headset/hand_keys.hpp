@@ -1,5 +1,5 @@
 #pragma once
-/// Converts a controller's stick and buttons to keys of a page.
+/// Converts the stick and the menu button of hand controllers to events of a page.
 
 #include <cstdint>
 #include <vector>
@@ -11,13 +11,14 @@ namespace study {
 
 class HandKeys {
  public:
-  static constexpr std::int64_t long_press_ns = 1'000'000'000;  ///< of menu: opens the stop dialog
-  /// A held stick repeats after hold_ns, then every again_ns.
+  static constexpr std::int64_t long_press_ns =
+      1'000'000'000;  ///< a menu button held this long opens the stop dialog
+  /// A stick that stays pushed repeats its key after hold_ns, then every again_ns.
   static constexpr std::int64_t hold_ns = 500'000'000, again_ns = 150'000'000;
 
-  /// Events newly pressed in this slot. Without `stick`, only long presses.
+  /// Returns the events that begin in this slot. stick = false: only the stop dialog.
   std::vector<PageEvent> take(const HeadsetHands& hands, bool stick, std::int64_t now_ns);
-  /// Ignores all that is held down now until it is released.
+  /// Ignores the stick and the menu button until they are released.
   void forget();
 
  private:
@@ -25,8 +26,8 @@ class HandKeys {
 
   std::optional<PageKey> pushed_;
   bool locked_ = false;        ///< the stick must be released first
-  std::int64_t next_ns_ = 0;   ///< when a held stick repeats
-  std::int64_t menu_ns_ = -1;  ///< when menu was pressed; -1: it is not
+  std::int64_t next_ns_ = 0;   ///< when a pushed stick repeats its key
+  std::int64_t menu_ns_ = -1;  ///< when menu was pressed; -1: not pressed
   bool menu_done_ = false;
 };
 

@@ -27,19 +27,19 @@ namespace study {
 
 namespace {
 
-/// A page in a headset: drawn on a quad fixed in the world, answered by hand, eyes or keyboard.
+/// A surface for pages in a headset: a rectangle in the world, answered by hand, eyes or keyboard.
 ///
-/// A page appears upright where the head looks, and stays there. It fades to black when it ends. Input is
-/// ignored while the headset is not focused. A long press of menu, or Stop on the page, opens the stop
-/// dialog. It draws one picture per slot of the display.
+/// A page appears upright in front of the head and stays there until the head turns or moves far away. It
+/// fades to black when it ends. Input is ignored while the headset is not focused. A long press of the menu
+/// button, or Stop on the page, opens the stop dialog. poll() and show_black() wait for slots of the display.
 class HeadsetSurface final : public PageSurface {
  public:
-  /// display: made with choice_for_person(); it must outlive this.
+  /// display: made with choice_for_person(); it must outlive the surface.
   HeadsetSurface(HeadsetDisplay& display, const AnswerWays& ways, const PageCharacters& characters = {});
 
-  /// Makes the terminal's keys answer from now on, if the ways include the keyboard.
+  /// From now on, takes keys of the terminal as input, if the ways to answer include the keyboard.
   void listen();
-  /// Seconds since a hand or a key was used.
+  /// Seconds since the last input by hand or key.
   double idle_s() const;
 
   Gui& gui() override { return gui_; }
@@ -79,21 +79,21 @@ class HeadsetSurface final : public PageSurface {
   std::vector<PageEvent> events_;
   std::optional<std::pair<std::int64_t, std::int64_t>> away_;
   std::optional<std::int64_t> away_since_ns_;
-  std::optional<std::int64_t> last_ns_;  ///< of the previous slot
-  HeadsetPose head_;                     ///< the last known pose
-  int head_world_ = 0, page_world_ = 0;  ///< worlds of head_ and of the page
-  std::optional<HeadsetPage> page_;      ///< the shown page; none: not shown
-  Place pointer_;                        ///< px on the page
-  Place stick_from_;      ///< pointer position when the stick was pushed, which hides the pointer
-  bool pressed_ = false;  ///< the pointer's button
-  int clicks_ = 0;        ///< pictures until a click by dwell is over
-  std::size_t hand_ = 1;  ///< the hand that pointed last
-  std::int64_t used_ns_;  ///< steady clock
+  std::optional<std::int64_t> last_ns_;  ///< time of the previous slot
+  HeadsetPose head_;                     ///< last known pose of the head
+  int head_world_ = 0, page_world_ = 0;  ///< HeadsetRecord::world of head_ and of page_
+  std::optional<HeadsetPage> page_;      ///< position of the shown page; none: no page
+  Place pointer_;                        ///< pointer position, px of the page
+  Place stick_from_;                     ///< pointer position when the stick was pushed; hides the pointer
+  bool pressed_ = false;                 ///< true: the pointer's button is down
+  int clicks_ = 0;                       ///< calls of take_look() until a click by dwell is over
+  std::size_t hand_ = 1;                 ///< the hand that pointed last
+  std::int64_t used_ns_;                 ///< steady clock
 };
 
 constexpr double fade_s = 0.2;
-constexpr float picture_s = 1.0F / 60;  // arbitrary: pages do not use it
-// The stick hides the pointer until the hand moves it this far, px: about two degrees.
+constexpr float picture_s = 1.0F / 60;  // s, for Dear ImGui; pages do not depend on it
+// The stick hides the pointer until the hand moves the pointer this far, px: about 2 degrees.
 constexpr float moved_px = 60;
 
 float distance(const std::pair<float, float>& a, const std::pair<float, float>& b) {
@@ -125,7 +125,7 @@ std::string HeadsetSurface::beginning(const DeskWords& words) const {
   return all + words.begin_by_hand;
 }
 
-/// Returns before wait_s if there is something new to draw.
+/// Waits for input up to wait_s; returns earlier if the pointer changed, an event came or no slot came.
 void HeadsetSurface::poll(double wait_s) {
   std::int64_t until_ns = -1;
   for (;;) {
@@ -154,10 +154,12 @@ void HeadsetSurface::take_in(const HeadsetRecord& record) {
   if (ways_.dwell) take_look(record.input, now_ns);
 }
 
-/// True while the headset is not focused: input is ignored, and afterwards buttons still held down.
+/// Returns true while the headset is not focused, when input must be ignored. Buttons that are still held
+/// down when the focus returns are ignored until released.
 bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   if (!focused && !away_since_ns_) {
-    away_since_ns_ = last_ns_.value_or(now_ns);  // there are no slots while it is off or its session is lost
+    away_since_ns_ =
+        last_ns_.value_or(now_ns);  // from the last slot: an unworn headset or a lost session has none
     pointer_.reset();
     pressed_ = false;
     dwell_.reset();
@@ -171,7 +173,8 @@ bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   return !focused;
 }
 
-/// Where the hand that pointed last meets the page, else the other hand.
+/// The point of the page at which the hand that pointed last points, else the other hand; none if neither
+/// does.
 HeadsetSurface::Place HeadsetSurface::hand_place(const HeadsetHands& hands) {
   for (const std::size_t hand : {hand_, 1 - hand_}) {
     const auto& aim = hands.aim[hand];
@@ -199,12 +202,12 @@ void HeadsetSurface::take_hands(const HeadsetHands& hands, std::int64_t now_ns) 
   pressed_ = pointer_ && hands.select;
 }
 
-/// Points along the eyes' ray or, without a tracker, the head's.
+/// Moves the pointer to the point looked at: along the eyes' ray or, without a tracker, the head's ray.
 void HeadsetSurface::take_look(const HeadsetInput& input, std::int64_t now_ns) {
   const bool eyes = display_.session().eye_gaze;
   const HeadsetPose ray = !eyes ? input.head : input.gaze ? input.gaze->ray : HeadsetPose();
   const bool seen = ray.valid();
-  if (clicks_ > 0) --clicks_;  // the pointer is fixed during the click, while the eyes move on
+  if (clicks_ > 0) --clicks_;  // the pointer is fixed during the click, though the eyes move
   const bool clicking = clicks_ > 0;
   if (!clicking && seen) pointer_ = page_ ? meet_page(*page_, ray) : Place();
   if (dwell_.look(pointer_ ? gui_.pointed_at() : 0, seen, now_ns)) clicks_ = 3;
@@ -265,7 +268,7 @@ void HeadsetSurface::end() {
 }
 
 void HeadsetSurface::show() {
-  if (!page_) display_.clear();  // the former picture would stay frozen around the page
+  if (!page_) display_.clear();  // else the last picture would stay on, frozen, behind the page
   if (!page_ || page_world_ != head_world_ || is_left_behind(*page_, head_)) {
     page_ = place_page(head_);
     page_world_ = head_world_;
@@ -286,7 +289,7 @@ void HeadsetSurface::show_black() {
   pointer_.reset();
 }
 
-/// Owns the surface and its pages while either is referenced.
+/// Owns the surface and its pages. Pointers to one of them share ownership of both.
 struct HeadsetPages {
   HeadsetPages(HeadsetDisplay& display, const AnswerWays& ways, const Protocol& protocol, const Clock& clock)
       : surface(display, ways, page_characters(protocol)), pages(surface, protocol.language, clock) {}

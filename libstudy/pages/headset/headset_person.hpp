@@ -1,5 +1,5 @@
 #pragma once
-/// A person in a headset: the parts that a session needs.
+/// Makes the parts that a session needs for a person in a headset.
 
 #include <functional>
 #include <memory>
@@ -14,17 +14,17 @@
 
 namespace study {
 
-/// The parts; each keeps the pages alive.
+/// The parts of a session with a person in a headset. Each part shares ownership of the pages.
 struct HeadsetPerson {
   std::unique_ptr<Participant> participant;
   std::function<Request(const std::function<Request()>& others)> request;  ///< see SessionHooks::request
-  std::function<std::optional<double>()> idle;  ///< seconds since a hand or a key was used
-  std::function<void()> listen;                 ///< takes keys of the terminal as answers from this call on
+  std::function<std::optional<double>()> idle;  ///< seconds since the last input by hand or key
+  std::function<void()> listen;                 ///< from this call on, takes keys of the terminal as answers
 };
 
-/// The choice with which a display must be made for this person. base::Error if the program has no pages.
+/// The HeadsetChoice to make the display with. base::Error if the program was built without pages.
 HeadsetChoice choice_for_person(const AnswerWays& ways);
-/// display and clock are the session's and must outlive the parts.
+/// Makes the parts. display and clock are those of the session and must outlive the parts.
 HeadsetPerson make_headset_person(HeadsetDisplay& display, const AnswerWays& ways, const Protocol& protocol,
                                   const Clock& clock);
 

@@ -9,8 +9,8 @@ namespace study {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-// A page is moved after the head once the head points more than farthest_deg away from the page's middle, or
-// once their distance is more than farthest_m from page_distance_m.
+// A page is placed anew once the head points more than farthest_deg away from the page's middle, or once the
+// distance of head and page differs from page_distance_m by more than farthest_m.
 constexpr double farthest_deg = 50, farthest_m = 0.8;
 
 const double width_m = 2 * page_distance_m * std::tan(0.5 * page_width_deg * degree);
@@ -23,8 +23,8 @@ Vector difference(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] 
 }  // namespace
 
 float px_of_height(double degrees) {
-  // (x, y) is the page's corner, in distances of the page: there an upright length looks smallest. slope: its
-  // visual angle by length.
+  // Lengths here are in units of page_distance_m. (x, y): corner of the page, where an upright length
+  // subtends the smallest visual angle. slope: this angle (rad) per length. px: length of a pixel.
   const double x = 0.5 * width_m / page_distance_m, y = 0.5 * height_m / page_distance_m;
   const double slope = std::sqrt(1 + x * x) / (1 + x * x + y * y);
   const double px = width_m / page_distance_m / page_width_px;

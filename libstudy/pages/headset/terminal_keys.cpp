@@ -10,7 +10,7 @@ namespace study {
 
 namespace {
 
-/// Sequences after Esc.
+/// Escape sequences of terminals, without the leading Esc, and their events.
 const std::pair<const char*, PageEvent> sequences[] = {
     {"[A", {.key = PageKey::Up, .lines = -1, .text_only = true}},
     {"[B", {.key = PageKey::Down, .lines = 1, .text_only = true}},
@@ -21,7 +21,7 @@ const std::pair<const char*, PageEvent> sequences[] = {
     {"[6~", {.lines = 1}},
 };
 
-/// Length of a sequence after Esc; 0 if Esc is alone.
+/// Length of the escape sequence at `at`, without the leading Esc; 0 if Esc was pressed alone.
 std::size_t length_of(const std::string& typed, std::size_t at) {
   if (at >= typed.size() || (typed[at] != '[' && typed[at] != 'O')) return 0;
   std::size_t end = at + 1;
@@ -51,7 +51,8 @@ std::vector<PageEvent> page_events(const std::string& typed) {
       std::string sequence = typed.substr(at + 1, length_of(typed, at + 1));
       event.stop = sequence.empty();
       at += sequence.size();
-      if (!sequence.empty() && sequence[0] == 'O') sequence[0] = '[';  // arrows of some terminals
+      if (!sequence.empty() && sequence[0] == 'O')
+        sequence[0] = '[';  // some terminals send "O" for "[" with arrows
       for (const auto& [known, meant] : sequences) {
         if (sequence == known) event = meant;
       }

@@ -1,5 +1,5 @@
 #pragma once
-/// Converts the keyboard of the terminal that started the program to keys of a page.
+/// Converts keys of the terminal that started the program to events of a page.
 
 #include <termios.h>
 
@@ -10,10 +10,11 @@
 
 namespace study {
 
-/// Parses a terminal's input: arrows and similar keys are escape sequences, Esc alone opens the stop dialog.
+/// Parses the bytes that a terminal sends. Arrows and similar keys are escape sequences; Esc alone opens the
+/// stop dialog.
 std::vector<PageEvent> page_events(const std::string& typed);
 
-/// Reads standard input key by key if it is a terminal, else nothing. Ctrl-C works as usual.
+/// Reads standard input key by key if it is a terminal; otherwise reads nothing. Ctrl-C works as usual.
 class TerminalKeys {
  public:
   TerminalKeys();

@@ -1,6 +1,6 @@
 #include "libstudy/pages/window/mirror_window.hpp"
 
-// epoxy first: GLFW then leaves GL's headers alone.
+// epoxy must come before GLFW: GLFW then does not include OpenGL's headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -23,7 +23,8 @@ GlfwWindow::Size mirror_size(GlfwWindow::Size picture) {
   return {width, std::max(1, picture.height * width / picture.width)};
 }
 
-/// Another monitor than the participant's, or the same if the participant's window does not fill it.
+/// A monitor for the mirror: another than the participant's, or the same if the participant's window does not
+/// fill it. base::Error if that window fills the only monitor.
 GLFWmonitor* experimenters_monitor(GLFWwindow* participant) {
   GLFWmonitor* const filled = glfwGetWindowMonitor(participant);
   GLFWmonitor* const theirs = filled ? filled : glfwGetPrimaryMonitor();
@@ -34,7 +35,7 @@ GLFWmonitor* experimenters_monitor(GLFWwindow* participant) {
   }
   if (filled)
     throw base::Error("--mirror", "the participant's window fills the only monitor",
-                      "connect the experimenter's, or give the participant's window a --size");
+                      "connect a second monitor, or give the participant's window a --size");
   return theirs;
 }
 
@@ -97,14 +98,14 @@ void MirrorWindow::take(unsigned framebuffer) {
   {
     const std::lock_guard lock(mutex_);
     picture.copy = reading_ == 0 ? 1 : 0;
-    if (next_.copy == picture.copy) waiting_ = false;  // it is about to be overwritten
+    if (next_.copy == picture.copy) waiting_ = false;  // the waiting copy will be overwritten below
   }
   glDisable(GL_SCISSOR_TEST);
   glBlitNamedFramebuffer(framebuffer, copies_[static_cast<std::size_t>(picture.copy)].framebuffer(), 0, 0,
                          from_.width, from_.height, 0, 0, size_.width, size_.height, GL_COLOR_BUFFER_BIT,
                          GL_LINEAR);
   picture.copied = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  glFlush();  // the other context waits for the fence
+  glFlush();  // submits the fence, for which the mirror's context waits
   black_ = false;
   leave(picture);
 }

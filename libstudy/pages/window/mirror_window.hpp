@@ -11,28 +11,30 @@
 
 namespace study {
 
-/// The mirror is on another monitor than the participant's window. The participant's thread only makes a
-/// small copy of each finished picture. The mirror's own thread, whose context shares the copies, shows the
-/// last one, about ten per second, without waiting for the screen. Input to the window is ignored.
+/// A mirror on another monitor than the participant's window, or beside it if that window is not full-screen.
+/// The participant's thread only makes a small copy of each finished picture. The mirror's thread, whose
+/// OpenGL context shares the copies, shows the newest copy about ten times a second, without waiting for the
+/// screen. Input to the mirror's window is ignored.
 class MirrorWindow {
  public:
-  /// Call on the thread and with the current context of the participant's window, which must outlive it.
-  /// logged: the title ends in "(logged)". base::Error if that window fills the only monitor.
+  /// Call it on the thread of the participant's window, with that window's context current. The participant's
+  /// window must outlive the mirror. logged: the mirror's title ends in "(logged)". base::Error if the
+  /// participant's window fills the only monitor.
   MirrorWindow(const GlfwWindow& participant, bool logged);
   ~MirrorWindow();
   MirrorWindow(const MirrorWindow&) = delete;
   MirrorWindow& operator=(const MirrorWindow&) = delete;
 
-  /// Copies the picture in a framebuffer object (0: the back buffer, before the swap).
+  /// Copies the picture in an OpenGL framebuffer object for the mirror; 0: the back buffer, before the swap.
   void take(unsigned framebuffer);
-  /// The same for frequent pictures: skipped while an earlier one still waits to be shown.
+  /// As take(), for frequent pictures: does nothing while an earlier copy still waits to be shown.
   void take_some(unsigned framebuffer);
   void take_black();
 
  private:
-  /// A picture to show: a copy, complete once `copied` is signalled, or black.
+  /// A picture to show: black, or a copy, which is complete once the fence `copied` is signalled.
   struct Picture {
-    int copy = -1;           ///< -1: black
+    int copy = -1;           ///< index in copies_; -1: black
     void* copied = nullptr;  ///< a GLsync
   };
 
@@ -41,17 +43,17 @@ class MirrorWindow {
   void show_all();
   void show(const Picture& picture, const std::array<unsigned, 2>& copies) const;
 
-  GlfwWindow::Size from_, size_;  ///< of the participant's picture and of the copies, px
+  GlfwWindow::Size from_, size_;  ///< sizes of the participant's picture and of the copies, px
   GLFWwindow* window_;
-  GlfwWindow::Size shown_;  ///< of the mirror's framebuffer, px
+  GlfwWindow::Size shown_;  ///< size of the mirror's framebuffer, px
   std::array<sim::Offscreen, 2> copies_;
   bool black_ = false;  ///< the last picture taken is black
 
   std::mutex mutex_;
   std::condition_variable changed_;
   bool waiting_ = false, over_ = false;
-  Picture next_;      ///< while waiting_
-  int reading_ = -1;  ///< the copy being shown
+  Picture next_;      ///< picture to show next, while waiting_
+  int reading_ = -1;  ///< index of the copy being shown; -1: none
   std::thread thread_;
 };
 

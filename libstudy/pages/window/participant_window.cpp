@@ -1,6 +1,6 @@
 #include "libstudy/pages/window/participant_window.hpp"
 
-// epoxy first: GLFW then leaves GL's headers alone.
+// epoxy must come before GLFW: GLFW then does not include OpenGL's headers.
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
@@ -48,7 +48,7 @@ std::optional<PageKey> page_key(int key, bool shift) {
   }
 }
 
-/// Lines that a key scrolls down; 0 if none.
+/// Number of lines that a key scrolls down; 0 if it does not scroll.
 float lines_of(int key) {
   if (key == GLFW_KEY_PAGE_DOWN || key == GLFW_KEY_DOWN) return 1;
   if (key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_UP) return -1;

@@ -1,5 +1,5 @@
 #pragma once
-/// The participant's window as a surface of pages. One per session.
+/// The participant's window as a surface for pages.
 
 #include <array>
 #include <memory>
@@ -18,10 +18,10 @@ namespace study {
 /// Converts newly pressed buttons of any gamepad to keys of a page.
 class Gamepad {
  public:
-  /// Keys pressed since the last call. The cross gives arrows, A Enter, B the previous question, the
-  /// shoulders move between questions.
+  /// Keys pressed since the last call. The direction pad gives arrow keys and A gives Enter. B and the left
+  /// shoulder button go to the previous question, the right shoulder button to the next.
   std::vector<PageKey> take();
-  /// Ignores all that is held down now.
+  /// Ignores buttons that are held down now.
   void forget() { take(); }
 
  private:
@@ -29,20 +29,21 @@ class Gamepad {
 };
 
 struct ParticipantWindowOptions {
-  int width_px = 0, height_px = 0;  ///< 0: the whole monitor
+  int width_px = 0, height_px = 0;  ///< 0: the window fills the monitor
   int monitor = 0;
-  PageCharacters characters{};  ///< of its pages
+  PageCharacters characters{};  ///< of all pages
 };
 
-/// All calls on the thread that made it. Esc opens the stop dialog. A minimised window counts as unseen.
+/// The window in which a participant sees pages and stimuli. All calls come from the thread that made it. Esc
+/// opens the stop dialog. A minimised window counts as not seen.
 class ParticipantWindow final : public PageSurface {
  public:
-  /// base::Error if there is no display or no OpenGL 4.5 on it.
+  /// base::Error if there is no display, or no OpenGL 4.5 on the display.
   explicit ParticipantWindow(const ParticipantWindowOptions& options);
 
   Gui& gui() override { return gui_; }
-  /// base::Error if the window was closed or the display is gone; study::Stopped if it was closed after the
-  /// session was over.
+  /// Throws base::Error if the window was closed or the display is gone, and study::Stopped if the window was
+  /// closed after the session was over.
   void poll(double wait_s) override;
   std::vector<PageEvent> take_events() override;
   void forget_input() override;
@@ -55,20 +56,21 @@ class ParticipantWindow final : public PageSurface {
   bool unseen() const override { return window_.minimised(); }
   void set_over(bool over) override { over_ = over; }
 
-  /// Opens a mirror of the participant's pages for the experimenter; stimuli are black in it unless `reveal`.
-  /// base::Error as MirrorWindow.
+  /// Opens a mirror of the participant's pages for the experimenter. reveal: the mirror also shows stimuli;
+  /// otherwise they are black. base::Error as in MirrorWindow.
   void open_mirror(bool reveal);
-  /// Copies the picture of a stimulus, just presented from this framebuffer object, to a revealing mirror.
+  /// Copies the picture of a stimulus in this OpenGL framebuffer object to the mirror, if the mirror reveals
+  /// stimuli.
   void mirror(unsigned framebuffer);
 
   GlfwWindow& window() { return window_; }
-  /// Size at the start, px; it must not change.
+  /// Size of the framebuffer at the start, px; it must not change.
   GlfwWindow::Size size() const { return size_; }
-  /// Position of the mouse, px from the lower left corner; none if outside.
+  /// Position of the mouse, px from the lower left corner of the framebuffer; none if outside the window.
   std::optional<std::pair<double, double>> mouse() const;
 
  private:
-  /// Connects the window's mouse and keys to Dear ImGui; made after the Gui, destroyed before it.
+  /// Connects the window's mouse and keys to Dear ImGui. Made after gui_ and destroyed before gui_.
   struct Backend {
     explicit Backend(GLFWwindow* window);
     ~Backend();

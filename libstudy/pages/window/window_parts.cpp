@@ -1,6 +1,6 @@
 #include "libstudy/runner/window_parts.hpp"
 
-// epoxy first: GLFW then leaves GL's headers alone.
+// epoxy must come before GLFW: GLFW then does not include OpenGL's headers.
 #include <epoxy/gl.h>
 #include <fmt/core.h>
 
@@ -25,30 +25,33 @@ namespace study {
 
 namespace {
 
-/// The participant's window as a display of stimuli: draws off-screen, shows by a swap that waits for the
-/// screen.
+/// The participant's window as a display of stimuli. It draws off-screen and shows a frame by a buffer swap
+/// that waits for the screen.
 ///
-/// Its timing evidence is the submission (grade D): the screen does not report when it showed a frame. The
-/// predicted time is the screen's next beat (refresh.hpp), as measured before the trial. Destroy stimuli that
-/// drew on it first.
+/// Its timing evidence is the submission time (grade D), because the screen does not report when it showed a
+/// frame. The predicted display time is the next beat, the instant at which the screen takes over a picture
+/// (refresh.hpp). The beat is measured before the trial. Destroy stimuli that drew on the display before the
+/// display.
 class WindowDisplay final : public Display {
  public:
-  /// Measures the refresh for about two seconds on a black window. The session's clock must be real.
+  /// Measures the refresh with 120 swaps of a black window (2 s at 60 Hz). The session's clock must be the
+  /// real clock.
   explicit WindowDisplay(std::shared_ptr<ParticipantWindow> window);
 
   std::string description() const override;
   TimingGrade grade() const override { return TimingGrade::CpuSubmit; }
-  /// 0 if swaps do not wait for the screen.
+  /// Nominal refresh rate, Hz; 0 if swaps do not wait for the screen.
   double refresh_hz() const override { return refresh_.nominal_hz; }
   double measured_hz() const override;
   std::int64_t first_onset(std::int64_t earliest_ns) const override;
-  /// Measures the screen's beat again on a black window for about ten periods, so that its drift since the
-  /// start does not matter to a trial. Returns at once if swaps do not wait.
+  /// Measures the screen's beat (the instant of a refresh) again, with ten swaps of a black window.
+  /// Predictions then do not depend on the beat's drift since the start. Returns at once if swaps do not wait
+  /// for the screen.
   void find_beat();
-  /// Draws off-screen, copies to the window's back buffer and waits until the device has finished, so that
-  /// present() is only a swap and a slow picture counts as late.
+  /// Draws off-screen, copies the picture to the window's back buffer and waits until the GPU has finished.
+  /// present() is then only a swap, and a slow picture counts as late.
   void render(Stimulus& stimulus) override;
-  /// gpu_done is the time when the picture was ready, before its submission.
+  /// Shows the picture. gpu_done_ns is the time at which the picture was ready, before its submission.
   PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override;
 
   ScreenFacts facts() const;
@@ -60,7 +63,7 @@ class WindowDisplay final : public Display {
   RealClock clock_;
   sim::Offscreen picture_;
   Monitor monitor_;
-  std::string device_;  ///< of OpenGL
+  std::string device_;  ///< name of the OpenGL device
   MeasuredRefresh refresh_;
   std::int64_t ready_ns_ = -1;
 };
@@ -82,7 +85,7 @@ std::vector<std::int64_t> WindowDisplay::swap_black(int swaps) {
   std::vector<std::int64_t> returns;
   for (int i = 0; i < swaps; ++i) {
     window_->show_black();
-    glFinish();  // many drivers return from a swap before the screen has taken the picture
+    glFinish();  // many drivers return from a swap before the screen takes over the picture
     returns.push_back(clock_.now_ns());
     window_->poll(0);
   }
@@ -95,7 +98,7 @@ std::int64_t WindowDisplay::first_onset(std::int64_t earliest_ns) const {
   return between_beats(refresh_, earliest_ns);
 }
 
-/// Skips the first swaps, which fill the queue of pictures and return at once.
+/// Ignores the first swaps, which fill the queue of pictures and return at once.
 void WindowDisplay::find_beat() {
   if (!refresh_.in_effect) return;
   const auto returns = swap_black(queued_swaps + beat_swaps);
@@ -142,7 +145,7 @@ PresentTimes WindowDisplay::present(std::int64_t scheduled_ns, Clock& clock) {
   return times;
 }
 
-/// Owns the window and its pages while either is referenced.
+/// Owns the window and its pages. Pointers to one of them share ownership of both.
 struct WindowPages {
   explicit WindowPages(const ParticipantWindowOptions& options, const std::string& language)
       : window(options), pages(window, language, clock) {}
@@ -151,7 +154,7 @@ struct WindowPages {
   Pages pages;
 };
 
-/// Receives mouse movements from the window during its lifetime.
+/// Gaze source that receives the mouse movements of the participant's window during its lifetime.
 class WindowMouse final : public GazeSource {
  public:
   explicit WindowMouse(std::shared_ptr<ParticipantWindow> window)

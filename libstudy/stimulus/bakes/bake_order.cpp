@@ -29,7 +29,7 @@ std::string words_of(const sim::BakedView& view) {
   return view.gaze == "scene" ? "gaze along the scene's keys" : "gaze on the middle of the picture";
 }
 
-/// Collects differences between what is shown and what is wanted.
+/// Collects the properties in which a shown stimulus differs from the wanted stimulus, as text.
 class Departures {
  public:
   void add(const std::string& what, const std::string& shown, const std::string& wanted) {
@@ -130,7 +130,7 @@ sim::BakeHeader header_of(const BakeOrder& order) {
   if (traits.temporal) {
     if (!order.fluid.fixed_rate)
       throw base::Error(header.method,
-                        "solves only some particles, by tau, which follows from the frame rate",
+                        "chooses the particles to solve by tau, which depends on the frame rate",
                         "give the frame rate: --rate MEAN,SD in frames/s");
     header.tolerance = {*order.fluid.fixed_rate, order.fluid.model, sim::TemporalOptions{}.seed};
   }
@@ -146,7 +146,7 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
   if (found.scene_sha256 == wanted.scene_sha256) {
     out.add("", effects_words(found), effects_words(wanted));
     out.add("", picture_words(found), picture_words(wanted));
-    const bool drawn = found.has_pictures();  // pictures show foam even if its particles are not stored
+    const bool drawn = found.has_pictures();  // pictures show foam even if the bake stores no foam particles
     if (wanted.max_foam > 0 && found.max_foam == 0 && !drawn && effects_words(found) == effects_words(wanted))
       out.add("", "no particles of foam", "foam (bakes before format 4 kept none)");
     if (drawn)
@@ -154,7 +154,7 @@ std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const si
     else if (!wanted.overlay.empty() && !found.reference_k && effects_words(found) == effects_words(wanted))
       out.add("", "no temperatures", "temperatures to paint (bakes before format 5 kept none)");
   }
-  // The file stores a rounded step.
+  // The bake's file stores a rounded content step.
   if (std::abs(found.frame_dt_s - wanted.frame_dt_s) > 1e-3 * wanted.frame_dt_s)
     out.add("content step", fmt::format("{:.6g} s", found.frame_dt_s),
             fmt::format("{:.6g} s", wanted.frame_dt_s));

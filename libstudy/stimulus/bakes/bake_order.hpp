@@ -1,5 +1,5 @@
 #pragma once
-/// What a bake should hold, and how an existing bake differs from that.
+/// The wanted content of a bake, and how an existing bake differs from it.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,28 +11,30 @@
 
 namespace study {
 
-/// The order for one bake. `fluid` gives scene, method, n_*, back end, content step, frame rate, PTPE model
-/// and the picture's visual angle; its gaze is not used.
+/// The order for one bake. `fluid` gives scene, method, n_*, effects, back end, content step, frame rate,
+/// PTPE model and the visual angle of the picture. Leave its Viewing::gaze empty.
 struct BakeOrder {
   StimulusChoice fluid;
-  std::int64_t frames = 600;          ///< content steps, including the start
-  base::PictureSize size{1280, 720};  ///< of the picture that is stored or that the method follows
-  bool pictures = false;              ///< store pictures besides the particles
-  /// True: the gaze follows the scene's gaze keys; false: the picture's middle, as in a session with
-  /// fixation.
+  std::int64_t frames = 600;          ///< content steps, including the state at the start
+  base::PictureSize size{1280, 720};  ///< size of the picture in which the gaze is, and of stored pictures
+  bool pictures = false;              ///< true: also store pictures, not only particles
+  /// True: the gaze follows the scene's gaze keys. False: the gaze is at the middle of the picture, as in a
+  /// session with fixation.
   bool scene_gaze = false;
 };
 
-/// The header of the bake without fields known only after baking: back end, renderer, particles and their
-/// radii. base::Error: unreadable scene, unknown words, or a method with temporal acceleration without a
-/// frame rate for its tau.
+/// The header of the bake, without the fields that are known only after baking: back end, renderer, number of
+/// particles and radii. base::Error for an unreadable scene, unknown words, free obstacles without pictures,
+/// an overlay in a scene without heat, and temporal acceleration without a frame rate for tau.
 sim::BakeHeader header_of(const BakeOrder& order);
 
-/// Differences between the fluid of a bake and the wanted one, such as "n_* 2048 instead of 32768": scene,
-/// method, n_*, content step, too few frames, and, where they matter, tau and the gaze. Empty: none.
+/// Differences between the fluid of a bake and the wanted fluid, such as "n_* 2048 instead of 32768": scene,
+/// method, n_*, effects, content step and too few frames. Compares foam, painted temperatures, tau and gaze
+/// only where the wanted bake needs them. Empty: none.
 std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted);
 
-/// Differences of the stored or followed picture: its size and angles. Empty: none, or nothing was drawn.
+/// Differences between the views of two bakes (camera, picture size and angles). A bake has a view if it
+/// stores pictures or its method follows the gaze in a picture. Empty: none, or one of the bakes has no view.
 std::vector<std::string> view_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted);
 
 }  // namespace study

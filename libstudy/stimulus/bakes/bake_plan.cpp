@@ -28,7 +28,8 @@ std::string why_live(const Protocol& protocol, const PlannedStimulus& one) {
   return "";
 }
 
-/// "single_dam_32k_HiRes.bake"; with the level of effects and the frame rate for tau, if there is one.
+/// Name such as "single_dam_32k_HiRes.bake". Also contains the level of effects, and the frame rate for tau,
+/// if the stimulus has them.
 std::string file_name(const PlannedStimulus& one) {
   std::string out =
       std::filesystem::path(one.what.scene).stem().string() + "_" + one.what.n_star + "_" + one.what.method;
@@ -37,7 +38,8 @@ std::string file_name(const PlannedStimulus& one) {
   return out + ".bake";
 }
 
-/// Appends a number to equal names, from scenes in several folders or frame rates with equal text.
+/// Appends numbers to equal file names. Names are equal for scenes of the same name in two folders, and for
+/// frame rates that round to the same text.
 void make_distinct(std::vector<PlannedStimulus>& all) {
   for (auto one = all.begin(); one != all.end(); ++one) {
     if (one->file.empty()) continue;
@@ -81,7 +83,7 @@ std::vector<PlannedStimulus> plan_bakes(const Protocol& protocol) {
 BakeOrder order_of(const Protocol& protocol, const PlannedStimulus& one, const SessionLook& look) {
   BakeOrder order;
   order.fluid = look.common;
-  order.fluid.viewing.gaze = {};  // fixation: the gaze is at the middle
+  order.fluid.viewing.gaze = {};  // an empty gaze is the middle of the picture
   order.fluid.scene = base::find_input(one.what.scene);
   order.fluid.method = one.what.method;
   order.fluid.n_star = one.what.n_star;

@@ -28,7 +28,7 @@ bool lists(const std::vector<PictureEffect>& effects, PictureEffectKind kind) {
   return sim::strength_of(effects, kind) > 0;
 }
 
-/// Kinds of the water, then of the picture.
+/// Names of all kinds of effects: first effects of the water, then effects of the picture.
 std::vector<std::string> all_kinds() {
   std::vector<std::string> out;
   for (std::size_t k = 0; k < sim::effect_count; ++k)
@@ -44,7 +44,7 @@ std::optional<PictureEffectKind> picture_effect_named(const std::string& word) {
   return static_cast<PictureEffectKind>(found - words.begin());
 }
 
-/// The scene's entry of a kind; base::Error if it has none.
+/// The scene's effect of this kind; base::Error if the scene lists no such effect.
 template <class Listed, class Kind>
 Listed kept(const base::TomlTable& set, std::size_t place, const std::vector<Listed>& listed, Kind kind,
             const std::string& scene) {
@@ -52,7 +52,7 @@ Listed kept(const base::TomlTable& set, std::size_t place, const std::vector<Lis
     set.fail_at(
         "keep", place,
         std::string("= ") + base::toml_quoted(sim::traits_of(kind).word) + " is no effect of scene " + scene,
-        "list it there, or give it here as [[design.effect_set.effect]]");
+        "list it in the scene's file, or write it as [[design.effect_set.effect]]");
   }
   return *std::find_if(listed.begin(), listed.end(), [&](const Listed& one) { return one.kind == kind; });
 }
@@ -62,7 +62,7 @@ struct Kept {
   std::vector<PictureEffect> picture;
 };
 
-/// Reads `keep`: kinds that remain as the scene lists them.
+/// Reads the key `keep`: effects that a level takes from the scene file unchanged.
 Kept kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
   Kept out;
   const auto words = set.has("keep") ? set.strings("keep") : std::vector<std::string>();
@@ -81,7 +81,7 @@ Kept kept_effects(const base::TomlTable& set, const sim::Scene& scene) {
   return out;
 }
 
-/// Keys of a kind: its coefficient and its options.
+/// Keys of a kind of effect: its coefficient and its options.
 std::vector<std::string> keys_of(const std::string& word) {
   if (picture_effect_named(word)) return {"strength"};
   const EffectKind kind = *sim::effect_named(word);
@@ -112,7 +112,7 @@ void check_needs(const base::TomlTable& set, const std::vector<Effect>& kept,
     if (needs == sim::no_effect || lists(all, needs)) continue;
     const std::string other = sim::traits_of(needs).word;
     set.fail_at("keep", i, "needs " + other + ", which is missing",
-                "keep " + other + " too, or leave it out");
+                "keep " + other + " too, or remove this effect");
   }
 }
 
@@ -138,7 +138,7 @@ bool names_picture(const base::TomlTable& set) {
                      [](const auto& table) { return picture_effect_named(table.string("kind")); });
 }
 
-/// True if a level names effects of the picture; otherwise each level has the scene's.
+/// True if any level names effects of the picture. If not, every level has the picture effects of the scene.
 bool varies_picture(const base::TomlTable& design) {
   const auto sets = design.tables("effect_set");
   return std::any_of(sets.begin(), sets.end(), names_picture);
@@ -152,7 +152,7 @@ std::string effect_words(const CellEffects& effects) {
   return words.empty() ? "no effects" : words;
 }
 
-/// Checks that no two levels look the same.
+/// Checks that no two levels have the same effects in this scene.
 void check_levels(const Protocol& protocol, const sim::Scene& scene) {
   const auto& levels = protocol.design.effects;
   const char* same_as =
@@ -183,7 +183,7 @@ std::vector<sim::Scene> scenes_of_levels(const Protocol& protocol, const sim::Sc
   return out;
 }
 
-/// Checks that all levels have temperatures with this method, painted in the same colours.
+/// Checks that, with this method, every level has temperatures and paints them in the same colours.
 void check_temperatures(const Protocol& protocol, const sim::Scene& scene, sim::MethodKind method) {
   std::vector<sim::TemperatureScale> scales;
   std::vector<bool> idle;

@@ -32,8 +32,8 @@ bool shows(const PlannedStimulus& planned, const Cell& cell) {
   return !planned.rate || (planned.rate->mean == cell.setting.mean && planned.rate->sd == cell.setting.sd);
 }
 
-/// The order to compare a bake with. If the protocol gives no rate for tau, no rate of a bake can match. A
-/// bake may hold pictures or particles.
+/// The order with which a bake is compared. Pictures are wanted if the bake has pictures. Without a frame
+/// rate for tau in the protocol, the wanted rate is 0, which no bake has.
 BakeOrder order_for(const Protocol& protocol, const PlannedStimulus& one, const SessionLook& look,
                     const sim::BakeHeader& found) {
   BakeOrder order = order_of(protocol, one, look);
@@ -114,8 +114,9 @@ void SessionBakes::use_file(const Protocol& protocol, const SessionLook& look) {
   for (Source& source : sources_) {
     source.bake = bake;
     sim::BakeHeader wanted = header_of(order_for(protocol, source.planned, look, bake->header));
-    wanted.frame_count = std::min(wanted.frame_count, bake->header.frame_count);  // at_end does the rest
-    wanted.frame_dt_s = bake->header.frame_dt_s;                                  // make_stimulus() checks it
+    wanted.frame_count = std::min(
+        wanted.frame_count, bake->header.frame_count);  // ContentRules::at_end applies after its last frame
+    wanted.frame_dt_s = bake->header.frame_dt_s;        // make_stimulus() checks the content step
     for (const std::string& one : fluid_departures(bake->header, wanted)) {
       if (std::find(departures.begin(), departures.end(), one) == departures.end()) departures.push_back(one);
     }
@@ -218,13 +219,13 @@ std::vector<std::string> find_bakes(const std::vector<RecordedBake>& recorded,
     throw base::Error("--stimulus " + candidate.option,
                       "holds " + in_words(candidate.hashes) + "; the sessions of " + database +
                           " that are not done began with " + in_words(all),
-                      all.empty() ? "leave it out" : "name the bake with that hash");
+                      all.empty() ? "leave it out" : "name the bake with the recorded hash");
   }
   for (const std::string& path : out) {
     if (path.empty() || fs::exists(path)) continue;
     throw base::Error(
-        path, "is not there any more; the sessions of " + database + " began with " + in_words(all),
-        "put it back, or name where it is now: vip-study resume --db " + database + " --stimulus PATH");
+        path, "does not exist any more; the sessions of " + database + " began with " + in_words(all),
+        "put it back, or give its new path: vip-study resume --db " + database + " --stimulus PATH");
   }
   return out;
 }

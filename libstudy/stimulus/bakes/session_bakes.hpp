@@ -1,6 +1,6 @@
 #pragma once
-/// The bakes that a session plays: which bake shows which cell, notes about the other cells, and bakes that
-/// were moved since sessions began with them.
+/// The bakes that a session plays: which bake shows which cell, and notes about the other cells. Also finds
+/// bakes that were moved before a session is resumed.
 
 #include <filesystem>
 #include <map>
@@ -20,32 +20,34 @@ struct FoundBake {
   std::string hash;  ///< BakeReader::content_hash
 };
 
-/// Bakes from one file, which shows every cell, or from a folder of `vip-study bake --protocol`, or none.
+/// The bakes of a session: one file that shows every cell, the files in a folder of `vip-study bake
+/// --protocol`, or none.
 class SessionBakes {
  public:
   SessionBakes() = default;
-  /// `path`: of `vip-study run --stimulus`; empty: no bake. base::Error: a file for several stimuli, a folder
-  /// without any bake of the protocol, or a bake in it whose fluid differs from the session's or whose levels
-  /// followed another picture or angle.
+  /// `path`: argument of `vip-study run --stimulus`; empty: no bake. base::Error for a single file if the
+  /// protocol has several stimuli, and for a folder without any bake of the protocol. base::Error also for a
+  /// bake in a folder whose fluid differs from the session's, or whose levels followed a picture of another
+  /// size or angle.
   SessionBakes(const std::filesystem::path& path, const Protocol& protocol, const SessionLook& look);
 
   /// The bake of a cell; null if the cell runs live.
   const FoundBake* of(const Cell& cell) const;
-  /// True if no cell runs live.
+  /// True if every cell has a bake.
   bool whole() const;
   /// How a single file departs from the protocol, such as "n_* 2048 instead of 32768"; empty: not at all.
-  /// Data of a departing session are test data.
+  /// Data of a session with a departure are test data.
   const std::string& departure() const { return departure_; }
-  /// For a folder: how many stimuli are baked, which run live and why, and which bakes are missing. One line
-  /// each. protocol_file: as on the command line.
+  /// For a folder: lines about the stimuli that have a bake, the stimuli that run live with the reason, and
+  /// the missing bakes. protocol_file: path as on the command line.
   std::vector<std::string> notes(const std::string& protocol_file) const;
-  /// For a folder: each stimulus with the hash of its bake, or "live"; for the record.
+  /// Text for the record. For a folder: each stimulus with the hash of its bake, or "live".
   std::string description() const;
 
  private:
   struct Source {
     PlannedStimulus planned;
-    std::shared_ptr<const FoundBake> bake;  ///< none: live
+    std::shared_ptr<const FoundBake> bake;  ///< null: the stimulus runs live
   };
 
   void use_file(const Protocol& protocol, const SessionLook& look);
@@ -56,15 +58,15 @@ class SessionBakes {
   std::string departure_, options_;
 };
 
-/// The bakes that resumed sessions were played from.
+/// The recorded bakes of sessions that are resumed.
 struct RecordedBake {
   std::string path;   ///< file or folder; empty: no bake
   std::string shown;  ///< recorded description of the stimuli, with the hash of each bake
 };
 
-/// For each of `recorded`, the current path of its bakes: the first of `given` (options --stimulus) that
-/// holds all of them, by their hashes, else the recorded path. base::Error, with the hashes, for an unused
-/// path of `given`, and for a recorded path that no longer exists.
+/// For each entry of `recorded`, the current path of its bakes: the first path in `given` (options
+/// --stimulus) that contains all recorded hashes, else the recorded path. base::Error, with the hashes, for
+/// an unused path in `given`, and for a recorded path that no longer exists.
 std::vector<std::string> find_bakes(const std::vector<RecordedBake>& recorded,
                                     const std::vector<std::string>& given, const std::string& database);
 

@@ -13,7 +13,7 @@ namespace study {
 
 namespace {
 
-/// Reads a picture with rows from the bottom up, as in a bake.
+/// Reads a picture with its lowest row first, the order of a bake.
 std::vector<std::uint8_t> read_upwards(const sim::Offscreen& from) {
   std::vector<std::uint8_t> picture = from.read().rgba;
   const auto row = static_cast<std::ptrdiff_t>(4 * from.width());
@@ -22,7 +22,7 @@ std::vector<std::uint8_t> read_upwards(const sim::Offscreen& from) {
   return picture;
 }
 
-/// The picture's point of the scene's gaze keys at each frame.
+/// Makes a Viewing::gaze that follows the scene's gaze keys at the current value of `frame`.
 auto gaze_by_keys(const BakeOrder& order, const sim::Scene& scene, const std::int64_t& frame,
                   double frame_dt_s) {
   const sim::Camera camera = order.fluid.overview ? scene.overview : scene.view;
@@ -36,7 +36,7 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Calls read(frame) for all frames; returns frames per second.
+/// Calls read(frame) for all frames and returns the speed in frames per second.
 template <typename Read>
 double read_all(const char* label, std::int64_t frames, const std::function<void()>& stop, Read read) {
   base::Progress progress(label, static_cast<std::size_t>(frames));

@@ -1,6 +1,6 @@
-/// Gaze and headsets in BIDS 1.11. An eye recording states the eye and the screen; the mouse and the head's
-/// direction are not eyes, so they are exported as behaviour. The headset's facts stand beside the events,
-/// head poses are motion.
+/// Exports gaze and headset data to BIDS 1.11. Samples of an eye tracker become an eye recording. Mouse and
+/// head direction are not eyes, so they become behavioural data. The headset's facts are in the JSON file of
+/// the events; head poses become a motion recording.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,14 +21,14 @@ constexpr const char* as_share = "1";
 struct Samples {
   Table rows;
   std::vector<std::int64_t> times_ns;
-  bool rays = false;  ///< true: angles in a headset's head frame; false: points of a screen
+  bool rays = false;  ///< true: x and y are angles relative to the head; false: positions on the picture
 };
 
 const std::vector<std::string> screen_columns{"timestamp", "x_coordinate", "y_coordinate", "valid"};
 const std::vector<std::string> ray_columns{"timestamp", "x_coordinate", "y_coordinate", "valid",
                                            "tracked",   "picture_x",    "picture_y"};
 
-/// Azimuth and elevation of a direction, degrees; n/a if it is missing.
+/// Azimuth and elevation of the direction in columns column ... column + 2, degrees; "n/a" if it is NULL.
 std::pair<std::string, std::string> angles_of(const Statement& row, int column) {
   if (row.is_null(column)) return {"n/a", "n/a"};
   const double x = row.real(column), y = row.real(column + 1), z = row.real(column + 2);
@@ -62,7 +62,7 @@ Samples samples_of(Connection& database, std::int64_t session, const std::string
   return samples;
 }
 
-/// Adds the tracker's accuracy in the last passed validation.
+/// Adds the eye tracker's mean and largest error in the session's last passed validation.
 void add_validation(Connection& database, std::int64_t session, Json& json) {
   Statement row(
       database,
@@ -101,7 +101,7 @@ Json ray_columns_meaning() {
 
 void write_eye(Connection& database, const Samples& samples, const LabelledSession& session, Writer& writer) {
   const double hz = rate_hz(database, session.id, samples.times_ns);
-  if (hz == 0) return;  // a BIDS recording needs a rate; the CSV export has the samples
+  if (hz == 0) return;  // BIDS requires a sampling rate; the CSV export still has the samples
   const std::string name = stem_of(session) + "_recording-eye1_physio";
   writer.compressed_table(name + ".tsv.gz", samples.rows);
   Json json{{"PhysioType", "eyetrack"},
@@ -125,10 +125,11 @@ void write_mouse(const Samples& samples, const std::string& stem, Writer& writer
   writer.json(name + ".json", json);
 }
 
-/// Writes the head's direction; its position is in the motion recording.
+/// Writes where the head's direction met the picture, as behavioural data. Head poses are in the motion
+/// recording.
 void write_head(const Samples& samples, const std::string& stem, Writer& writer) {
   const std::string name = stem + "_acq-head_beh";
-  Table rows;  // the angles of the straight-ahead direction
+  Table rows;  // columns of the samples without the angles, which are always straight ahead
   for (const auto& row : samples.rows) rows.push_back({row[0], row[5], row[6], row[3], row[4]});
   rows.front() = {"timestamp", "x_coordinate", "y_coordinate", "valid", "tracked"};
   writer.table(name + ".tsv", rows);
@@ -143,7 +144,6 @@ void write_head(const Samples& samples, const std::string& stem, Writer& writer)
 
 }  // namespace
 
-/// Onset of each presentation of a session since its first stimulus.
 std::map<std::int64_t, std::int64_t> onsets_of(Connection& database, std::int64_t session) {
   Statement row(database,
                 "SELECT presentation_id, start_ns, end_ns FROM presentation JOIN trial USING (trial_id) "
@@ -158,8 +158,6 @@ std::map<std::int64_t, std::int64_t> onsets_of(Connection& database, std::int64_
   return onsets;
 }
 
-/// Rate by the median interval, since nothing is recorded between stimuli. A single sample has no interval:
-/// the display's rate is used. 0 if that is unknown too.
 double rate_hz(Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns) {
   std::vector<std::int64_t> gaps;
   for (std::size_t i = 1; i < times_ns.size(); ++i) {
@@ -192,7 +190,7 @@ struct Channel {
   const char *name, *component, *type, *units, *meaning;
 };
 
-/// Columns of the recording, in order.
+/// The columns of the motion recording, in order.
 constexpr std::array channels{
     Channel{"latency", "n/a", "LATENCY", "s", "predicted display time on the scale of the events' onset"},
     Channel{"x", "x", "POS", "m", "to the right"},
@@ -269,7 +267,7 @@ void write_motion(Connection& database, const LabelledSession& session, Writer& 
     for (int i = 2; i < row.columns(); ++i) rows.back().push_back(field(row, i));
   }
   const double hz = rate_hz(database, session.id, times_ns);
-  if (hz == 0) return;  // no pose, or one pose on a display of unknown rate
+  if (hz == 0) return;  // there is no pose, or a single pose and an unknown refresh rate
   const std::string stem = stem_of(session, "motion") + "_tracksys-headset";
   writer.bare_table(stem + "_motion.tsv", rows);
   writer.json(stem + "_motion.json", motion_json(session, hz));

@@ -1,4 +1,4 @@
-/// Questions in BIDS: as columns, and the pages of questionnaires.
+/// Exports questions and questionnaires to BIDS.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -14,13 +14,13 @@ using sqlite::Statement;
 
 namespace {
 
-/// Identifies a page in a session: prefix of its columns' names and suffix of their meanings.
+/// Names of a page in an exported table.
 struct Page {
-  std::string prefix, words;
+  std::string prefix, words;  ///< prefix of the columns' names; words in brackets after their meanings
 };
 
-/// The `time`-th page of a block in a session, from 1; `block` empty: the session as a whole. No block's id
-/// has a hyphen.
+/// The names of the `time`-th page (from 1) of a block in a session. block empty: of the session as a whole.
+/// A hyphen before `time` makes the prefix distinct, because a block's id has no hyphen.
 Page page_of(const LabelledSession& session, const std::string& block, int time = 1) {
   Page page{session.session + "_", "session ses-" + session.session};
   if (block.empty()) return page;
@@ -30,10 +30,11 @@ Page page_of(const LabelledSession& session, const std::string& block, int time 
   return page;
 }
 
-/// All pages of one questionnaire: one line per participant, columns for each page that anybody answered.
+/// A table with all pages of one questionnaire: one line per participant, and columns for each page that at
+/// least one participant answered.
 class Questionnaire {
  public:
-  /// `page`: names the page in columns and meanings.
+  /// Adds the answers of a participant on one page. `asked` and `answers` have the same order.
   void add_page(const std::string& subject, const Page& page, const std::vector<Item>& asked,
                 const std::vector<std::string>& answers) {
     for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -63,11 +64,11 @@ class Questionnaire {
 
  private:
   std::vector<std::string> columns_;
-  std::map<std::string, std::map<std::string, std::string>> answers_;  // subject, column
+  std::map<std::string, std::map<std::string, std::string>> answers_;  // by participant label, then column
   Json meaning_{{"MeasurementToolMetadata", described("pages of a vip-study protocol")}};
 };
 
-/// The SSQ page at a position of a session; nullptr if it has no answers.
+/// The answers on the SSQ page at a position of a session; nullptr if there are none.
 const SsqPage* ssq_page(const std::vector<SicknessSession>& sickness, std::int64_t session,
                         std::int64_t position) {
   for (const SicknessSession& one : sickness) {
@@ -79,7 +80,7 @@ const SsqPage* ssq_page(const std::vector<SicknessSession>& sickness, std::int64
   return nullptr;
 }
 
-/// Appends the scores of an SSQ page to its items.
+/// Appends the SSQ scores of a page to the lists of its items and answers; "n/a" if `page` is nullptr.
 void add_scores(const SsqPage* page, std::vector<Item>& asked, std::vector<std::string>& answers) {
   for (const SicknessColumn& column : ssq_score_columns())
     asked.push_back({0, column.name, column.meaning, ""});
@@ -87,7 +88,8 @@ void add_scores(const SsqPage* page, std::vector<Item>& asked, std::vector<std::
     answers.push_back(field(score));
 }
 
-/// The lines of a session in fms_summary_table(), whose last columns are the block and three numbers.
+/// Adds the session's lines of fms_summary_table(); the table's last four columns are block and three
+/// numbers.
 void add_fms(const SicknessTable& summary, const LabelledSession& session, Questionnaire& tool) {
   const std::size_t block = summary.columns.size() - 4;
   std::vector<Item> columns;
@@ -99,7 +101,7 @@ void add_fms(const SicknessTable& summary, const LabelledSession& session, Quest
   }
 }
 
-/// True for the word of a kind of answer that is a score.
+/// True if answers to questions of this kind (AnswerKindTraits::word) are scores.
 bool scored(const std::string& word) {
   return std::any_of(answer_kinds().begin(), answer_kinds().end(),
                      [&](const AnswerKindTraits& one) { return one.word == word && one.scored; });

@@ -21,7 +21,7 @@ std::string lines_of(const Table& rows, std::size_t first) {
   return text;
 }
 
-/// zlib writes a gzip header without name and time if 16 is added to the window bits.
+/// Compresses a text by gzip. Adding 16 to zlib's window bits gives a gzip header without file name and time.
 std::string gzip(std::string text, const std::string& name) {
   z_stream stream{};
   bool good =
@@ -34,7 +34,7 @@ std::string gzip(std::string text, const std::string& name) {
   good = good && deflate(&stream, Z_FINISH) == Z_STREAM_END;
   out.resize(stream.total_out);
   deflateEnd(&stream);
-  if (!good) throw base::Error(name, "cannot be compressed", "free memory and do this again");
+  if (!good) throw base::Error(name, "cannot be compressed", "free memory and export again");
   return out;
 }
 
@@ -97,7 +97,7 @@ std::int64_t SessionTime::onset_of(std::int64_t start_ns, std::optional<std::int
   if (!zero_ns_)
     zero_ns_ = start_ns;
   else if (start_ns - *zero_ns_ < end_ns_)
-    zero_ns_ = start_ns - end_ns_;  // the clock of another process
+    zero_ns_ = start_ns - end_ns_;  // start_ns is on the clock of a new process
   const std::int64_t onset = start_ns - *zero_ns_;
   end_ns_ = std::max(onset, end_ns ? *end_ns - *zero_ns_ : onset);
   return onset;

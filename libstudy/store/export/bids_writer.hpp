@@ -1,6 +1,6 @@
 #pragma once
-/// Parts of export_bids(): tables and sidecars in a draft, the times of a session, its headset, head poses
-/// and gaze, questions as columns, and the pages of questionnaires.
+/// Parts of export_bids(). They write tables and their JSON descriptions, compute the times of a session, and
+/// export headsets, head poses, gaze, questions and questionnaires.
 
 #include <cstdint>
 #include <map>
@@ -16,31 +16,32 @@
 namespace study::bids {
 
 using Json = base::Json;
-/// A table of texts, the first line its header.
+/// A table of texts; the first line is the header.
 using Table = std::vector<std::vector<std::string>>;
 
-/// A field of a TSV file, which has no quoting; "n/a" if empty. Texts are formula_guarded().
+/// A field of a TSV file; "n/a" if it is empty or NULL. TSV has no quoting, so tabs and line ends in a text
+/// become spaces. Texts are formula_guarded().
 std::string field(std::string text);
 std::string field(const sqlite::Statement& row, int column);
-/// Seconds as text.
+/// A time in ns as text in seconds.
 std::string seconds(std::int64_t ns);
 
-/// The description of a column; the schema's "empty" becomes BIDS's n/a.
+/// JSON description of a column; replaces "empty:" in the meaning by "n/a:", as BIDS writes missing values.
 Json described(const std::string& meaning);
 Json described(const std::string& meaning, const std::string& unit);
 
-/// Folder and file name prefix of a session's files.
+/// Path with which the names of all files of a session begin, up to "_task-<protocol>". data_type: folder.
 std::string stem_of(const LabelledSession& session, const std::string& data_type = "beh");
 
-/// Puts files into a draft and remembers the tables.
+/// Writes files into a draft folder, and lists the tables among them in `files`.
 class Writer {
  public:
   explicit Writer(const ExportDraft& draft) : draft_(draft) {}
 
   void table(const std::string& name, const Table& rows);
-  /// A table without its header line.
+  /// Writes a table without its header line.
   void bare_table(const std::string& name, const Table& rows);
-  /// A table without its header line, compressed by gzip: the same table gives the same bytes.
+  /// Writes a table without its header line, compressed by gzip. Equal tables give equal bytes.
   void compressed_table(const std::string& name, const Table& rows);
   void text(const std::string& name, const std::string& text);
   void json(const std::string& name, const Json& json) { text(name, json.dump(2) + "\n"); }
@@ -51,13 +52,14 @@ class Writer {
   const ExportDraft& draft_;
 };
 
-/// Times since the first stimulus of a session, across all processes that played it. A later process
-/// continues where the former ended, without the pause between.
+/// Time since the first stimulus of a session, across all processes that played the session. The time of a
+/// later process continues at the end of the process before; the pause between them is omitted.
 class SessionTime {
  public:
-  /// Onset of the session's next presentation. Arguments are on the clock of its process; no end: it was cut.
+  /// Onset of the session's next presentation, ns. start_ns and end_ns are on the clock of the presentation's
+  /// process; end_ns none: the presentation was cut.
   std::int64_t onset_of(std::int64_t start_ns, std::optional<std::int64_t> end_ns);
-  /// End of the presentation that onset_of() was given last.
+  /// End of the presentation of the last call of onset_of(), ns.
   std::int64_t end_ns() const { return end_ns_; }
 
  private:
@@ -65,37 +67,39 @@ class SessionTime {
   std::int64_t end_ns_ = 0;
 };
 
-/// Onset of each presentation of a session since its first stimulus.
+/// Onset of each presentation of a session, ns since the onset of its first stimulus, by presentation id.
 std::map<std::int64_t, std::int64_t> onsets_of(sqlite::Connection& database, std::int64_t session);
-/// Sampling rate by the usual interval, Hz, since nothing is recorded between stimuli. With fewer than two
-/// times, the display's rate; 0 if that is unknown.
+/// Sampling rate from the median interval between samples, Hz. The median excludes the pauses between
+/// stimuli, in which nothing is recorded. With fewer than two distinct times, returns the display's refresh
+/// rate, or 0 if that rate is unknown.
 double rate_hz(sqlite::Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns);
 
-/// The facts of a session's headset and the distances between the eyes; empty without a headset.
+/// The facts of a session's headset and the interpupillary distances as JSON; empty without a headset.
 Json headset_of(sqlite::Connection& database, std::int64_t session);
 /// Writes head poses as a motion recording ("motion/..._tracksys-headset_motion.tsv").
 void write_motion(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
-/// Writes gaze: samples of an eye tracker as an eye recording ("recording-eye1_physio.tsv.gz"), those of a
-/// mouse as behaviour ("acq-mouse_beh.tsv").
+/// Writes gaze samples: of an eye tracker as a physiological recording ("recording-eye1_physio.tsv.gz"), of a
+/// mouse or the head's direction as behavioural data ("acq-mouse_beh.tsv", "acq-head_beh.tsv").
 void write_gaze(sqlite::Connection& database, const LabelledSession& session, Writer& writer);
 
-/// A question as a column.
+/// A question that becomes a column of a table.
 struct Item {
   std::int64_t id = 0;
   std::string code, wording, anchors;
 };
 
-/// Describes a question's column, including the words at its scores.
+/// JSON description of a question's column, including the words of its labelled scores.
 Json question_column(const Item& item);
-/// Questions with scores asked in trials or on pages of a block; `of`: SQL condition on unit u.
+/// The questions of a session that have scores and are not personal, restricted to the units that the SQL
+/// condition `of` selects (alias u).
 std::vector<Item> items(sqlite::Connection& database, std::int64_t session, const std::string& of);
-/// Score and response time of a question at a showing (`attempt`).
+/// Score and response time of the answer to a question about showing `attempt` of a unit; "n/a" if missing.
 std::pair<std::string, std::string> answer_of(sqlite::Connection& database, std::int64_t unit,
                                               std::int64_t question, std::int64_t attempt);
 
-/// Writes the pages as phenotype tables: SSQ with its scores and FMS with mean and peak by kind, other pages
-/// by block.
+/// Writes the answers on pages as phenotype tables: one table for the SSQ with its scores, one for the FMS
+/// with mean and peak, and one for each other block.
 void write_phenotypes(sqlite::Connection& database, const std::vector<LabelledSession>& sessions,
                       Writer& writer);
 

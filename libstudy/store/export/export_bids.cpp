@@ -109,7 +109,7 @@ void write_events(Connection& database, const LabelledSession& session, Writer& 
   auto asked = bids::items(database, session.id, "u.trial_id IS NOT NULL");
   Json columns = event_columns();
   for (Item& item : asked) {
-    while (columns.contains(item.code)) item.code = "answer_" + item.code;  // named like a column
+    while (columns.contains(item.code)) item.code = "answer_" + item.code;  // a column has this name
     columns[item.code] = bids::question_column(item);
     columns[item.code + "_response_time"] = described("from question to answer", "s");
   }
@@ -153,7 +153,7 @@ Json session_columns() {
           {"setting_sha256", described(setting_sha256_meaning)}};
 }
 
-/// Codes of participants answered by an observer model.
+/// Codes of the simulated participants, for whom an observer model answered.
 std::set<std::string> simulated_people(Connection& database, std::span<const LabelledSession> sessions) {
   std::set<std::string> out;
   Statement row(database, "SELECT observer IS NOT NULL FROM session WHERE session_id = ?");
@@ -243,7 +243,7 @@ AboutDataSet about_data_set(Connection& database, std::span<const LabelledSessio
 }
 
 PublicExport export_bids(const StudyFile& study, const fs::path& folder, bool gaze) {
-  open_study(study);  // refuses a damaged file before anything is written to it
+  open_study(study);  // throws for a damaged file before label_everybody() writes to it
   label_everybody(study.path);
   const auto database = open_to_export(study);
   database->execute("BEGIN");

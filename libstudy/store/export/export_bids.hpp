@@ -11,22 +11,25 @@
 
 namespace study {
 
-/// participants.tsv, sub-<code>/sub-<code>_sessions.tsv with a sidecar, for each session
-/// sub-<code>/ses-<protocol>v<visit>/beh/..._task-<protocol>_events.tsv with a sidecar (one line for each
-/// stimulus shown, onset and duration in seconds first; answers are in the line of the last stimulus that
-/// they judge), and phenotype/<block>.tsv with the answers on pages, without free text: one line per
-/// participant, columns <session>_<block>_<question> (<block>-2 and so on for a repeated page). "n/a" = not
-/// known. With `gaze` also gaze: ..._recording-eye1_physio.tsv.gz of an eye tracker, ..._acq-mouse_beh.tsv of
-/// the mouse. A public export: it holds only shared_sessions(). Errors and folder as export_csv().
+/// Writes a public export, which contains only shared_sessions(), into `folder`. "n/a": not known. Folder and
+/// base::Error as for export_csv(). The files, each table with a JSON description:
+/// - participants.tsv, and sub-<code>/sub-<code>_sessions.tsv.
+/// - sub-<code>/ses-<protocol>v<visit>/beh/..._task-<protocol>_events.tsv for each session: one line per
+///   stimulus shown, beginning with onset and duration in seconds. The last stimulus that an answer judges
+///   has the answer in its line.
+/// - phenotype/<block>.tsv: answers on pages, without free text. One line per participant, with columns
+///   <session>_<block>_<question>; the block of a repeated page is <block>-2 and so on.
+/// - With `gaze` true: ..._recording-eye1_physio.tsv.gz of an eye tracker, ..._acq-mouse_beh.tsv of a mouse,
+///   ..._acq-head_beh.tsv of the head's direction, and head poses as a motion recording.
 PublicExport export_bids(const StudyFile& study, const std::filesystem::path& folder, bool gaze = false);
 
-/// File of the self-description of a public data set, in BIDS and in Psych-DS.
+/// Name of the file that describes a public data set, in BIDS and in Psych-DS.
 inline constexpr const char* description_file = "dataset_description.json";
 
-/// The self-description of a public data set.
+/// Texts for the description of a public data set.
 struct AboutDataSet {
-  std::string name;       ///< the study's protocols: "comfort 1.0, task1 1.1"
-  std::string simulated;  ///< a sentence: how many participants an observer model answered for; empty: none
+  std::string name;       ///< names and versions of the study's protocols: "comfort 1.0, task1 1.1"
+  std::string simulated;  ///< sentence with the number of simulated participants; empty: there are none
 };
 AboutDataSet about_data_set(sqlite::Connection& database, std::span<const LabelledSession> sessions);
 

@@ -22,12 +22,12 @@ using sqlite::Statement;
 namespace {
 
 struct CsvTable {
-  const char* name;         // in the schema
-  const char* file;         // in the export
-  const char* order;        // so that equal databases give equal files
+  const char* name;         // name in the schema
+  const char* file;         // file name in the export
+  const char* order;        // columns to sort by, so that equal databases give equal files
   const char* left = "";    // omitted column
-  bool free_words = false;  // written only on request
-  bool gaze = false;        // likewise, and only where gaze is allowed
+  bool free_words = false;  // true: free text, written only if CsvChoice::words
+  bool gaze = false;        // true: gaze data, written only if CsvChoice::gaze, of sessions that allow gaze
 };
 
 constexpr std::array tables{
@@ -56,7 +56,7 @@ constexpr std::array tables{
     CsvTable{"event", "events.csv", "event_id"},
 };
 
-/// A column of an exported table computed from the schema's views.
+/// A column that the export adds to a table of the schema; `expression`: its SQL.
 struct AddedColumn {
   const char *table, *name, *type, *expression, *meaning;
 };
@@ -105,7 +105,7 @@ bool is_csv_name(const std::string& name) {
   return false;
 }
 
-/// True if the folder has a dictionary that begins like ours.
+/// True if the folder has a dictionary.csv that begins with the header line of vip-study's data dictionary.
 bool is_csv_export(const fs::path& folder) {
   std::ifstream dictionary(folder / dictionary_file, std::ios::binary);
   std::string begin(std::strlen(dictionary_header), '\0');
@@ -115,7 +115,7 @@ bool is_csv_export(const fs::path& folder) {
 
 constexpr ExportKind csv_kind{"csv", is_csv_export, is_csv_name};
 
-/// Cached per table, because each column of the ratings asks for its table's columns.
+/// column_meanings(), cached per table: meaning_of() needs a table's meanings again for each of its columns.
 const std::vector<ColumnMeaning>& known_meanings(const std::string& table, const std::string& create_sql) {
   thread_local std::map<std::pair<std::string, std::string>, std::vector<ColumnMeaning>> known;
   const auto [found, fresh] = known.try_emplace({table, create_sql});
@@ -191,8 +191,9 @@ void write_protocols(Connection& database, const ExportDraft& draft) {
   }
 }
 
-/// SQLite inserts a column of a later schema step after the last one but before its comment. Moves it to its
-/// own line at the end, with its comment in the usual form.
+/// Reformats the SQL of a table to which a schema step added columns. SQLite inserts an added column before
+/// the comment of the last column. This function moves each added column to its own line at the end, followed
+/// by its comment.
 std::string with_added_last(const std::string& create_sql) {
   static const base::Pattern added(R"(, (\w+ \w+) /\* ([^*]*) \*/)");
   std::string last;
@@ -229,7 +230,7 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
     if (types.count(type)) {
       columns.push_back({table, name, type, meaning});
     } else if (!columns.empty() && columns.back().meaning.empty()) {
-      // A column on two lines has its comment on the second.
+      // The definition of a column may take two lines; its comment is then on the second line.
       columns.back().meaning = meaning;
     }
   }
@@ -239,7 +240,7 @@ std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::
 std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& folder,
                                      const CsvChoice& choice) {
   const auto database = open_to_export(study);
-  // One transaction: all tables from the same moment, though a session may be running.
+  // Reads all tables in one transaction, so that they are consistent even while a session writes.
   database->execute("BEGIN");
   ExportDraft draft({study.path, csv_kind, everybody(*database), Readers::Owner, choice.dialect}, folder);
   std::vector<ExportedFile> files;

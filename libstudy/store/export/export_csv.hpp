@@ -1,6 +1,7 @@
 #pragma once
-/// Exports the database as CSV files (RFC 4180, UTF-8, a header line, empty = unknown) with a data
-/// dictionary. Texts are formula_guarded(), as the dictionary's first line explains; numbers are unchanged.
+/// Exports the database as CSV files (RFC 4180, UTF-8, with a header line) and a data dictionary. An empty
+/// field means unknown. Texts are formula_guarded(), as the dictionary's first line explains; numbers are
+/// not.
 
 #include <filesystem>
 #include <string>
@@ -14,33 +15,34 @@ namespace study {
 
 /// Optional parts of the export.
 struct CsvChoice {
-  bool words = false;       ///< free text of participants, notes of the experimenter: words.csv, notes.csv
+  bool words = false;       ///< words.csv: participants' free text; notes.csv: the experimenter's notes
   bool gaze = false;        ///< gaze.csv, heads.csv, gaze_validations.csv
-  CsvDialect dialect = {};  ///< excel_dialect() for spreadsheets; dictionary.csv names it
+  CsvDialect dialect = {};  ///< excel_dialect() for spreadsheets, which dictionary.csv then describes
 };
 
-/// Writes one file per table, ratings.csv with one joined line per planned trial and question, the scores of
-/// sickness_tables(), dictionary.csv with the meaning of each column, and the text of each protocol as
-/// protocol_<hash>.toml. This is the lab's own copy with all participants; sessions.csv says who may be in
-/// public exports.
+/// Writes an export with all participants, for the lab itself, into `folder`. Column sharing_allowed of
+/// sessions.csv records who may be in public exports. The files: one per table; ratings.csv with one line per
+/// planned trial and question; the tables of sickness_tables(); dictionary.csv with the meaning of each
+/// column; each protocol's text as protocol_<hash>.toml; each solver setting's file (setting_file_name()).
 ///
-/// Only the owner can read folder and files. All is written beside `folder` and put in place by one rename,
-/// so that `folder` is never partial. `folder` may be absent, empty or an unchanged earlier export, which is
-/// replaced; base::Error, with nothing changed, if a file in it was added or changed, or if the database
-/// cannot be written. The database registers the folder with its participants; a withdrawal of one of them
-/// deletes the folder (export_register.hpp).
+/// Only the owner can read folder and files. The export is written beside `folder` and renamed to it at the
+/// end, so that `folder` is never partial. `folder` may be absent, empty or an unchanged earlier export,
+/// which is replaced. base::Error, with nothing changed, if the folder has added or changed files, or if the
+/// database cannot be written. The database registers the folder with its participants: if one of them
+/// withdraws, the withdrawal deletes the folder (export_register.hpp).
 std::vector<ExportedFile> export_csv(const StudyFile& study, const std::filesystem::path& folder,
                                      const CsvChoice& choice = {});
 
-/// A column of the schema with its comment.
+/// A column of a table, with its meaning from the comment in the schema.
 struct ColumnMeaning {
   std::string table, column, type, meaning;
 };
 
-/// The columns of a CREATE TABLE text in order; columns without a comment have an empty meaning.
+/// The columns of the table that the SQL text `create_sql` (CREATE TABLE) defines, in order. A column without
+/// a comment has an empty meaning.
 std::vector<ColumnMeaning> column_meanings(const std::string& table, const std::string& create_sql);
 
-/// The meaning of a column of a joined table, from the schema of `database`.
+/// The meaning of a column of the table of ratings, from the schema of `database` if RatingColumn has none.
 ColumnMeaning meaning_of(sqlite::Connection& database, const RatingColumn& column);
 
 }  // namespace study

@@ -37,7 +37,7 @@ fs::path whole_path(const fs::path& folder) {
   return target.has_filename() ? target : target.parent_path();
 }
 
-/// SHA-256 by name from an export's own list; empty if it has none.
+/// SHA-256 by file name, from the list of files in an export folder; empty if the folder has no list.
 std::map<std::string, std::string> listed_files(const fs::path& folder, const ExportKind& kind) {
   const fs::path marker = folder / marker_of(kind.name);
   std::map<std::string, std::string> files;
@@ -51,7 +51,7 @@ std::map<std::string, std::string> listed_files(const fs::path& folder, const Ex
   return files;
 }
 
-/// Why a folder is not an unchanged earlier export; empty if it is.
+/// Why a folder is not an unchanged earlier export, as the end of an error text; empty if it is one.
 std::string strange_file(const fs::path& folder, const ExportKind& kind) {
   const auto listed = listed_files(folder, kind);
   std::set<std::string> added, changed;
@@ -103,17 +103,17 @@ void ExportDraft::put_in_place() {
   base::sync_folders(path_);
   record_->will_be(base::sha256_hex(list));
   replace_target();
-  // The earlier export may hold people who are not in this one.
+  // The earlier export now has the draft's path. Deletes it durably, because it may contain other people.
   base::remove_durably(path_);
   record_->is_in_place();
 }
 
-// After the exchange the earlier export has the draft's name.
+// Exchanges the paths of draft and target, so that an earlier export gets the draft's path.
 void ExportDraft::replace_target() {
   std::error_code ignored;
   const unsigned flags = fs::exists(target_, ignored) ? RENAME_EXCHANGE : RENAME_NOREPLACE;
   if (base::rename_durably(path_, target_, flags)) return;
-  // Network file systems support only plain renames: move the earlier export aside first.
+  // Network file systems cannot exchange two paths: rename the earlier export first, then the draft.
   if (errno != EINVAL || !replace_in_two_steps()) fail("cannot be put in place");
 }
 

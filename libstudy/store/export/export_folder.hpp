@@ -1,5 +1,6 @@
 #pragma once
-/// Export folders: written completely beside the target, then put in place by one rename.
+/// Writes export folders: completely beside the target, then renamed to it, so that the target is never
+/// partial.
 
 #include <cstdint>
 #include <cstdio>
@@ -16,55 +17,57 @@
 
 namespace study {
 
-/// A file of an export.
+/// A file of an export, with its number of rows.
 struct ExportedFile {
   std::string name;
   std::int64_t rows = 0;
 };
 
-/// Who may read an export; the folders of Readers::Owner are 0700.
+/// Who may read an export. Folders of an export for Readers::Owner have mode 0700.
 using base::Readers;
 
-/// An export that others may read, with the number of people in it and left out.
+/// The result of a public export: its files, and the numbers of people that it includes and omits.
 struct PublicExport {
   std::vector<ExportedFile> files;
   SharingCount people;
 };
 
-/// A kind of export folder. The functions recognise folders of earlier versions, which have no list of files.
+/// A kind of export folder. Its functions recognise folders that earlier versions wrote, which have no list
+/// of files.
 struct ExportKind {
-  const char* name;                                 ///< csv, bids, psych-ds
-  bool (*is_export)(const std::filesystem::path&);  ///< true if this program wrote the folder
-  bool (*is_name)(const std::string&);              ///< true if such a folder may hold a file of that name
+  const char* name;                                 ///< "csv", "bids" or "psych-ds"
+  bool (*is_export)(const std::filesystem::path&);  ///< true if vip-study wrote the folder
+  bool (*is_name)(const std::string&);              ///< true if this kind of export has files of this name
 };
 
 /// Format of the CSV files of an export.
 struct CsvDialect {
   char separator = ',';
-  char decimal = '.';  ///< in numbers that are not integers
-  bool mark = false;   ///< begin with a byte-order mark, so that spreadsheets detect UTF-8
+  char decimal = '.';  ///< decimal mark of numbers that are not integers
+  bool mark = false;   ///< true: begin with a byte-order mark, by which spreadsheets detect UTF-8
 };
 
-/// The dialect that a spreadsheet opens correctly in this computer's locale (LC_ALL, LC_NUMERIC or LANG): a
-/// byte-order mark, and semicolons if the decimal mark is a comma. base::Error: that locale is not installed.
+/// The dialect that a spreadsheet opens correctly in this computer's locale (LC_ALL, LC_NUMERIC or LANG). It
+/// has a byte-order mark and, if the locale's decimal mark is a comma, decimal commas and semicolons between
+/// fields. base::Error if the locale is not installed.
 CsvDialect excel_dialect();
 
-/// The source of an export and its readers.
+/// The source, people, readers and dialect of an export.
 struct ExportSource {
   std::filesystem::path database;
   const ExportKind& kind;
-  std::set<std::string> people;  ///< people in the export (session.person)
+  std::set<std::string> people;  ///< persons (session.person) whose data the export contains
   Readers readers;
   CsvDialect dialect = {};
 };
 
-/// A draft folder beside the target, deleted unless put in place, so that the target is never partial. It is
-/// registered in the database before it is made.
+/// The draft of an export: a folder beside the target, registered in the database before it is made. The
+/// destructor deletes the draft unless put_in_place() renamed it.
 class ExportDraft {
  public:
-  /// base::Error, with nothing made, if the target is anything but absent, an empty folder or an unchanged
-  /// earlier export of that kind (the error names the added or changed file), or if the database cannot be
-  /// written (RegisteredExport).
+  /// Makes the draft. The target must be absent, an empty folder, or an unchanged earlier export of the same
+  /// kind. base::Error, with nothing made, if it is not (the error names an added or changed file), or if the
+  /// database cannot be written (RegisteredExport).
   ExportDraft(const ExportSource& source, const std::filesystem::path& target);
   ~ExportDraft();
   ExportDraft(const ExportDraft&) = delete;
@@ -76,8 +79,8 @@ class ExportDraft {
   Readers readers() const { return readers_; }
   const CsvDialect& dialect() const { return dialect_; }
   /// Adds the list of files (own_exports.hpp) and renames the draft to the target, replacing an earlier
-  /// export. Returns once it is on disk. base::Error, with the target deleted, if one of its people withdrew
-  /// meanwhile.
+  /// export. Returns once the rename is on disk. base::Error, with the target deleted, if a person in the
+  /// export withdrew in the meantime.
   void put_in_place();
 
  private:
@@ -92,8 +95,8 @@ class ExportDraft {
   std::optional<RegisteredExport> record_;
 };
 
-/// A file of a draft; makes its parent folders. base::Error if not every byte reached the disk, or if the
-/// name leads out of the draft or is not portable (base::check_file_name).
+/// Writes a file of a draft, and makes its parent folders. base::Error if the file cannot be written to disk
+/// completely, or if its name leads out of the draft or is not portable (base::check_file_name()).
 class ExportFile {
  public:
   ExportFile(const ExportDraft& draft, const std::string& name);
@@ -111,28 +114,29 @@ class ExportFile {
   std::FILE* file_ = nullptr;
 };
 
-/// Writes a whole file of a draft.
+/// Writes a file of a draft with the content `text`.
 void write_file(const ExportDraft& draft, const std::string& name, const std::string& text);
 
-/// Prefixes an apostrophe if a spreadsheet would read the text as a formula: if it begins with = + - @ (also
-/// in full width), a tab or a line end, or with apostrophes and one of these. A reader restores the text by
-/// removing one apostrophe from fields that begin with apostrophes and one of these.
+/// Puts an apostrophe before a text that a spreadsheet would read as a formula. Such a text begins with = + -
+/// @ (also as full-width characters), a tab or a line end, or with apostrophes followed by one of these. A
+/// reader restores the text by removing one apostrophe if the field begins with apostrophes followed by one
+/// of these.
 std::string formula_guarded(const std::string& text);
-/// The same rule as text for the descriptions of an export.
+/// The rule of formula_guarded() in words, for the descriptions in exports.
 extern const char* const formula_guard_meaning;
-/// A text as a CSV field: formula_guarded(), quoted if RFC 4180 requires it or if it was guarded.
+/// A text as a CSV field: formula_guarded(), and quoted if RFC 4180 requires it or if it got an apostrophe.
 std::string csv_field(const std::string& text, const CsvDialect& dialect = {});
 /// The shortest text that parses to the same number.
 std::string number_text(double value);
-/// A number's text with the dialect's decimal mark.
+/// A number as text with the dialect's decimal mark; `text` has a decimal point.
 std::string csv_number(std::string text, const CsvDialect& dialect);
-/// A column's value: a text as csv_field(), a number as csv_number(), empty for NULL.
+/// A column of a result row as a CSV field: a text as csv_field(), a number as csv_number(), NULL as empty.
 std::string csv_value(const sqlite::Statement& row, int column, const CsvDialect& dialect = {});
-/// Joins finished fields to a line.
+/// Joins fields, which are already quoted, to a line with its line end.
 std::string csv_line(const std::vector<std::string>& fields, const CsvDialect& dialect);
-/// The byte-order mark, if any, and the header line.
+/// The beginning of a CSV file: the byte-order mark if the dialect has one, then the header line.
 std::string csv_head(const std::vector<std::string>& names, const CsvDialect& dialect);
-/// Writes the rows that `sql` selects under a header line; returns their number.
+/// Writes a CSV file of a draft: a header line and the rows that `sql` selects. Returns the number of rows.
 std::int64_t write_csv(sqlite::Connection& database, const std::string& sql, const ExportDraft& draft,
                        const std::string& name);
 

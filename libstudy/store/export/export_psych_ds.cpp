@@ -64,7 +64,8 @@ bool is_psych_ds_name(const std::string& name) {
 
 constexpr ExportKind psych_ds_kind{"psych-ds", is_psych_ds_export, is_psych_ds_name};
 
-/// Each column of the files, once; two files may share one. `scored`: the sessions of the export.
+/// Metadata of the columns of all files; a column that several files have is listed once. scored: the
+/// exported sessions with sickness data.
 Json variables(Connection& database, std::span<const SicknessSession> scored) {
   std::map<std::string, std::string> meanings;
   for (const RatingColumn& column : rating_columns())
@@ -72,7 +73,7 @@ Json variables(Connection& database, std::span<const SicknessSession> scored) {
   for (const RatingColumn& column : page_columns)
     meanings.emplace(column.name, meaning_of(database, column).meaning);
   for (const SicknessTable& table : sickness_tables(scored)) {
-    if (table.rows.empty()) continue;  // no file: Psych-DS refuses variables without one
+    if (table.rows.empty()) continue;  // the table has no file, and Psych-DS forbids variables without a file
     for (const SicknessColumn& column : table.columns) meanings.emplace(column.name, column.meaning);
   }
   Json list = Json::array();
@@ -81,7 +82,7 @@ Json variables(Connection& database, std::span<const SicknessSession> scored) {
   return list;
 }
 
-/// The tables of one session that have rows.
+/// Writes the sickness tables of one session that have rows.
 void write_scores(const SicknessSession& session, const std::string& stem, const ExportDraft& draft,
                   std::vector<ExportedFile>& files) {
   for (const SicknessTable& table : sickness_tables({&session, 1})) {
@@ -114,7 +115,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
 }  // namespace
 
 PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
-  open_study(study);  // refuses a damaged file before anything is written to it
+  open_study(study);  // throws for a damaged file before label_everybody() writes to it
   label_everybody(study.path);
   const auto database = open_to_export(study);
   database->execute("BEGIN");
@@ -134,7 +135,7 @@ PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
     files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
     files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
     for (const RunSetting& setting : run_settings(*database, session.id)) {
-      // Tools ignore files there, which are not data.
+      // Psych-DS tools ignore files in materials/.
       const std::string name = "materials/" + setting_file_name(setting);
       if (named.insert(name).second) write_file(draft, name, setting.text);
     }

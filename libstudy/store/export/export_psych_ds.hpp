@@ -1,5 +1,6 @@
 #pragma once
-/// Exports the database as a Psych-DS data set: one CSV file per session, with every column in the metadata.
+/// Exports the database as a Psych-DS data set: CSV files for each session, and metadata with the meaning of
+/// every column.
 
 #include <filesystem>
 
@@ -8,9 +9,13 @@
 
 namespace study {
 
-/// data/study-<protocol>_subject-<code>_session-<protocol>v<visit>_data.csv: ratings as in ratings.csv;
-/// ..._description-pages_data.csv: answers on pages, without free text. A public export: it holds only
-/// shared_sessions(). Errors and folder as export_csv().
+/// Writes a public export, which contains only shared_sessions(), into `folder`. Folder and base::Error as
+/// for export_csv(). The files for each session:
+/// - data/study-<protocol>_subject-<code>_session-<protocol>v<visit>_data.csv: the session's rows of the
+/// table
+///   of ratings (rating_table.hpp).
+/// - ..._description-pages_data.csv: answers on pages, without free text.
+/// - ..._description-<table>_data.csv: each table of sickness_tables() that has rows.
 PublicExport export_psych_ds(const StudyFile& study, const std::filesystem::path& folder);
 
 }  // namespace study

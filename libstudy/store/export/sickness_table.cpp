@@ -75,7 +75,7 @@ SicknessTable fms_table(std::span<const SicknessSession> sessions) {
   return table;
 }
 
-/// A line for the scores of a block, or of the whole session if `block` is empty.
+/// A line of the table "fms_summary" about a block, or about the whole session if `block` is empty.
 std::vector<std::string> summary_row(const SicknessSession& session, const std::string& block) {
   std::vector<double> scores;
   for (const FmsAnswer& answer : session.fms) {
@@ -89,7 +89,7 @@ std::vector<std::string> summary_row(const SicknessSession& session, const std::
   return row;
 }
 
-/// CSV fields; numbers need no guard.
+/// The fields of a row as CSV fields. Texts are guarded against formulas; numbers need no guard.
 std::vector<std::string> csv_fields(const SicknessTable& table, const std::vector<std::string>& row,
                                     const CsvDialect& dialect) {
   std::vector<std::string> fields;

@@ -1,6 +1,6 @@
 #pragma once
-/// The scores of read_sickness() as export tables: ssq.csv with one line per page, fms.csv with one per
-/// answer, fms_summary.csv with mean and peak of each session and of its blocks.
+/// The sickness data of read_sickness() as tables for exports: "ssq" with one line per page, "fms" with one
+/// line per answer, "fms_summary" with mean and peak of each session and of each block.
 
 #include <span>
 #include <string>
@@ -11,27 +11,29 @@
 
 namespace study {
 
-/// A column with its meaning for the dictionary; SQL type.
+/// A column with its SQL type and its meaning for the data dictionary.
 struct SicknessColumn {
   std::string name, type, meaning;
 };
 
 struct SicknessTable {
-  std::string name;  ///< "ssq", "fms", "fms_summary"
+  std::string name;  ///< "ssq", "fms" or "fms_summary"
   std::vector<SicknessColumn> columns;
-  std::vector<std::vector<std::string>> rows;  ///< not quoted; empty: not known
+  std::vector<std::vector<std::string>> rows;  ///< fields without CSV quotes; empty field: not known
 };
 
-/// All three, in that order; a table may have no rows.
+/// The tables "ssq", "fms" and "fms_summary", in this order; a table may have no rows.
 std::vector<SicknessTable> sickness_tables(std::span<const SicknessSession> sessions);
-/// The table "fms_summary". After the columns of the session: block, number of answers, mean, peak.
+/// The table "fms_summary". Its last four columns are block, number of answers, mean and peak; the columns
+/// before identify the session.
 SicknessTable fms_summary_table(std::span<const SicknessSession> sessions);
 
-/// The scores of a page in the order of stats::ssq_scales: columns, and values as text.
+/// Columns for the SSQ scores (ssq_score_columns), and a page's scores as text (ssq_texts), both in the order
+/// of stats::ssq_scales.
 std::vector<SicknessColumn> ssq_score_columns();
 std::vector<std::string> ssq_texts(const stats::SsqAnswers& answers);
 
-/// Writes a table as write_csv() does; returns its number of rows.
+/// Writes a table as a CSV file of a draft, in the format of write_csv(); returns the number of rows.
 std::int64_t write_sickness(const SicknessTable& table, const ExportDraft& draft, const std::string& name);
 
 }  // namespace study

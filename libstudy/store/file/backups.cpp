@@ -20,11 +20,12 @@ using sqlite::Transaction;
 
 namespace {
 
-/// Rows deleted with a session; temp.gone lists the sessions.
+/// Rows of a table that are deleted together with a session. The table temp.gone lists the sessions to
+/// delete.
 struct Dependant {
   const char* table;
-  const char* rows;
-  std::int64_t since = 1, until = 99;  ///< schema versions with these rows
+  const char* rows;                    ///< SQL condition that selects the rows
+  std::int64_t since = 1, until = 99;  ///< first and last schema version in which the condition is valid
 };
 
 constexpr const char* of_session = "session_id IN temp.gone";
@@ -33,7 +34,7 @@ constexpr const char* of_presentation =
     "presentation_id IN (SELECT presentation_id FROM presentation JOIN trial USING (trial_id) "
     "WHERE session_id IN temp.gone)";
 
-/// Children first.
+/// In the order of deletion: child tables before their parent tables.
 constexpr Dependant dependants[] = {
     {"permission_change", of_session, 3},
     {"gaze_validation", of_session, 5},
@@ -77,13 +78,15 @@ std::vector<std::int64_t> sessions_of(Connection& database, const std::string& p
   return sessions;
 }
 
-/// Schema 1 has no persons: take them from an upgraded copy, which has the same session numbers.
+/// The sessions of a person in a backup of schema 1. This schema has no column for persons, so they come from
+/// an upgraded copy, which has the same session numbers.
 std::vector<std::int64_t> sessions_in_schema_1(const fs::path& backup, const std::string& person) {
   const auto upgraded = open_database(backup, Open::Read, read_schema_steps());
   return sessions_of(*upgraded, person);
 }
 
-/// Schema 1 has no tombstones, and a trigger protects its log: drop the trigger within the transaction.
+/// Deletes sessions from a backup of schema 1, which has no tombstones. A trigger forbids to delete events,
+/// so the transaction drops the trigger and makes it again.
 void bury_in_schema_1(Connection& backup, const std::vector<std::int64_t>& sessions) {
   const std::string trigger = backup.text("SELECT sql FROM sqlite_schema WHERE name = 'event_is_kept'");
   Transaction transaction(backup);
@@ -129,7 +132,8 @@ bool delete_from_backup(const fs::path& path, const std::string& person) {
   const auto version = backup.integer("PRAGMA user_version");
   if (backup.integer("PRAGMA application_id") != database_application_id || version < 1 ||
       version > static_cast<std::int64_t>(read_schema_steps().size()))
-    throw base::Error(path.string(), "is not a backup that this program knows", "delete it");
+    throw base::Error(path.string(), "has a backup's name but is not a database of this vip-study",
+                      "move it to another folder if it holds no people's data");
   check_schema(backup, read_schema_steps(), version);
   backup.recognise();
   backup.text("PRAGMA journal_mode = DELETE");
@@ -137,7 +141,8 @@ bool delete_from_backup(const fs::path& path, const std::string& person) {
   const auto sessions = version == 1 ? sessions_in_schema_1(path, person) : sessions_of(backup, person);
   if (version == 1 && !sessions.empty()) bury_in_schema_1(backup, sessions);
   if (version > 1 && !sessions.empty()) bury_later(backup, person, version);
-  // An earlier deletion may have been interrupted before VACUUM; schema 1 does not record that.
+  // An earlier deletion may have been interrupted before VACUUM. A tombstone shows that; schema 1 has none,
+  // so VACUUM always runs.
   if (sessions.empty() && !(version == 1 ? ::access(path.c_str(), W_OK) == 0 : is_buried(backup, person)))
     return false;
   backup.execute("VACUUM");

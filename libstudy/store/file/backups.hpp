@@ -1,6 +1,7 @@
 #pragma once
-/// Copies beside a database: "<database>.v<version>-<UTC time>.bak" from an upgrade, "<database>.rescued-<UTC
-/// time>.db", or at least its log ".wal", from a session whose file was removed or replaced.
+/// Backups beside a database. An upgrade makes "<database>.v<version>-<UTC time>.bak". A session whose file
+/// was removed or replaced saves "<database>.rescued-<UTC time>.db", or if that fails, only the log as
+/// "<database>.rescued-<UTC time>.wal".
 
 #include <filesystem>
 #include <string>
@@ -14,12 +15,13 @@ namespace study {
 std::vector<std::filesystem::path> backups_of(const std::filesystem::path& database);
 
 /// Deletes every session of `person` (session.person) from a backup of any schema and overwrites the bytes.
-/// Sessions of others stay, whatever their code there. False if the person is not in it. base::Error: not a
-/// backup that this program knows, or it cannot be written.
+/// Sessions of other people stay, even if they have the same code in the backup. Returns false if the backup
+/// has no session of the person. base::Error if the file is not a database of vip-study, or cannot be
+/// written.
 bool delete_from_backup(const std::filesystem::path& backup, const std::string& person);
 
-/// Deletes every session of `person`, with all dependent rows, from a database of schema `version` within the
-/// caller's transaction. From schema 2 on a tombstone stays.
+/// Deletes every session of `person` with all dependent rows, within the caller's transaction, and leaves a
+/// tombstone: a row that says who withdrew. `version`: the database's schema, at least 2.
 void bury(sqlite::Connection& database, const std::string& person, std::int64_t version);
 
 }  // namespace study

@@ -5,7 +5,7 @@ namespace study {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr int most_links = 40;  // as many as Linux follows
+constexpr int most_links = 40;  // Linux follows at most 40 links, too
 }
 
 fs::path real_file(const fs::path& path) {

@@ -1,16 +1,16 @@
 #pragma once
-/// Files beside a database: its name with a suffix.
+/// Paths of the files beside a database, which have the database's path with a suffix.
 
 #include <filesystem>
 #include <string>
 
 namespace study {
 
-/// Resolves symbolic links to files; the target need not exist. Other paths are returned unchanged. So a
-/// database has one set of files beside it, whatever link it is opened through.
+/// Follows symbolic links from `path` to a file, which need not exist; a path that is no link is returned
+/// unchanged. So a database has the same files beside it, no matter through which link it is opened.
 std::filesystem::path real_file(const std::filesystem::path& path);
 
-/// The path "<database><suffix>" of the database's real file.
+/// The path real_file(database) with `suffix` appended.
 std::filesystem::path beside(const std::filesystem::path& database, const std::string& suffix);
 
 }  // namespace study

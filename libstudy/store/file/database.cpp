@@ -38,7 +38,7 @@ namespace {
 constexpr std::array parts{"", "-wal", "-journal"};
 constexpr int rounds = 5;
 
-/// A folder for the owner only, deleted with its content.
+/// A temporary folder that only its owner can read; the destructor deletes it with its content.
 class PrivateFolder {
  public:
   PrivateFolder() : path_((fs::temp_directory_path() / "vip-study-XXXXXX").string()) {
@@ -57,7 +57,8 @@ class PrivateFolder {
   std::string path_;
 };
 
-/// Sizes and modification times: equal before and after a copy if it is consistent.
+/// Sizes and modification times of a database, its log and its journal. If they are equal before and after a
+/// copy, the copy is consistent.
 std::vector<std::tuple<long long, long long, long long>> state_of(const fs::path& path) {
   std::vector<std::tuple<long long, long long, long long>> state;
   for (const char* part : parts) {
@@ -82,9 +83,9 @@ void copy_parts(const fs::path& path, const fs::path& copy) {
   }
 }
 
-/// A temporary copy of a file with its log and journal, as recovered by SQLite. For read-only media and
-/// folders, where SQLite can neither make a log's shared memory nor roll back a journal. base::Error if it
-/// cannot be read, or is being written all the time.
+/// A temporary copy of a database, to which SQLite has applied the log and the journal. Needed on read-only
+/// media and folders, where SQLite can neither make a log's shared memory nor roll back a journal.
+/// base::Error if the file cannot be read, or changes during each of several tries.
 std::unique_ptr<Connection> snapshot(const fs::path& path) {
   for (int round = 0; round < rounds; ++round) {
     const PrivateFolder folder;
@@ -97,8 +98,8 @@ std::unique_ptr<Connection> snapshot(const fs::path& path) {
     held->copy_from(whole);
     return held;
   }
-  throw base::Error(path.string(), "is being written to by somebody else",
-                    "wait until that has ended, or copy it to a folder that you own");
+  throw base::Error(path.string(), "cannot be read: another program changes it all the time",
+                    "wait until that program has ended, or copy the file to a folder that you own");
 }
 
 constexpr std::array step_files{"001_initial.sql",  "002_blocks.sql",   "003_permissions.sql",
@@ -121,18 +122,19 @@ Identity identify(Connection& database) {
           database.integer("SELECT EXISTS (SELECT 1 FROM sqlite_schema)") == 0};
 }
 
-/// True if the rollback journal says that the file had no pages. A power cut in the first transaction leaves
-/// such a journal beside arbitrary bytes; SQLite empties the file with it.
+/// True if the rollback journal records that the database file had no pages. A power cut in the first
+/// transaction leaves such a journal beside a file with arbitrary bytes; rolling back then empties the file.
 bool was_empty_before(const fs::path& journal) {
-  // The head of a rollback journal (sqlite.org/fileformat.html, section 3): 8 bytes of magic; at byte 16, the
-  // number of pages that the file had.
+  // Header of a rollback journal (sqlite.org/fileformat.html, section 3): 8 magic bytes; at byte 16, the
+  // number of pages that the database file had.
   std::ifstream file(journal, std::ios::binary);
   std::string head(20, '\0');
   return file.read(head.data(), 20) && head.starts_with(salvaging::rollback_magic) &&
          salvaging::u32(head, 16) == 0;
 }
 
-/// Throws unless the database is ours, or blank if one may be made, and not newer than the program.
+/// base::Error unless the file is a database of vip-study whose schema is not newer than the program. With
+/// Open::Create, an empty database is accepted too.
 void recognise(const fs::path& path, const Identity& found, Open how, std::size_t newest) {
   const bool blank = found.empty && found.application == 0 && found.version == 0;
   if (blank && how == Open::Create) return;
@@ -159,8 +161,8 @@ bool has_bytes(const fs::path& path) {
   return !ignored && bytes > 0;
 }
 
-/// Throws if the file's own first bytes are not ours, before SQLite uses its log or journal. They are ours
-/// from the first commit on, which is never in a log.
+/// base::Error if the header in the file itself is not that of a vip-study database. Called before SQLite
+/// uses the log or journal. The first commit writes the header into the file, never only into a log.
 void recognise_header(Connection& database, Open how, std::size_t newest) {
   const std::string head = database.header();
   if (head.empty() && how == Open::Create) return;
@@ -169,20 +171,24 @@ void recognise_header(Connection& database, Open how, std::size_t newest) {
   if (head.size() == salvaging::header_bytes && head.starts_with(salvaging::database_magic)) {
     found.application = salvaging::u32(head, salvaging::application_at);
     found.version = salvaging::u32(head, salvaging::version_at);
-    // SQLite can tell whether there are tables, but not while a journal is to be rolled back first.
+    // SQLite checks later that a file without a journal has no tables. With a journal, that check would roll
+    // the journal back and so change the file: such a file is not accepted as empty.
     found.empty = !has_bytes(journal);
   }
   if (how == Open::Create && was_empty_before(journal)) return;
   recognise(database.path(), found, how, newest);
 }
 
-/// The backup is complete or missing: a kill leaves a draft, which the next upgrade removes.
+/// Makes the backup before an upgrade, completely or not at all. A kill leaves a draft, which the next
+/// upgrade removes.
 void back_up(Connection& database, std::int64_t version) {
   const std::string path = database.path().string(), draft = path + ".bak.tmp",
                     copy = path + ".v" + std::to_string(version) + "-" + base::utc_now() + ".bak";
   std::error_code failed;
   fs::remove(draft, failed);
-  if (!create_private(draft)) throw base::Error(draft, "is in the way", "move it away and try again");
+  if (!create_private(draft))
+    throw base::Error(draft, "exists, but the backup before the upgrade must be written there first",
+                      "move that file elsewhere and give the command again");
   try {
     sqlite::Statement(database, "VACUUM INTO ?").bind_all(draft).run();
     base::sync_file(draft);
@@ -195,12 +201,14 @@ void back_up(Connection& database, std::int64_t version) {
   }
 }
 
-/// Sets a random number that identifies this database in its log (foreign_log.hpp).
+/// Sets the schema cookie to a random number, unless it has one. The number identifies the database, also in
+/// its log (foreign_log.hpp).
 void give_identity(Connection& database) {
   if (database.integer("PRAGMA schema_version") >= first_identity) return;
   std::mt19937 chance{std::random_device()()};
   const std::int64_t number = std::uniform_int_distribution<std::int64_t>(first_identity, 1 << 30)(chance);
-  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);  // it protects the number
+  // SQLITE_DBCONFIG_DEFENSIVE forbids to set the number.
+  sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);
   database.execute("PRAGMA schema_version = " + std::to_string(number));
   sqlite3_db_config(database.handle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
 }
@@ -210,11 +218,11 @@ void set_version(Connection& database, std::size_t version) {
   database.execute("PRAGMA user_version = " + std::to_string(version));
 }
 
-/// Makes the schema of this version at once. The steps give the same schema, but SQLite reads the whole
-/// schema again for each table that they rename.
+/// Makes the newest schema from one file, schema.sql. Running all schema steps would give the same schema
+/// more slowly: SQLite reads the whole schema again for each table that a step renames.
 void make_schema(Connection& database, std::size_t version) {
-  // Commit the identity first. A journal that would empty the file is trusted only while the file has no
-  // tables (holds_nothing).
+  // Commits application_id first, with schema version 0. holds_nothing() trusts a journal that would empty
+  // the file only while the schema version is at most 1.
   sqlite::Transaction named(database);
   set_version(database, 0);
   named.commit();
@@ -225,7 +233,8 @@ void make_schema(Connection& database, std::size_t version) {
   transaction.commit();
 }
 
-/// A step may recreate tables, so that references dangle until it ends: checks them before the commit.
+/// Runs one schema step in a transaction. A step may recreate tables, and then references are invalid until
+/// it ends; so all references are checked before the commit.
 void take_step(Connection& database, const SchemaSteps& steps, std::size_t version) {
   sqlite::Transaction transaction(database);
   database.execute(steps.at(version - 1));
@@ -240,7 +249,7 @@ void take_step(Connection& database, const SchemaSteps& steps, std::size_t versi
   transaction.commit();
 }
 
-/// An upgraded copy of an older database; the file is unchanged.
+/// A temporary, read-only copy of an older database, upgraded to the newest schema. The file stays unchanged.
 std::unique_ptr<Connection> upgraded_copy(Connection& database, const SchemaSteps& steps) {
   auto copy = std::make_unique<Connection>(database.path(), sqlite::Temporary{});
   copy->copy_from(database);
@@ -281,8 +290,8 @@ std::unique_ptr<Connection> to_write(std::unique_ptr<Connection> database, const
 bool holds_nothing(const fs::path& path) {
   if (!has_bytes(path)) return true;
   if (!was_empty_before(path.string() + "-journal")) return false;
-  // This journal says that the file was empty. A database of a schema version above 1 was committed before,
-  // so that the journal belongs to another file.
+  // The journal records an empty file. If the file is a vip-study database of a schema above 1, it had
+  // commits already, so the journal belongs to another file.
   std::string head(salvaging::header_bytes, '\0');
   const bool whole = bool(std::ifstream(path, std::ios::binary).read(head.data(), salvaging::header_bytes));
   return !whole || !head.starts_with(salvaging::database_magic) ||
@@ -297,7 +306,7 @@ SchemaSteps read_schema_steps() {
 }
 
 void upgrade(Connection& database, const SchemaSteps& steps) {
-  // This pragma has no effect within a transaction.
+  // Set here, because this pragma has no effect within the transactions of the steps.
   database.execute("PRAGMA foreign_keys = OFF");
   auto version = static_cast<std::size_t>(database.integer("PRAGMA user_version"));
   if (version == 0 && steps == read_schema_steps()) {
@@ -320,7 +329,8 @@ std::unique_ptr<Connection> open_database(const fs::path& given, Open how, const
   auto database = std::make_unique<Connection>(path, how);
   database->wait_with(waiting);
   recognise_header(*database, how, steps.size());
-  // A reader changes nothing; a writer first compares the log with the journal of answers (AnswerJournal).
+  // Keeps the log unchanged: a reader changes no file, and a writer first compares the database with the
+  // journal of answers (AnswerJournal).
   database->keep_log(has_bytes(path.string() + "-wal"));
   database->distrust();
   if (how == Open::Read && !database->can_read()) {

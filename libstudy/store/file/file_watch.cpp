@@ -12,11 +12,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Offsets in a log's shared memory that say how far it was copied (sqlite.org/walformat.html, section 2.2).
+// Offsets in the log's shared memory of the fields that record how much of the log was copied into the file
+// (sqlite.org/walformat.html, section 2.2).
 constexpr int salt_at = 32, copied_at = 96, being_copied_at = 128;
 constexpr int shared_region_bytes = 32768, copy_lock = 1;
 
-/// Null if the file has no shared memory.
+/// SQLite's file object of the main database; null if it does not support shared memory.
 sqlite3_file* main_file(sqlite3* database) {
   sqlite3_file* file = nullptr;
   sqlite3_file_control(database, "main", SQLITE_FCNTL_FILE_POINTER, &file);
@@ -33,8 +34,8 @@ bool keeps_a_log(sqlite3* database) {
   return mode == "wal";
 }
 
-/// The shared memory that the connection has already mapped. Without a log, SQLite would open it for this
-/// call and never close it.
+/// The log's shared memory, which the connection has already mapped; null if the database has no log. Without
+/// a log, this call would make SQLite open the shared memory and never close it.
 const volatile char* shared_memory(sqlite3* database) {
   sqlite3_file* file = main_file(database);
   if (!file || !keeps_a_log(database)) return nullptr;
@@ -68,7 +69,8 @@ std::optional<FileWatch::Id> FileWatch::id_of(const fs::path& path) {
 std::optional<FileWatch::Look> FileWatch::seen_now() const {
   const volatile char* memory = shared_memory(database_);
   if (!memory) return {};
-  // SQLite marks a copy as under way before it writes the first byte, so read the mark after the file.
+  // Before SQLite copies the log, it marks the copy as under way in the shared memory. So read the marks
+  // after the file's size and time: a change that a copy made is then always marked.
   struct stat file {};
   if (::stat(path_.c_str(), &file) != 0) return {};
   Look seen;
@@ -84,11 +86,11 @@ std::string FileWatch::trouble() {
   const auto file = id_of(path_);
   if (!file) return "was deleted or moved away while it was in use";
   if (file != file_id_) return "was replaced by another file while it was in use";
-  // If the connection has left WAL mode, the log is missing on purpose.
+  // A connection that has left WAL mode has removed its log itself.
   if (id_of(log_) != log_id_)
     return keeps_a_log(database_) ? "lost its log " + log_.string() + " while it was in use" : "";
   if (!written_by_somebody()) return {};
-  // A program that copies the log holds this lock; in that case judge at the next call.
+  // A program that copies the log into the file has this lock. If the lock is taken, the next call decides.
   const auto lock = [this](int how) {
     sqlite3_file* main = main_file(database_);
     return main && main->pMethods->xShmLock(main, copy_lock, 1, how | SQLITE_SHM_EXCLUSIVE) == SQLITE_OK;
@@ -103,7 +105,7 @@ bool FileWatch::written_by_somebody() {
   const auto now = seen_now();
   if (!now) return false;
   const bool written = last_ && (now->bytes != last_->bytes || now->written_ns != last_->written_ns);
-  // Any program may copy the log into the file; the shared memory shows it.
+  // Another program may change the file by copying the log into it; the shared memory then changes too.
   const bool by_the_log = last_ && (now->salt[0] != last_->salt[0] || now->salt[1] != last_->salt[1] ||
                                     now->copied != last_->copied || now->being_copied != last_->being_copied);
   if (written && !by_the_log) return true;

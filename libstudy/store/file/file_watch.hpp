@@ -1,6 +1,6 @@
 #pragma once
-/// Detects that a file that SQLite has open in WAL mode was deleted, replaced or overwritten by another
-/// program.
+/// Watches a file that SQLite has open in WAL mode: detects that another program deleted, replaced or
+/// overwrote it.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,22 +13,24 @@ namespace study {
 
 class FileWatch {
  public:
-  /// `database` has `path` open in WAL mode. The file's current state is the reference.
+  /// Begins the watch; the file's current state is the reference. `database` has `path` open in WAL mode.
   FileWatch(std::filesystem::path path, sqlite3* database);
 
-  /// What happened to the file since the last call, e.g. "was deleted or moved away ..."; empty: nothing.
+  /// Returns in words how another program changed the file or removed its log since the watch began, e.g.
+  /// "was deleted or moved away while it was in use"; empty if it did not.
   std::string trouble();
-  /// Moves the log to `kept`, or deletes it, and deletes the shared memory, so that SQLite does not copy the
-  /// log into the next file at the path. Does not touch a file that is not the one SQLite has open.
+  /// Moves the log to `kept`, or deletes the log if `kept` is empty, and deletes the log's shared memory. So
+  /// SQLite does not copy the log into another file at the same path. Leaves a log or shared memory that
+  /// another program has put at these paths.
   void take_log_away(const std::optional<std::filesystem::path>& kept) const;
 
  private:
-  /// Identity of the file at a path.
+  /// Device and inode number, which identify a file.
   struct Id {
     std::uint64_t device = 0, number = 0;
     bool operator==(const Id&) const = default;
   };
-  /// State of the main file at the last look, and how far the log was copied into it.
+  /// Size and modification time of the database file, and how much of its log was copied into it.
   struct Look {
     std::int64_t bytes = 0, written_ns = 0;
     std::uint32_t salt[2] = {}, copied = 0, being_copied = 0;

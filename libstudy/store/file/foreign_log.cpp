@@ -21,14 +21,16 @@ using salvaging::version_at;
 
 namespace {
 
-// Offsets in the first page.
+// Offsets of fields in the database header.
 constexpr std::size_t page_bytes_at = 16, format_at = 18, counter_at = 24, cookie_at = 40;
 constexpr char format_of_logs = 2;
-/// The first schema whose programs write the first page in each commit.
+/// First schema version of the programs that write the first page in each commit.
 constexpr std::uint32_t first_marked_version = 7;
-/// A cookie increases by one with each change of the schema and each VACUUM.
+/// Schema cookies that differ by less than this number belong to the same database. A cookie increases by one
+/// with each change of the schema and each VACUUM.
 constexpr std::int64_t most_changes = 10'000;
-/// Commits of single statements and of other programs write the first page only if its counts change.
+/// Largest number of commits in a log of which none wrote the first page. Commits of single statements and of
+/// other programs write the first page only if its page counts change.
 constexpr std::size_t most_unmarked = 8;
 constexpr int tries = 5;
 constexpr std::chrono::milliseconds between_tries{20};
@@ -50,18 +52,18 @@ bool same_identity(std::string_view one, std::string_view other) {
 
 bool has_identity(std::string_view header) { return u32(header, cookie_at) >= first_identity; }
 
-/// How far `counter` is behind `other`; negative if ahead. Counters wrap around.
+/// The change counter in header `other` minus that in header `counter`, modulo 2^32 as a signed number.
 std::int32_t behind(std::string_view counter, std::string_view other) {
   return static_cast<std::int32_t>(u32(other, counter_at) - u32(counter, counter_at));
 }
 
 std::string problem_of_log(const Log& log, std::string_view header) {
   if (log.is_empty()) return {};
-  if (log.page_bytes() != page_bytes(header)) return "is of a database with other pages";
+  if (log.page_bytes() != page_bytes(header)) return "is of a database with another page size";
   const std::vector<std::string> heads = log.heads();
   if (heads.empty()) {
     return u32(header, version_at) >= first_marked_version && log.commits() > most_unmarked
-               ? "does not say of which database it is"
+               ? "does not name the database that it belongs to"
                : "";
   }
   for (const std::string& head : heads) {
@@ -69,14 +71,16 @@ std::string problem_of_log(const Log& log, std::string_view header) {
     if (has_identity(header) && has_identity(head) && !same_identity(head, header))
       return "is of another database";
   }
-  // The log in which an older database got its number also holds earlier commits.
+  // An upgrade gives an older database its random cookie, and the log may also contain commits from before.
+  // So only the last version of the first page in the log must have a random cookie.
   if (has_identity(header) && !has_identity(heads.back())) return "is of another database";
   if (behind(header, heads.front()) > 1) return "is of a later state of the database than the file";
   if (behind(heads.back(), header) > 0) return "is of an earlier state of the database than the file";
   return {};
 }
 
-/// The first page in a journal; empty if the journal's first part lacks it.
+/// The header of the first page as the journal recorded it; empty if the journal's first segment lacks the
+/// page.
 std::string first_page_of(const File& journal, std::string_view head, std::size_t bytes) {
   const std::size_t record = 4 + bytes + 4;
   for (std::size_t at = u32(head, 20); at + record <= journal.size(); at += record) {
@@ -90,7 +94,7 @@ std::string first_page_of(const File& journal, std::string_view head, std::size_
 std::string problem_of_journal(const fs::path& path, std::string_view header) {
   const File journal(path);
   const std::string head = journal.read(0, 28);
-  // SQLite would read a file that the journal names, and may delete it.
+  // SQLite would read, and possibly delete, the super-journal that this journal names at its end.
   if (journal.size() >= 16 && journal.read(journal.size() - 8, 8) == salvaging::rollback_magic)
     return "names a further file to be deleted";
   if (head.size() < 28 || !head.starts_with(salvaging::rollback_magic) || !is_ours(header)) return {};
@@ -98,9 +102,9 @@ std::string problem_of_journal(const fs::path& path, std::string_view header) {
   if (u32(head, 16) == 0) {
     return young && u32(header, version_at) <= 1 ? "" : "would make the database empty";
   }
-  if (u32(head, 24) != page_bytes(header)) return "is of a database with other pages";
+  if (u32(head, 24) != page_bytes(header)) return "is of a database with another page size";
   const std::string before = first_page_of(journal, head, page_bytes(header));
-  if (before.empty()) return young ? "" : "does not say of which database it is";
+  if (before.empty()) return young ? "" : "does not name the database that it belongs to";
   if (!is_ours(before)) return "is not of a database of vip-study";
   if (same_identity(before, header) || (young && !has_identity(before))) return {};
   return "is of another database";
@@ -120,7 +124,7 @@ std::optional<ForeignLog> look(const fs::path& database, const std::string& head
 
 std::optional<ForeignLog> foreign_log(const fs::path& database, const std::function<std::string()>& header) {
   auto found = look(database, header());
-  // During a write, the parts may be of different moments.
+  // While another program writes, the files may be read at different moments: try again before reporting.
   for (int i = 1; found && i < tries; ++i) {
     std::this_thread::sleep_for(between_tries);
     found = look(database, header());
@@ -141,7 +145,7 @@ void refuse_orphaned_log(const fs::path& database) {
     std::error_code ignored;
     return !fs::exists(database, ignored) || fs::file_size(database, ignored) == 0;
   };
-  // Checked again after the log, because another program may be making the database.
+  // Checks again after reading the log, because another program may have made the database meanwhile.
   if (!is_empty() || Log(log).is_empty() || !is_empty()) return;
   throw base::Error(log.string(), "is there without its database",
                     "put the database back beside it, or save what the log and the journal of answers hold: "

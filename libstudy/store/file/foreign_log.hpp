@@ -1,10 +1,11 @@
 #pragma once
-/// Checks that the log "<database>-wal" and the journal "<database>-journal" beside a database belong to it.
-/// SQLite does not check that: it applies any log or journal that is valid in itself.
+/// Checks that SQLite's log "<database>-wal" and rollback journal "<database>-journal" belong to the database
+/// beside them. SQLite itself applies any valid log or journal, even of another database.
 ///
-/// Databases of this program identify themselves in the first page, which each commit rewrites. The schema
-/// cookie is a random number (>= first_identity) chosen when the database was made or upgraded; the log's
-/// change counter must continue the database's. The format: https://www.sqlite.org/fileformat2.html
+/// The first page of a vip-study database identifies it, and each commit writes this page. The page contains
+/// the schema cookie, a random number (>= first_identity) chosen when the database was made or upgraded, and
+/// a change counter. The log's cookie must be the same except for a few schema changes, and its change
+/// counter must continue the file's. The format: https://www.sqlite.org/fileformat2.html
 
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +16,8 @@
 
 namespace study {
 
-/// Smaller cookies count schema changes: the database has no random identity yet.
+/// The smallest schema cookie that is a random identity. A smaller cookie counts schema changes: the database
+/// has no random identity yet.
 inline constexpr std::int64_t first_identity = 1 << 16;
 
 struct ForeignLog {
@@ -23,16 +25,17 @@ struct ForeignLog {
   std::string problem;
 };
 
-/// None: both belong to the database or do not exist. `header` returns the current first 100 bytes of the
-/// database, since another program may be writing. Changes nothing.
+/// The log or journal beside the database that does not belong to it, with the reason; none if both belong to
+/// it or do not exist. Changes no file. `header` returns the current first 100 bytes of the database; it is
+/// called again for each new try, because another program may be writing.
 std::optional<ForeignLog> foreign_log(const std::filesystem::path& database,
                                       const std::function<std::string()>& header);
 
-/// base::Error if foreign_log() finds one.
+/// base::Error if foreign_log() finds a log or journal of another database.
 void refuse_foreign_log(const std::filesystem::path& database, const std::function<std::string()>& header);
 
-/// base::Error if the database is missing or empty but its log is not: SQLite would delete that log when it
-/// makes a database there.
+/// base::Error if the database is missing or empty, but its log has commits. SQLite would delete this log
+/// when it makes a database at the path.
 void refuse_orphaned_log(const std::filesystem::path& database);
 
 }  // namespace study

@@ -38,7 +38,7 @@ namespace {
           : "the journal of answers must be a file on a sound disk, not a link");
 }
 
-/// 0, or errno.
+/// Writes all bytes; returns 0, or errno if that fails.
 int write_all(int fd, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(fd, bytes.data(), bytes.size());
@@ -49,7 +49,7 @@ int write_all(int fd, std::string_view bytes) {
   return 0;
 }
 
-/// A regular file's size; an error otherwise.
+/// Size of a regular file, bytes. base::Error if the file is not regular.
 std::uintmax_t size_of(int fd, const fs::path& path) {
   struct stat status {};
   if (::fstat(fd, &status) != 0) fail_to_read(path, errno);
@@ -108,7 +108,7 @@ class Reader {
       return true;
     }
     if (const auto ready = mark.find("ready"); ready != mark.end() && ready->is_number_integer()) {
-      // An earlier batch that was not kept before this one was not committed.
+      // A batch without a "kept" line before the next batch was never committed: drop its rows.
       content.last_number = std::max(content.last_number, ready->get<std::int64_t>());
       waiting_ = ready->get<std::int64_t>();
       content.torn = skipped_ > 0;
@@ -253,7 +253,7 @@ namespace {
 
 fs::path draft_of(const fs::path& journal) { return journal.string() + ".new"; }
 
-/// Deleting a file leaves its bytes on the disk, so overwrites them first.
+/// Overwrites a file with zeros. Needed before deleting it, because deletion leaves the bytes on the disk.
 void overwrite(const base::Descriptor& file, const fs::path& path) {
   const std::string zeros(1 << 16, '\0');
   for (std::uintmax_t left = size_of(file.get(), path); left > 0;) {
@@ -268,7 +268,7 @@ void overwrite(const base::Descriptor& file, const fs::path& path) {
 void overwrite(const fs::path& path) {
   const base::Descriptor file(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   const bool holds_bytes = file.get() >= 0 || (errno != ENOENT && errno != ELOOP && errno != ENXIO);
-  if (!holds_bytes) return;  // nothing, a link, a pipe
+  if (!holds_bytes) return;  // missing file, link or pipe
   if (file.get() < 0) fail(path, "cannot be overwritten", errno);
   overwrite(file, path);
 }
@@ -301,10 +301,10 @@ void replace_journal(const fs::path& path, const std::string& text) {
     return base::sync_folder_of(path);
   }
   write_draft(draft, path, text);
-  // A power cut leaves one of the two under the name, and both complete.
+  // Exchanges the two files' names. After a power cut, `path` is either the old or the new journal, complete.
   if (base::rename_durably(draft, path, fs::exists(fs::symlink_status(path)) ? RENAME_EXCHANGE : 0))
     return remove_journal_draft(path);
-  // Network file systems cannot exchange two names, so the new journal replaces the old one.
+  // Network file systems cannot exchange two names: rename the new journal over the old one instead.
   const int reason = errno;
   const base::Descriptor old(::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (reason != EINVAL) fail(path, "cannot be replaced", reason);

@@ -25,7 +25,7 @@ std::optional<std::size_t> page_size(std::uint64_t bytes) {
   return bytes;
 }
 
-/// Continues a log's checksum over these bytes.
+/// Adds bytes to the two sums of a log's checksum; `big`: the log's words are big-endian.
 void add(std::uint32_t& first, std::uint32_t& second, std::string_view bytes, bool big) {
   const auto word = [&](std::size_t at) {
     const std::uint32_t value = u32(bytes, at);
@@ -97,7 +97,7 @@ void Log::read_frames(std::string_view head) {
   for (std::size_t at = wal_header_bytes; at + frame_header_bytes + page_bytes_ <= file_.size();
        at += frame_header_bytes + page_bytes_) {
     const std::string frame = file_.read(at, frame_header_bytes + page_bytes_);
-    if (frame.compare(8, 8, head, 16, 8) != 0) return;  // a frame from before the log was restarted
+    if (frame.compare(8, 8, head, 16, 8) != 0) return;  // an old frame, from before the log was restarted
     add(first_, second_, std::string_view(frame).substr(0, 8), big_);
     add(first_, second_, std::string_view(frame).substr(frame_header_bytes), big_);
     if (u32(frame, 16) != first_ || u32(frame, 20) != second_) return;

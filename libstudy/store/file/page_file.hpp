@@ -1,5 +1,5 @@
 #pragma once
-/// Reads the pages of a database file and its log directly, without SQLite. The format:
+/// Reads the pages of a SQLite database file and of its log directly, without SQLite. The format:
 /// https://www.sqlite.org/fileformat2.html
 
 #include <cstddef>
@@ -17,14 +17,15 @@ namespace study::salvaging {
 /// and 3 of the format).
 inline constexpr std::string_view database_magic("SQLite format 3\0", 16);
 inline constexpr std::string_view rollback_magic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
-/// header_bytes: of the first page, before the usual content of a page.
+/// header_bytes: size of the database header, with which the first page begins.
 inline constexpr std::size_t header_bytes = 100, version_at = 60, application_at = 68;
 
+/// The bytes as an unsigned number, most significant byte first.
 std::uint64_t big_endian(std::string_view bytes);
-/// Four bytes as a number; 0 past the end.
+/// The four bytes from offset `at` on as a number, most significant byte first; 0 if `bytes` ends before.
 std::uint32_t u32(std::string_view bytes, std::size_t at);
 
-/// A file; a missing one reads as empty. base::Error if it cannot be read.
+/// A file for reading; a missing file reads as empty. base::Error if an existing file cannot be read.
 class File {
  public:
   explicit File(const std::filesystem::path& path);
@@ -33,7 +34,8 @@ class File {
   File& operator=(const File&) = delete;
 
   std::size_t size() const { return size_; }
-  /// Reads `count` bytes, fewer at the end of the file. A sector that the disk cannot read gives zeros.
+  /// Reads `count` bytes from offset `at` on, fewer at the end of the file. If the disk fails to read a part,
+  /// the result has zeros from there on.
   std::string read(std::size_t at, std::size_t count) const;
 
  private:
@@ -44,7 +46,7 @@ class File {
   std::size_t size_ = 0;
 };
 
-/// Index of the pages in a log as of its last commit.
+/// Index of the newest version of each page in a write-ahead log, up to the log's last commit.
 class Log {
  public:
   explicit Log(const std::filesystem::path& path);
@@ -57,7 +59,7 @@ class Log {
   std::size_t commits() const { return commits_; }
   /// The first 100 bytes of page 1 from each commit that wrote it, in order.
   std::vector<std::string> heads() const;
-  /// Reads a page for which holds() is true.
+  /// Reads the newest version of a page; holds(page) must be true.
   std::string read(std::size_t page) const { return file_.read(places_.at(page), page_bytes_); }
 
  private:
@@ -68,20 +70,20 @@ class Log {
   bool big_ = false;
   std::uint32_t first_ = 0, second_ = 0;  // running checksums
   std::size_t page_bytes_ = 0, page_count_ = 0, commits_ = 0;
-  std::map<std::size_t, std::size_t> places_;
-  std::vector<std::size_t> first_pages_;  // position of each version of page 1
+  std::map<std::size_t, std::size_t> places_;  // offset of each page in the log, by page number
+  std::vector<std::size_t> first_pages_;       // offset of each committed version of page 1 in the log
 };
 
-/// The pages of a database; those in its log "<path>-wal" replace older ones. Numbers count from 1.
+/// The pages of a database, numbered from 1. A page in the log "<path>-wal" replaces the page in the file.
 class Pages {
  public:
-  /// `use_log` false: ignores the log, e.g. because it belongs to another database.
+  /// use_log false: ignores the log, e.g. because the log belongs to another database.
   explicit Pages(const std::filesystem::path& path, bool use_log = true);
 
   std::size_t count() const { return count_; }
-  /// Bytes of a page that can hold cells.
+  /// Number of bytes of a page that SQLite uses: page size minus the reserved bytes at its end.
   std::size_t usable() const { return page_bytes_ - reserved_; }
-  /// True if the free list, which the first page begins, has the page.
+  /// True if the page is in SQLite's list of free pages.
   bool is_free(std::size_t page) const { return free_.contains(page); }
   std::string read(std::size_t page) const;
 

@@ -13,7 +13,7 @@ using sqlite::Statement;
 namespace {
 
 constexpr std::size_t longest_name = 60;
-// Limits the result for a crafted file; none of our schemas has so many rows.
+// Most rows of sqlite_schema that are read; a crafted file may have more than any schema of vip-study.
 constexpr std::size_t most_objects = 2000;
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
@@ -50,10 +50,10 @@ using Key = std::pair<std::string, std::string>;
                                 const Key& extra = {}) {
   const std::string path = database.path().string();
   std::string mend =
-      "keep it elsewhere and make one without it: vip-study salvage --db " + path + " --into NEW";
-  // SQLite makes the index of a constraint itself and drops it only with its table.
+      "make a database without this difference: vip-study salvage --db " + path + " --into NEW";
+  // An index named sqlite_auto... belongs to a constraint: SQLite drops it only with its table.
   if (is_plain(extra.second) && !extra.second.starts_with("sqlite_auto")) {
-    mend = "if it is yours, copy the file and take it out: sqlite3 " + path + " 'DROP " + upper(extra.first) +
+    mend = "if you added it, copy the file and remove it: sqlite3 " + path + " 'DROP " + upper(extra.first) +
            " " + extra.second + "; VACUUM'; or " + mend;
   }
   throw ForeignSchema(path, problem, mend);
@@ -74,7 +74,7 @@ SchemaSteps first_steps(const SchemaSteps& steps, std::int64_t version) {
   return {steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(version)};
 }
 
-/// The schema that the steps make, cached for each list of steps.
+/// The schema that these steps make; computed once for each list of steps.
 const Schema& schema_after(const SchemaSteps& steps) {
   static std::mutex turn;
   static std::map<SchemaSteps, Schema> known;
@@ -167,7 +167,7 @@ std::unique_ptr<Connection> without_foreign_parts(Connection& foreign, const Sch
   for (const auto& [key, object] : found) {
     if (!wanted.contains(key)) left_out.push_back(named(key));
   }
-  // Copies rows of tables only: no trigger of the new database refuses them, and none of the old ones runs.
+  // Copies rows of tables only, so that no trigger of `foreign` runs.
   for (const auto& [key, object] : wanted) {
     if (key.first != "table") continue;
     const auto there = found.find(key);

@@ -1,6 +1,7 @@
 #pragma once
-/// Compares the schema of this program's steps with that of a file. Anyone who can write a database can add
-/// views, triggers and columns, which would run or be copied as if they were ours.
+/// Compares the schema of a database file with the schema that this program makes. Anyone who can write a
+/// database can add views, triggers and columns to it. Without this check the program would run or copy them
+/// as if it had made them.
 
 #include <cstdint>
 #include <map>
@@ -24,11 +25,11 @@ struct SchemaObject {
   std::string table, sql;
   bool operator==(const SchemaObject&) const = default;
 };
-/// By type ("table", "index", "view", "trigger") and name.
+/// All objects of a schema, by type ("table", "index", "view" or "trigger") and name.
 using Schema = std::map<std::pair<std::string, std::string>, SchemaObject>;
 
-/// The SQL with each comment and run of white space outside quotes replaced by one space: two versions of a
-/// step may differ in comments.
+/// The SQL with each comment, and each run of white space outside quotes, replaced by one space. So schemas
+/// compare as equal if only their comments differ.
 std::string without_comments(const std::string& sql);
 
 /// The schema of a database.
@@ -41,18 +42,19 @@ void check_schema(sqlite::Connection& database, const SchemaSteps& steps, std::i
 /// Columns of a table of the newest schema, in order.
 const std::vector<std::string>& columns_of(const std::string& table);
 
-/// The names as an SQL list, each quoted and with `prefix`, e.g. "x." for table x: SQLite reads an unprefixed
-/// quoted name as a string if there is no such column.
+/// The column names as an SQL list, each quoted and after `prefix`, e.g. "x." for table x. The prefix is
+/// needed because SQLite reads a quoted name without one as a string if no column has this name.
 std::string listed(const std::vector<std::string>& columns, const std::string& prefix = "");
 
-/// A temporary database of schema `version` with the rows of `foreign` in tables and columns of the same
-/// names. Lists all other parts of `foreign` in `left_out`. base::Error if a table or a column is missing, or
-/// a row does not fit.
+/// Copies the parts of `foreign` that vip-study knows into a temporary database of schema `version`: the rows
+/// of tables and columns with the same names. Lists all other parts of `foreign` in `left_out`. base::Error
+/// if `foreign` lacks a table or a column, or if a row does not fit the schema.
 std::unique_ptr<sqlite::Connection> without_foreign_parts(sqlite::Connection& foreign,
                                                           const SchemaSteps& steps, std::int64_t version,
                                                           std::vector<std::string>& left_out);
 
-/// A printable form of a name from a file: at most 60 ASCII letters, digits and signs.
+/// A name from a file in printable form: at most 60 characters, with "?" for each apostrophe, control
+/// character and non-ASCII byte.
 std::string printable(const std::string& name);
 
 }  // namespace study

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A file's name in /proc/locks; empty if there is no file.
+/// The identifier of a file in /proc/locks (device and inode); empty if the file does not exist.
 std::string kernel_name(const std::string& path) {
   struct stat file {};
   if (::stat(path.c_str(), &file) != 0) return {};
@@ -38,9 +38,8 @@ std::string kernel_name(const std::string& path) {
 }
 
 /// The programs with a write lock on a SQLite database or its shared memory, e.g. "sqlitebrowser (process
-/// 4711)"; "another program" if the system does not tell.
-/// Reads the list of all locks instead of asking with a descriptor, because closing that would release
-/// SQLite's locks.
+/// 4711)"; "another program" if /proc/locks lists none. Reads the list of all locks and does not open the
+/// database, because closing a descriptor of it would release SQLite's locks.
 std::string lock_holder(const std::filesystem::path& database) {
   const std::string file = kernel_name(database.string()), shared = kernel_name(database.string() + "-shm");
   std::set<long> holders;
@@ -67,7 +66,7 @@ std::string lock_holder(const std::filesystem::path& database) {
 
 constexpr std::int64_t second_ns = 1'000'000'000, longest_wait_ns = 5 * second_ns;
 constexpr std::chrono::milliseconds between_tries{20};
-constexpr int pages_of_a_log = 1000;  // after which it is copied into the file; SQLite's default
+constexpr int pages_of_a_log = 1000;  // length at which SQLite copies the log into the file; its default
 
 std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -96,7 +95,7 @@ Connection::Connection(const fs::path& path, Open how) : path_(path) {
     refuse_orphaned_log(path);
     create_private(path);
   }
-  // Readers open the file for writing if allowed, so that SQLite can remove the log's files afterwards.
+  // Readers also open the file for writing if they may, so that SQLite can remove the log's files at the end.
   const bool write = how != Open::Read || writable(path);
   const int code = sqlite3_open_v2(
       fs::absolute(path).c_str(), &handle_,
@@ -123,7 +122,7 @@ Connection::Connection(const fs::path& shown, Temporary) : path_(shown) {
     throw base::Error(path_.string(), "cannot be copied: out of memory", "close other programs");
   }
   protect();
-  // Otherwise even a small database would have its journal and temporary tables in files.
+  // Keeps the journal and temporary tables of the temporary database in memory instead of in files.
   execute("PRAGMA journal_mode = MEMORY; PRAGMA temp_store = MEMORY");
 }
 
@@ -181,7 +180,7 @@ void Connection::check(int code) {
   if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
   const std::string message = sqlite3_errmsg(handle_);
   const int system_error = sqlite3_system_errno(handle_);
-  // Report another program's change of the file rather than the error that it caused.
+  // If another program changed the file, reports that change instead of the SQLite error that it caused.
   if (watch_ && !lost_) {
     if (const std::string trouble = watch_->trouble(); !trouble.empty()) abandon(trouble);
   }
@@ -206,8 +205,8 @@ void Connection::fail(int code, const std::string& message, int system_error) co
     case SQLITE_INTERRUPT:
     case SQLITE_AUTH:
     case SQLITE_TOOBIG:
-      throw error("holds something that is not of vip-study: " + message,
-                  "do not use it; ask whoever made it");
+      throw error("contains something that vip-study did not write: " + message,
+                  "do not use this file; ask the person who made it what was changed");
     case SQLITE_NOTADB:
       throw error("is not a database of vip-study", "name the file that vip-study run wrote");
     case SQLITE_CORRUPT:
@@ -215,12 +214,13 @@ void Connection::fail(int code, const std::string& message, int system_error) co
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
-      throw error("cannot be opened for this: " + message + system,
+      throw error("cannot be opened or changed: " + message + system,
                   "use a file and a folder that you may write to");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-    case SQLITE_PROTOCOL:  // lock of the log, which SQLite tries to take for ten seconds
-      throw LockedOut(path_.string(), "is locked by " + lock_holder(path_), "close it there, then " + go_on_);
+    case SQLITE_PROTOCOL:  // SQLite tried for ten seconds to lock the log
+      throw LockedOut(path_.string(), "is locked by " + lock_holder(path_),
+                      "close the file there, then " + go_on_);
     default:
       throw error("database error: " + message, "report this with the file");
   }
@@ -270,7 +270,7 @@ bool Connection::in_transaction() const { return sqlite3_get_autocommit(handle_)
 void Connection::unwatch() { watch_.reset(); }
 
 void Connection::watch() {
-  integer("SELECT 1 FROM sqlite_schema LIMIT 1");  // the first read makes the log
+  integer("SELECT 1 FROM sqlite_schema LIMIT 1");  // the first read makes SQLite create the log
   watch_ = std::make_unique<FileWatch>(path_, handle_);
 }
 
@@ -284,7 +284,7 @@ void Connection::commit() {
   if (marked_ && sqlite3_total_changes64(handle_) != changes_before_)
     execute("PRAGMA user_version = " + std::to_string(integer("PRAGMA user_version")));
   std::string trouble = watch_ ? watch_->trouble() : "";
-  // The commit then goes only into the log, and from there into the rescued copy.
+  // If another program changed the file, writes the commit only to the log; abandon() copies it from there.
   if (!trouble.empty()) sqlite3_wal_autocheckpoint(handle_, 0);
   execute("COMMIT");
   if (watch_ && trouble.empty()) trouble = watch_->trouble();
@@ -328,7 +328,7 @@ Transaction::Transaction(Connection& connection) : connection_(&connection), tur
 }
 
 Transaction::~Transaction() {
-  // A full disk may already have rolled it back.
+  // SQLite may have rolled the transaction back already, e.g. because the disk is full.
   if (open_ && connection_->in_transaction()) {
     sqlite3_exec(connection_->handle(), "ROLLBACK", nullptr, nullptr, nullptr);
   }

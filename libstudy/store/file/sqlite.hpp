@@ -2,8 +2,8 @@
 /// RAII wrappers for the parts of SQLite that the store uses. Every failure is a base::Error that names the
 /// database file.
 ///
-/// While a connection is open, nothing else in this process may open and close the file: that would release
-/// SQLite's locks on it.
+/// While a connection is open, no other code in this process may open and close the file: closing it would
+/// release SQLite's locks on the file.
 
 #include <cstddef>
 #include <cstdint>
@@ -30,32 +30,34 @@ namespace study::sqlite {
 enum class Open {
   Create,  ///< for writing; created if missing, readable by its owner only
   Write,   ///< for writing; must exist
-  Read     ///< must exist; its content cannot be changed
+  Read     ///< for reading only; must exist
 };
 
-/// Selects a database without a name: in memory, or on disk if large, deleted with its connection.
+/// Selects a temporary database without a file name: in memory, or on disk if large. It is deleted with its
+/// connection.
 struct Temporary {};
 
-/// Limit on the work with an untrusted file.
+/// How much work SQLite may do with an untrusted file: as much as reading a schema needs, or any amount.
 enum class Work { OfASchema, Any };
 
-/// Called about once a second while another program holds a lock that is needed; `holder` names it, e.g.
-/// "sqlitebrowser (process 4711)". False: waits no longer, the statement fails.
+/// Called about once a second while a statement waits for a lock that another program has. `holder` names
+/// that program, e.g. "sqlitebrowser (process 4711)". If it returns false, the statement fails at once.
 using Waiting = std::function<bool(const std::string& holder)>;
 
-/// Another program kept the database locked for longer than the wait.
+/// Error: another program had the database locked until the wait for the lock ended.
 class LockedOut : public base::Error {
   using Error::Error;
 };
 
-/// The remedy for a file that SQLite cannot recover.
+/// Text of the remedy in error messages about a file that SQLite cannot recover.
 std::string salvage_mend(const std::filesystem::path& path);
 
-/// One connection. Two threads may share it if each works only within Transactions, which take turns.
+/// A connection to one database. Two threads may share a connection if both use it only within a Transaction,
+/// since a thread's Transaction waits until the other thread's has ended.
 class Connection {
  public:
   Connection(const std::filesystem::path& path, Open how);
-  /// An empty database; messages name `shown`.
+  /// Makes an empty temporary database; error messages name `shown` as its file.
   Connection(const std::filesystem::path& shown, Temporary);
   ~Connection();
   Connection(const Connection&) = delete;
@@ -63,54 +65,57 @@ class Connection {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// The first 100 bytes of the file, or fewer if it is shorter. As the first call, it neither uses nor
-  /// changes the file's log or journal.
+  /// The first 100 bytes of the file, or fewer if the file is shorter. Called before any other function of
+  /// the connection, it neither reads nor changes the file's log or journal.
   std::string header();
-  /// True if SQLite can read the file in place; false if it would have to write beside it and may not.
+  /// True if SQLite can read the file; false if reading needs files beside it that SQLite may not write.
   bool can_read();
-  /// If `keep`, the log stays unchanged beside the file: none of its pages is copied into the file. Default:
+  /// keep true: the log stays unchanged beside the file, and no page of it is copied into the file. Default:
   /// false.
   void keep_log(bool keep);
-  /// Treats the file as untrusted: until recognise() nothing can be changed and none of its views and
-  /// triggers run. With Work::OfASchema, work that takes longer than reading a schema ends with a
+  /// Treats the file as untrusted until recognise(): forbids changes, and runs no view or trigger of the
+  /// file. With Work::OfASchema, a statement that takes longer than reading a schema fails with a
   /// base::Error.
   void distrust(Work limit = Work::OfASchema);
-  /// Trusts the file: its schema is ours.
+  /// Ends distrust(). Call it once the file is known to have the schema of vip-study.
   void recognise();
-  /// From now on the file's tables, views and triggers cannot be changed and no other file can be attached.
+  /// Forbids from now on to change the file's tables, views and triggers, and to attach other files.
   void seal();
-  /// From now on each commit that changes rows writes the page that identifies the database
+  /// Makes each later commit that changes rows also write the page that identifies the database
   /// (foreign_log.hpp).
   void mark_commits() { marked_ = true; }
   /// Limits the file to this many pages.
   void limit_pages(std::int64_t pages);
-  /// Waits for locks as long as `waiting` returns true, instead of five seconds.
+  /// Waits for a lock as long as `waiting` returns true, instead of five seconds.
   void wait_with(Waiting waiting);
-  /// Sets what the user should do after fixing a fault, for messages. Default: "give the command again".
+  /// Sets the end of error messages: what the user should do once the fault is fixed. Default: "give the
+  /// command again".
   void go_on_with(const std::string& words) { go_on_ = words; }
-  /// In WAL mode: from now on detects that the file was deleted, replaced or overwritten, and copies no
-  /// commit into it. Then saves this connection's content as "<file>.rescued-<UTC time>.db" and removes the
-  /// log from beside the path; that commit and all later ones throw a base::Error.
+  /// Watches the file from now on, in WAL mode: each commit checks that no other program has deleted,
+  /// replaced or overwritten it. If one has, the connection saves its content as
+  /// "<file>.rescued-<UTC time>.db" and removes the log beside the path. This commit and all later ones throw
+  /// a base::Error, and nothing more is written to the file.
   void watch();
-  /// Ends watch(). Call it before leaving WAL mode, which may remove only part of the log's files.
+  /// Ends watch(). Call it before leaving WAL mode: SQLite then removes the log, which watch() would report.
   void unwatch();
 
   /// Runs statements without result rows.
   void execute(const std::string& sql);
   /// base::Error unless all pages, rows and indices are valid. Reads the whole file.
   void check_integrity();
-  /// Replaces the content by that of another database in one transaction. WAL mode fixes the page size: if it
-  /// differs, `other` is rewritten and must be a temporary database. `complete` is called once no other
-  /// program can write here; it may change `other` and may read the old content through another connection.
+  /// Replaces the content of this database by the content of `other`, in one transaction. A database in WAL
+  /// mode cannot change its page size: if the sizes differ, `other` is rewritten, so it must be a temporary
+  /// database. `complete` is called once this database is locked against other writers, before the copy. It
+  /// may change `other`, and may read the old content through another connection.
   void copy_from(Connection& other, const std::function<void()>& complete = {});
-  /// First column of the first row; 0 when there is no row.
+  /// The first column of the query's first row; 0 (integer) or an empty text (text) if there is no row.
   std::int64_t integer(const std::string& sql);
   std::string text(const std::string& sql);
   std::int64_t last_row_id() const;
   /// True between the start of a transaction and its end.
   bool in_transaction() const;
   sqlite3* handle() const { return handle_; }
-  /// Throws the error for SQLite's `code` on this file; returns if it is no error.
+  /// Throws a base::Error if SQLite's result `code` is an error.
   void check(int code);
 
  private:
@@ -134,23 +139,23 @@ class Connection {
   bool limited_ = false, marked_ = false;
   enum class Trust { Free, Unknown, Sealed };
   Trust trust_ = Trust::Free;
-  int work_ = 0;                     ///< work since distrust(), in steps of the progress handler
-  std::int64_t changes_before_ = 0;  ///< rows changed when the open transaction began
+  int work_ = 0;                     ///< calls of SQLite's progress handler since distrust()
+  std::int64_t changes_before_ = 0;  ///< rows that the connection had changed before the open transaction
   std::string go_on_ = "give the command again";
   std::unique_ptr<FileWatch> watch_;
   struct Lost {
     std::string problem, mend;
   };
-  std::optional<Lost> lost_;   ///< set: nothing more is written
-  std::recursive_mutex turn_;  ///< of transactions; one that is over may outlive the next one's start
+  std::optional<Lost> lost_;   ///< set once watch() found the file changed: nothing more is written
+  std::recursive_mutex turn_;  ///< locked by Transactions; in a thread, a committed one may still exist
 };
 
-/// Bytes that are not text.
+/// A value of SQLite's type BLOB: bytes that are not text.
 struct Blob {
   std::string_view bytes;
 };
 
-/// A prepared statement: bind_all, step, reset. Indices count from 0.
+/// A prepared statement: bind_all(), step(), reset(). Parameter and column indices count from 0.
 class Statement {
  public:
   Statement(Connection& connection, std::string_view sql);
@@ -159,8 +164,9 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  /// A value for each parameter, in their order: whole numbers of 32 or 64 bits, real ones, texts, blobs,
-  /// std::nullopt for NULL, and optionals of these. std::logic_error unless there are as many as parameters.
+  /// Binds one value to each parameter, in order. Values are integers of 32 or 64 bits, doubles, texts,
+  /// blobs, std::nullopt for NULL, or optionals of these. std::logic_error if the number of values differs
+  /// from the number of parameters.
   template <class... Values>
   Statement& bind_all(const Values&... values) {
     expect_parameters(sizeof...(values));
@@ -169,10 +175,10 @@ class Statement {
     return *this;
   }
 
-  /// One value alone, for statements that are built at run time.
+  /// Binds one value to the parameter `index`, for statements that are built at run time.
   Statement& bind_at(int index, std::int64_t value);
   Statement& bind_at(int index, int value) { return bind_at(index, static_cast<std::int64_t>(value)); }
-  /// NaN becomes NULL.
+  /// Binds a double; NaN is stored as NULL.
   Statement& bind_at(int index, double value);
   Statement& bind_at(int index, std::string_view value);
   Statement& bind_at(int index, const std::string& value) { return bind_at(index, std::string_view(value)); }
@@ -186,7 +192,8 @@ class Statement {
     return value ? bind_at(index, *value) : bind_at(index, std::nullopt);
   }
 
-  /// True if there is a row. After the last row the statement is reset; its bound values remain.
+  /// Goes to the next row of the result. Returns true if there is one. After the last row the statement is
+  /// reset, but its bound values remain.
   bool step();
   /// Runs a statement without rows and returns the new row's id.
   std::int64_t run();
@@ -209,8 +216,8 @@ class Statement {
   sqlite3_stmt* handle_ = nullptr;
 };
 
-/// A transaction that takes the write lock at once and rolls back unless committed. It waits for another
-/// thread's transaction on the same connection.
+/// A transaction that takes the database's write lock at its start and rolls back unless committed. Its
+/// constructor waits until no other thread has a Transaction on the same connection.
 class Transaction {
  public:
   explicit Transaction(Connection& connection);

@@ -1,4 +1,4 @@
-/// Limits what a database file can make SQLite do: a foreign file cannot run its own code.
+/// Restricts SQLite, so that a database file from elsewhere cannot run code or change other files.
 #include <sqlite3.h>
 
 #include <algorithm>
@@ -11,15 +11,17 @@ namespace study::sqlite {
 
 namespace {
 
-// Limits far beyond a study's content. In bytes: a text or row; the SQL of a statement.
+// Limits for SQLite, far above the needs of a study: length of a value or row, and of a statement's SQL,
+// bytes.
 constexpr int longest_value = 1 << 26, longest_sql = 1 << 21;
 constexpr int most_columns = 500, deepest_trigger = 8, most_attached = 2;
-// Reading one of our schemas takes a few thousand operations.
+// Limit on the work with an untrusted file: operations per call of the progress handler, and number of calls.
+// Reading a schema of vip-study takes a few thousand operations.
 constexpr int operations_a_step = 10'000, most_steps = 1'000;
 
 bool is(const char* text, std::string_view other) { return text && text == other; }
 
-/// True for functions that reach beyond the database.
+/// True for SQL functions that load code or access files.
 bool is_dangerous(const char* function) {
   constexpr std::array<std::string_view, 5> names{"load_extension", "readfile", "writefile", "edit",
                                                   "fts3_tokenizer"};
@@ -84,7 +86,7 @@ bool Connection::allows(int action, const char* first, const char* second, const
   if (action == SQLITE_FUNCTION && is_dangerous(second)) return false;
   if (trust_ == Trust::Unknown) return only_reads(action) && !inner;
   if (trust_ == Trust::Free) return true;
-  // VACUUM fills a temporary file that it attaches without a name.
+  // VACUUM attaches a temporary file with an empty name.
   if (action == SQLITE_ATTACH) return is(first, "");
   return !changes_schema(action) || !is(action == SQLITE_ALTER_TABLE ? first : schema, "main");
 }

@@ -24,7 +24,8 @@ namespace {
 
 using FileId = std::pair<dev_t, ino_t>;
 
-/// Files locked by this process: a second attempt must not even open them (see the header).
+/// Files that this process has locked. A second WriterLock must not even open such a file: closing it would
+/// release SQLite's locks.
 struct OwnLocks {
   std::mutex mutex;
   std::set<FileId> files;
@@ -44,7 +45,7 @@ bool locked_here(const fs::path& path) {
   return own_locks().files.contains(id_of(file));
 }
 
-/// True if the path still leads to this file; false if it now has another file or none.
+/// True if the file at the path is the open file `fd`; false if the path has another file or none.
 bool leads_to(const fs::path& path, int fd) {
   struct stat there {
   }, held{};
@@ -71,7 +72,7 @@ WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(datab
     base::make_folder_of(path_);
     refuse_orphaned_log(path_);
   }
-  // Tries again if the file was made, or removed by its maker, between two steps.
+  // Tries again if another process made or removed the file between two steps.
   for (int round = 0;; ++round) {
     if (locked_here(path_)) throw_busy(path_);
     if (how == sqlite::Open::Create) {
@@ -94,7 +95,8 @@ WriterLock::WriterLock(const fs::path& database, sqlite::Open how) : path_(datab
   }
   struct stat held {};
   ::fstat(fd_, &held);
-  // Another process may have made the file and lost the race for its lock: then this one must remove it.
+  // Another process may have made this empty file but failed to lock it first. The process with the lock must
+  // remove the file if nothing is stored in it.
   if (how == sqlite::Open::Create && held.st_size == 0) made_ = true;
   const std::lock_guard guard(own_locks().mutex);
   own_locks().files.insert(id_of(held));

@@ -1,5 +1,6 @@
 #pragma once
-/// Lock for the only writer of a database, which alone may create the file and remove it again.
+/// The lock that makes a process the only writer of a database. Only the process with the lock may create and
+/// remove the file.
 
 #include <filesystem>
 
@@ -7,22 +8,22 @@
 
 namespace study {
 
-/// Held on the file itself, so that it ends with the process in any case. Take it before SQLite opens the
-/// file and release it after every connection: closing its descriptor releases SQLite's own locks in this
-/// process.
+/// A lock on the database file itself; the system releases it when the process ends in any way. Construct it
+/// before SQLite opens the file, and destroy it after all connections: closing its descriptor releases the
+/// locks that SQLite has on the file in this process.
 class WriterLock {
  public:
-  /// Open::Create makes a missing file, empty and 0600, and takes over an empty one. base::Error if another
-  /// vip-study writes, or if the file cannot be opened for writing.
+  /// Locks the file. Open::Create makes a missing file, empty and with mode 0600; it also accepts an empty
+  /// file. base::Error if another vip-study has the lock, or if the file cannot be opened for writing.
   explicit WriterLock(const std::filesystem::path& database, sqlite::Open how = sqlite::Open::Write);
-  /// Removes a file that was made or taken over here, unless something was stored in it.
+  /// Removes the file, and SQLite's files beside it, if made() is true.
   ~WriterLock();
   WriterLock(const WriterLock&) = delete;
   WriterLock& operator=(const WriterLock&) = delete;
 
-  /// Call once something is stored in the file: it stays.
+  /// Call once data are stored in the file, so that the destructor does not remove it.
   void keep() { made_ = false; }
-  /// True if the file was empty at first and may be removed again.
+  /// True if Open::Create made the file or found it empty, and keep() was not called.
   bool made() const { return made_; }
 
  private:

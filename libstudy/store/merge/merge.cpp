@@ -64,7 +64,7 @@ std::string times(int count) {
   return count == 0 ? "never" : count == 1 ? "once" : count == 2 ? "twice" : std::to_string(count) + " times";
 }
 
-/// "each used once", or "6 used twice, 6 never".
+/// Numbers of uses in words: "each used once", or "6 used twice, 6 never".
 std::string uses_words(const std::vector<int>& uses) {
   std::map<int, int, std::greater<>> by_count;
   for (const int count : uses) ++by_count[count];
@@ -90,7 +90,7 @@ std::vector<Balance> read_balance(sqlite::Connection& database) {
       if (!row.is_null(4)) override_trial_seconds(protocol, row.real(4));
       count_uses(protocol, slots, balance);
     } catch (const base::Error&) {
-      // Written by an earlier version: describe() says so.
+      // The protocol was written for another version: slot_uses stays empty, and describe() reports it.
     }
     out.push_back(std::move(balance));
   }
@@ -111,7 +111,7 @@ std::string describe(const Balance& balance) {
 
 namespace {
 
-/// A person in `into` before the merge.
+/// A person with sessions in `into` before the merge, with the code there.
 struct Resident {
   std::string person, participant;
   Stock stock;
@@ -125,7 +125,7 @@ std::vector<Resident> residents_of(Connection& database) {
   return residents;
 }
 
-/// Each file once, and not `into` itself.
+/// The source files without duplicates and without `into`.
 std::vector<fs::path> distinct(const std::vector<fs::path>& sources, const fs::path& into) {
   std::set<fs::path> known{fs::weakly_canonical(into)};
   std::vector<fs::path> out;
@@ -141,7 +141,7 @@ Content read_all(const std::vector<fs::path>& sources, const fs::path& into, boo
   if (!holds_nothing(into)) paths.push_back(into);
   for (const fs::path& path : paths) {
     auto source = open_study({path, incomplete && path != into}).database;
-    source->execute("BEGIN");  // a consistent state, even during a session
+    source->execute("BEGIN");  // reads a consistent state even while a session writes
     merging::add_source(content, std::move(source));
   }
   return content;
@@ -174,7 +174,8 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   return merge;
 }
 
-/// Copies the open chores of an earlier merge or withdrawal first, because they use the codes of that time.
+/// Copies the chores that an earlier merge or withdrawal left over. Must run before plan_chores(): these
+/// chores use the codes from before this merge, so they must be done first.
 void carry_chores_over(Connection& into, Connection& result) {
   Statement row(into, "SELECT kind, batch, person, participant, renamed FROM chore ORDER BY chore_id");
   Statement insert(result,
@@ -185,7 +186,8 @@ void carry_chores_over(Connection& into, Connection& result) {
   }
 }
 
-/// Plans chores for the files beside `into`: deletes people who withdrew and changes codes there too.
+/// Plans chores for the files beside `into`: to delete people who withdrew, and to change codes as in
+/// `names`.
 void plan_chores(Connection& result, const std::vector<Resident>& residents,
                  const std::map<std::string, std::string>& names, const Content& content, Merge& merge) {
   sqlite::Transaction transaction(result);
@@ -204,7 +206,9 @@ void plan_chores(Connection& result, const std::vector<Resident>& residents,
   transaction.commit();
 }
 
-/// Adds backups and exports of `into` that hold gaze that was deleted here by a refusal at another station.
+/// Adds to beside.left the backups and exports of `into` that still contain gaze which this merge deleted,
+/// because the person refused gaze at another station. had_gaze: persons with gaze in `into` before the
+/// merge.
 void name_refused(Connection& into, const std::set<std::string>& had_gaze, CleanUp& beside) {
   std::set<std::string> deleted;
   for (const std::string& person : people_without_gaze(into)) {
@@ -224,7 +228,7 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool in
   const auto result = make_temporary_database(into);
   merging::write_union(content, chosen, names, *result);
   Merge merge = sum_up(*result, content, chosen, names);
-  content.sources.clear();  // into itself may be among them
+  content.sources.clear();  // closes the sources, as `into` may be one of them
 
   const auto target = open_database(into, Open::Create, read_schema_steps());
   carry_chores_over(*target, *result);
@@ -234,7 +238,8 @@ Merge merge(const std::vector<fs::path>& sources, const fs::path& given, bool in
   prepare_rewrite(*target, withdrawn);
   const std::set<std::string> had_gaze = people_with_gaze(*target);
   target->execute("PRAGMA secure_delete = ON");
-  // Exports can be registered despite the writer's lock: also takes those of this moment.
+  // Other programs can register exports in `into` despite the WriterLock. So copy_from() adds the registered
+  // exports after it has locked the database.
   target->copy_from(*result, [&] {
     Connection standing(into, Open::Read);
     sqlite::Transaction transaction(*result);

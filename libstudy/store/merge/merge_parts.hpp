@@ -1,5 +1,5 @@
 #pragma once
-/// Parts of merge(): reads the sources, matches people and copies rows.
+/// The steps of merge(): reads the sources, chooses sessions, gives people codes, and copies rows.
 
 #include <cstdint>
 #include <map>
@@ -13,17 +13,17 @@
 
 namespace study::merging {
 
-/// One session in one source.
+/// The copy of a session in one source.
 struct SessionCopy {
   std::size_t source = 0;
   std::int64_t id = 0;  ///< row number in the source
   std::string uid, person, code, station, run_uid, planned_utc, protocol_sha256;
   int visit = 1;
   bool test_data = false;
-  std::int64_t events = 0, frames = 0, played = 0;  ///< measures of how far it went
-  std::int64_t gaze = 0;                            ///< samples, poses of the head and validations
+  std::int64_t events = 0, frames = 0, played = 0;  ///< numbers of rows, which show the copy's progress
+  std::int64_t gaze = 0;                            ///< number of gaze samples, head poses and validations
   std::optional<StationNumber> station_number;
-  bool counts = false;  ///< counts for the balance: Store::taken_slots()
+  bool counts = false;  ///< true: the session counts for the balance, as in Store::taken_slots()
 };
 
 struct Tombstone {
@@ -34,28 +34,32 @@ struct Tombstone {
 struct Content {
   std::vector<std::unique_ptr<sqlite::Connection>> sources;
   std::vector<SessionCopy> copies;
-  std::map<std::string, Tombstone> tombstones;  ///< by person; the earliest one of each person
+  std::map<std::string, Tombstone> tombstones;  ///< the earliest tombstone of each person, by person
 };
 
-/// Reads sessions and tombstones of a source and adds them. base::Error if one of its rows has no parent.
+/// Adds the sessions and tombstones of a source to `content`. base::Error if the source has a row whose
+/// parent row is missing.
 void add_source(Content& content, std::unique_ptr<sqlite::Connection> source);
 
-/// The furthest copy of each session whose person did not withdraw, in the order of planning. base::Error if
-/// two copies of a session diverged.
+/// The copy with the most progress of each session whose person did not withdraw, in the order of planning.
+/// base::Error if two copies of a session diverged.
 std::vector<SessionCopy> choose_sessions(Content& content);
 
-/// Code by person, distinct for all people of `content`. It depends only on them.
+/// The code of each person after the merge, by person; all codes are distinct. The codes do not depend on the
+/// order of the sources.
 std::map<std::string, std::string> name_people(const Content& content);
 
-/// Reasons why the stations did not share the assignment: two sources used one station number or none, or
-/// were told different numbers of stations. One sentence each, without a full stop.
+/// Reasons why the stations' shares of the assignment overlap: two sources have the same station number or no
+/// number, or were recorded with different numbers of stations. Each is a sentence without a full stop.
 std::vector<std::string> station_troubles(const Content& content);
 
-/// Writes the union into an empty database of the newest schema.
+/// Writes the chosen sessions, with the people's new codes `names`, into `target`, an empty database of the
+/// newest schema.
 void write_union(Content& content, const std::vector<SessionCopy>& chosen,
                  const std::map<std::string, std::string>& names, sqlite::Connection& target);
 
-/// Adds the registered exports of a source and their people; for equal paths, the latest one counts.
+/// Adds the registered exports of a source, with their people, to `target`. If both list an export with the
+/// same computer and path, the later entry is used, with the people of both entries.
 void add_exports(sqlite::Connection& source, sqlite::Connection& target);
 
 }  // namespace study::merging

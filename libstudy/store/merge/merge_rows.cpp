@@ -1,4 +1,4 @@
-/// Moves rows from the sources of a merge into the union, with new row numbers.
+/// Copies rows from the sources of a merge into the merged database, with new row numbers.
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -20,11 +20,11 @@ using sqlite::Statement;
 
 namespace {
 
-// A permission change is identified by its constant fields. Fields that only grow (superseded, and how much
-// of the session it knew) take the largest value of all copies, so that neither the order nor the number of
-// merges matters.
+// Copies of a permission change are recognised by the columns that never change (Key). The other columns
+// (Known) only increase: each takes the largest value of all copies. So the result depends neither on the
+// order nor on the number of merges.
 
-/// What, when, refused or not, identity.
+/// Identifies a permission change: what ("gaze" or "sharing"), utc, true if refused, uid.
 using Key = std::tuple<std::string, std::string, bool, std::optional<std::string>>;
 
 struct Known {
@@ -51,8 +51,8 @@ void read_changes(Connection& source, std::int64_t session, std::map<Key, Known>
   }
 }
 
-/// Keeps the row order of each source. Changes from sources that did not know of each other are ordered by
-/// their content alone.
+/// The changes in the order of their column `turn`, which is the row order of each source. Changes from
+/// different sources with equal `turn` are ordered by their Key.
 std::vector<std::pair<Key, Known>> in_order(const std::map<Key, Known>& changes) {
   std::vector<std::pair<Key, Known>> rows(changes.begin(), changes.end());
   std::stable_sort(rows.begin(), rows.end(),
@@ -60,11 +60,11 @@ std::vector<std::pair<Key, Known>> in_order(const std::map<Key, Known>& changes)
   return rows;
 }
 
-/// Adds the permission changes of all copies of a session, each once, to row `session` of the target. A
-/// change that was superseded in one copy is superseded in all; no clock decides.
+/// Adds the permission changes of all copies of a session, without duplicates, to session `session` of the
+/// target. A change that is superseded in one copy is superseded in the target. Clocks play no role.
 void add_permissions(Content& content, const std::string& uid, Connection& target, std::int64_t session) {
   std::map<Key, Known> changes;
-  std::set<std::pair<std::string, std::string>> events;  // when, detail
+  std::set<std::pair<std::string, std::string>> events;  // utc, detail
   for (const SessionCopy& copy : content.copies) {
     if (copy.uid != uid) continue;
     Connection& source = *content.sources[copy.source];
@@ -87,7 +87,8 @@ void add_permissions(Content& content, const std::string& uid, Connection& targe
   for (const auto& [utc, detail] : events) event.bind_all(session, utc, permission_event, detail).run();
 }
 
-/// Sorts by the time of the first plan, then by identity: independent of the order of the sources.
+/// Sorts labels by kind, by the time at which the person was first planned, then by owner and label. So the
+/// order does not depend on the order of the sources.
 void sort_labels(std::vector<GivenLabel>& labels, const Content& content) {
   std::map<std::string, std::string> planned;
   for (const SessionCopy& copy : content.copies) {
@@ -102,8 +103,8 @@ void sort_labels(std::vector<GivenLabel>& labels, const Content& content) {
             [&](const GivenLabel& a, const GivenLabel& b) { return key(a) < key(b); });
 }
 
-/// Stores the union's labels (export_labels.hpp): labels of the source at the target's path stay, then those
-/// of the others in the order in which people were first planned.
+/// Stores the labels of the merged database (export_labels.hpp). The labels of the source at the target's
+/// path stay unchanged. The other sources' labels are added in the order of sort_labels().
 void add_labels(const Content& content, sqlite::Connection& target) {
   const auto into = std::filesystem::weakly_canonical(target.path());
   std::vector<GivenLabel> first, others;
@@ -121,14 +122,14 @@ void add_labels(const Content& content, sqlite::Connection& target) {
   store_labels(target, joined);
 }
 
-/// New row numbers by old ones, for each column that holds them ("trial_id", ...).
+/// For each column with row numbers ("trial_id", ...): the new row number by the old one.
 using RowNumbers = std::map<std::string, std::unordered_map<std::int64_t, std::int64_t>>;
 
-/// A table that belongs to a session; ?1 is the session's row.
+/// A table whose rows belong to a session.
 struct Table {
   const char* name;
-  const char* key;  // the row number that other tables refer to; empty: none
-  const char* rows;
+  const char* key;   // column with the row number to which other tables refer; empty: none
+  const char* rows;  // SQL condition that selects the rows of a session; ?1: session_id
 };
 
 constexpr const char* of_session = "session_id = ?1";
@@ -153,7 +154,8 @@ const Table session_tables[] = {
     {"event", "event_id", "session_id = ?1 AND kind <> 'permission changed'"},
 };
 
-/// Throws for a row that refers to another session, which SQLite accepts.
+/// Throws the error for a row that refers to a row of another session; SQLite's foreign keys permit such
+/// rows.
 [[noreturn]] void throw_stray(const Connection& source, const Statement& row, const std::string& table,
                               const std::string& key, int column) {
   throw base::Error(source.path().string(),
@@ -162,7 +164,8 @@ const Table session_tables[] = {
                     "make a sound copy with vip-study salvage, or leave this database out");
 }
 
-/// Copies the rows of one table with new row numbers and new values for `changed` columns.
+/// Copies the rows of one table that belong to `parent` (?1 in table.rows), with new row numbers. changed:
+/// new values by column.
 void copy_rows(Connection& source, Connection& target, const Table& table, std::int64_t parent,
                RowNumbers& numbers, const std::map<std::string, std::string>& changed = {}) {
   const std::string name = table.name, key = table.key, columns = listed(columns_of(name));
@@ -220,7 +223,7 @@ class Union {
     }
   }
 
-  /// Adds events without a session, such as exports, each once.
+  /// Adds the events that belong to no session, such as exports, without duplicates.
   void add_common_events() {
     using Event = std::tuple<std::string, std::optional<std::int64_t>, std::string, std::string>;
     std::set<Event> events;
@@ -263,8 +266,8 @@ class Union {
     return out;
   }
 
-  /// Adds one source's copy of a protocol to the target. The protocol's row, and its rows of `ask` and
-  /// `cell`, are copied if the target has none yet; questions are copied if the target lacks their code.
+  /// Adds the protocol with this hash from source number `index` to the target. Copies the protocol's row and
+  /// its rows of `ask` and `cell` unless the target has them. Copies the questions that the target lacks.
   void add_protocol(std::size_t index, const std::string& sha256) {
     Connection& source = *content_.sources[index];
     RowNumbers& numbers = numbers_[index];
@@ -300,7 +303,8 @@ class Union {
     }
   }
 
-  /// Adds tables without a row number; they are equal in all sources with sessions of the protocol.
+  /// Adds a protocol's rows of `ask` or `cell` unless the target has some. These rows are equal in all
+  /// sources that have the protocol, so one source is enough.
   void add_dependants(Connection& source, std::int64_t protocol, RowNumbers& numbers, const char* table) {
     Statement there(target_, std::string("SELECT 1 FROM ") + table + " WHERE protocol_id = ?");
     if (there.bind_all(numbers["protocol_id"].at(protocol)).step()) return;
@@ -322,7 +326,7 @@ class Union {
   Content& content_;
   const std::map<std::string, std::string>& names_;
   Connection& target_;
-  std::vector<RowNumbers> numbers_;  // by source: protocols and questions
+  std::vector<RowNumbers> numbers_;  // new row numbers of protocols and questions, by source
 };
 
 }  // namespace

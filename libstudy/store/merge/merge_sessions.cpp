@@ -1,5 +1,5 @@
 /// Reads the sources of a merge: chooses the copy of each session that counts, gives people distinct codes,
-/// and checks that the stations dealt disjoint shares of one assignment.
+/// and checks that the stations used disjoint shares of one assignment.
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -31,7 +31,8 @@ constexpr const char* merged_sessions_sql =
     "(SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id) "
     "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
 
-/// Without permission changes, which may happen in any copy: add_permissions() joins them.
+/// The events of a session as text, without permission changes. These may happen in any copy of the session;
+/// add_permissions() joins them.
 std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   Statement row(source,
                 "SELECT utc || ' ' || coalesce(clock_ns, '') || ' ' || kind || ' ' || detail FROM event "
@@ -42,13 +43,13 @@ std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   return log;
 }
 
-/// Of equally far copies, prefers the one that still has its gaze; refused gaze is omitted from the union
-/// anyway (drop_unallowed_gaze).
+/// True if copy `a` has less progress than copy `b`. With equal progress, the copy with more gaze wins: gaze
+/// that is refused is deleted from the merged database later (drop_unallowed_gaze()).
 bool less_far(const SessionCopy& a, const SessionCopy& b) {
   return std::tie(a.events, a.frames, a.played, a.gaze) < std::tie(b.events, b.frames, b.played, b.gaze);
 }
 
-/// Each log entry is one commit, so the copy with the shorter log is the earlier one.
+/// base::Error unless the events of `earlier` are the first events of `later`; otherwise the copies diverged.
 void check_earlier(Content& content, const SessionCopy& earlier, const SessionCopy& later) {
   const auto before = log_of(*content.sources[earlier.source], earlier.id);
   const auto after = log_of(*content.sources[later.source], later.id);
@@ -73,7 +74,8 @@ void check_visits(Content& content, const std::vector<SessionCopy>& chosen) {
   }
 }
 
-/// Rows of a table without row numbers are identified by their reference.
+/// Describes a row whose parent is missing, in a table without row numbers, by the column that refers to the
+/// parent.
 std::string dangling_row(Connection& source, const std::string& table, const std::string& parent,
                          std::int64_t foreign_key) {
   Statement link(source, "SELECT \"from\" FROM pragma_foreign_key_list(?) WHERE id = ?");
@@ -84,7 +86,7 @@ std::string dangling_row(Connection& source, const std::string& table, const std
   return "a row of " + table + " with " + column + " " + (lost.step() ? lost.text(0) : "");
 }
 
-/// Rows without a parent would be lost in the union, or make it fail.
+/// base::Error if a row's parent is missing: the merge would lose such a row, or fail.
 void check_references(Connection& source) {
   Statement lost(source, "PRAGMA foreign_key_check");
   if (!lost.step()) return;
@@ -164,10 +166,11 @@ struct Person {
   std::string uid, code, station;
 };
 
-/// All people including withdrawn ones, each with the station of the first session.
+/// All people including those who withdrew, each with the code and station of the person's first session.
 std::vector<Person> people_of(const Content& content) {
   std::map<std::string, Person> people;
-  std::map<std::string, std::pair<std::string, std::string>> first;  // planned, session
+  // By person: planned_utc and uid of the person's first session.
+  std::map<std::string, std::pair<std::string, std::string>> first;
   for (const SessionCopy& copy : content.copies) {
     const std::pair key{copy.planned_utc, copy.uid};
     const auto [known, fresh] = first.try_emplace(copy.person, key);
@@ -195,7 +198,7 @@ std::string with_digits(const Person& person) {
          base::sha256_hex(person.uid).substr(0, digits);
 }
 
-/// "<code>-<station>", or with digits if there is no station or no room.
+/// The code "<code>-<station>", or with_digits() if there is no station or the result is too long.
 std::string with_station(const Person& person) {
   const std::string name = person.code + '-' + as_code(person.station);
   return person.station.empty() || name.size() > longest_code ? with_digits(person) : name;
@@ -227,7 +230,7 @@ std::map<std::string, std::string> name_people(const Content& content) {
 
 namespace {
 
-/// Sessions that one source planned under one protocol and station number.
+/// The sessions in one source that have the same protocol and station number.
 struct Dealt {
   std::size_t source = 0;
   std::optional<StationNumber> number;
@@ -249,7 +252,8 @@ std::vector<Dealt> dealt_by_sources(const Content& content, const std::string& p
   return all;
 }
 
-/// True if each has a session that the other lacks, so that neither is an earlier copy of the other.
+/// True if `a` and `b` each have a session that the other lacks. Otherwise one of them is an earlier copy of
+/// the other.
 bool went_apart(const Dealt& a, const Dealt& b) {
   const auto holds = [](const Dealt& one, const Dealt& other) {
     return std::includes(one.sessions.begin(), one.sessions.end(), other.sessions.begin(),
@@ -263,7 +267,7 @@ std::string files_of(const Content& content, const Dealt& a, const Dealt& b) {
   return a.source == b.source ? file(a) : file(a) + " and " + file(b);
 }
 
-/// The problem of two shares; empty: none.
+/// Describes why the slots of `a` and `b` overlap; empty if they do not.
 std::string trouble_of(const Content& content, const Dealt& a, const Dealt& b) {
   const std::string files = files_of(content, a, b);
   if (a.source != b.source && a.number == b.number && went_apart(a, b))

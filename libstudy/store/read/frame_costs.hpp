@@ -1,6 +1,6 @@
 #pragma once
-/// Frame costs of live stimuli on a session's station, stored in its event log: measured before the session,
-/// at full speed, on the session's display (docs/data.md).
+/// Frame costs: times to compute and draw a frame of live stimuli. They are measured before a session, at
+/// full speed, on the session's station and display, and stored in the session's event log (docs/data.md).
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace study {
 
 inline constexpr const char* frame_costs_event = "frame costs";
 
-/// Costs of one stimulus: the time to compute and draw a frame without waiting.
+/// The time to compute and draw a frame of one stimulus without waiting: mean and 95th percentile.
 struct FrameCosts {
   StimulusSpec what;
   double mean_ms = 0, p95_ms = 0;
@@ -20,7 +20,7 @@ struct FrameCosts {
 
 /// Frame costs as JSON on one line.
 std::string format_frame_costs(const std::vector<FrameCosts>& costs);
-/// base::Error naming `place` for anything that format_frame_costs() does not write.
+/// Parses the text of format_frame_costs(). base::Error, which names `place`, for any other text.
 std::vector<FrameCosts> parse_frame_costs(const std::string& text, const std::string& place);
 
 }  // namespace study

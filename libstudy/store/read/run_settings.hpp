@@ -1,6 +1,6 @@
 #pragma once
-/// Solver settings of the live fluid, from the options of a session's run: JSON whose "settings" is a list of
-/// objects with "sha256" and "text" (the setting file in full).
+/// Reads the solver settings of live fluid from the stored options of a session's run. The options are a JSON
+/// object; its member "settings" is a list of objects with "sha256" and "text" (the full setting file).
 
 #include <cstdint>
 #include <string>
@@ -10,27 +10,27 @@
 
 namespace study {
 
-/// SQL for the SHA-256 of a session's settings, separated by spaces, in a statement with `session`; NULL:
-/// none.
+/// SQL expression for statements on the table `session`: the SHA-256 of each of the session's settings,
+/// separated by spaces; NULL if there are none.
 inline constexpr const char* setting_sha256_sql =
     "(SELECT group_concat(json_extract(e.value, '$.sha256'), ' ') FROM run r, json_each(iif(json_valid("
     "r.options), r.options, '{}'), '$.settings') e WHERE r.run_id = session.run_id)";
-/// Meaning of the column setting_sha256 in every export.
+/// Meaning of the column setting_sha256, as every export describes it.
 inline constexpr const char* setting_sha256_meaning =
     "SHA-256 of each setting file (--setting) that live cells ran at, separated by spaces; the export holds "
     "each as setting_<first 12 digits>.toml; empty: the solver's usual settings";
 
 struct RunSetting {
-  std::string sha256;  ///< of the text, computed anew
-  std::string text;    ///< the setting file
+  std::string sha256;  ///< SHA-256 of `text`, computed from the stored text
+  std::string text;    ///< full text of the setting file
 };
 
-/// Settings of one session, in the order in which they were given.
+/// The distinct settings of one session, in the order in which the run's options list them.
 std::vector<RunSetting> run_settings(sqlite::Connection& database, std::int64_t session);
-/// Settings of all sessions, each once.
+/// The distinct settings of all sessions.
 std::vector<RunSetting> run_settings(sqlite::Connection& database);
 
-/// "setting_0123456789ab.toml".
+/// Name of the setting's file in exports: "setting_<first 12 digits of the SHA-256>.toml".
 std::string setting_file_name(const RunSetting& setting);
 
 }  // namespace study

@@ -1,5 +1,6 @@
 #pragma once
-/// Counts of what a database holds about one session. Read-only; errors as read_tasks().
+/// Numbers of units, trials, showings, answers and other rows of one session. Does not change the database.
+/// base::Error as read_tasks().
 
 #include <cstdint>
 #include <filesystem>
@@ -8,17 +9,17 @@
 namespace study {
 
 struct SessionCounts {
-  std::string participant, state;    ///< state: as SessionRow::state
-  std::int64_t units = 0, done = 0;  ///< pages and trials
+  std::string participant, state;    ///< participant code; state as in SessionRow::state
+  std::int64_t units = 0, done = 0;  ///< pages and trials: all, and those that are done
   std::int64_t trials = 0, answered = 0, excluded = 0;
-  std::int64_t showings = 0, cut = 0, counting = 0;  ///< cut: cut short; counting: an answer about it counts
+  std::int64_t showings = 0, cut = 0, counting = 0;  ///< all; cut short; with an answer that counts
   std::int64_t pass = 0, degraded = 0, fail = 0;     ///< timing verdicts of showings
   std::int64_t answers = 0, frames = 0, notes = 0;
 };
-/// A missing session gives an empty participant.
+/// The counts of a session; `participant` is empty if the session does not exist.
 SessionCounts count_session(const std::filesystem::path& database, std::int64_t session);
 
-/// A paragraph for the experimenter.
+/// The counts as a paragraph of text for the experimenter.
 std::string summary_of(const SessionCounts& counts);
 
 }  // namespace study

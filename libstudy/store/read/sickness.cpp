@@ -26,7 +26,8 @@ constexpr const char* sickness_answers_sql =
     "WHERE q.code = 'fms' OR q.code LIKE 'ssq\\_%' ESCAPE '\\' "
     "ORDER BY p.protocol_id, s.participant, s.visit, r.response_id";
 
-/// "ssq_7" -> 6; base::Error if it is not an item.
+/// The 0-based index of an SSQ item from its question id: "ssq_7" gives 6. base::Error if there is no such
+/// item.
 std::size_t item_of(const std::string& code, const std::string& shown) {
   int number = 0;
   const char* const end = code.data() + code.size();
@@ -94,7 +95,8 @@ class SicknessReader {
     session().fms.push_back(answer);
   }
 
-  /// The score; base::Error outside the question's scale (the SSQ's is fixed).
+  /// The score of the current answer. base::Error if it is outside the question's scale: 0 to ssq_item_max
+  /// for the SSQ, the protocol's scale for the FMS.
   int score() const {
     const bool fms = row_.text(11) == "fms";
     const std::int64_t score = row_.integer(12), least = fms ? row_.integer(16) : 0,
@@ -110,7 +112,7 @@ class SicknessReader {
   Statement row_;
   std::string shown_;
   std::vector<SicknessSession> sessions_;
-  std::optional<std::pair<std::int64_t, std::int64_t>> showing_;  ///< unit's position and attempt
+  std::optional<std::pair<std::int64_t, std::int64_t>> showing_;  ///< current SSQ page: position and attempt
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-/// Sickness data of all sessions: pages of the Simulator Sickness Questionnaire (SSQ) and answers on the Fast
-/// Motion Sickness scale (FMS). Read-only.
+/// Reads the sickness data of all sessions: answers to the Simulator Sickness Questionnaire (SSQ) and on the
+/// Fast Motion Sickness scale (FMS). Does not change the database.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,37 +14,38 @@
 
 namespace study {
 
-/// One showing of the SSQ's items.
+/// The answers on one page with the items of the SSQ.
 struct SsqPage {
-  int position = 0;  ///< of its unit in the session, from 0
+  int position = 0;  ///< 0-based position of the page among the session's units
   std::string block;
-  bool before = false;  ///< before the session's first trial
+  bool before = false;  ///< true: the page comes before the session's first trial
   std::string answered_utc;
   stats::SsqAnswers answers;
 };
 
-/// One answer on the FMS. Answers at excluded or repeated trials count as well: they say how the person felt,
-/// whatever was shown.
+/// One answer on the FMS. Answers after excluded or repeated trials are included too, because they report the
+/// person's state whatever the trial showed.
 struct FmsAnswer {
-  int position = 0;  ///< as in SsqPage
+  int position = 0;  ///< 0-based position of the page or trial among the session's units
   std::string block;
-  std::optional<int> trial;  ///< position among the trials; empty: a page
+  std::optional<int> trial;  ///< position among the session's trials; none: answered on a page
   std::string answered_utc;
-  double minutes = 0;  ///< wall-clock time since the session's first answer of any kind
+  double minutes = 0;  ///< wall-clock time since the session's first answer to any question
   int score = 0;       ///< 0 to 20
 };
 
 struct SicknessSession {
   std::int64_t id = 0;
   std::string protocol_name, protocol_sha256;
-  std::string participant;  ///< code
+  std::string participant;  ///< participant code
   int visit = 1;
   std::string observer;  ///< simulated observer that answered; empty = a person
   bool test_data = false;
-  std::vector<SsqPage> ssq;    ///< in the order of answering, like fms
-  std::vector<FmsAnswer> fms;  ///< without unanswered ones
+  std::vector<SsqPage> ssq;    ///< SSQ pages in the order of answering
+  std::vector<FmsAnswer> fms;  ///< FMS answers in the order of answering, without questions left empty
 
-  /// The last page before the first trial, and the last one after it; nullptr if there is none.
+  /// The last SSQ page before the first trial (ssq_before), or the last page if it comes after the first
+  /// trial (ssq_after); nullptr if there is none.
   const SsqPage* ssq_before() const;
   const SsqPage* ssq_after() const;
 };

@@ -42,7 +42,7 @@ std::string certificate_sql(FpsMean mean) {
          "GROUP BY c.protocol_id, c.cell ORDER BY c.protocol_id, c.cell";
 }
 
-/// Sorted as text, so that the best comes first: A before D.
+/// Sorts grades, given as "D,A", alphabetically, so that the best grade comes first: "A,D".
 std::string sorted_grades(std::string grades) {
   std::sort(grades.begin(), grades.end());
   std::string out;

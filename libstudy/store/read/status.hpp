@@ -1,5 +1,6 @@
 #pragma once
-/// Counts of what a database holds. Read-only; errors as read_tasks().
+/// Reads the protocols and sessions of a database with their counts, and the timing certificate of a run.
+/// Does not change the database. base::Error as read_tasks().
 
 #include <cstdint>
 #include <filesystem>
@@ -13,11 +14,11 @@
 
 namespace study {
 
-/// A dataset: all data under one protocol hash.
+/// A protocol, with the counts of its dataset: the data of all sessions under the same protocol hash.
 struct ProtocolRow {
   std::int64_t id = 0;
   std::string name, version, sha256;
-  std::string text;  ///< the protocol file
+  std::string text;  ///< full text of the protocol file
   std::optional<double> trial_seconds;
   bool test_data = false;
   std::int64_t sessions = 0, trials = 0, answered = 0;
@@ -27,44 +28,45 @@ struct SessionRow {
   std::int64_t protocol_id = 0;
   std::string participant;
   int visit = 1;
-  std::string observer;  ///< empty = a person
+  std::string observer;  ///< simulated observer that answered; empty = a person
   std::string clock;     ///< "real" or "virtual"
   bool test_data = false;
   std::int64_t trials = 0, answered = 0;
-  std::int64_t interrupted = 0;  ///< presentations cut short
+  std::int64_t interrupted = 0;  ///< number of presentations that were cut short
   bool ended = false;
   std::string state;  ///< "open", "done", "refused", "not eligible", "stopped" or "dropped out"
-  std::int64_t units = 0, done = 0;   ///< pages and trials
-  std::int64_t excluded = 0;          ///< trials
-  std::optional<bool> gaze, sharing;  ///< allowed; none: not asked
+  std::int64_t units = 0, done = 0;   ///< pages and trials: all, and those that are done
+  std::int64_t excluded = 0;          ///< number of excluded trials
+  std::optional<bool> gaze, sharing;  ///< permissions as in SessionPermission
 };
 
 struct StudyStatus {
   std::vector<ProtocolRow> protocols;
   std::vector<SessionRow> sessions;    ///< by protocol, then in the order of planning
-  std::vector<std::string> withdrawn;  ///< codes of those who withdrew
+  std::vector<std::string> withdrawn;  ///< codes of people who withdrew
   std::int64_t frames = 0;
-  std::int64_t gaze = 0;  ///< samples
-  std::string lacking;    ///< rows that only its journal holds (open_study.hpp); empty: none
+  std::int64_t gaze = 0;  ///< number of gaze samples
+  std::string lacking;    ///< rows that only the journal contains, in words (OpenedStudy); empty: none
 };
 StudyStatus read_status(const StudyFile& study);
 
-/// Timing of all answered presentations of one cell: one line of the certificate.
+/// Timing of all presentations of one cell that an answer judges: one line of the timing certificate.
 struct CertificateRow {
   StimulusSpec what;
-  FpsSetting nominal;       ///< moments 0: as fast as the method ran, without verdicts
-  std::int64_t trials = 0;  ///< presentations
-  double mean = 0;          ///< mean over the trials of the realised mean, frames/s
-  double mean_worst = 0;    ///< largest distance from nominal, frames/s
-  double sd = 0;            ///< mean over the trials of the realised sd, frames/s
-  double sd_worst = 0;
+  FpsSetting nominal;       ///< mean and sd 0: as fast as the method ran, without timing verdicts
+  std::int64_t trials = 0;  ///< number of presentations
+  double mean = 0;          ///< realised mean frame rate, averaged over the presentations, frames/s
+  double mean_worst = 0;    ///< largest |realised mean - nominal mean| of a presentation, frames/s
+  double sd = 0;            ///< realised sd of the frame rate, averaged over the presentations, frames/s
+  double sd_worst = 0;      ///< largest |realised sd - nominal sd| of a presentation, frames/s
   std::int64_t frames = 0, late = 0;
   double worst_late_ms = 0;
   std::int64_t pass = 0, degraded = 0, fail = 0;
-  std::string grades;  ///< grades of the evidence that occur, best first
+  std::string grades;  ///< the distinct timing grades of the presentations, best first: "A,D"
 };
 
-/// Certificate rows of the sessions of run `run_id`; `mean` is the kind of mean in the protocol's settings.
+/// Certificate rows of all sessions of run `run_id`. mean: the kind of mean frame rate that the protocol's
+/// settings use.
 std::vector<CertificateRow> read_certificate(const std::filesystem::path& database, std::int64_t run_id,
                                              FpsMean mean);
 

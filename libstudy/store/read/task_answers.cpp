@@ -35,7 +35,8 @@ void add_cells(Connection& database, std::int64_t protocol_id, Design& design) {
   }
 }
 
-/// Every question of the first format was on a scale, asked after each trial.
+/// A block that asks all questions of a protocol of the first format. In that format every question had a
+/// scale and was asked after each trial.
 Block trials(Connection& database, std::int64_t protocol_id) {
   Block block;
   block.kind = BlockKind::Stimulus;
@@ -59,10 +60,10 @@ Block trials(Connection& database, std::int64_t protocol_id) {
   return block;
 }
 
-/// Parses the stored text and applies overrides. A protocol of the first format, which named no methods and
-/// can no longer be parsed, is rebuilt from the tables as far as analyses need it: name, version, hash, cells
-/// (without stimuli) and the questions asked about them; `participants` is 0, not known. `where` names the
-/// database in messages; base::Error as parse_protocol().
+/// Parses the stored text of a protocol and applies the stored trial duration. The first format named no
+/// methods and can no longer be parsed. A protocol of that format is rebuilt from the tables as far as
+/// analyses need it: name, version, hash, cells without stimuli, and questions; `participants` is 0, not
+/// known. where: names the database in messages. base::Error as parse_protocol().
 Protocol stored_protocol(Connection& database, std::int64_t protocol_id, const std::string& where) {
   Statement row(database,
                 "SELECT name, version, sha256, test_data, text, trial_seconds FROM protocol WHERE "
@@ -133,14 +134,14 @@ constexpr const char* catches_sql =
     "LEFT JOIN response r ON r.unit_id = u.unit_id AND r.question_id = q.question_id "
     "WHERE u.session_id = ?1 AND u.kind = 'catch' ORDER BY u.position, k.place";
 
-/// True if it is new.
+/// Appends an item to a list unless the list has it. Returns true if it was appended.
 bool add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) != list.end()) return false;
   list.push_back(item);
   return true;
 }
 
-/// Reads the sessions of one protocol.
+/// Reads all sessions of one protocol, with their trials and answers.
 class Reader {
  public:
   Reader(Connection& database, std::int64_t protocol_id, const Protocol& protocol)
@@ -276,7 +277,7 @@ class Reader {
   Statement session_, trial_, showing_, answer_, catch_;
 };
 
-/// Questions that the steps of its trials ask.
+/// The questions with scores that the protocol's trials ask, each once.
 std::vector<Question> trial_questions(const Protocol& protocol) {
   std::vector<Question> out;
   std::set<std::string> asked, known;
@@ -290,7 +291,7 @@ std::vector<Question> trial_questions(const Protocol& protocol) {
   return out;
 }
 
-/// Questions asked once on a page, not about a trial.
+/// The questions with scores on pages of kind demographics, screening and question that no trial asks.
 std::vector<Question> questions_about_people(const Protocol& protocol) {
   std::set<std::string> asked;
   for (const Block& block : protocol.blocks)
@@ -305,7 +306,7 @@ std::vector<Question> questions_about_people(const Protocol& protocol) {
   return out;
 }
 
-/// Adds the answers in the database itself, as words like in the personal file.
+/// Adds to `out` the answers to about_people that the database contains, as text like in the personal file.
 void add_stored(Connection& database, const TaskProtocol& protocol, std::vector<PersonalEntry>& out) {
   Statement row(
       database,

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t most_payload_bytes = std::size_t{1} << 30;
 
-/// Reads numbers of one to nine bytes; none past the end.
+/// Reads bytes in sequence, among them SQLite's variable-length integers of one to nine bytes. Returns none
+/// past the end.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
@@ -45,8 +46,8 @@ class Cursor {
   std::size_t at_;
 };
 
-/// Number of overflow pages that may still be read. Each belongs to one row, but in a forged file every cell
-/// could point to all of them; rows beyond the limit count as destroyed.
+/// Limit on the number of overflow pages that are read. In a sound file each overflow page belongs to one
+/// row, but in a forged file every cell could point to all of them. Rows beyond the limit are omitted.
 class Allowance {
  public:
   explicit Allowance(std::size_t pages) : left_(most_readings * pages) {}
@@ -88,7 +89,7 @@ std::optional<Value> value_of(std::uint64_t type, Cursor& body) {
   constexpr std::size_t bytes_of[] = {0, 1, 2, 3, 4, 6, 8, 8, 0, 0};
   if (type >= 12) {
     const auto text = body.take((type - 12) / 2);
-    if (!text || type % 2 == 0) return {};  // a blob: none of our tables has any
+    if (!text || type % 2 == 0) return {};  // even types are blobs, which no table of vip-study has
     return Value(std::string(*text));
   }
   if (type >= 10) return {};
@@ -134,7 +135,7 @@ bool fits(const Shape::Column& column, const Value& value) {
 bool fits(const Shape& shape, const Values& values) {
   if (values.size() != shape.columns.size()) return false;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    // The row number precedes the record, which has NULL in its column.
+    // SQLite stores the row number before the record; the record has NULL in the row number's column.
     const bool number = static_cast<int>(i) == shape.row_number_column;
     if (number ? !std::holds_alternative<std::monostate>(values[i]) : !fits(shape.columns[i], values[i]))
       return false;
@@ -142,7 +143,7 @@ bool fits(const Shape& shape, const Values& values) {
   return true;
 }
 
-/// Scans all cells of one page if it holds rows.
+/// Calls `take` for each row on one page; does nothing if the page has no rows.
 void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>& shapes, Allowance& allowance,
                const std::function<void(const Shape&, Values)>& take) {
   const std::string page = pages.read(number);

@@ -38,11 +38,12 @@ using sqlite::Statement;
 
 namespace {
 
-/// A table in an earlier schema.
+/// The layout of a table in an earlier schema, and how its rows convert to the current schema.
 struct EarlierShape {
   Shape shape;
-  std::size_t now = 0;                             ///< index of the table's current shape
-  std::vector<std::optional<std::size_t>> source;  ///< by current column: earlier column copied; none: NULL
+  std::size_t now = 0;  ///< index of the table's current shape
+  /// By current column: index of the earlier column that is copied; none: the value is NULL.
+  std::vector<std::optional<std::size_t>> source;
 };
 
 constexpr std::size_t first_schema = 2;
@@ -69,7 +70,7 @@ EarlierShape placed(const Shape& shape, const std::vector<Shape>& now, std::size
   return out;
 }
 
-/// The shapes of every schema before this program's.
+/// The shapes of all tables in every earlier schema, from schema 2 on.
 std::vector<Shape> shapes_before() {
   std::vector<Shape> out;
   const SchemaSteps steps = read_schema_steps();
@@ -81,8 +82,9 @@ std::vector<Shape> shapes_before() {
   return out;
 }
 
-/// Tables of schemas 2 and newer that have changed since. A column is copied if name, type and NOT NULL are
-/// unchanged; a newer nullable column becomes NULL (not measured).
+/// The earlier shapes, from schema 2 on, that differ from the tables' current shapes `now`. A column is
+/// copied if its name, type and NOT NULL are unchanged. A current column that the earlier shape lacks becomes
+/// NULL.
 std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
   static const std::vector<Shape> before = shapes_before();
   std::vector<EarlierShape> out;
@@ -97,14 +99,14 @@ std::vector<EarlierShape> earlier_shapes(const std::vector<Shape>& now) {
   return out;
 }
 
-/// The row in the current schema.
+/// Converts a row of an earlier schema to the current schema.
 Values as_now(const EarlierShape& earlier, const Values& row) {
   Values out;
   for (const auto& column : earlier.source) out.push_back(column ? row.at(*column) : salvaging::Value());
   return out;
 }
 
-/// A folder beside the result, readable by its owner only and deleted in the end.
+/// A temporary folder beside the new database that only its owner can read. The destructor deletes it.
 class Workplace {
  public:
   explicit Workplace(const fs::path& into) : path_(into.string() + ".salvage-XXXXXX") {
@@ -139,18 +141,20 @@ void copy(const fs::path& from, const fs::path& to) {
   if (!fs::is_regular_file(from, error)) return;
   fs::copy_file(from, to, error);
   if (error)
-    throw base::Error(from.string(), "cannot be copied: " + error.message(), "check the disk and its room");
+    throw base::Error(from.string(), "cannot be copied: " + error.message(),
+                      "check the disk and its free space");
 }
 
-/// Locks the damaged file while it is read, if it exists and is writable: otherwise a writing program could
-/// mix two states in the salvage.
+/// Locks the damaged file while it is read, if it exists and is writable. Without the lock, another vip-study
+/// could write meanwhile, and the result would mix two states.
 std::unique_ptr<WriterLock> lock_out_writers(const fs::path& database) {
   std::error_code ignored;
   if (!fs::is_regular_file(database, ignored) || ::access(database.c_str(), W_OK) != 0) return {};
   return std::make_unique<WriterLock>(database);
 }
 
-/// The rows of our tables from a copy that has other parts too.
+/// The parts that vip-study knows of a copied database that has foreign parts too, upgraded to the newest
+/// schema. left_out: descriptions of the other parts.
 std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
                                                        std::vector<std::string>& left_out) {
   Connection foreign(copied, Open::Write);
@@ -161,7 +165,7 @@ std::unique_ptr<Connection> open_without_foreign_parts(const fs::path& copied,
   return own;
 }
 
-/// A copy of the database as SQLite reads it; null if it is damaged or not a database.
+/// Copies the database to `copied` and opens the copy with SQLite; null if it is damaged or not a database.
 std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path& copied, bool use_log,
                                        std::vector<std::string>& left_out) {
   for (const std::string beside : {"", "-wal", "-journal"})
@@ -182,7 +186,8 @@ std::unique_ptr<Connection> open_sound(const fs::path& database, const fs::path&
   }
 }
 
-/// False, and noted in `told`, if the log or journal beside the database belongs to another one.
+/// Returns false, and adds the file to told.left_out, if the log or journal beside the database belongs to
+/// another database.
 bool may_use_log(const fs::path& database, Salvage& told) {
   const auto foreign =
       foreign_log(database, [&] { return salvaging::File(database).read(0, salvaging::header_bytes); });
@@ -211,13 +216,14 @@ void read_sound(Connection& database, const std::vector<Shape>& shapes, bool lar
   }
 }
 
-/// The damaged files to read page by page.
+/// The damaged database to read page by page. use_log: also read its log.
 struct Damaged {
   const fs::path& database;
   bool use_log;
 };
 
-/// Reads the rows of the large tables, or of all others.
+/// Calls `take` for the rows of all large tables (`large` true), or of all other tables. Reads from `sound`,
+/// or page by page if `sound` is null.
 void read_rows(Connection* sound, const Damaged& damaged, const std::vector<Shape>& shapes,
                const std::vector<EarlierShape>& earlier, bool large, const Take& take) {
   if (sound) return read_sound(*sound, shapes, large, take);
@@ -245,7 +251,7 @@ void fill(Connection& target, Connection* sound, const Damaged& damaged, const J
   rebuild.take(std::move(rows));
   read_rows(sound, damaged, shapes, earlier, true,
             [&](const Shape& shape, const Values& values) { rebuild.take_large(shape, values); });
-  drop_unallowed_gaze(target);  // rows may be older than a refusal
+  drop_unallowed_gaze(target);  // pages of the damaged file may contain gaze from before a refusal
   rebuild.sum_up();
   Statement(target, "INSERT INTO event (utc, kind, detail) VALUES (?, 'salvaged', ?)")
       .bind_all(base::utc_now(), std::to_string(told.answers_database) + " answers from the database, " +
@@ -262,7 +268,8 @@ void check(Connection& made) {
                     "report this with the damaged file");
 }
 
-/// Only the file is put in place, and closing it would not report a log that could not be copied back.
+/// Copies the log into the database file and removes the log, because only the file becomes the result.
+/// Closing the database would do the same, but would not report a failure.
 void leave_no_log(Connection& made) {
   made.unwatch();
   if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
@@ -270,12 +277,12 @@ void leave_no_log(Connection& made) {
                     "free space on the disk, and run the command again");
 }
 
-/// link() fails if the target exists.
+/// Gives the finished file the path `into`. Uses link(), which fails if `into` exists.
 void put_in_place(const fs::path& made, const fs::path& into) {
   if (::chmod(made.c_str(), 0600) == 0 && ::link(made.c_str(), into.c_str()) == 0)
     return base::sync_folder_of(into);
   throw base::Error(into.string(), std::string("cannot be put in place: ") + std::strerror(errno),
-                    "name a new file for --into, on a disk with room");
+                    "name a new file for --into, on a disk with free space");
 }
 
 }  // namespace

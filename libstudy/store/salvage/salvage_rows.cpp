@@ -26,8 +26,8 @@ std::size_t index_of(const Shape& shape, const std::string& column) {
   return static_cast<std::size_t>(found - shape.columns.begin());
 }
 
-/// The column of an optional reference: without that parent, a row of this table is still useful; nullptr:
-/// none.
+/// The column of a table that refers to an optional parent: if the parent row is missing, the column becomes
+/// NULL and the row stays. nullptr if the table has no such column.
 const char* without_which(const std::string& table) {
   if (table == "event") return "presentation_id";
   return table == "presentation" ? "framing_id" : nullptr;
@@ -51,8 +51,8 @@ void bind(Statement& statement, int index, const Value& value) {
     statement.bind_at(index, std::nullopt);
 }
 
-/// If a row is found twice, one is an old copy. Columns of a row are filled over time, so prefers the fuller
-/// one.
+/// Sorts rows by their number of NULLs, fewest first. If a row is found twice, one version is older; columns
+/// are filled over time, so the version with fewer NULLs is the newer one and is inserted first.
 void fuller_first(std::vector<Values>& rows) {
   const auto empty = [](const Values& row) {
     return std::count_if(row.begin(), row.end(), [](const Value& v) { return v.index() == 0; });
@@ -91,7 +91,7 @@ void Rebuild::take(RowsByTable rows) {
   std::int64_t last = 0;
   for (const Values& row : rows["event"]) last = std::max(last, std::get<std::int64_t>(row[0]));
   journal_is_newer_ = last_event(journal_.kept) >= last;
-  // Tombstones first, before rows of people who withdrew.
+  // Inserts tombstones first, so that rows of people who withdrew are recognised and omitted.
   std::vector<std::string> order{"tombstone"};
   for (const Table& table : journal::tables()) {
     if (table.name != order.front()) order.emplace_back(table.name);
@@ -172,11 +172,13 @@ void Rebuild::take_known(const Row& row, const Row& now) {
   if (now.line == row.line) return;
   const char* identity = identity_of(*row.table);
   if (identity && journal::column(row, identity) != journal::column(now, identity)) {
-    throw base::Error("the database",
-                      "and its journal of answers are of different studies: " + std::string(row.table->name) +
-                          " " + row.key + " is " + journal::column(now, identity) + " in one and " +
-                          journal::column(row, identity) + " in the other",
-                      "move one of the two away; vip-study salvage rebuilds each by itself");
+    throw base::Error("--db",
+                      "names a database whose journal of answers belongs to another study: " +
+                          std::string(row.table->name) + " " + row.key + " is " +
+                          journal::column(now, identity) + " in the database and " +
+                          journal::column(row, identity) + " in the journal",
+                      "move the database or its .answers.jsonl file to another folder; vip-study salvage "
+                      "rebuilds a study from either of them");
   }
   if (is_response(*row.table))
     told_.different.push_back("in the database " + now.line + ", in the journal " + row.line);
@@ -195,7 +197,8 @@ void Rebuild::sum_up() {
   told_.frames_lost = target_.integer(
       "SELECT coalesce(sum(max(0, p.frames - (SELECT count(*) FROM frame f WHERE f.presentation_id = "
       "p.presentation_id))), 0) FROM presentation p WHERE p.state = 'played'");
-  // A page between two groups has the name of their block but asks nothing.
+  // A page between two groups of trials has the id of their block but asks none of its questions: excluded
+  // here by u.kind.
   Statement lost(target_,
                  "SELECT s.participant, count(*) FROM unit u JOIN session s USING (session_id) "
                  "JOIN ask a ON a.protocol_id = s.protocol_id AND a.block = u.block "
@@ -211,7 +214,8 @@ void Rebuild::sum_up() {
 
 namespace {
 
-// Plans with lost rows are computed again, since they are a function of the remaining data.
+// If rows of a plan (trials, units) are lost, the plan is computed again: make_plan() is a pure function of
+// data that the other tables contain.
 
 struct Planned {
   std::int64_t session = 0, seed = 0;
@@ -241,8 +245,8 @@ std::vector<Planned> sessions_of(Connection& database) {
   return all;
 }
 
-/// The id that position 0 of the session has or had, since a session's rows have consecutive ids. None if no
-/// row is left or the ids are not consecutive.
+/// The id of the session's row (trial or unit) with position 0, even if this row is lost: the ids of a
+/// session's rows are consecutive. None if no row is left or the ids are not consecutive.
 std::optional<std::int64_t> first_row(Connection& database, const std::string& table, std::int64_t session) {
   Statement row(database, "SELECT min(" + table + "_id - position), max(" + table +
                               "_id - position), count(*) FROM " + table + " WHERE session_id = ?");
@@ -250,7 +254,7 @@ std::optional<std::int64_t> first_row(Connection& database, const std::string& t
   return row.integer(0);
 }
 
-/// True if the remaining trials match this plan.
+/// True if all trials of the session that are left are equal to those in the plan.
 bool agrees(Connection& database, std::int64_t session, const Plan& plan) {
   Statement row(database,
                 "SELECT position, first_cell, second_cell, schedule_seed FROM trial WHERE session_id = ?");
@@ -267,7 +271,7 @@ bool agrees(Connection& database, std::int64_t session, const Plan& plan) {
 }
 
 std::optional<Plan> plan_of(Connection& database, const Planned& session, const Protocol& protocol) {
-  // A merge may change codes; the plan was made with one of the two.
+  // A merge may have changed the participant's code: try the plan with the new code, then with the original.
   for (const std::string& code : {session.participant, session.code}) {
     Plan plan = make_plan(protocol, code, static_cast<std::uint64_t>(session.seed), session.slot);
     if (agrees(database, session.session, plan)) return plan;
@@ -306,7 +310,8 @@ void add_units(Connection& database, std::int64_t session, std::int64_t first,
 
 }  // namespace
 
-// A plan without any remaining row is not restored: the row numbers, to which answers refer, are unknown.
+// Inserts the lost trials, or the lost units if `units` is true. If no row of a session's plan is left,
+// inserts none: the row numbers, to which answers refer, are then unknown.
 void Rebuild::complete_plans(bool units) {
   for (const Planned& session : sessions_of(target_)) {
     const auto first = first_row(target_, units ? "unit" : "trial", session.session);
@@ -323,7 +328,7 @@ void Rebuild::complete_plans(bool units) {
       else if (plan)
         add_trials(target_, session.session, *first, *plan);
     } catch (const base::Error&) {
-      // The protocol's format is no longer read: its plan is not completed.
+      // This program cannot read the protocol's old format, so the lost rows stay lost.
     }
   }
 }

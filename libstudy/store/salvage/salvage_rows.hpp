@@ -1,5 +1,5 @@
 #pragma once
-/// Part of salvage(): joins the rows of a damaged database and its journal in one database.
+/// The step of salvage() that writes the rows of a damaged database and of its journal into a new database.
 
 #include <map>
 #include <set>
@@ -14,22 +14,22 @@ namespace study::salvaging {
 
 using RowsByTable = std::map<std::string, std::vector<Values>>;
 
-/// True for tables with thousands of rows per trial, which are never held in memory, and for all tables that
-/// are not journalled.
+/// True for frame, slot, head, gaze and gaze_validation. These tables are not in the journal; most have
+/// thousands of rows per trial, so their rows are copied one by one instead of being loaded into memory.
 bool is_large(const std::string& table);
 
-/// Fills an empty database of the newest schema, table by table, parents first: the database's rows, then
-/// those only in the journal.
+/// Fills an empty database of the newest schema table by table, parents first. For each table, inserts the
+/// damaged database's rows, then the rows that only the journal contains.
 class Rebuild {
  public:
   Rebuild(sqlite::Connection& target, const JournalContent& journal, Salvage& told);
 
-  /// Takes the rows of all tables but the large ones. base::Error if database and journal are of different
-  /// studies.
+  /// Inserts the rows of all tables that are not large (is_large()), and the rows of the journal. base::Error
+  /// if database and journal belong to different studies.
   void take(RowsByTable rows);
-  /// Takes a row of a large table. Skips rows of missing presentations.
+  /// Inserts a row of a large table; omits and counts a row whose parent row is missing.
   void take_large(const Shape& shape, const Values& values);
-  /// Counts the rows in the result and those missing from it.
+  /// Counts the rows in the result, and the answers and frames that are missing in it.
   void sum_up();
 
  private:
@@ -47,7 +47,7 @@ class Rebuild {
   Salvage& told_;
   std::vector<Shape> shapes_;
   std::map<std::string, sqlite::Statement> inserts_;
-  std::set<std::string> withdrawn_;  // persons
+  std::set<std::string> withdrawn_;  // persons who withdrew
   bool journal_is_newer_ = true;
 };
 

@@ -54,7 +54,7 @@ std::string floor_of(const PriceList& prices, SweepError error) {
       floor, convergence(prices, error));
 }
 
-/// The errors that the sweep has measured.
+/// The errors of the water, and those of the pictures if the sweep stored pictures.
 std::vector<SweepError> errors_in(const PriceList& prices) {
   std::vector<SweepError> out;
   for (std::size_t e = 0; e < sweep_error_count; ++e)

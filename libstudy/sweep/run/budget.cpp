@@ -19,7 +19,7 @@ std::string named(const sim::SolverSetting& setting) {
   return sim::method_name(setting.method) + ", " + in_words(setting);
 }
 
-/// Runs a setting from starts that the sweep has not used.
+/// Runs a setting with seeds that no cell of the sweep has.
 std::vector<StoredCell> run_afresh(const sim::SolverSetting& setting, const std::vector<StoredCell>& cells,
                                    const SweepPlan& plan,
                                    const std::function<StoredCell(const SweepCell&)>& run) {
@@ -38,7 +38,7 @@ std::vector<double> frame_ms(const std::vector<StoredCell>& cells) {
   return out;
 }
 
-/// The sweep with additional starts of a setting, placed after its existing ones.
+/// `cells` with the cells in `more` inserted behind the last cell of the same setting.
 std::vector<StoredCell> joined(std::vector<StoredCell> cells, const std::vector<StoredCell>& more) {
   const std::string text = sim::to_text(more.front().cell.setting);
   const auto last = std::find_if(cells.rbegin(), cells.rend(), [&](const auto& cell) {
@@ -87,7 +87,8 @@ bool requested(const sim::SolverSetting& setting, const BudgetRequest& request) 
          (!request.frames_per_s || setting[sim::SolverKnob::Rate] == *request.frames_per_s);
 }
 
-/// The settings that meet the request and have the error.
+/// The settings that have the requested method, n_* and rate, and for which the requested error is known.
+/// base::Error if there are none.
 std::vector<SettingResult> candidates(const PriceList& list, const BudgetRequest& request) {
   const auto e = static_cast<std::size_t>(request.error);
   std::vector<SettingResult> out;
@@ -176,7 +177,7 @@ sim::SettingFile choose_setting(const std::vector<StoredCell>& cells, const Swee
                                       [&](const auto& one) { return one.setting == setting; });
       return file_of(*found, fresh, request);
     }
-    said(fmt::format("{}: {:.2f} ms when measured anew, not kept", named(setting), p95));
+    said(fmt::format("{}: {:.2f} ms when measured anew, more than the budget", named(setting), p95));
     if (nearest.empty() || p95 < nearest_ms) {
       nearest = named(setting);
       nearest_ms = p95;

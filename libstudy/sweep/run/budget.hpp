@@ -1,5 +1,5 @@
 #pragma once
-/// Finds the setting with the smallest error whose frames keep a time budget.
+/// Finds the setting with the smallest error whose frames take no longer than a time budget.
 
 #include <functional>
 #include <optional>
@@ -11,16 +11,17 @@
 
 namespace study {
 
-/// Parses milliseconds from "11.1ms". base::Error that names --budget.
+/// Reads milliseconds from a text like "11.1ms". base::Error, with place --budget, for another form.
 double parse_budget(const std::string& words);
-/// "front", "centre" and so on, in SweepError's order: columns without their unit.
+/// Names of the errors in SweepError's order: "front", "centre" and so on, that is, the column names without
+/// their unit.
 const std::vector<std::string>& sweep_error_names();
-/// `word` must be one of these names.
+/// The error of this name, which must be one of sweep_error_names().
 SweepError parse_sweep_error(const std::string& word);
 
-/// Settings whose 95th percentile is within the budget, as indices in `settings`, in the order in which to
-/// try them: smallest error first, but the cheapest among those whose error range overlaps that of the
-/// smallest.
+/// Indices of the settings whose 95th percentile of frame times is within the budget, in the order in which
+/// to try them. At each step the candidates are the remaining setting with the smallest error and all
+/// settings whose range of errors overlaps with its range; the fastest candidate comes next.
 std::vector<std::size_t> within_budget(const std::vector<SettingResult>& settings, double budget_ms,
                                        SweepError error);
 
@@ -29,16 +30,16 @@ struct BudgetRequest {
   double budget_ms = 0;
   SweepError error = SweepError::Centre;
   double tank_length_m = 0;
-  // Only settings with these values, if given.
+  // If set, only settings with this method, n_* or frame rate are considered.
   std::optional<sim::MethodKind> method = {};
   std::optional<std::int64_t> n_star = {};
   std::optional<double> frames_per_s = {};
 };
 
-/// Tries the settings of `cells` that keep the budget: runs each from two fresh starts and chooses the first
-/// that keeps it again. Its error is over all starts, its milliseconds over the fresh ones. Calls `said` for
-/// each setting that fails when tried. base::Error if none keeps the budget, with the nearest one and how
-/// much it misses.
+/// Chooses a setting within the budget. Runs each candidate of `cells` from two new starts and takes the
+/// first whose new frames keep the budget too. The file's error is over all starts, its times are over the
+/// new starts only. Calls `said` with a text for each candidate that fails. base::Error if no setting keeps
+/// the budget; it names the nearest setting and its excess.
 sim::SettingFile choose_setting(const std::vector<StoredCell>& cells, const SweepOrigin& origin,
                                 const BudgetRequest& request,
                                 const std::function<StoredCell(const SweepCell&)>& run,

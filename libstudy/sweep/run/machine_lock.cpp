@@ -20,9 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* mend = "name a folder of this machine that its users may write to: VIP_LOCK_DIR";
+constexpr const char* mend = "set VIP_LOCK_DIR to a folder of this machine that all its users may write to";
 
-/// The same folder for every user, so it depends on the folder's permissions and not on the user's.
+/// The lock's folder: $VIP_LOCK_DIR, or the first of /run/lock and /tmp that everyone may write to. All users
+/// must get the same folder, so the permissions of the current user do not matter.
 fs::path lock_folder() {
   if (const char* named = std::getenv("VIP_LOCK_DIR"); named && *named) return named;
   for (const fs::path folder : {"/run/lock", "/tmp"}) {
@@ -38,8 +39,9 @@ fs::path lock_folder() {
   throw base::Error(path.string(), step + ": " + std::strerror(errno), mend);
 }
 
-/// flock() needs only read access. In a folder such as /tmp the kernel may refuse O_CREAT on another user's
-/// file (fs.protected_regular), so an existing file is opened without it.
+/// Opens the lock file for reading, which suffices for flock(), and creates it if it is missing. An existing
+/// file is opened without O_CREAT: in a folder such as /tmp the kernel may refuse O_CREAT on another user's
+/// file (fs.protected_regular).
 int open_lock(const fs::path& path) {
   constexpr int flags = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
   int fd = ::open(path.c_str(), flags);
@@ -52,7 +54,7 @@ int open_lock(const fs::path& path) {
   return fd;
 }
 
-/// Returns 0, or -1 with errno, as flock().
+/// Calls flock() again when a signal interrupts it. Returns 0, or -1 with errno.
 int lock(int fd, int how) {
   int done = ::flock(fd, how);
   while (done != 0 && errno == EINTR) done = ::flock(fd, how);

@@ -1,12 +1,14 @@
 #pragma once
-/// Runs timed runs one after the other, because parallel runs on one machine disturb each other's times.
+/// A lock by which timed runs follow one another, since parallel runs on one machine distort each other's
+/// times.
 
 namespace study {
 
-/// The machine's lock for timed runs of all users: flock() on the file vip-bench.lock in $VIP_LOCK_DIR, or
-/// else in the first of /run/lock and /tmp that every user may write to. The constructor waits for it; a
-/// program that waits says so once on stderr. The lock is released with the object, and when the program is
-/// killed. base::Error if there is no such folder, or the file cannot be opened.
+/// Holds the machine's lock for timed runs of all users while the object exists. The lock is flock() on the
+/// file vip-bench.lock in the folder $VIP_LOCK_DIR. If this variable is not set, the folder is the first of
+/// /run/lock and /tmp that every user may write to. The constructor waits until the lock is free and prints a
+/// message once on stderr while it waits. The lock is also released if the program is killed. base::Error
+/// without such a folder, or if the file cannot be opened.
 class MachineLock {
  public:
   MachineLock();

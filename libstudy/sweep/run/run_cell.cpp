@@ -26,24 +26,26 @@ namespace study {
 
 namespace {
 
-/// Draws and stores pictures of the water outside the timing.
+/// Draws pictures of the water for comparison, outside the timing.
 class PictureKeeper {
  public:
-  /// Uses the current context if there is one, which must outlive this object, or else its own.
+  /// With `context_is_current`, draws in the current OpenGL context, which must outlive this object.
+  /// Otherwise creates a context.
   PictureKeeper(const sim::Scene& scene, const base::PictureSize& size, bool context_is_current)
       : scene_(scene),
         context_(context_is_current ? std::nullopt : std::optional(sim::GlContext::make_headless())),
         eye_(scene, size) {}
 
-  /// At the middle of the picture.
+  /// Resolution at the middle of the picture.
   double pixels_per_degree() const { return std::numbers::pi / 180 / sim::pixel_rays(eye_.view()).scale_y; }
-  /// `frame`: number of the frame in the run. With `masks`, also stores the masks of the gaze's fovea (the
-  /// tuned half angle) and of the most salient part outside it; this sorts the particles.
+  /// Returns a picture of frame number `frame` of the run. With `masks`, adds the masks of the fovea around
+  /// the gaze point (half angle of the preset Tuned) and of the most salient part outside it. Computing masks
+  /// reorders the particles.
   KeptPicture keep(sim::Simulation& fluid, int frame, double frame_dt_s, bool masks);
 
  private:
   const sim::Scene& scene_;
-  std::optional<sim::GlContext> context_;  // must outlive the objects drawn in it
+  std::optional<sim::GlContext> context_;  // declared before eye_, whose OpenGL objects need it
   measure::Onlooker eye_;
 };
 
@@ -84,7 +86,7 @@ std::unique_ptr<sim::Simulation> start(const SweepCell& cell, const sim::Scene& 
   return sim::make_simulation(scene, options);
 }
 
-/// True for two of three samples: pairs of successive ones.
+/// True for samples 0 and 1 of every three: two successive samples form a pair of pictures.
 bool keeps_picture(std::size_t sample) { return sample % 3 != 2; }
 
 std::unique_ptr<measure::RenderTimer> pictures(const SweepCell& cell, const sim::Scene& scene) {
@@ -163,7 +165,8 @@ CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend ba
     if (keeper && keeps_picture(sample)) {
       const bool masks = is_reference(cell.setting) && sample % 3 == 0;
       out.pictures.push_back(keeper->keep(*fluid, frame, 1.0 / rate, masks));
-      // The timed picture's GL buffers are used again before the next timed frame.
+      // Draws the timed picture once more, without timing. Its OpenGL buffers are then used again between the
+      // stored picture and the next timed frame.
       if (pictures_of_cell) pictures_of_cell->draw(*fluid);
     }
     const auto report = fluid->report();

@@ -10,7 +10,8 @@ namespace study {
 
 WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water);
 
-/// base::Error if the simulation becomes unstable. Measurements are made between frames, outside the timing.
+/// Runs the cell. The state of the water is measured between frames, outside the timing. base::Error if the
+/// simulation becomes unstable.
 CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend);
 
 }  // namespace study

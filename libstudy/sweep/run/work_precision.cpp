@@ -19,7 +19,7 @@ constexpr const char* grid = R"( stroke="#ddd" fill="none")";
 constexpr const char* dashed = R"( stroke="#555" fill="none" stroke-dasharray="5 4")";
 constexpr const char* middle = R"( text-anchor="middle")";
 
-/// Frames of 120, 90 and 60 a second.
+/// Frame rates, in frames/s, whose frame times are marked by dashed lines.
 constexpr std::array<double, 3> frame_rates{120, 90, 60};
 
 struct Look {
@@ -41,7 +41,7 @@ std::string polygon(svg::Point at, const std::vector<svg::Point>& corners, const
   return svg::path(moves + "Z", attributes);
 }
 
-/// A shape per method, so that colour is not needed.
+/// A mark whose shape depends on the method, so that methods can be distinguished without colour.
 std::string mark(sim::MethodKind method, const char* colour, svg::Point at) {
   const std::string fill = svg::attribute("fill", colour) + svg::attribute("stroke", "#fff");
   switch (method) {
@@ -67,11 +67,11 @@ struct Diagram {
     return {left_px + x.share(ms) * plot_width_px, bottom_px - y.share(value) * plot_height_px};
   }
   svg::Point at(const SettingResult& one) const { return at(one.ms_mean, one.errors[error].mean); }
-  /// Clamps to the axis, for seeds without any error.
+  /// Clamps an error to the y axis: the error of a seed may be 0, which a logarithmic axis cannot show.
   double within(double value) const { return std::clamp(value, y.low, y.high); }
 };
 
-/// Settings that can be drawn.
+/// Settings that logarithmic axes can show: time and error above 0.
 std::vector<SettingResult> drawable(const PriceList& list, std::size_t error) {
   std::vector<SettingResult> out;
   for (const auto& one : list.settings)

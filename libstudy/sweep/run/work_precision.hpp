@@ -1,5 +1,6 @@
 #pragma once
-/// A work-precision diagram: error over milliseconds, both logarithmic, one line per method.
+/// Draws a work-precision diagram: error over time per frame in ms, on logarithmic axes, with one line for
+/// each method.
 
 #include <optional>
 
@@ -8,9 +9,10 @@
 
 namespace study {
 
-/// Each setting is a mark with its method's shape, with a stroke from its smallest to its largest seed. A
-/// line joins the settings that no other of the method beats; a ring marks those that none of any method
-/// beats. Settings without an error above 0 cannot be drawn and are left out; none if no setting is left.
+/// Each setting is a mark with its method's shape; a stroke extends from the smallest to the largest error of
+/// its seeds. A line joins the settings on the Pareto front of the method. A ring marks settings on the
+/// Pareto front of all methods. Settings with a mean error or time of 0 are left out. Empty if no setting is
+/// left.
 std::optional<svg::Picture> work_precision(const PriceList& list, SweepError error);
 
 }  // namespace study

@@ -130,13 +130,13 @@ TEST(BakeFile, HeadersThatCannotBeAreRefused) {
   };
   using Header = sim::BakeHeader;
   EXPECT_EQ(error_with([](Header&) {}), "");
-  EXPECT_THAT(error_with([](Header& h) { h.view.width_px = -1; }), HasSubstr("size of the picture seen"));
+  EXPECT_THAT(error_with([](Header& h) { h.view.width_px = -1; }), HasSubstr("size of the drawn picture"));
   EXPECT_THAT(error_with([](Header& h) { h.view.camera_angle_deg = 180; }), HasSubstr("camera's angle"));
   EXPECT_THAT(error_with([](Header& h) { h.view.visual_angle_deg = NAN; }), HasSubstr("eye's view"));
   EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path[1].frame = -1; }), HasSubstr("gaze"));
   EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path.resize(2000); }), HasSubstr("2000 gaze keys"));
   EXPECT_THAT(error_with([](Header& h) { h.tolerance->model.b = NAN; }), HasSubstr("tolerance"));
-  EXPECT_THAT(error_with([](Header& h) { h.max_foam = -1; }), HasSubstr("count of foam"));
+  EXPECT_THAT(error_with([](Header& h) { h.max_foam = -1; }), HasSubstr("number of foam particles"));
   EXPECT_THAT(error_with([](Header& h) { h.effects = std::string(70000, ' '); }),
               HasSubstr("70000 characters"));
   EXPECT_EQ(error_with([](Header& h) { h.reference_k = 293.15; }), "");
@@ -160,7 +160,7 @@ TEST(BakeFile, AccountsThatCannotBeAreRefused) {
   EXPECT_THAT(error_with([](Account& a) { a.temporal->beta = 1.5; }), HasSubstr("outside 0 to 1"));
   EXPECT_THAT(error_with([](Account& a) { a.temporal->active = 11; }), HasSubstr("more particles solved"));
   EXPECT_THAT(error_with([](Account& a) { a.guards->gaze_lost = UINT64_MAX; }),
-              HasSubstr("no guard reaches"));
+              HasSubstr("impossible number of guard cases"));
 }
 
 TEST(BakeFile, EndsOfTheBoxAreKeptExactly) {
@@ -305,7 +305,7 @@ TEST(BakeFile, WriterRefusesWhatItCannotKeep) {
     return error_of([&] { writer.add_frame(0, particles, {}); });
   };
   EXPECT_THAT(add({{NAN, 0, 0, 0.05F}}), HasSubstr("not finite"));
-  EXPECT_THAT(add({{0, 0, 0, 0.07F}}), HasSubstr("none of the bake's levels"));
+  EXPECT_THAT(add({{0, 0, 0, 0.07F}}), HasSubstr("not among the header's radii"));
   // A step of 16 bit over 400 m is 6 mm: more than 0.05 / 20 m on each side.
   EXPECT_THAT(add({{0, 0, 0, 0.05F}, {400, 0, 0, 0.05F}}), HasSubstr("spread over 400 m"));
   EXPECT_EQ(add({{0, 0, 0, 0.05F}, {300, 0, 0, 0.05F}}), "");

@@ -101,7 +101,8 @@ TEST(BakeFoam, AFrameWithoutItsFoamIsNotWritten) {
   EXPECT_THROW(writer.add_foam({}), std::logic_error);
   writer.add_frame(0, bake_test::particles(0), {});
   EXPECT_THROW(writer.add_frame(1, bake_test::particles(1), {}), std::logic_error);
-  EXPECT_THAT(error_of([&] { writer.add_foam(foam_of(2)); }), HasSubstr("more foam than the header states"));
+  EXPECT_THAT(error_of([&] { writer.add_foam(foam_of(2)); }),
+              HasSubstr("more foam than max_foam of the header"));
   writer.add_foam({});
   EXPECT_THROW(writer.add_foam({}), std::logic_error);
 }

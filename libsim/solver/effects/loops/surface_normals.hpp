@@ -34,7 +34,7 @@ struct SurfaceNormals {
 
 using NormalView = ColumnView<columns(Column::Position, Column::Neighbours), columns(Column::Normal)>;
 
-/// Calls then(term); the term's type depends on whether the scene has obstacles.
+/// Calls then(term) with the term SurfaceNormals, whose type depends on whether the scene has obstacles.
 template <class Then>
 void with_surface_normals(FluidState& state, NormalView p, Then then) {
   const float widest = state.widest_support(EffectOption::CohesionCoarsest);
