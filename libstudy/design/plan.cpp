@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "libstudy/design/adaptive_track.hpp"
 #include "libstudy/design/orders.hpp"
 #include "stats/base/error.hpp"
 
@@ -142,7 +143,7 @@ constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
 constexpr std::uint64_t counters_per_group = 1ull << 20;
-constexpr std::uint64_t counters_per_repetition = 1ull << 24;  // of the schedules of a block
+constexpr std::uint64_t counters_per_repetition = 1ull << 22;  // of the schedules of a block
 
 class Planner {
   using Pairs = std::vector<std::pair<int, int>>;
@@ -202,9 +203,27 @@ class Planner {
   void add_design(int index) {
     for (std::size_t g = 0; g < deal_.groups.size(); ++g) {
       if (g > 0 && block(index).between_groups_s > 0) add_page(index);
+      if (design_.procedure) {
+        add_tracks(static_cast<int>(g), index);
+        continue;
+      }
       const auto candidates = trials_of(static_cast<int>(g), index);
       for (const int i : order_of(candidates, static_cast<int>(g)))
         add_trial(candidates[static_cast<std::size_t>(i)]);
+    }
+  }
+
+  /// The trials of an adaptive procedure, whose cells are chosen later.
+  void add_tracks(int g, int index) {
+    auto random = extra(index);
+    const auto group =
+        cell_groups(design_)[static_cast<std::size_t>(deal_.groups[static_cast<std::size_t>(g)])];
+    int number = 0;
+    for (PlannedTrial trial : track_trials(design_, group, random)) {
+      trial.block = index;
+      trial.group = g;
+      trial.schedule_seed = schedule_seed(trial, number++);
+      add_trial(trial);
     }
   }
 

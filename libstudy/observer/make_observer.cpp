@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "libstudy/base/random.hpp"
+#include "libstudy/observer/detection_observer.hpp"
 #include "libstudy/observer/frames_observer.hpp"
 #include "libstudy/observer/observer.hpp"
 #include "libstudy/observer/ptpe_observer.hpp"
@@ -63,7 +64,8 @@ class DropoutObserver final : public Observer {
 };
 
 constexpr std::string_view constant = "constant:", dropout = "dropout:";
-const std::string kinds = "write ptpe:a=31,b=0.035, frames, random, constant:4 or dropout:0.2";
+const std::string kinds =
+    "write ptpe:a=31,b=0.035, detect:hitch_ms,threshold=60, frames, random, constant:4 or dropout:0.2";
 
 std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSource& features) {
   const std::size_t end = std::min(specification.find(','), specification.size());
@@ -134,6 +136,8 @@ std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureS
   if (specification.starts_with(dropout)) return make_dropout(specification, features);
   if (specification.starts_with("frames"))
     return std::make_unique<FramesObserver>(parse_frames_observer(specification), features);
+  if (specification.starts_with("detect:"))
+    return std::make_unique<DetectionObserver>(parse_detection_observer(specification));
   if (specification.starts_with("ptpe:"))
     return std::make_unique<PtpeObserver>(parse_ptpe_observer(specification));
   fail_observer(specification, 0, "is not a kind of observer", kinds);

@@ -49,9 +49,9 @@ int random_score(const Question& question, const Occasion& occasion);
 /// of a catch question, a low score on a symptom scale, else a random score.
 int bystander_score(const Question& question, const Occasion& occasion);
 
-/// Makes an observer from "ptpe:a=31,b=0.035", "random", "constant:4", "dropout:0.2[,OBSERVER]" or
-/// "frames[:key=number,...]". The frames observer reads `features`, which must outlive it. base::Error names
-/// the character at which the text is wrong.
+/// Makes an observer from "ptpe:a=31,b=0.035", "detect:hitch_ms,threshold=60", "random", "constant:4",
+/// "dropout:0.2[,OBSERVER]" or "frames[:key=number,...]". The frames observer reads `features`, which must
+/// outlive it. base::Error names the character at which the text is wrong.
 std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureSource& features);
 
 /// For a constant observer such as "constant:9" (alone or after "dropout"): one sentence for each rating

@@ -8,6 +8,7 @@
 
 #include "libstudy/pacing/profile.hpp"
 #include "libstudy/pacing/schedule.hpp"
+#include "libstudy/protocol/procedure.hpp"
 
 namespace study {
 
@@ -93,6 +94,8 @@ struct Design {
   /// Two-interval trials of format 3: each other cell is paired with the standard of its group. `pairs` is
   /// true then. By within-subject factor: index of the standard's level.
   std::optional<std::vector<int>> standard;
+  /// Adaptive trials of format 3; none: every cell, or pair, is shown `repetitions` times.
+  std::optional<Procedure> procedure;
   int repetitions = 1;  ///< trials of each cell, or pair, in a session; more than 1 only in format 3
   int groups = 1;  ///< groups per participant: with different scenes, and different n_star as far as possible
   TrialOrder order = TrialOrder::Shuffle;
@@ -106,12 +109,15 @@ struct Design {
 std::vector<std::vector<int>> cell_groups(const Design& design);
 
 /// Number of trials of one group: the number of its cells, or of its pairs of cells, times the repetitions.
-/// All groups of a design have equally many trials.
+/// With a procedure: the trials of all tracks. All groups of a design have equally many trials.
 int trials_of_group(const Design& design);
 
 /// The pairs of cells of one group that two-interval trials show, in file order: all unordered pairs, or
 /// every other cell with the standard.
 std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std::vector<int>& group);
+
+/// True if the cell has the standard's level of every within-subject factor; the design has a standard.
+bool is_standard(const Design& design, const Cell& cell);
 
 /// The level of a factor of format 3 as text, such as "h50".
 const std::string& level_name(const Design& design, const Cell& cell, std::size_t factor);

@@ -199,7 +199,11 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   protocol.true_angle = root.choice_or("camera_angle", "scene", {"scene", "true"}) == "true";
   const auto design = root.table("design");
   if (protocol.format == 2 && use == ProtocolUse::New) check_design_names(design);
-  protocol.design = protocol.format == 2 ? read_design(design) : read_factor_design(root, design);
+  std::optional<base::TomlTable> procedure;
+  if (protocol.format == 3 && root.has("procedure")) procedure = root.table("procedure");
+  protocol.design = protocol.format == 2
+                        ? read_design(design)
+                        : read_factor_design(root, design, procedure ? &*procedure : nullptr);
   protocol.pacing = read_pacing(root.table("pacing"), protocol.design);
   const auto content = root.table("content");
   protocol.content = read_content(content);
@@ -207,6 +211,7 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use) {
   if (root.has("timing")) protocol.timing = read_timing(root.table("timing"));
   if (root.has("headset")) protocol.headset = read_headset(root.table("headset"));
   protocol.blocks = read_blocks(root, protocol.design, protocol.language, use);
+  if (procedure) check_procedure_question(*procedure, protocol.design, protocol.blocks);
   return protocol;
 }
 

@@ -291,14 +291,26 @@ bool same_group(const Design& design, const Cell& a, const Cell& b) {
   return true;
 }
 
-/// True if the cell has the standard's level of every within-subject factor.
+/// Number of tracks of an adaptive procedure in one group: combinations of the other factors' levels.
+int track_count(const Design& design, const std::vector<int>& group) {
+  std::set<std::vector<int>> tracks;
+  for (const int index : group) {
+    const Cell& cell = design.cells[static_cast<std::size_t>(index)];
+    if (design.standard && is_standard(design, cell)) continue;
+    std::vector<int> levels = cell.levels;
+    levels[design.procedure->factor] = 0;
+    tracks.insert(levels);
+  }
+  return static_cast<int>(tracks.size());
+}
+
+}  // namespace
+
 bool is_standard(const Design& design, const Cell& cell) {
   for (std::size_t i = 0; i < design.factors.size(); ++i)
     if (!design.factors[i].between && cell.levels[i] != (*design.standard)[i]) return false;
   return true;
 }
-
-}  // namespace
 
 std::vector<std::vector<int>> cell_groups(const Design& design) {
   std::vector<std::vector<int>> out;
@@ -326,6 +338,7 @@ std::vector<std::pair<int, int>> pairs_of_group(const Design& design, const std:
 
 int trials_of_group(const Design& design) {
   const auto group = cell_groups(design).front();
+  if (design.procedure) return track_count(design, group) * design.procedure->trials;
   const auto pairs = static_cast<int>(pairs_of_group(design, group).size());
   return design.repetitions * (design.pairs ? pairs : static_cast<int>(group.size()));
 }

@@ -280,7 +280,8 @@ TimingProfile read_profile(const base::TomlTable& table) {
   return out;
 }
 
-Design read_factor_design(const base::TomlTable& root, const base::TomlTable& table) {
+Design read_factor_design(const base::TomlTable& root, const base::TomlTable& table,
+                          const base::TomlTable* procedure) {
   Design design;
   design.timing = TimingSource::Profiles;
   const double duration_s = table.number("duration_s", duration_range);
@@ -306,8 +307,9 @@ Design read_factor_design(const base::TomlTable& root, const base::TomlTable& ta
   design.repetitions = static_cast<int>(table.integer_or("repetitions", 1, {1, 200}));
   design.pairs = table.boolean_or("pairs", false);
   read_standard(table, design);
-  check_groups_alike(root, table, design);
   read_assignment(table, design);
+  if (procedure) design.procedure = read_procedure(*procedure, design);
+  check_groups_alike(root, table, design);
   return design;
 }
 

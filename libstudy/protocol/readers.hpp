@@ -30,8 +30,10 @@ Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = Prot
 
 /// Reads [design] of formats 1 and 2.
 Design read_design(const base::TomlTable& table);
-/// Reads [stimulus], [[factor]], [[combination]] and [design] of format 3; `table` is [design].
-Design read_factor_design(const base::TomlTable& root, const base::TomlTable& table);
+/// Reads [stimulus], [[factor]], [[combination]] and [design] of format 3; `table` is [design], `procedure`
+/// is [procedure] or null.
+Design read_factor_design(const base::TomlTable& root, const base::TomlTable& table,
+                          const base::TomlTable* procedure);
 /// Reads order, never_adjacent and assignment; the cells are known.
 void read_assignment(const base::TomlTable& design, Design& out);
 /// The effects of each level, from [[design.effect_set]]. `no_table` is called with the index of a level that
@@ -40,6 +42,11 @@ std::vector<EffectSet> effect_sets_of(const base::TomlTable& design, const std::
                                       const std::function<void(std::size_t)>& no_table);
 inline constexpr const char* effect_set_mend =
     "add [[design.effect_set]] with this name, or use none or scene";
+/// Reads [procedure]; the cells, pairs and order are known.
+Procedure read_procedure(const base::TomlTable& table, const Design& design);
+/// Checks that the trials ask the procedure's question, with answers that it understands.
+void check_procedure_question(const base::TomlTable& table, const Design& design,
+                              const std::vector<Block>& blocks);
 /// Reads a timing profile.
 TimingProfile read_profile(const base::TomlTable& table);
 /// True if `word` is in method_names().

@@ -13,6 +13,9 @@ using base::KeyReference;
 
 const std::vector<KeyReference>& protocol_reference();
 
+/// The sections, which are the tables of a protocol, with what a table holds.
+const std::vector<base::TableReference>& protocol_tables();
+
 /// The reference as a Markdown page, which is stored as docs/protocol.md.
 std::string protocol_reference_page();
 

@@ -113,6 +113,7 @@ std::array<std::vector<std::int64_t>, 2> TrialPlayer::intervals_of(const Planned
 }
 
 std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
+  if (run_.protocol.design.procedure && run_.block(unit).kind == BlockKind::Stimulus) choose(unit);
   Showing showing{unit, unit.attempts + 1, {}, {}, {}};
   repeats_.begin_trial();
   for (;;) {
@@ -124,6 +125,17 @@ std::optional<Ending> TrialPlayer::play(OpenUnit unit) {
       repeats_.after_cut(cut.cause);
     }
   }
+}
+
+/// Lets the procedure choose the cells of a trial. After an interruption the answers are the same, so the
+/// choice is too.
+void TrialPlayer::choose(OpenUnit& unit) {
+  Store& store = run_.parts.store;
+  const auto answers = store.track_answers(run_.session.id, run_.protocol.design.procedure->question);
+  const PlannedTrial chosen = chosen_trial(run_.protocol, *unit.trial, answers);
+  if (chosen.first != unit.trial->first || chosen.second != unit.trial->second)
+    store.choose_cells(run_.session.id, unit.trial_id, chosen.first, chosen.second);
+  unit.trial = chosen;
 }
 
 void TrialPlayer::again(Showing& showing, const std::string& reason) {

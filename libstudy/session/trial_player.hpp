@@ -32,6 +32,7 @@ class TrialPlayer {
   };
 
   std::optional<Ending> play_steps(Showing& showing);
+  void choose(OpenUnit& unit);
   void again(Showing& showing, const std::string& reason);
   std::array<std::vector<std::int64_t>, 2> intervals_of(const PlannedTrial& trial) const;
   const Cell& cell(const OpenUnit& unit, int interval) const;

@@ -259,6 +259,34 @@ void Store::throw_no_trial() const {
   throw base::Error(path_.string(), "holds no such trial of this session", "name a trial of the session");
 }
 
+void Store::choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second) {
+  Transaction transaction(*database_);
+  Statement row(
+      *database_,
+      "UPDATE trial SET first_cell = ?3, second_cell = ?4 WHERE trial_id = ?1 AND session_id = ?2 AND "
+      "state = 'planned' RETURNING trial_id");
+  if (!row.bind_all(trial, session, first, second).step()) throw_no_trial();
+  row.reset();
+  commit(transaction);
+}
+
+std::vector<TrackAnswer> Store::track_answers(std::int64_t session, const std::string& question) {
+  Statement row(
+      *database_,
+      "SELECT t.first_cell, t.second_cell, r.score FROM trial t JOIN unit u USING (trial_id) JOIN judgement "
+      "j "
+      "ON j.unit_id = u.unit_id JOIN question q ON q.question_id = j.question_id JOIN response r ON "
+      "r.response_id = j.response_id WHERE t.session_id = ?1 AND u.kind = 'stimulus' AND q.code = ?2 AND "
+      "j.counts AND r.score IS NOT NULL AND u.state = 'done' ORDER BY t.position");
+  std::vector<TrackAnswer> out;
+  for (row.bind_all(session, question); row.step();) {
+    TrackAnswer answer{static_cast<int>(row.integer(0)), {}, static_cast<int>(row.integer(2))};
+    if (!row.is_null(1)) answer.second = static_cast<int>(row.integer(1));
+    out.push_back(answer);
+  }
+  return out;
+}
+
 bool Store::set_aside(const OpenUnit& unit, int attempt) {
   Statement row(*database_, "SELECT 1 FROM trial WHERE trial_id = ? AND set_aside >= ?");
   return row.bind_all(unit.trial_id, attempt).step();

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/design/adaptive_track.hpp"
 #include "libstudy/design/plan.hpp"
 #include "libstudy/design/station.hpp"
 #include "libstudy/display/gaze.hpp"
@@ -185,6 +186,12 @@ class Store {
   /// The distinct station numbers of the sessions that taken_slots() counts. An empty entry means that some
   /// of these sessions have no station number.
   std::vector<std::optional<StationNumber>> station_numbers(const std::string& protocol_sha256);
+
+  /// Commits the cells that an adaptive procedure chose for a trial that is not done.
+  void choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second);
+  /// The answers of a session to a question of its stimulus block, in the order of presentation. Answers to
+  /// trials that were excluded or set aside do not count.
+  std::vector<TrackAnswer> track_answers(std::int64_t session, const std::string& question);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. interval: 0 for the first
   /// or only stimulus, 1 for the second of a pair. gaze_source: the gaze that the fluid uses; none: the

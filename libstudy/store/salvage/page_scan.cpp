@@ -149,7 +149,7 @@ void scan_page(const Pages& pages, std::size_t number, const std::vector<Shape>&
   const std::string page = pages.read(number);
   const std::size_t start = number == 1 ? header_bytes : 0;
   if (page.size() < start + 8) return;
-  const int type = page[start];
+  const int type = static_cast<unsigned char>(page[start]);
   const bool table = type == 0x0d, inner = type == 0x02;
   if (!table && !inner && type != 0x0a) return;
   const std::size_t cells = big_endian(std::string_view(page).substr(start + 3, 2));

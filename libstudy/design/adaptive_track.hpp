@@ -1,0 +1,42 @@
+#pragma once
+/// Chooses the cells of an adaptive procedure from the answers so far. The state is never stored: it is
+/// rebuilt from the answers, so a resumed session continues with the same cells.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "libstudy/design/plan.hpp"
+#include "stats/adaptive/quest_plus.hpp"
+
+namespace study {
+
+/// An answered trial of a session, in the order of presentation.
+struct TrackAnswer {
+  int first = 0;              ///< cell shown first, index into Design::cells
+  std::optional<int> second;  ///< cell shown second; none: not a pair
+  int score = 0;              ///< answer to Procedure::question
+};
+
+/// The trials of one group: each track has its planned number of trials, interleaved at random. Until it is
+/// shown, a trial names the first cell of its track.
+std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
+                                       RandomStream& random);
+
+/// The trial with the cells that the procedure chooses. `answers`: all answered trials of the session's
+/// stimulus block so far; those of other tracks are ignored. The order of the intervals of a pair stays as
+/// planned.
+PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
+                          std::span<const TrackAnswer> answers);
+
+/// A threshold estimated from the answers of one track, whatever procedure placed the trials.
+struct TrackEstimate {
+  stats::GridEstimate threshold, shape;  ///< in the unit of Procedure::axis; 95 % credible intervals
+  int trials = 0;
+};
+
+/// The posterior of threshold and shape over the grid of QUEST+, with the procedure's form, guess and lapse
+/// rates. Not for ProcedureKind::Ptpe. `answers` as for chosen_trial(); the track is that of cell `cell`.
+TrackEstimate estimate_track(const Protocol& protocol, int cell, std::span<const TrackAnswer> answers);
+
+}  // namespace study

@@ -1,0 +1,59 @@
+#pragma once
+/// Adaptive procedures: the stimulus of a trial follows from the answers to earlier trials.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libstudy/pacing/profile.hpp"
+#include "stats/adaptive/psychometric.hpp"
+#include "stats/adaptive/staircase.hpp"
+
+namespace study {
+
+/// In the file: "staircase", "quest_plus", "ptpe".
+enum class ProcedureKind {
+  Staircase,  ///< transformed or weighted up-down rule (Levitt 1971, Kaernbach 1991)
+  QuestPlus,  ///< QUEST+ (Watson 2017)
+  Ptpe        ///< the setting whose rating is expected to say most about a and b (stats/ptpe/placement.hpp)
+};
+
+/// A track is the sequence of trials whose cells differ only in the level of `factor`. Each combination of
+/// the other within-subject levels has its own track in a session; the tracks are interleaved at random.
+struct Procedure {
+  ProcedureKind kind = ProcedureKind::Staircase;
+  std::size_t factor = 0;  ///< index of a within-subject factor
+  std::string question;    ///< id of the question whose answers steer the track
+  /// Value of each level on the stimulus axis, ascending, in the unit of the key `axis`. Ptpe: the mean of
+  /// the frame rate.
+  std::vector<double> values;
+  std::string axis;               ///< key of the levels' timing, such as "hitch_ms"; empty for Ptpe
+  std::vector<double> deviation;  ///< Ptpe: standard deviation of the frame rate of each level
+  int trials = 40;                ///< of each track
+  /// The score that counts as a positive answer. Pairs: the score of the interval with the comparison counts
+  /// if `comparison` is true, that of the standard if it is false.
+  std::optional<int> positive;
+  bool comparison = true;
+
+  /// Staircase: values are indices of levels, steps are numbers of levels.
+  stats::StaircaseRules rules;
+  /// QuestPlus: form of the psychometric function, guess rate, and the lapse rates of the grid.
+  stats::PsychometricForm form = stats::PsychometricForm::Weibull;
+  double guess = 0;
+  std::vector<double> lapses{0, 0.02, 0.04};
+  /// QuestPlus, Ptpe: a level is chosen at most this often in a track.
+  int most_of_one = 1000;
+  /// QuestPlus, Ptpe: the first trials of a track show levels spread evenly over the factor. They allow
+  /// checks of the model that do not depend on the answers.
+  int fixed = 0;
+};
+
+/// Keys of a timing profile that may be a stimulus axis, such as "hitch_ms".
+const std::vector<std::string>& axis_keys();
+/// The number of a profile under one of these keys; none: profiles of its kind lack the key.
+std::optional<double> axis_value(const TimingProfile& profile, const std::string& key);
+
+/// "staircase", "quest_plus", "ptpe".
+const char* procedure_word(ProcedureKind kind);
+
+}  // namespace study
