@@ -62,8 +62,9 @@ struct SimulationOptions : SolverNumbers {
   bool saliency_parts = false;
   std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
   std::int64_t particle_capacity = 0;  ///< if particles split and merge: their maximum number; 0 = 8 n_*
-  /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 nothing splits or merges,
-  /// except coarser particles of `start`, and saliency is measured only for outputs.
+  /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 nothing merges, only particles
+  /// of `start` that are coarser than level 0 split, and without such particles saliency is measured only for
+  /// outputs and temporal acceleration.
   int levels = most_levels;
   TemporalOptions temporal;
   /// Start from these particles and skip filling and settling. Levels 0 .. 3 may be mixed, whatever the
@@ -93,12 +94,16 @@ struct SimulationOptions : SolverNumbers {
 /// Counts of guard interventions since the simulation was made: each count says how often one rule stepped
 /// in.
 struct GuardCounts {
-  std::uint64_t speed_limited = 0;       ///< particle-substeps whose speed was limited
-  std::uint64_t coincident_pairs = 0;    ///< neighbour pairs at zero distance
-  std::uint64_t not_finite = 0;          ///< particles quarantined: NaN, infinite or far outside the tank
-  std::uint64_t neighbours_dropped = 0;  ///< neighbours that were left out because a neighbour list was full
-  std::uint64_t wall_projected = 0;      ///< particle-substeps pushed back by a wall or an obstacle
-  std::uint64_t nozzle_waited = 0;  ///< layers not poured because the corner columns held too few particles
+  std::uint64_t speed_limited = 0;  ///< particle-substeps whose speed was limited
+  /// neighbours at zero distance, counted in each projection; a pair counts twice
+  std::uint64_t coincident_pairs = 0;
+  std::uint64_t not_finite = 0;  ///< particles quarantined: NaN, infinite or far outside the tank
+  /// neighbours left out of a list because the memory for lists was full
+  std::uint64_t neighbours_dropped = 0;
+  std::uint64_t wall_projected = 0;  ///< position corrections of particles by walls and obstacles
+  /// layers that a nozzle did not pour, because the tank's corners, from which nozzles take water, had too
+  /// few particles
+  std::uint64_t nozzle_waited = 0;
   std::uint64_t saliency_not_finite = 0;  ///< particle-turns whose saliency was NaN or infinite; s is then 0
   std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)
 };
@@ -108,7 +113,7 @@ struct GuardCounts {
 /// FrameReport::particles_in - particles_out.
 struct LevelEvents {
   std::uint64_t splits = 0;
-  std::uint64_t born = 0;            ///< particles added by splits: 2^k - 1 each
+  std::uint64_t born = 0;            ///< particles added by splits: 2^k - 1 per split
   std::uint64_t merges = 0;          ///< pairs merged into one particle
   std::uint64_t split_deferred = 0;  ///< particle-turns in which the throttle delayed a split
   std::uint64_t split_at_wall = 0;   ///< particle-turns in which the children did not fit between the walls
@@ -137,13 +142,13 @@ struct FrameAccount {
   }
 };
 
-/// Substeps of a frame.
+/// Number of substeps of a frame.
 struct SubstepCount {
   int taken = 0;   ///< 0 = no frame yet
-  int wished = 0;  ///< requested by the fastest particle; larger than `taken` if the limit applied
+  int wished = 0;  ///< number that speeds and forces require; larger than `taken` if the limit applied
 };
 
-/// Milliseconds of the last frame's parts, as the paper's Table 2 splits them.
+/// Times of the last frame's parts, ms, divided as in the paper's Table 2.
 struct PartTimes {
   double saliency_ms = 0;    ///< Eq. 1-9
   double levels_ms = 0;      ///< grading, splitting, merging
@@ -164,9 +169,10 @@ struct RelaxedStart {
   double compression = 0;  ///< remaining mass-weighted mean of max(rho / rho_0 - 1, 0)
 };
 
-/// Heat divided by the water's specific heat, in m_* K above the reference temperature, if the scene lists
-/// the effect heat. poured: by nozzles; taken: for nozzles; drained: through outlets. held + taken + drained
-/// - poured - from_walls is constant.
+/// Heat divided by the water's specific heat, in m_* K, for temperatures above the reference temperature; all
+/// zero unless the scene lists the effect heat. poured: brought in by nozzles; taken: removed with water that
+/// nozzles take from the tank; drained: lost through outlets. held + taken + drained - poured - from_walls is
+/// constant.
 struct HeatReport {
   double held = 0;                                            ///< heat of the water now
   double poured = 0, taken = 0, drained = 0, from_walls = 0;  ///< since the simulation was made
@@ -235,8 +241,8 @@ class Simulation {
   /// used, and the call returns true. base::Error: no eye or more than two, a camera that is not finite, an
   /// incomplete G-buffer.
   virtual bool look(const Looks& looks) = 0;
-  /// True if the method uses the picture of the last frame; otherwise the caller need not read the picture
-  /// back.
+  /// True if the method computes target levels from the picture passed to look(); if false, the caller need
+  /// not read the picture back from the renderer.
   virtual bool follows_picture() const = 0;
   /// Frames since the gate opened.
   virtual int frame() const = 0;
@@ -256,8 +262,9 @@ class Simulation {
   /// scene's boxes, foam without particles. Effects that stay keep their state. The number of substeps
   /// follows the new effects. From then on the run is bit for bit equal to a run without the removed effects
   /// that starts from this state. Columns of removed effects are freed. base::Error, with nothing changed:
-  /// check_effects refuses the list, or it needs more substeps than the options or the program allow.
-  /// base::Error, after which the simulation cannot be used: the device is out of memory.
+  /// check_effects refuses the list, it needs more substeps than the options or the program allow, or the
+  /// foam particles are so small that a frame could create more than an int can count. base::Error, after
+  /// which the simulation cannot be used: the device is out of memory.
   virtual void set_effects(const std::vector<Effect>&) {}
   /// Sets the duration of the last whole frame, ms, for tau. Methods without temporal acceleration ignore it.
   virtual void frame_time(double) {}
@@ -326,7 +333,7 @@ class Simulation {
   /// Switches timing of every launch of this back end on (discarding earlier measurements) or off. Costs a
   /// few microseconds per launch.
   virtual void profile_launches(bool) {}
-  /// Time of each pass since profile_launches(true), longest first.
+  /// Total time of the launches with each label since profile_launches(true), longest first.
   virtual std::vector<LaunchTime> launch_times() const { return {}; }
   /// Waits for all launched work.
   virtual void synchronize() = 0;

@@ -36,24 +36,28 @@ struct ActivationRules {
   float damping;
   bool others_yield;
   /// Always solve: particles just made by a split or a merge, spray (less than a fifth of the neighbours of a
-  /// particle inside water), particles within h of a wall, and particles faster than h / 2 per substep.
+  /// particle inside water), particles within h of a wall or an obstacle, and particles faster than h / 2 per
+  /// substep.
   bool keep_fragile_active;
   int longest_rest;
   int least_work;
   float speed_floor;  ///< epsilon_v of Eq. 13-14 as a share of sqrt(g d_*); epsilon_E = m_* epsilon_v^2 / 2
 };
 
-/// Bit fields of Column::Rest.
-constexpr std::uint8_t rest_count_mask = 0x0f;  ///< frames without a solve, at most 15 (Choose::count_after)
-constexpr std::uint8_t rest_nowhere = 0x40;     ///< flag: the velocity grid has no velocity at the particle
-constexpr std::uint8_t rest_sparse = 0x80;  ///< flag: the particle had few neighbours when it was last solved
+/// Bit fields of Column::Rest. This one counts inactive frames and the solved frames after them
+/// (Choose::count_after).
+constexpr std::uint8_t rest_count_mask = 0x0f;
+constexpr std::uint8_t rest_nowhere = 0x40;  ///< flag: the velocity grid has no velocity at the particle
+/// flag: when it was last solved, the particle's density was below sparse_density, or below surface_density
+/// with the effect cohesion
+constexpr std::uint8_t rest_sparse = 0x80;
 
 /// rho / rho_0 of a particle with a fifth of the neighbours of a particle inside water: 0.194 from itself,
 /// plus a fifth of the neighbours' 0.806.
 constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 
-/// Particles below this rho / rho_0 count as spray if the scene has the effect tension, because the mean over
-/// a cell does not contain the accelerations at the surface.
+/// Replaces sparse_density in scenes with the effect cohesion (surface tension): the mean velocity change of
+/// a cell does not contain the accelerations at the water's surface.
 constexpr float surface_density = 0.98f;
 
 /// Value of Column::Active: the particle is solved, but excluded from the cell means that unsolved particles
@@ -63,10 +67,11 @@ constexpr std::uint8_t solved_apart = 2;
 using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
                                   columns(Column::Lambda, Column::Density, Column::PredictedNext)>;
 
-/// Indices of sums in Activation::before and after. These two sum the solved and the unsolved particles by
-/// the cell in which each particle started the frame.
+/// Index of a sum in Activation::before and after: over the solved particles, by the cell of Activation::near
+/// in which each particle started the frame.
 constexpr int sum_of_solved = 0;
-constexpr int sum_of_resting = 1;  ///< of the unsolved particles; only with ActivationRules::pressed
+/// index of the same sum over the unsolved particles; only with ActivationRules::pressed
+constexpr int sum_of_resting = 1;
 /// Indices of sums in Activation::after alone, by present position: sum_of_grid on the cells of
 /// Activation::grid (solved particles; in full frames all particles), sum_of_near on those of
 /// Activation::near (solved particles).
@@ -99,8 +104,8 @@ struct Activation {
   Array<int> ranks, slots, slot_of;
   Scanner scanner;
 
-  /// Lists the active particles for the passes of a substep. For the others, which these passes read, it sets
-  /// lambda to 0, the density to rho_0 and both buffers of the predicted position to one value. slot_of is
+  /// Lists the active particles for the passes of a substep. Active particles also read the values of the
+  /// others: for those it sets lambda to 0, the density to rho_0 and PredictedNext to Predicted. slot_of is
   /// the inverse of slots.
   void list_active(ActiveListView particles);
   std::size_t bytes() const;

@@ -8,7 +8,8 @@ constexpr float range_share = 0.1f;  ///< per frame, the range moves by this sha
 
 SIM_FN Vec3 difference(Vec4 high, Vec4 low, float steps) { return (1 / steps) * (xyz(high) - xyz(low)); }
 
-/// Inputs of Eq. 13 and 14 in one cell and level: differences of V between cells and between levels.
+/// Inputs of Eq. 13 and 14 in one cell and level: differences of the mean velocity V between cells and
+/// between levels.
 struct VelocitySlopes {
   const Vec4* velocity;
   CellBlock block;

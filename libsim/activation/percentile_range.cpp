@@ -6,7 +6,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Computes the 1st and the 99th percentile, each in the bin in which the cumulative count reaches it.
+/// Computes the 1st and the 99th percentile, each interpolated within the bin in which the cumulative count
+/// reaches it.
 struct Place {
   BinCounts counts;
   ValueRange* now;

@@ -110,7 +110,8 @@ class CellMomentum {
  public:
   static constexpr int most = 4;
 
-  /// Computes these sums in one launch, replacing earlier ones. active: may be nullptr if no sum needs it.
+  /// Computes these sums in one launch, replacing earlier ones. active: the column Active; may be nullptr if
+  /// every sum is Whose::All or Unused.
   template <int n>
   void measure(MovingView particles, const std::uint8_t* active, const MomentumOf (&sums)[n]) {
     static_assert(n <= most);
@@ -133,7 +134,8 @@ class CellMomentum {
   MomentumSum* of_[most] = {};
 };
 
-/// Converts momentum sums to mean velocities, and fills entries without particles.
+/// Converts momentum sums to mean velocities, and fills entries without particles
+/// (VelocityGrid::finish_velocity).
 struct FinishVelocity {
   const MomentumSum* sums;
   Vec4* velocity;
@@ -166,12 +168,14 @@ class VelocityGrid {
   int cells() const { return block_.size(); }
 
   /// The pass that computes V from a sum over frame(): mass-weighted mean velocity per cell and level, m/s.
-  /// An entry without particles keeps the previous frame's measured value for one frame, then takes the mean
-  /// over all levels. Without a sum (nullptr) V does not change.
+  /// An entry without particles keeps the previous frame's measured value for one frame. After that it takes
+  /// the mean over all levels of the cell, or becomes value_unknown in a cell without particles. Without a
+  /// sum (nullptr) V does not change.
   Pass<FinishVelocity> finish_velocity(const MomentumSum* sums) {
     return {sums ? grid_levels * cells() : 0, {sums, velocity_.data(), cells()}};
   }
-  /// Updates E: kinetic energy of all particles per cell, in m_* m2/s2 (times m_* in kg: J).
+  /// Updates E, the kinetic energy of all particles of each cell, in m_* m2/s2, with m_* the mass of the
+  /// finest particles.
   void update_energy(MovingView particles);
 
   const Array<Vec4>& velocity() const { return velocity_; }

@@ -62,8 +62,8 @@ SIM_FN int atomic_take(int* target, int amount) {
 #endif
 }
 
-/// Returns a unique number: the count of earlier calls for this target. The threads of a warp share one
-/// atomic operation.
+/// Atomically adds 1 to *target, and returns the old value: each call gets a different number. The threads of
+/// a warp share one atomic operation.
 SIM_FN int atomic_next(int* target) {
 #ifdef __CUDA_ARCH__
   const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(target));
@@ -93,7 +93,7 @@ SIM_FN void atomic_max(std::uint64_t* target, std::uint64_t value) {
 #endif
 }
 
-/// Sets *flag to 1; other threads may do the same at the same time.
+/// Sets *flag to 1; several threads may set the same flag at the same time.
 SIM_FN void atomic_raise(int* flag) {
 #ifdef __CUDA_ARCH__
   volatile int* const seen = flag;
@@ -123,7 +123,7 @@ T atomic_take(T* target, T amount) {
   return was;
 }
 
-/// Returns a unique number: the count of earlier calls for this target.
+/// Atomically adds 1 to *target, and returns the old value: each call gets a different number.
 inline int atomic_next(int* target) { return atomic_take(target, 1); }
 
 template <class T>
@@ -132,7 +132,7 @@ void atomic_max(T* target, T value) {
   if (value > *target) *target = value;
 }
 
-/// Sets *flag to 1; other threads may do the same at the same time.
+/// Sets *flag to 1; several threads may set the same flag at the same time.
 inline void atomic_raise(int* flag) {
 #pragma omp atomic write
   *flag = 1;
@@ -142,7 +142,7 @@ inline void atomic_raise(int* flag) {
 
 // Fast quotients and roots for loops over neighbours: on the GPU accurate to some units in the last place.
 
-/// a / b to about one unit in the last place, for b up to 2^126.
+/// a / b, on the GPU with an error of at most two units in the last place, for |b| from 2^-126 to 2^126.
 SIM_FN float quotient(float a, float b) {
 #ifdef __CUDA_ARCH__
   return __fdividef(a, b);
@@ -152,7 +152,7 @@ SIM_FN float quotient(float a, float b) {
 }
 SIM_FN float reciprocal(float x) { return quotient(1, x); }
 
-/// sqrt(x) to about one unit in the last place.
+/// sqrt(x), on the GPU with an error of about one unit in the last place.
 SIM_FN float rough_root(float x) {
 #ifdef __CUDA_ARCH__
   float root;
@@ -163,7 +163,8 @@ SIM_FN float rough_root(float x) {
 #endif
 }
 
-/// The root r > 0 of a square, and divisions by r; on the GPU both use one reciprocal root.
+/// The root r of `square`, which must be > 0, and quotients under(value) = value / r. On the GPU both come
+/// from one reciprocal root.
 struct Root {
 #ifdef __CUDA_ARCH__
   float r, inverse;
@@ -180,8 +181,8 @@ struct Root {
 };
 
 /// The lanes that share one index in for_each_team. Lane k processes the steps k, k + size, ... of a
-/// functor's inner loop; sum() combines the partial results. Here there is one lane, and the compiler removes
-/// all calls.
+/// functor's inner loop; sum() combines the partial results. OneLane is the case of a single lane: the
+/// compiler removes all calls.
 struct OneLane {
   static constexpr int size = 1;
   SIM_FN int rank() const { return 0; }
@@ -194,7 +195,7 @@ struct OneLane {
     return value;
   }
   SIM_FN bool any(bool mine) const { return mine; }
-  /// The first of the lanes' values in the order of T::before, which must order all unequal values.
+  /// The lanes' value that comes first in the order of T::before, which must order all unequal values.
   template <class T>
   SIM_FN T first(T value) const {
     return value;

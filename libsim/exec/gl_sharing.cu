@@ -10,7 +10,7 @@ namespace {
 
 cudaGraphicsResource_t resource_of(void* pointer) { return static_cast<cudaGraphicsResource_t>(pointer); }
 
-/// cudaGraphicsMapResources takes an array of driver handles.
+/// The pointers as driver handles, in the array that cudaGraphicsMapResources needs.
 std::vector<cudaGraphicsResource_t> resources_of(const std::vector<void*>& pointers) {
   std::vector<cudaGraphicsResource_t> out;
   for (void* pointer : pointers) out.push_back(resource_of(pointer));
@@ -21,8 +21,8 @@ std::vector<cudaGraphicsResource_t> resources_of(const std::vector<void*>& point
 
 GlSharing::~GlSharing() { forget(); }
 
-/// The context or the buffers may already be destroyed; then nothing needs unmapping, and the CUDA error is
-/// cleared so that the next launch does not report it.
+/// Unmaps and unregisters all buffers. If the GL context or the buffers are already destroyed, CUDA reports
+/// an error, which is cleared so that the next launch does not report it.
 void GlSharing::forget() {
   auto resources = resources_of(resources_);
   if (!memory_.empty() &&

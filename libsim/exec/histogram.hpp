@@ -6,7 +6,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Counters in the form that kernels use; several sets, so that fewer threads contend for one counter.
+/// Counters in the form that kernels use. There are several sets of counters, so that fewer threads contend
+/// for one counter.
 struct Histogram {
   static constexpr int copies = 8;
   int* counts;
@@ -51,7 +52,7 @@ class BinCounts {
   }
 
   /// Calls found(bin, number of values before the bin, number in the bin) if run `at` contains the value of
-  /// this rank. Ranks and numbers count from the start of run `from`.
+  /// rank `rank`. Rank and number of values before the bin count from the start of run `from`.
   template <class Found>
   SIM_FN void find(int at, int from, int rank, Found found) const {
     int below = before(at) - before(from);
@@ -104,7 +105,7 @@ struct TakeCounts {
   }
 };
 
-/// The memory of a histogram's counters, which are zero except while values are counted.
+/// The memory of a histogram's counters, which are zero from take() until the next value is added.
 class HistogramStore {
  public:
   Histogram view(int bins) {
@@ -115,7 +116,7 @@ class HistogramStore {
     }
     return {counts_.data(), bins};
   }
-  /// Calls f(block, BinCounts) once, with the counts moved out of the store, which is then zero.
+  /// Calls f(block, BinCounts) once, with the counts since the last call, and resets the counters to zero.
   template <class F>
   void take(const char* label, int bins, F f) {
     in_one_block(label, bins, BinCounts::bytes(bins), room_, TakeCounts<F>{view(bins), f});

@@ -37,7 +37,7 @@ struct Walk {
 
 #ifdef SIM_CUDA
 
-/// The first warp of a block; on the host only the type is used.
+/// The first warp of a block of threads. The host uses only the type, and never calls its functions.
 struct OneWarp {
   template <class F>
   SIM_FN void each(int n, F f) const {
@@ -86,13 +86,14 @@ struct OneWarp {
 /// The threads of one block, which can synchronise.
 struct OneBlock {
   static constexpr int most = 1024;
-  /// Calls f(i) for i = 0 ... n-1; all calls have finished on return.
+  /// Calls f(i) once for each i = 0 ... n-1, spread over the block's threads. All threads must call each()
+  /// together. All calls of f have finished on return.
   template <class F>
   SIM_FN void each(int n, F f) const {
     spread(n, f);
     wait();
   }
-  /// Calls f(i) for i = 0 ... n-1; the calls have finished only after the next wait().
+  /// Like each(), but the calls of f may finish only during the block's next wait().
   template <class F>
   SIM_FN void spread(int n, F f) const {
 #ifdef __CUDA_ARCH__
@@ -106,8 +107,8 @@ struct OneBlock {
     __syncthreads();
 #endif
   }
-  /// Calls f(warp), whose each() synchronises only one warp: for steps over few indices, where most threads
-  /// would only wait.
+  /// Calls f(warp) in the block's first warp; the other threads wait until it has returned. warp.each()
+  /// synchronises only this warp, which is faster for steps over few indices.
   template <class F>
   SIM_FN void by_one_warp(F f) const {
 #ifdef __CUDA_ARCH__
@@ -154,12 +155,12 @@ constexpr int one_block_cells = 8192;
 #else
 
 struct OneBlock {
-  /// Calls f(i) for i = 0 ... n-1; all calls have finished on return.
+  /// Calls f(0) ... f(n-1) in order: on the CPU a block has one thread.
   template <class F>
   void each(int n, F f) const {
     for (int i = 0; i < n; ++i) f(i);
   }
-  /// Calls f(i) for i = 0 ... n-1; the calls have finished only after the next wait().
+  /// Same as each(); on the GPU the calls of f may finish only during the next wait().
   template <class F>
   void spread(int n, F f) const {
     each(n, f);
@@ -175,7 +176,7 @@ struct OneBlock {
   float least(int n, float most, int& where, F f) const {
     return Walk{0, 1, n}.least(most, where, f);
   }
-  /// Calls f(warp), whose each() may synchronise fewer threads: for steps over few indices.
+  /// Calls f with this block, which takes the role of the GPU's warp.
   template <class F>
   void by_one_warp(F f) const {
     f(*this);

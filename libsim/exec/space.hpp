@@ -1,8 +1,8 @@
 #pragma once
-/// The execution layer: the only code that depends on a back end. This header and every kernel that includes
-/// it are compiled by g++ into sim::cpu (SIM_BACKEND=cpu, OpenMP) and by nvcc into sim::cuda
-/// (SIM_BACKEND=cuda), from the same source. Kernels are trivially copyable functors `void operator()(int i)
-/// const`; all work runs in order on one stream.
+/// The execution layer: memory, launches, sorts and sums, with one interface for both back ends. This header
+/// and every kernel that includes it are compiled by g++ into sim::cpu (SIM_BACKEND=cpu, OpenMP) and by nvcc
+/// into sim::cuda (SIM_BACKEND=cuda), from the same source. Kernels are trivially copyable functors `void
+/// operator()(int i) const`; all work runs in order on one stream.
 
 #include <cstddef>
 #include <cstdint>
@@ -286,7 +286,7 @@ void for_each_team(const char* label, int n, F f) {
 /// Sums values[0..n-1] in double over fixed chunks, so that the result does not depend on the number of
 /// threads.
 double fixed_order_sum(const Array<float>& values, int n);
-/// Largest of values[0..n-1], none of which may be negative; 0 if n is 0.
+/// Largest of values[0..n-1], which must all be >= 0; 0 if n is 0.
 float maximum(const Array<float>& values, int n);
 
 }  // namespace sim::SIM_BACKEND

@@ -70,7 +70,8 @@ void LaunchTimer::end() {
 namespace {
 
 // Least-significant-digit radix sort over fixed chunks: stable, and so independent of the number of threads.
-// Digits shared by all keys are skipped, which leaves about one pass per axis of a room-sized grid.
+// A digit that has the same value in all keys needs no pass. For keys of cells in a tank of a room's size,
+// this leaves about one pass per axis.
 constexpr int digit_bits = 11;
 constexpr int buckets = 1 << digit_bits;
 constexpr int chunks = 8;
@@ -87,7 +88,8 @@ void count_digits(const std::uint64_t* keys, int n, int shift, Histogram& counts
   }
 }
 
-/// Converts counts to start indices; true if one bucket contains all keys.
+/// Converts counts to start indices. Returns true, with the conversion incomplete, if one bucket contains all
+/// keys: the digit then needs no pass.
 bool place_digits(Histogram& counts, int n) {
   int sum = 0;
   for (int b = 0; b < buckets; ++b) {

@@ -176,7 +176,7 @@ void Scanner::inclusive_count(const std::uint8_t* flags, int n, Array<int>& coun
 
 namespace {
 
-// One block per chunk, a fixed tree within it, the chunks added in order on the host: a reproducible sum.
+// The sum is reproducible: one block sums each chunk in a fixed tree, and the host adds the chunks in order.
 constexpr int chunk = 4096;
 
 __global__ void chunk_sums(const float* values, int n, double* sums) {

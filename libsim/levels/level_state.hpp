@@ -57,15 +57,17 @@ struct LevelRules {
   /// as a share of the sum of their radii. It is smaller than merge_overlap: some overlap is accepted in
   /// order to remove the last particles of a level among coarser water.
   float stranded_overlap = 0.5f;
-  /// Share of its density constraint that a particle enforces in a projection, while the youngest particle
-  /// within its support is 0, 1, ... frames old. So overlaps after a split or a merge separate gradually.
+  /// Smallest share of its density constraint that a particle enforces (Easing::share), while the youngest
+  /// particle within its support is 0, 1, ... frames old. So overlaps after a split or a merge separate
+  /// gradually.
   static constexpr int ease_frames = 5;
   float ease[ease_frames] = {0.1f, 0.2f, 0.3f, 0.5f, 0.7f};
   /// Number of projections of the particles near ones that just split or merged, at the beginning of a
   /// frame's first substep (parting.cpp). These projections change positions, not velocities.
   int partings = 3;
-  /// Replaces `partings` if gravity moves a particle in a substep, g dt^2, by less than the share
-  /// `parts_widely` of the finest support. The neighbours of the moved particles then move too.
+  /// Replaces `partings` in short substeps: if g dt^2, the distance by which gravity moves a particle in a
+  /// substep, is less than the share `parts_widely` of the finest support. The neighbours of the moved
+  /// particles then move too.
   int wide_partings = 8;
   float parts_widely = 1.0f / 1600;
   /// Replaces `partings` in weightless water, where all particles move: no force would bring back water that
@@ -76,7 +78,7 @@ struct LevelRules {
 /// Event counts on the device since the simulation was made.
 struct LevelCounts {
   std::uint64_t splits;          ///< particles that split
-  std::uint64_t born;            ///< particles added by splits: 2^k - 1 each
+  std::uint64_t born;            ///< particles added by splits: 2^k - 1 per split
   std::uint64_t merges;          ///< pairs merged into one particle, each removing one
   std::uint64_t split_deferred;  ///< particle-turns in which the throttle delayed a split
   std::uint64_t split_at_wall;   ///< particle-turns in which the children did not fit between the walls
@@ -115,13 +117,15 @@ struct LevelState {
   Array<std::uint8_t> gone;                 ///< 1 = merged into another
   Array<std::uint8_t> graded;               ///< targets that a sweep of the grading writes
   Array<int> partner;                       ///< proposed merge partner
-  Array<int> births;          ///< number of particles that replace each particle; 0 = merged into another
-  Array<int> places;          ///< inclusive sums of births; before that the mutual merge partners
-  Array<int> order, child;    ///< source of each new particle, and its child index
-  Array<int> flags, sums;     ///< flags of particles that split, and their prefix sums
-  Array<std::uint64_t> keys;  ///< keys of splits for sorting by priority
-  Array<int> free_ids;        ///< ids that no particle uses, ascending
-  Array<int> beside, beside_count;  ///< slots near fresh particles (just split or merged); count
+  /// number of particles that replace each particle: 1 if it does not change, 0 if it merged into another
+  Array<int> births;
+  Array<int> places;        ///< first the mutual merge partners, later the inclusive sums of births
+  Array<int> order, child;  ///< source of each new particle, and its child index
+  /// flags of particles or ids, and prefix sums: of splits, then of free ids, then of new children
+  Array<int> flags, sums;
+  Array<std::uint64_t> keys;        ///< keys of splits for sorting by priority
+  Array<int> free_ids;              ///< ids that no particle uses, ascending
+  Array<int> beside, beside_count;  ///< slots of the particles that `partings` moves, and their number
   // Relays (relay.cpp) reuse memory. The two particles for which a relay bids are stored in `births` and
   // `places`, which compact() overwrites later in the frame. The best bids are stored in `keys`, which splits
   // no longer need.

@@ -6,14 +6,14 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Updates ages and histories. Sets `wish` for the particles whose target was coarser than their level in
-/// each of the last four frames. A target counts for all frames since the previous turn (update of the
-/// levels).
+/// Updates ages, histories and waiting times. Sets `wish` for the particles that want to merge: their target
+/// was coarser than their level in each of the last four frames, they do not split, and the last frame solved
+/// them. A target counts for all frames since the previous turn (update of the levels).
 struct Remember {
   const std::uint8_t* level;
   const std::uint8_t* target;
   const std::uint8_t* split_code;
-  const std::uint8_t* active;  ///< 1 = solved in the last frame; nullptr if all were
+  const std::uint8_t* active;  ///< 0 = not solved in the last frame; nullptr if all were solved
   std::uint8_t* history;
   std::uint8_t* age;
   std::uint8_t* waiting;
@@ -34,9 +34,9 @@ struct Remember {
   }
 };
 
-/// Withdraws a particle's wish to merge if a neighbour, by its present level or its target, would be two
-/// levels finer than the merged particle. The level of a neighbour that has waited for `lags` frames does not
-/// count.
+/// Withdraws a particle's wish to merge if a neighbour, by its present level or its target, would be two or
+/// more levels finer than the merged particle. The level of a neighbour that has waited for `lags` frames
+/// does not count.
 struct KeepSteps {
   const Vec4* position;
   const std::uint8_t* level;
@@ -125,7 +125,7 @@ struct Propose {
     if (team.rank() == 0) partner[i] = found;
   }
 
-  /// Tries candidates one by one, the nearest first.
+  /// Returns the partner that particle i proposes; -1: none. Tries candidates one by one, the nearest first.
   template <class Team>
   SIM_FN int nearest(int i, Team team) const {
     const float reach = 2 * rules.merge_reach * supports.h[level[i] + 1] / 4;

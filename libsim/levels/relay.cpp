@@ -4,7 +4,7 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Value of a relay's bid for a stranded particle (both are defined below). A stranded particle accepts the
+/// Value of a relay's bid for a stranded particle (see Stranded and Bid). A stranded particle accepts the
 /// largest bid. The value is random, new in each frame, and never 0.
 SIM_FN std::uint64_t worth_of(int relay_id, std::uint32_t frame) {
   const auto id = static_cast<std::uint32_t>(relay_id);
@@ -26,8 +26,8 @@ struct Stranded {
 /// Two stranded particles merge through a coarser particle between them, the relay. Otherwise the last
 /// particles of a level, which are too far apart to merge directly, would remain. A relay with twice a
 /// stranded particle's mass gives each of the two a half of itself: particles of masses 1, 2, 1 become two of
-/// mass 2. No particle moves farther than in a direct merge. A heavier relay does not change; it only selects
-/// the two.
+/// mass 2. No particle moves farther than in a direct merge. A heavier relay does not change: the two
+/// particles that it selected merge at their midpoint.
 template <class Boundary>
 struct Bid {
   const Vec4* position;

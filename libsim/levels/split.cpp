@@ -6,8 +6,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Result of the selection for a particle. keeps: it does not split. paused: the last frame did not solve it
-/// (Alg. 3 line 16), so it may not split. wants: not yet decided. splits: it is selected.
+/// State of a particle while splits are chosen. keeps: it does not split. paused: the last frame did not
+/// solve it (Alg. 3 line 16), so it may not split. wants: it wants to split, not yet decided. splits: it is
+/// chosen.
 enum Status : std::uint8_t { keeps, paused, wants, splits };
 
 /// Priority of a split: first by k, the number of levels down to the target, because particles with a large k
@@ -30,8 +31,8 @@ struct MarkSplits {
 };
 
 /// One round of the selection of splits, in which no two particles within one spacing of each other are
-/// chosen. A particle is chosen if it has the highest priority within one spacing. A particle that stays
-/// undecided may be chosen in the next round.
+/// chosen. A particle is chosen if it has the highest priority of all candidates within one spacing, and
+/// excluded if one of them is chosen. The others stay undecided until the next round.
 struct ChooseApart {
   const Vec4* position;
   const std::uint8_t* level;

@@ -72,8 +72,9 @@ struct LevelFluid {
 };
 
 /// True if particle i is surrounded by water, or by water and walls: it has at least `least` neighbours, or
-/// fewer beside a wall. Neighbours are weighted. A coarser neighbour is listed at a larger distance, and so
-/// counts as more than one neighbour, but as less than its mass ratio.
+/// fewer beside a wall. Neighbours count with a weight. Neighbour lists contain coarser neighbours up to a
+/// larger distance, so a coarser neighbour counts as more than one. Its weight is below the ratio of the
+/// masses.
 template <class Boundary, class Team>
 SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const ParticleNeighbours& neighbours,
                          int i, float least, Team team) {
@@ -97,8 +98,8 @@ SIM_FN bool free_of_bodies(const Solids& solids, Vec3 x) { return solids.nearest
 
 /// Fills split_code (0 = no split). Returns false if no particle splits.
 bool choose_splits(LevelState& levels, const LevelFluid& fluid);
-/// Merges pairs in place: the particle with the lower id becomes the merged one, the other is marked in
-/// `gone`.
+/// Updates ages and histories, then merges pairs in place: the particle with the lower id becomes the merged
+/// one, the other is marked in `gone`.
 void merge_pairs(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
 /// Merges particles that waited without a partner, through a coarser particle between two of them.
 void relay_stranded(LevelState& levels, const LevelFluid& fluid, const Descents& descents);

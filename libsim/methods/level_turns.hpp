@@ -10,7 +10,7 @@ namespace sim {
 struct LevelTurns {
   bool due = true;       ///< the present frame is a turn; always true if a test gives targets
   int frames_since = 0;  ///< frames since the last turn; 0: there was none
-  int in_a_row = 0;      ///< number of coming frames that are turns, whatever the period
+  int in_a_row = 0;      ///< number of following frames that are turns although the period has not passed
 
   /// True if the coming frame is a turn. turned_deg: angle by which a gaze has turned since the last turn.
   bool would_be(const Readings& r, double turned_deg) const {

@@ -44,8 +44,9 @@ struct Readings {
   int manifold_window_px = 32;                       ///< Eq. 5: largest half side of the window
   bool hide_manifold_behind = false;                 ///< Eq. 5: f_m of occluded particles divided by gamma_t
   GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6
-  /// Eq. 6: smoothing factor per frame of the temporal feature; 1 = no smoothing. In still water 0.3 makes a
-  /// third fewer splits than 1, and 0.1 less than half as many.
+  /// Eq. 6: weight of a frame's new value in the smoothed temporal feature; 1 = no smoothing. In still water,
+  /// 0.3 causes two thirds of the splits that 1 causes; 0.1 causes less than half of the splits that 1
+  /// causes.
   double temporal_follow = 0.2;
   /// Minimum number of frames between two measurements of the temporal feature and of the range of Eq. 9. The
   /// smoothing then takes one step for each frame that passed. Acuity and manifold are measured in every turn
@@ -54,9 +55,10 @@ struct Readings {
   /// Eq. 6: gradients are multiplied by h_i, which makes them dimensionless; false: they stay in 1/m.
   bool dimensionless = true;
   /// Eq. 6: speed_floor is epsilon_v as a share of sqrt(g d_*), density_floor is epsilon_rho as a share of
-  /// rho_0. Without these floors the jitter of still water, which splits and merges set to 0.2 to 0.3 sqrt(g
-  /// d_*), is salient. In still water the rank correlation of Smoothed with TwoSupports is 0.86 at a
-  /// speed_floor of 0.1, 0.92 at 0.25 and 0.96 at 1.
+  /// rho_0. Without these floors the jitter of still water is salient; splits and merges cause a jitter of
+  /// 0.2 to 0.3 sqrt(g d_*). In still water, the rank correlation between the target levels with
+  /// GradientReach::Smoothed and those with TwoSupports is 0.86 at a speed_floor of 0.1, 0.92 at 0.25 and
+  /// 0.96 at 1.
   double speed_floor = 1;
   double density_floor = 1e-3;
   Normalisation normalisation = Normalisation::Percentile;
@@ -66,7 +68,8 @@ struct Readings {
   /// motion that splits and merges cause would trigger further splits. Levels use this floor; masks and
   /// figures do not.
   double calm_floor = 0.3;
-  double saliency_floor = 0.1;  ///< minimum of the F that maps to s = 1, even if F is smaller everywhere
+  /// Eq. 9: lower limit of the F that maps to s = 1; if all F are smaller, no particle has s = 1
+  double saliency_floor = 0.1;
   /// Duration for which a lost gaze stays at its last position, before it follows the view's axis; a blink
   /// lasts 0.1 to 0.4 s.
   double gaze_hold_s = 0.5;
@@ -78,17 +81,17 @@ struct Readings {
   /// frames are turns too, so that the new fixation is refined as soon as possible.
   double saccade_deg = 2;
   int saccade_frames = 5;
-  /// Limit target levels of neighbours to a difference of one.
+  /// Limit the difference between the target levels of neighbours to one level.
   bool graded_targets = true;
   /// Offsets of children in radii of the parent for k = 1, 2, 3. The paper gives 0.794 for every split.
   double split_offset[3] = {0.794, 1.09, 0.866};
-  /// Maximum share of the particles that split in a turn. Below 1, no two particles within one spacing of
-  /// each other split in the same turn either. 1 = no limit.
+  /// Maximum share of the particles that may split in one turn. If it is below 1, two particles within one
+  /// spacing of each other also do not split in the same turn. 1 = neither limit applies.
   double split_share = 0.05;
   /// Two particles merge only if their target levels are equal; false: both targets only need to be coarser
   /// than the particles.
   bool merge_same_target = false;
-  /// Maximum distance of the two particles of a merge from the merged particle's centre, in radii of the
+  /// Maximum distance of each of two merging particles from the merged particle's centre, in radii of the
   /// merged particle.
   double merge_reach = 1;
   /// Minimum distance of a merged particle from others of its level or coarser, as a share of the sum of
@@ -114,10 +117,11 @@ struct Readings {
   bool dimensionless_levels = true;
   /// Maximum number of consecutive frames in which a particle is inactive (not solved); 0 = no limit.
   int longest_rest_frames = 1;
-  /// Minimum number of consecutive frames in which a particle is solved after longest_rest_frames inactive
-  /// frames. The centre of mass of a dam of 32,768 particles at beta 0.3 was compared with a full solve for
-  /// 10 s and four seeds. With 2 it deviated by 1.3 to 1.9 % (82 % of the particles solved), with 1 by 2.0 to
-  /// 2.3 % (76 % solved). longest_rest_frames + least_work_frames <= 14.
+  /// Minimum number of consecutive frames in which a particle is solved after inactive frames; without effect
+  /// if longest_rest_frames is 0. The centre of mass of a dam of 32,768 particles at beta 0.3 was compared
+  /// with a full solve for 10 s and four seeds. With least_work_frames = 2 it deviated by 1.3 to 1.9 % and 82
+  /// % of the particles were solved; with 1 it deviated by 2.0 to 2.3 % and 76 % were solved.
+  /// longest_rest_frames + least_work_frames <= 14.
   int least_work_frames = 2;
   /// Inactive particles add the mean velocity change of the solved particles in their cell; false: they take
   /// the mean velocity.
@@ -128,8 +132,8 @@ struct Readings {
   bool inactive_pressed = true;
   /// Edge of the cells for inherited changes, in d_*; the paper's cells for V and E have an edge of 10 d_*.
   double inherit_cell_spacings = 5;
-  /// Share of an inactive particle's velocity, times (1 - beta)^2, that the mean velocity of its cell
-  /// replaces in each frame.
+  /// In each frame an inactive particle's velocity v becomes v + inactive_damping (1 - beta)^2 (V - v), with
+  /// V the mean velocity of its cell.
   double inactive_damping = 0.25;
   /// Inactive particles count in lambda's denominator as if they could move; false: as if their mass were
   /// infinite.

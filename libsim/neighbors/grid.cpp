@@ -76,8 +76,8 @@ struct OrderWithinCells {
   const int* id;
   int* order;
 
-  /// Cells with more particles use heap sort, because pairwise counting is quadratic. A test puts all
-  /// particles into one cell.
+  /// Cells with more particles than this use heap sort, because pairwise counting is quadratic. A test puts
+  /// all particles into one cell.
   static constexpr int crowd = 64;
 
   SIM_FN bool before(int a, int b) const { return id[a] < id[b] || (id[a] == id[b] && a < b); }
@@ -119,8 +119,8 @@ struct OrderWithinCells {
   }
 };
 
-/// Grid over the domain with cells of `edge` along y and z, and `edge_x` along x; plus the outermost cells on
-/// each side.
+/// Grid over the domain with cells of `edge` along y and z, and `edge_x` along x; plus one outermost cell at
+/// each end of each axis.
 LevelCells cells_of(Vec3 size, double edge, double edge_x, float support) {
   const auto count = [](float length, double of_one) {
     const double inside = std::ceil(std::max(static_cast<double>(length), 0.0) / of_one);
@@ -171,7 +171,8 @@ void Grid::shape(const Domain& domain, float margin, int capacity) {
     }
     if (sum > static_cast<double>(most)) continue;
     const float widest = shape_.level[shape_.levels - 1].support;
-    // The margins exceed rounding errors; see CellTable::window.
+    // The factor 1.001 and the term with 1e-5 make blocks wider than the search radius by more than the
+    // rounding errors in CellTable::window.
     const double block = wider * 1.001 * static_cast<double>(margin * widest) +
                          1e-5 * static_cast<double>(size.x + size.y + size.z);
     shape_.blocks = cells_of(size, block, block, widest);

@@ -47,7 +47,8 @@ struct CellTable {
   Vec3 low;          ///< low corner of the domain
   const int* begin;  ///< index of each cell's first particle; one more entry with the number of particles
   /// Blocks as wide as the longest search radius. met: per block, a bit mask of the levels that its particles
-  /// can have as neighbours; most blocks have one or two. nullptr if unknown (Grid::finds_met).
+  /// can have as neighbours; most blocks have one or two such levels. nullptr if the levels were not
+  /// determined (Grid::finds_met).
   LevelCells blocks;
   const std::uint8_t* met;
 
@@ -133,14 +134,15 @@ class Grid {
     double along_x, across;
   };
 #ifdef SIM_CUDA
-  /// Short lines are read in parallel. With several levels most lines of a window are almost empty, so fewer
-  /// lines are faster; short cells keep the particles per line few.
+  /// On the GPU, threads read lines of cells in parallel. With several levels most lines of a search window
+  /// are almost empty. Wide cells across make these lines fewer, and short cells along x exclude most
+  /// particles beyond the search radius.
   static constexpr CellsPerReach of_one_level{2, 2};
   static constexpr CellsPerReach of_levels{4, 1};
   /// Empty lines cost the GPU less than the two passes that find the levels of each block.
   static constexpr bool finds_met = false;
 #else
-  /// The CPU reads long lines in SIMD lanes.
+  /// On the CPU, cells are as long as the search radius, because SIMD lanes read long lines fast.
   static constexpr CellsPerReach of_one_level{1, 1};
   static constexpr CellsPerReach of_levels{1, 1};
   static constexpr bool finds_met = true;
@@ -158,7 +160,8 @@ class Grid {
   Scanner scanner_;
   CellTable shape_{};  ///< all but the array pointers
   Array<int> begin_, cell_of_, placed_, order_;
-  Array<int> present_;  ///< 1 = the block contains particles of the level; the levels of a block are adjacent
+  /// 1 = the block contains particles of the level; the entries of a block's levels are adjacent
+  Array<int> present_;
   Array<std::uint8_t> met_;
 };
 

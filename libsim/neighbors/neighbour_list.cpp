@@ -40,7 +40,8 @@ struct ListNeighbours {
     int begin;
     unsigned near_ones;
   };
-  /// Number of masks that a lane collects before the lanes agree on positions in the list.
+  /// Number of bit masks that a lane collects before all lanes together assign positions in the list to the
+  /// neighbours found.
   static constexpr int most_noted = 8;
 
   /// State of a lane's search: its next line of cells, the number of lines left, and the rest of the previous
@@ -207,7 +208,8 @@ struct ListNeighbours {
     int* const begin = store + first;
     Put put{*this, i, self, begin, begin + found};
     cells.around(self, margin, [&put](int from, int to) { put(from, to); });
-    // Rounding may count a pair exactly at the margin and not store it, or the reverse.
+    // Because of rounding, the first search may have counted a pair exactly at the margin that this search
+    // omits, or the reverse.
     const int put_there = static_cast<int>(put.next - begin);
     count[slot] = put_there;
     if (put_there > list.room()) {

@@ -34,7 +34,8 @@ struct Neighbours {
   const int* store;
   int capacity;
   SIM_FN int size(int i) const { return count[i]; }
-  /// The longest list that fits its own space: the last entry only absorbs discarded neighbours.
+  /// Number of neighbours that fit in a list's own space. The last entry of this space is no neighbour:
+  /// neighbours that do not fit are written there and ignored.
   SIM_FN int room() const { return capacity - 1; }
   SIM_FN std::size_t place(int i, int k) const {
     const int group = i / list_interleave;
@@ -81,7 +82,7 @@ class NeighbourList {
   void build(PredictedView particles, const Grid& grid, Witness witness);
   /// Lists the neighbours of the active particles only, one list per slot.
   void build(PredictedView particles, const Grid& grid, ActiveParticles active, Witness witness);
-  /// Lists the neighbours of active and unsolved particles, one list per slot.
+  /// Lists the neighbours of all particles, active or not, one list per slot.
   void build(PredictedView particles, const Grid& grid, EverySlot everyone, Witness witness);
   /// Replaces the lists by the given ones, each within most_capacity; for tests.
   void assign(const std::vector<std::vector<int>>& lists);
@@ -91,11 +92,12 @@ class NeighbourList {
 
   /// The space in the store that long lists requested.
   struct Need {
-    int longest;           ///< longest such list since grow() last added space, in entries
+    int longest;           ///< longest list that went to the store since grow() last added space, in entries
     std::uint64_t stored;  ///< store entries requested by the last build
   };
-  /// Reads the need back and allocates space: the store grows to twice the request if this did not fit, and
-  /// lists get a quarter more space, up to `most_capacity` entries, if much was stored. True if either grew.
+  /// Reads the need back and allocates space: the store grows to twice the requested entries if they did not
+  /// fit, and lists get at most a quarter more space, up to `most_capacity` entries, if much was stored. True
+  /// if store or lists grew; the lists' contents are then lost.
   bool grow();
   /// grow() with a need that the caller has read.
   bool grow(Need met);
@@ -103,8 +105,9 @@ class NeighbourList {
   const Need* need() const { return need_.data(); }
   static constexpr int most_capacity = 512;
   int capacity() const { return capacity_; }
-  /// Saves or restores the state that lasts beyond a frame (libsim/solver/state_archive.hpp): the lists'
-  /// capacity and, if still valid, the lists themselves. Unused space is not saved.
+  /// Saves or restores what lasts beyond a frame (libsim/solver/state_archive.hpp): the capacity of a list,
+  /// the size of the store and the need. with_lists: also the neighbours in the lists; set it only if the
+  /// lists are still valid. Unused entries are not saved.
   template <class Archive>
   void keep(Archive& archive, bool with_lists) {
     std::uint64_t store = store_.size();
@@ -132,11 +135,12 @@ class NeighbourList {
 #ifdef SIM_CUDA
   static constexpr int mixed_capacity = 128;
 #else
-  // Each pass reads all lists in order: unused space in a list delays the prefetch of the next list.
+  // Smaller on the CPU: each pass reads all lists in order, and unused space in a list delays the prefetch of
+  // the next list.
   static constexpr int mixed_capacity = 72;
 #endif
-  /// Lists get more space once the store has more than one entry per this many lists. Reading a few long
-  /// lists from the store costs nothing measurable, but more space enlarges every list.
+  /// grow() gives each list more space if the store has more than one entry per this many lists. Reading a
+  /// few long lists from the store costs nothing measurable, but more space enlarges every list.
   static constexpr std::size_t most_stored = 4;
   /// Smallest store: 4 MB, enough for the lists of a thousand particles at one position.
   static constexpr std::size_t least_store = 1 << 20;

@@ -27,7 +27,7 @@ struct Fall {
   }
 };
 
-/// Degree to which a particle is at rest, from its speed: 1 at speed 0, falling to 0 at a limit speed.
+/// Degree to which a particle is at rest: 1 - (speed / limit speed)^2, or 0 from the limit speed on.
 struct Calm {
   float inverse_square = 0;  ///< 1 / limit speed^2, s2/m2; 0 = no particle is at rest
   float most = 0;            ///< value at speed 0: 1, or 0 if no particle is at rest

@@ -16,22 +16,24 @@ struct SaliencyParts {
 
 /// Lifetime of a column's values.
 enum class Life {
-  Core,    ///< as long as the particle, in every run
-  Kept,    ///< as long as the particle, if a stage declares the column
+  Core,    ///< values last as long as the particle; the column exists in every run
+  Kept,    ///< values last as long as the particle; the column exists if a stage declares it
   Scratch  ///< within a substep
 };
 
 /// Rule for a column's values when a split or a merge makes particles. MassMean, Sum, Max and Reset need no
 /// other code: splits, merges and nozzles apply them, and their columns start at 0.
 enum class Descent {
-  None,      ///< no values: the column is scratch
-  Own,       ///< set by the passes that split, merge and add particles
-  Copy,      ///< children copy the parent's; a merged particle keeps its own
-  MassMean,  ///< children copy the parent's; a merged particle gets the mean by mass: mass x value is
-             ///< conserved
-  Sum,  ///< children share the parent's value by mass; a merged particle gets the sum: the total is conserved
-  Max,  ///< children copy the parent's; a merged particle gets the larger value
-  Reset  ///< the new particle gets 0
+  None,  ///< no values: the column is scratch
+  Own,   ///< set by the passes that split, merge and add particles
+  Copy,  ///< children copy the parent's value; a merged particle keeps the value of the one that remains
+  /// children copy the parent's value; a merged particle gets the mean by mass: mass x value is conserved
+  MassMean,
+  /// each of n children gets 1 / n of the parent's value; a merged particle gets the sum: the total is
+  /// conserved
+  Sum,
+  Max,   ///< children copy the parent's value; a merged particle gets the larger value
+  Reset  ///< every child and every merged particle gets 0
 };
 
 // The table of columns. Each row is COLUMN(enumerator, member, value type, lifetime, rule for splits and
@@ -212,14 +214,14 @@ struct RuledColumns {
       v[j] = met(rule[k], v[left], whole, 0.5f);
     }
   }
-  /// Sets the values of a new particle without a parent.
+  /// Sets the values of a new particle without a parent, such as one from a nozzle, to 0.
   SIM_FN void make(int i) const {
     for (int k = 0; k < count; ++k) values[k][i] = 0;
   }
 
  private:
-  /// Value after a particle of value a has taken up an equal mass of a particle of value b; `share`: this
-  /// mass as a share of the second particle's mass.
+  /// New value of a particle of value a that receives an equal mass from a particle of value b; `share`: the
+  /// received mass as a share of the second particle's mass.
   SIM_FN static T met(Descent rule, T a, T b, float share) {
     if (rule == Descent::Reset) return 0;
     if (rule == Descent::Max) return a > b ? a : b;

@@ -14,8 +14,8 @@ struct Contact {
 };
 
 /// The points of a body that are tested for contacts. Of a sphere, capsule or box: the corners of its inner
-/// box and the nearest point of each edge of this box, as balls of the body's radius. Of a mesh:
-/// MeshGrid::contacts.
+/// box, and on each edge of this box the point nearest to the other body. Each point is the centre of a ball
+/// of the body's radius. Of a mesh: MeshGrid::contacts.
 struct Feelers {
   const Body& body;
   const MeshGrid* mesh;  ///< nullptr: the body is not a mesh
@@ -53,9 +53,9 @@ struct Feelers {
   SIM_FN Vec3 in_world(Vec3 own) const { return body.centre + turned(body.turn, own); }
 
   /// Contact of this body's point k with the body `other`, without `ahead`. Near an edge of `other`, rounding
-  /// changes which part of its surface is nearest to the point. Therefore `other` is replaced by the plane
-  /// that is nearest to a place slightly deeper in this body; the gap is the point's distance from this
-  /// plane.
+  /// changes which part of its surface is nearest to the point. Therefore `other` is replaced by a plane: the
+  /// tangent at its surface point nearest to a position slightly deeper in this body. The gap is the distance
+  /// of point k from this plane, minus the radius.
   SIM_FN Contact meets(int k, const Solids& solids, int other) const {
     Vec3 own, deeper;
     if (k < corners()) {
@@ -88,8 +88,8 @@ struct Feelers {
     return {1 - way / h.x, 1 - way / h.y, 1 - way / h.z};
   }
   SIM_FN static Vec3 scaled(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-  /// Parameter s of the edge's point nearest to the body `other`, by golden-section search: along a straight
-  /// line the distance from a convex body has one minimum.
+  /// Parameter s of the point nearest to the body `other` on an edge of the box that inset() shrinks. Found
+  /// by golden-section search: along a straight line the distance from a convex body has one minimum.
   SIM_FN float nearest_on_edge(int edge, const Solids& solids, int other) const {
     const Vec3 share = inset();
     constexpr float golden = 0.618034f;
@@ -121,8 +121,9 @@ struct Feelers {
 inline constexpr int most_contacts = 4;
 
 /// Selects contacts that together hold two bodies apart, from n contacts. Only contacts with `ahead` below
-/// `pad` (m) count. The first is the one with the smallest `ahead`; each further one is the farthest from all
-/// selected ones. Returns their number, at most most_contacts.
+/// `pad` (m) count. The first is the one with the smallest `ahead`. Each further one is the farthest from the
+/// selected ones, and more than pad / 100 away from each. Returns the number of selected contacts, at most
+/// most_contacts.
 template <class Contacts>
 SIM_FN int pick_contacts(const Contacts& all, int n, float pad, Contact* picked) {
   int count = 0;

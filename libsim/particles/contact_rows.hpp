@@ -19,13 +19,13 @@ struct BodyRate {
 struct ContactRow {
   int first, second;        ///< indices of the bodies; second < 0: a wall
   Vec3 way;                 ///< unit vector, towards the first body
-  Vec3 lever, other_lever;  ///< cross product arm x way for the first and the second
+  Vec3 lever, other_lever;  ///< cross product arm x way for the first and the second body
   Vec3 turn, other_turn;    ///< change of the bodies' spins per unit push
   float ease;               ///< separation speed per unit push, 1/m_*
-  float wanted;             ///< minimum separation speed, m/s; for friction the sliding speed, 0
+  float wanted;             ///< minimum separation speed, m/s; for friction the wanted sliding speed, 0
   float push;               ///< current push, m_* m/s
   bool open;                ///< true if the push lies strictly between its bounds
-  float most;  ///< upper bound of the push, m_* m/s; for friction it follows from the normal's push
+  float most;  ///< upper bound of the push, m_* m/s; for friction: coefficient times the normal's push
   // For conjugate gradients: missing speed (residual), search direction, speed change per step along it.
   float left, step, along;
 };
@@ -43,14 +43,16 @@ struct ContactRows {
   BodyRate* bodies;
   BodyRate* along;  ///< per body: its velocity change per step along the search direction
   ContactProgress* at;
-  const int* touches;  ///< contacts of each body in turn: twice the contact's index, plus 1 if the body is
-                       ///< its second
-  const int* touch_begin;  ///< index of each body's first entry in touches, and the number of entries
+  /// the contacts of body 0, then of body 1, ...: twice the contact's index, plus 1 if the body is the
+  /// contact's second
+  const int* touches;
+  const int* touch_begin;  ///< index of each body's first entry in touches, then the number of all entries
   int body_count;
   int contacts, width;
 
   static constexpr int most_rounds = 8, last_rounds = 4, most_steps = 32;
-  static constexpr float still = 1e-5f;  ///< the iteration ends if a sweep changes all speeds by less, m/s
+  /// the solution has converged if a sweep changes every speed by at most this, m/s
+  static constexpr float still = 1e-5f;
 
   SIM_FN float speed(const ContactRow& row) const { return speed(row, bodies); }
 
@@ -59,7 +61,8 @@ struct ContactRows {
   template <class Threads>
   SIM_FN void solve(Threads threads) const {
     if (settles(threads, most_rounds) || !friction) return;
-    threads.each(0, Step<&ContactRows::sweep>{*this});  // barrier: all have read the last sweep's result
+    // A barrier: after it, all threads have read the last sweep's result.
+    threads.each(0, Step<&ContactRows::sweep>{*this});
     ContactRows normals = *this;
     normals.friction = nullptr;
     normals.settles(threads, last_rounds);
@@ -118,8 +121,8 @@ struct ContactRows {
     give(row, push - row.push);
     row.push = push;
   }
-  /// Coulomb's law: a sliding contact gets the friction push `bound`, a sticking contact the smaller push
-  /// that stops its sliding.
+  /// Coulomb's law for the two friction rows of a contact: a sliding contact gets a push of size `bound`, a
+  /// sticking contact the smaller push that stops its sliding.
   SIM_FN void rub(ContactRow* row, float bound, float& most) const {
     const float u = row[0].push + missing(row[0]);
     const float v = row[1].push + missing(row[1]);
@@ -144,7 +147,7 @@ struct ContactRows {
       threads.each(body_count, Step<&ContactRows::look_along>{*this});
       threads.each(n, Step<&ContactRows::look>{*this});
       const float steep = threads.sum(n, Steep{rows});
-      // A direction that moves no body gives no further gain.
+      // If the pushes along this direction hardly change any speed, further steps gain nothing.
       if (!(steep > 1e-6f * worth)) return;
       int shut, any;
       const float way = threads.least(n, worth / steep, shut, ToBound{*this});
@@ -237,8 +240,8 @@ struct ContactRows {
     along[b] = out;
   }
   SIM_FN void look(int r) const { rows[r].along = speed(rows[r], along); }
-  /// Lower or upper bound of a row's push: a normal never pulls, and friction uses the bound set by the last
-  /// sweep.
+  /// Lower (`low`) or upper bound of a row's push. The lower bound is 0 for a normal, which never pulls, and
+  /// minus the upper bound for friction.
   SIM_FN float bound_of(int r, bool low) const {
     if (!low) return rows[r].most;
     return r % width == 0 ? 0.0f : -rows[r].most;

@@ -13,7 +13,7 @@ enum class Trouble : std::uint8_t {
   NotFinite,          ///< position or velocity is NaN or infinite
   FarOutside,         ///< beyond a wall by more than ten times the tank's longest side
   TooFast,            ///< slowed by the speed limit
-  NeighboursDropped,  ///< its neighbour list was full, and some neighbours were dropped
+  NeighboursDropped,  ///< some of its neighbours were dropped, because the memory for lists was full
   Coincident,         ///< another particle has the same position
   TooDense            ///< denser than Divergence::most_density after the frame's last projection
 };
@@ -28,8 +28,8 @@ struct Divergence {
   Trouble cause{};
   /// Position at the frame's end, m. None if it is not finite, or the particle no longer exists.
   std::optional<std::array<double, 3>> where_m;
-  /// Cases so far as in GuardCounts, plus one per frame for each particle that is too dense or not finite at
-  /// the frame's end.
+  /// Cases so far: not_finite, speed_limited, neighbours_dropped and coincident_pairs of GuardCounts, plus
+  /// one per frame for each particle that is too dense or not finite at the frame's end.
   std::uint64_t count = 0;
 };
 

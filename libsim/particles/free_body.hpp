@@ -15,10 +15,11 @@ struct FreeBody {
   Vec3 spin;      ///< angular momentum about the centre, m_* m2/s
   /// Force and torque from the water, applied in the next substep: m_* m/s2 and m_* m2/s2.
   Vec3 force, torque;
-  Vec3 force_left, torque_left;  ///< force and torque that are not yet applied
+  Vec3 force_left, torque_left;  ///< given by the water, but not yet applied
   Vec3 by_walls;                 ///< momentum received from walls in this frame, m_* m/s
-  BodySum counted;               ///< part of this frame's sums of pushes that earlier substeps have applied
-  BodySum counted_of_effects;    ///< the same for the pushes of effects
+  /// part of the body's sum of pushes in this frame that earlier substeps have already used
+  BodySum counted;
+  BodySum counted_of_effects;  ///< the same for the sum of pushes by effects
 };
 
 /// A body's motion: velocity of the centre, m/s, and angular velocity, rad/s.
@@ -57,7 +58,7 @@ SIM_FN Vec3 momentum_of(const FreeBody& free, Vec4 turn, Vec3 spin) {
   return turned(turn, {own.x * free.inertia.x, own.y * free.inertia.y, own.z * free.inertia.z});
 }
 
-/// Rotates a free body for dt without torque, using its spin at the midpoint.
+/// Rotates a free body for dt without torque, at the angular velocity that it has at the middle of dt.
 SIM_FN void turn_on(Body& body, const FreeBody& free, float dt) {
   const Vec4 halfway = turned_by(body.turn, (0.5f * dt) * spin_of(free, body.turn, free.spin));
   body.spin = spin_of(free, halfway, free.spin);
@@ -68,7 +69,8 @@ SIM_FN void turn_on(Body& body, const FreeBody& free, float dt) {
 /// corners of the body's inner box, each a ball of its radius, or a mesh's contacts; contacts are inelastic
 /// and frictionless. Outlets let no body through.
 struct WallContact {
-  static constexpr int sweeps = 8;  ///< at most; a sweep that stops no contact point is the last
+  /// maximum number of sweeps over all contact points; the first sweep without a push is the last
+  static constexpr int sweeps = 8;
   const Walls& walls;
   const Body& body;
   FreeBody& free;
@@ -106,7 +108,7 @@ struct WallContact {
     free.spin += push * lever;
     return true;
   }
-  /// Displacement that moves a body from beyond the walls back inside, m.
+  /// Displacement that moves a body that is partly beyond walls back inside, m; zero if it is inside.
   SIM_FN Vec3 way_back() const {
     Vec3 out{0, 0, 0};
     for (int k = 0; k < walls.count; ++k) {
@@ -120,8 +122,8 @@ struct WallContact {
   }
 };
 
-/// Forces on a free body other than contacts: applies a substep's gravity, and the water's force of the
-/// previous substep.
+/// Forces on a free body other than contacts: applies a substep's gravity and the water's force from the
+/// previous substep, then limits the body's speed.
 struct BodyDrive {
   Guards* guards;
   Vec3 lift;  ///< Fall::lift()

@@ -11,8 +11,8 @@
 namespace sim::SIM_BACKEND {
 
 inline constexpr float pi = 3.14159265358979f;
-/// Density of the cubic lattice with h = 2 d under poly6: 103950 / (32768 pi). Masses are divided by it, so
-/// that the lattice has exactly the rest density.
+/// rho / rho_0 of the cubic lattice with h = 2 d under the usual poly6: 103950 / (32768 pi). The kernels are
+/// divided by it, so that the lattice has exactly the rest density.
 inline constexpr float lattice_density = 103950.0f / (32768.0f * pi);
 /// Pairs closer than this share of h count as coincident.
 inline constexpr float coincident = 1e-5f;

@@ -21,7 +21,7 @@ struct ListedContact {
 
 /// Moves free bodies to their positions at the substep's end. Contacts are inelastic, with Coulomb friction;
 /// they are detected at the bodies' positions at the substep's start. Pushes stop surfaces at each other;
-/// penetration is corrected in position only. Contacts with walls are solved last.
+/// penetration is corrected in position only. Each sweep over the contacts ends with those of walls.
 struct Meeting {
   Body* bodies;  ///< bodies that are not free are already at their positions of the substep's end
   FreeBody* free;
@@ -40,8 +40,7 @@ struct Meeting {
   static constexpr float slop = 1e-3f, fastest_mend = 0.1f;
   /// Share of the penetration beyond slop that a substep corrects.
   static constexpr float mended = 0.5f;
-  /// Search distance for contacts in addition to the closing distance, as a share of the smaller body's
-  /// reach.
+  /// Part of pad(), as a share of the smaller body's reach.
   static constexpr float wide = 0.02f;
 
   SIM_FN int width() const { return rough ? 3 : 1; }
@@ -65,8 +64,8 @@ struct Meeting {
     BodyRate* rates;  ///< the bodies' velocities, at first without contacts
     BodyRate* along;  ///< as in ContactRows
     float* speeds;    ///< speed of the fastest point of each body, m/s
-    int* found;       ///< number of contacts per group; for two bodies first a flag: contact possible
-    Contact* felt;    ///< candidate contacts of both bodies of each pair
+    int* found;     ///< number of contacts per group; for two bodies first a flag: 1 = a contact is possible
+    Contact* felt;  ///< per pair of bodies: one contact for each tested point of either body
     Contact* picked;  ///< selected contacts, up to most_contacts per group
     ListedContact* list;
     int* listed;                 ///< number of listed contacts
@@ -76,7 +75,7 @@ struct Meeting {
     float* friction;  ///< coefficient of each listed contact
     ContactRow* rows;
   };
-  /// Divides the scratch memory into its parts; with nullptr it computes only the size.
+  /// Divides the scratch memory into the arrays of Room; with nullptr it computes only their total size.
   SIM_FN Room parts_of(unsigned char* room) const {
     const auto n = static_cast<std::size_t>(count);
     const auto most = static_cast<std::size_t>(groups() * most_contacts);
@@ -118,7 +117,8 @@ struct Meeting {
       return room.rates[b].velocity + cross(room.rates[b].spin, x - room.start[b].centre);
     }
 
-    /// Sets each body's start position and velocities.
+    /// Sets each body's position and velocities at the substep's start. Free bodies first get the speed that
+    /// gravity and water cause.
     SIM_FN void begin(int b) const {
       if (m.drive.first) m.by_others[b] = {0, 0, 0};
       Body body = m.bodies[b];
@@ -141,19 +141,19 @@ struct Meeting {
       return out;
     }
     /// Upper bound of the push between two bodies, m_* m/s. In a wedge of half angle a pushes grow as 1 / (2
-    /// sin a); the bound suffices down to 2 degrees. Pushes from walls have no bound and are solved last, so
-    /// that a body pinned between bodies and a wall stays in the tank.
+    /// sin a); the bound suffices down to 2 degrees. Pushes from walls have no bound and come last in each
+    /// sweep, so that a body pinned between bodies and a wall stays in the tank.
     SIM_FN float most_push(float speed) const {
       float mass = 0;
       for (int b = 0; b < m.count; ++b) mass += m.free[b].mass;
       return 16 * mass * speed;
     }
 
-    /// Contacts count only if Contact::ahead is below this, m.
+    /// Upper limit of Contact::ahead, m, for a contact that counts.
     SIM_FN float pad(Partners pair) const {
       float size = feelers_of(pair.first).reach();
       if (pair.second >= 0) size = at_most(feelers_of(pair.second).reach(), size);
-      // The second term is for bodies that are struck in this substep and then hit others.
+      // The second term is needed if a body is struck in this substep and then hits another body.
       return wide * size + 0.25f * m.drive.dt * fastest();
     }
     SIM_FN void screen(int group) const {

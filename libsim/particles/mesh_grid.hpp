@@ -15,8 +15,8 @@ struct MeshGrid {
   Vec3 low;
   float step;
   int nx, ny, nz;
-  const float* values;   ///< m, x fastest; nullptr: the body is not a mesh
-  const Vec3* contacts;  ///< surface points that can touch walls, in the body's axes
+  const float* values;   ///< distances at the nodes, m; x varies fastest; nullptr: not a mesh
+  const Vec3* contacts;  ///< surface points that are tested for contacts, in the body's axes
   int contact_count;
   /// Per axis of the body: 1 if pressure can turn the body about this axis, 0 if the body is rotationally
   /// symmetric.

@@ -14,7 +14,8 @@ struct MassSum {
 
   static constexpr float unit = 1.0f / static_cast<float>(1ull << Bits);
 
-  /// Adds `mass` in m_* times v; a vector that is not finite counts as zero.
+  /// Adds `mass` in m_* times v, each component limited to +-2^(56 - Bits); a vector that is not finite
+  /// counts as zero.
   SIM_FN void add(float mass, Vec3 v) {
     if (!all_finite(v)) return;
     x += fixed(mass * v.x);
@@ -41,7 +42,7 @@ struct MassSum {
     return unit * static_cast<float>(static_cast<std::int64_t>(sum));
   }
   SIM_FN static std::uint64_t fixed(float value) {
-    // Limit for one particle, so that more than 100 particles at this limit do not overflow the sum.
+    // Limit of one term, so that a sum of 100 terms at this limit does not overflow.
     constexpr auto most = static_cast<float>(1ull << (56 - Bits));
     return static_cast<std::uint64_t>(
         static_cast<std::int64_t>(rintf(at_most(at_least(value, -most), most) / unit)));

@@ -13,7 +13,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Counters of the cases in which a guard corrected a particle (programs get them as sim::GuardCounts).
+/// Counts of guard interventions on the device. sim::GuardCounts explains the counts, and passes them to
+/// programs.
 struct Guards {
   std::uint64_t speed_limited;
   std::uint64_t coincident_pairs;
@@ -25,8 +26,8 @@ struct Guards {
   std::uint64_t first;  ///< TroubleKey of the first trouble that Witness noted; 0 = none
 };
 
-/// A 64-bit number for the time within a frame, the cause and the particle of a trouble. Earlier troubles
-/// have larger keys: atomic_max finds the first, whatever the order of the threads.
+/// A 64-bit number for the time within a frame, the cause and the particle of a trouble. Earlier troubles of
+/// a frame have larger keys: atomic_max finds the first, whatever the order of the threads.
 struct TroubleKey {
   static constexpr std::uint64_t all = ~std::uint64_t{0};
   /// `half`: number of half substeps since the frame's start, 0 .. 2^24 - 1.
@@ -80,8 +81,8 @@ class Particles {
   /// Memory of all columns and of the buffers for reordering, bytes.
   std::size_t bytes() const;
 
-  /// Reorders the columns that last beyond a substep: new[i] = old[order[i]]. order.size() becomes the number
-  /// of particles. A source may occur more than once (a split) or never (a merge).
+  /// Reorders all columns except scratch columns: new[i] = old[order[i]]. order.size() becomes the number of
+  /// particles. A source may occur more than once (a split) or never (a merge).
   void reorder(const Array<int>& order);
 
   /// The columns that splits and merges compute by rule.

@@ -9,7 +9,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Selects all particles: the slot is the particle's index. The compiler removes all of these functions.
+/// Selects all particles: the slot is the particle's index. The compiler removes the calls of these
+/// functions.
 struct AllParticles {
   static constexpr bool everyone = true;
   /// The k-th slot that a pass must process; -1 = none.
@@ -18,8 +19,8 @@ struct AllParticles {
   SIM_FN float moves(int) const { return 1; }
 };
 
-/// Slots contain first the active particles in the grid's order, then the others as ~particle, a negative
-/// number. So whole warps are either active or idle.
+/// The first slots contain the indices of the active particles, in the grid's order. The remaining slots
+/// contain ~index of the others, a negative number. So almost every warp is either active or idle.
 struct ActiveParticles {
   static constexpr bool everyone = false;
   const int* slots;
@@ -33,8 +34,7 @@ struct ActiveParticles {
   SIM_FN float falls(int i) const { return others_pressed || active[i] ? 1.0f : 0.0f; }
 };
 
-/// Active and unsolved particles, in the order of the slots, for a pass whose results are used after the
-/// solve.
+/// Selects all particles, active or not, in the order of the slots of ActiveParticles.
 struct EverySlot {
   static constexpr bool everyone = true;
   const int* slots;

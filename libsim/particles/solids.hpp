@@ -99,7 +99,7 @@ struct Body {
   SIM_FN Vec3 velocity_at(Vec3 x) const { return velocity + cross(spin, x - centre); }
 
   /// Share of a particle's kernel that lies inside the body, and its gradient (1/m) with the spiky kernel's
-  /// slope; a particle inside the body counts as on the surface.
+  /// slope; a particle inside the body counts as if it were on the surface.
   SIM_FN float missing(Vec3 x, float h, Vec3& gradient) const {
     gradient = {0, 0, 0};
     const Vec3 p = to_body(x);
@@ -121,8 +121,8 @@ struct Body {
     gradient = -(share.slope() / h) * at.normal;
     return share.inside();
   }
-  /// missing() of a box: the product of the shares along its three axes. Exact for planes; at most a quarter
-  /// at an edge and an eighth at a corner.
+  /// missing() of a box: the product of the shares along its three axes. It is exact beside a face far from
+  /// edges. On the surface it is a quarter at an edge and an eighth at a corner.
   SIM_FN float missing_box(Vec3 p, Near at, float h, Vec3& gradient) const {
     if (at.distance < 0) p += -at.distance * at.normal;
     float sx, sy, sz;
@@ -178,8 +178,9 @@ struct BodyPatch {
 };
 struct PatchSum {
   BodySum given;
-  std::uint64_t wet;  ///< area d^2 of the particles within their support of the patch, in d_*^2 /
-                      ///< CellWater::fixed_point
+  /// wetted area: sum of d^2 over the particles within their support of the body, each times the share of its
+  /// square on the patch, in d_*^2 / CellWater::fixed_point
+  std::uint64_t wet;
 };
 /// All patches of a scene; most scenes have none.
 struct BodyPatches {
@@ -208,7 +209,8 @@ struct BodyListener {
   BodySum* sums;
   const Body* bodies;
   float finest_support;
-  float times;  ///< weight of a push, including its repeats in later momentum steps
+  /// weight of a push: 1 plus the shares of the push that the momentum steps of later projections repeat
+  float times;
   BodyPatches patches;
 
   /// Adds the push (m_* m) of a body on a particle; it acts at the position `at`.
@@ -317,8 +319,8 @@ struct Solids {
   SIM_FN bool holds(Vec3 x, float gap = 0) const { return walls.holds(x, gap) && nearest_body(x) >= gap; }
 
   /// Like Walls::hold_back, for walls and bodies. The distance from a moving body before the move is measured
-  /// as if the particle had moved with the body. Where a body touches a wall, both corrections can contradict
-  /// each other: a particle that would end inside a body stays at its old position.
+  /// as if the particle had moved with the body. Near a body that touches a wall, the corrections by wall and
+  /// body can contradict each other. A particle that would then end inside a body stays at its old position.
   template <class Record = NoRecord>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Record record = {}) const {
     const Vec3 from = x;
@@ -366,7 +368,7 @@ struct Solids {
   }
 };
 
-/// The walls of a boundary without its bodies.
+/// Returns the walls of a boundary, without obstacles.
 SIM_FN const Walls& tank(const Walls& walls) { return walls; }
 SIM_FN const Walls& tank(const Solids& solids) { return solids.walls; }
 

@@ -140,8 +140,9 @@ struct Walls {
   }
 
   /// Moves x, which is inside the walls, to `to`, but keeps at least the share kept_distance of its distance
-  /// to each wall (minus `gap`). So particles of equal speed keep their order, whereas a clamp would put
-  /// layers on one plane. True if a wall held x back; calls record(wall, distance in m) for each such wall.
+  /// from each wall, measured from `gap` in front of the wall. So particles of equal speed keep their order,
+  /// whereas a clamp would put layers on one plane. True if a wall held x back; calls record(wall, distance
+  /// in m) for each such wall.
   template <class Record = NoRecord>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Record record = {}) const {
     bool held = false;

@@ -6,7 +6,8 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Sums over the particles of a cell, in fixed point, so that they do not depend on the order of addition.
+/// Sums over the particles of a cell: volume, and volume times rho / rho_0 - 1. They are in fixed point, so
+/// that they do not depend on the order of addition.
 struct CellSum {
   std::uint64_t volume, excess;
 };
@@ -109,7 +110,7 @@ struct CellWater {
 /// Water level beside a body within a cell, as a share of the cell's height along Waterline::up: 0 = dry, 1 =
 /// all water.
 struct LevelBeside {
-  float mean;  ///< mean over the sides of the body where a position outside bodies was found
+  float mean;  ///< mean over those of the four search directions in which a position outside bodies was found
   float most;
 };
 
@@ -146,8 +147,8 @@ struct Waterline {
     }
     return {sides > 0 ? sum / static_cast<float>(sides) : 0, most};
   }
-  /// The first position in the direction `way` whose cell is usually free of bodies. If a wall comes first,
-  /// the last position before the wall.
+  /// The first position in the direction `way` that is at least three quarters of a cell edge away from every
+  /// body. If a wall comes first, the last position in front of the wall.
   SIM_FN Vec3 outside(Vec3 from, Vec3 way) const {
     const float clear = 0.75f * fabsf(dot(side(), water.frame.edge));
     Vec3 x = from;
@@ -194,12 +195,14 @@ struct Waterline {
 struct CoarseGrid {
   PressureFrame frame;
   Array<CellSum> sums;
-  Array<std::uint64_t> volume;  ///< of all particles in each cell, in the unit of CellSum; with obstacles
+  /// volume of all particles in each cell, in the unit of CellSum; only in scenes with obstacles
+  Array<std::uint64_t> volume;
   Array<PushBalance> balance;
   Multigrid multigrid;
 
   /// Uses cells of `edge`, or wider if the domain would need more than `most_cells`; edges are then adjusted
-  /// so that a whole number of cells fits between the walls. Without a lid the top is open.
+  /// so that a whole number of cells fits between the walls. Without a lid the top is open, and the vertical
+  /// edge is not adjusted.
   void fit(const Domain& domain, float edge, bool lid);
   /// Sets the walls' openings as open faces; call after fit. The walls must be those of the domain.
   void open(const Walls& walls);
@@ -207,7 +210,7 @@ struct CoarseGrid {
 
  private:
   int opened_ = 0;      ///< number of openings last passed to the multigrid
-  Vec3 opened_edge_{};  ///< cell edge when they were passed
+  Vec3 opened_edge_{};  ///< edges of the cells at that time
 };
 
 }  // namespace sim::SIM_BACKEND

@@ -1,6 +1,6 @@
 #pragma once
-/// The passes of a V-cycle, one functor each. operator()(index) processes one cell. cell(place, index) does
-/// the same for a cell whose position is already known.
+/// The passes of a V-cycle, one functor each. operator()(index) processes one cell. Functors with a function
+/// cell(place, index) also process one cell whose position is already known.
 
 #include "libsim/pressure/multigrid.hpp"
 
@@ -69,7 +69,7 @@ struct Weigh {
     grid.diagonal[i] = sum;
   }
   /// Relative conductance of the face towards the neighbour cell at this position: 1 towards fluid or air, 0
-  /// towards a closed wall.
+  /// towards a closed wall, GridView::openness towards an opening.
   SIM_FN float opening(int x, int y, int z) const {
     if (grid.kind_at(x, y, z) != CellKind::Solid) return 1;
     return grid.open_count > 0 ? grid.openness(x, y, z) : 0;

@@ -33,8 +33,8 @@ struct GridView {
     const int left = finest_cells - cell * scale;
     return static_cast<float>(left < scale ? left : scale);
   }
-  /// Conductance of the face between the block and this outside cell, relative to an inner face. Outside an
-  /// open face q = 0, at half a finest cell beyond the face, on every grid.
+  /// Conductance of the face between the block and the cell (x, y, z) outside it, relative to that of an
+  /// inner face. Outside an open face q = 0, at half a finest cell beyond the face, on every grid.
   SIM_FN float openness(int x, int y, int z) const {
     float share = 0;
     for (int o = 0; o < open_count; ++o) share += share_of(open[o], x, y, z);

@@ -18,7 +18,7 @@ struct Gather {
   const std::uint8_t* active;  ///< flags of the solved particles; nullptr if all were solved
   const int* id;
   int n, teams;
-  int half;  ///< index of the frame's end, see TroubleKey
+  int half;  ///< number of half substeps in the frame, see TroubleKey::of
   Extremes* out;
 #ifdef SIM_CUDA
   static constexpr int particles_a_team = 128;

@@ -13,11 +13,13 @@ namespace sim::SIM_BACKEND {
 struct Extremes {
   int fastest_bits;  ///< bit pattern of the largest speed as a float, m/s; patterns of floats >= 0 have the
                      ///< order of the floats
-  std::uint64_t excess;    ///< max(rho / rho_0 - 1, 0) of the solved particles in the last projection, times
-                           ///< mass; in excess_unit
-  std::uint64_t mass;      ///< mass of the solved particles, in m_*
-  std::uint64_t troubled;  ///< particles that are not finite or too dense
-  std::uint64_t first;     ///< the first troubled particle, as a TroubleKey; 0 = none
+  /// sum of mass times rho / rho_0 - 1, limited to 0 .. 1, over the solved particles in the last projection;
+  /// in excess_unit
+  std::uint64_t excess;
+  std::uint64_t mass;  ///< mass of the solved particles, in m_*
+  /// number of particles whose velocity is not finite, plus the number of solved particles that are too dense
+  std::uint64_t troubled;
+  std::uint64_t first;  ///< the first troubled particle, as a TroubleKey; 0 = none
 
   static constexpr float excess_unit = 1.0f / (1 << 20);
   /// Mean excess over the solved water.
@@ -31,7 +33,7 @@ struct Extremes {
 /// The numbers that are copied to the host once per frame.
 struct FrameTally {
   Guards guards;              ///< guard counts since the run began
-  NeighbourList::Need lists;  ///< list sizes needed in the last substep
+  NeighbourList::Need lists;  ///< space that long neighbour lists requested, see NeighbourList::Need
   int active;                 ///< particles solved in the frame
   Extremes extremes;
   int by_level[LevelSupports::most];  ///< number of particles of each level

@@ -47,10 +47,10 @@ double reach_of(const Scene& scene, const std::vector<ParticleState>& start) {
   return out;
 }
 
-/// Shear rate, 1/s, below which a pool of particles of one level resists more than a quarter more than its
-/// viscosity nu explains: 0.1 g z / nu at the depth z, here half of the pool's depth. Its particles form a
-/// lattice, which carries a stress that increases with the pressure (docs/results.md). 0 without the effect
-/// viscosity or without gravity.
+/// Shear rate, 1/s, below which the shear stress in a pool of particles of one level exceeds the stress of
+/// its viscosity nu by more than a quarter: 0.1 g z / nu at the depth z, here half of the pool's depth. The
+/// excess comes from the lattice that the particles form; it increases with the pressure (docs/results.md). 0
+/// without the effect viscosity or without gravity.
 double least_shear(const Scene& scene) {
   const auto nu = static_cast<double>(coefficients_of(scene.effects)[EffectKind::Viscosity]);
   const Vec3d up = scene.gravity_m_s2.up();
@@ -278,7 +278,8 @@ void check_levels(int levels) {
 int capacity_for(std::size_t start, const SimulationOptions& options, bool splits) {
   // Particles and their cells are indexed with int.
   if (start > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::most_per_particle) {
-    throw base::Error("particles", "are too many", "use a smaller n_* (--n-star, or n_star in a protocol)");
+    throw base::Error(std::to_string(start) + " particles", "are more than the solver can number",
+                      "use a smaller n_* (--n-star, or n_star in a protocol)");
   }
   const std::int64_t room = options.particle_capacity > 0 ? options.particle_capacity : 8 * options.n_star;
   return static_cast<int>(std::max(static_cast<std::int64_t>(start), splits ? room : 0));
@@ -286,7 +287,9 @@ int capacity_for(std::size_t start, const SimulationOptions& options, bool split
 
 TargetSphere sphere_of(const TargetRegion& region) {
   if (std::min(region.inside, region.outside) < 0 || std::max(region.inside, region.outside) >= most_levels) {
-    throw base::Error("forced targets", "name a level that does not exist", "use levels 0 to 3");
+    throw base::Error(
+        "forced targets, levels " + std::to_string(region.inside) + " and " + std::to_string(region.outside),
+        "contain a level that does not exist", "use levels 0 to 3");
   }
   const auto f = [](double value) { return static_cast<float>(value); };
   return {{f(region.centre_m[0]), f(region.centre_m[1]), f(region.centre_m[2])},

@@ -69,7 +69,7 @@ class FluidSimulation final : public Simulation {
   }
 
   bool look(const Looks& looks) override {
-    // GL has finished drawing: map the coming frame's buffers now, to avoid a separate switch of ownership.
+    // GL has finished drawing: mapping the particle buffers already here saves a switch to CUDA.
     gl_.map_again();
     if (!looks_) return true;
     SaliencyInput& input = state_.saliency.input;
@@ -128,10 +128,10 @@ class FluidSimulation final : public Simulation {
 
   void change(const LiveNumbers& to) override {
     if (!(to.alpha >= 0 && to.alpha <= 1))
-      throw base::Error("alpha", "is not a weight from 0 to 1", "use 0 to 1");
+      throw base::Error("alpha = " + std::to_string(to.alpha), "is out of range", "use a weight from 0 to 1");
     if (to.iterations < 1 || to.iterations > LiveNumbers::most_iterations) {
-      throw base::Error("iterations", std::to_string(to.iterations) + " a substep are out of range",
-                        "use 1 to " + std::to_string(LiveNumbers::most_iterations));
+      throw base::Error("iterations = " + std::to_string(to.iterations), "is out of range",
+                        "use 1 to " + std::to_string(LiveNumbers::most_iterations) + " per substep");
     }
     state_.saliency.readings.alpha = to.alpha;
     state_.parameters.iterations = to.iterations;
@@ -290,7 +290,7 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  /// Inputs of temporal acceleration in the last frame, before its frame_time is reported.
+  /// tau, mu, delta and beta of temporal acceleration in the frame that ends; none for other methods.
   std::optional<TemporalReport> went_by() const {
     if (!traits_of(options_.method).temporal && !options_.temporal.always) return {};
     return TemporalReport{tolerance_.tau(), tolerance_.rate(), tolerance_.beta(), 0};

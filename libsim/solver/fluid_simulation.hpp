@@ -27,10 +27,10 @@ std::string effects_in_words(const std::vector<Effect>& listed, const Scene& sce
                              const SimulationOptions& options);
 /// Solver numbers that follow from scene and options.
 SolverParameters solver_parameters(const Scene& scene, const SimulationOptions& options);
-/// sqrt(v0^2 + 2 g H + (Omega R)^2), m/s: upper bound on the speed of water that starts at v0 and falls to
-/// the tank's lowest corner along gravity and to the axis of the central force without being pushed. v0 is
-/// the largest speed of the start and the nozzles, H their largest height, R their largest distance from the
-/// axis.
+/// sqrt(v0^2 + 2 g H + (Omega R)^2), m/s: upper bound on the speed of water that starts at v0 and falls
+/// freely to the tank's lowest corner along gravity and to the axis of the central force. v0: largest speed
+/// of the start, the nozzles and the moving obstacles. H: largest height of the water, the nozzles and the
+/// free obstacles above that corner. R: largest distance of the start and the nozzles from the axis.
 double fall_speed(const Scene& scene, const std::vector<ParticleState>& start);
 /// g + Omega^2 R, m/s2: the largest acceleration of the start by gravity and the central force; R as in
 /// fall_speed.
@@ -48,15 +48,15 @@ float most_speed(double fall_speed, const Scene& scene, const Resolution& resolu
                  const SolverParameters& parameters);
 /// Speed of the fastest of the start, the nozzles and the obstacles, m/s.
 double start_speed(const Scene& scene, const std::vector<ParticleState>& start);
-/// What the schedule of a run needs, from scene, method and options. `levels`: finest and coarsest level of
-/// the water.
+/// Requirements on the schedule of a run, from scene, method and options. `levels`: finest and coarsest level
+/// of the water.
 Demand demand_of(const Scene& scene, const SimulationOptions& options, const SolverParameters& parameters,
                  std::pair<int, int> levels);
 /// base::Error for an N outside 1 .. 4.
 void check_levels(int levels);
-/// Maximum number of particles. If particles split: particle_capacity of the options, or 8 n_*, their number
-/// if all water is at level 0. Never less than the number `start` of particles at the start. base::Error if
-/// that number is too large for indices.
+/// Maximum number of particles. If particles split: particle_capacity of the options, or 8 n_*, the number of
+/// particles if all water is at level 0. Never less than the number `start` of particles at the start.
+/// base::Error if that number is too large for indices.
 int capacity_for(std::size_t start, const SimulationOptions& options, bool splits);
 /// Converts the region for kernels. base::Error for an unknown level.
 TargetSphere sphere_of(const TargetRegion& region);
@@ -69,17 +69,17 @@ Walls walls_of(const Scene& scene, bool settling);
 /// `coarsest_level`: water would pass through it. base::Error for a free obstacle that is too light, or in a
 /// scene with a central force, or at time_s > 0.
 void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s, bool recorded);
-/// From now on records the push of each gauge's part of an obstacle on the water. base::Error if a gauge
-/// covers no part of its obstacle's surface.
+/// Starts to record, for each gauge, the push on the water by the gauge's part of an obstacle. base::Error if
+/// a gauge covers no part of its obstacle's surface.
 void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges);
 /// Adds the momentum that the obstacles gave the water in the last frame to `account`.
 void count_obstacles(const FluidState& state, MomentumAccount& account);
-/// Positions and velocities of the scene's obstacles at `time_s`, and what free obstacles received from walls
-/// and others.
+/// Positions and velocities of the scene's obstacles at `time_s`, and the momentum that free obstacles
+/// received from walls and other obstacles in the last frame.
 std::vector<BodyMotion> motions_of(const FluidState& state, double time_s);
 
-/// Density and neighbour counts at the present positions, measured on a copy: measuring does not change the
-/// run.
+/// Densities, neighbour counts and speeds at the present positions. They are measured on a copy of the
+/// particles, so that measuring does not change the run.
 struct Measured {
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   double density_max = 0;
@@ -108,7 +108,7 @@ void put_again(FluidState& state, const std::vector<ParticleState>& particles);
 /// Sets up the scene's jets as they are before `frame`.
 void begin_jets(FluidState& state, const Scene& scene, const SimulationOptions& options,
                 const Resolution& resolution, int frame);
-/// base::Error if foam particles are so small that a frame may emit more than an int can count.
+/// base::Error if foam particles are so small that a frame may create more than an int can count.
 void check_foam(const FluidState& state, const EffectCoefficients& effects, const Scene& scene,
                 double frame_dt_s);
 /// Allocates the pool of the scene's foam, without particles.
@@ -122,8 +122,8 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
 /// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
 /// is below 0.2 %. Velocities do not change.
 RelaxedStart relax_start(FluidState& state, int most);
-/// V^n and E^n of temporal acceleration from the present particles, as the previous frame would have left
-/// them. Call after relax_start: density decides what counts as spray.
+/// Computes V^n and E^n of temporal acceleration from the present particles, as the end of a frame does. Call
+/// it after relax_start, which measures the densities that decide which particles count as spray.
 void start_velocity_grid(FluidState& state);
 /// relax_start and, with temporal acceleration, start_velocity_grid, for a start in the middle of a run.
 /// Guard counts of this phase are discarded.

@@ -11,7 +11,7 @@ void keep_jets(Archive& archive, Jets& jets) {
   const std::size_t nozzles = jets.before.size();
   archive(jets.before, jets.level, jets.reservoir, jets.poured, jets.made, jets.taken, jets.waited);
   if constexpr (Archive::reads) {
-    if (jets.before.size() != nozzles) Archive::fail("holds other nozzles");
+    if (jets.before.size() != nozzles) Archive::fail("contains a different number of nozzles than the scene");
   }
 }
 
@@ -22,7 +22,7 @@ void keep_activation(Archive& archive, Activation& a) {
 
 /// Writes or reads the particles in their order, the state that methods carry from frame to frame, and the
 /// neighbour lists with which the next frame begins. `state` already has its particle count, columns and
-/// walls. State that each frame computes anew is left out.
+/// walls. State that each frame computes anew is not saved.
 template <class Archive>
 void keep_fluid(Archive& archive, FluidState& state) {
   archive(state.mass_units, state.drained, state.guards, state.parameters.iterations,

@@ -35,7 +35,9 @@ int least_substeps(const Scene& scene, const SimulationOptions& options) {
 std::unique_ptr<Simulation> make_simulation(const Scene& scene, const SimulationOptions& options) {
   const bool resumes = !options.resume_from.empty();
   if (resumes && options.start) {
-    throw base::Error("start", "is given, and a state to resume from too", "give one of them");
+    throw base::Error("start of the simulation",
+                      "is given twice: as particles, and as the saved state " + options.resume_from.string(),
+                      "give only the particles, or only the saved state");
   }
   if (options.start || resumes || scene.settle_frames == 0) return make_on_backend(scene, options);
   const std::string key = options.cache.empty() ? "" : settled_key(scene, options);

@@ -59,18 +59,19 @@ void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, 
   const double least = (1 - 1e-6) * static_cast<double>(state.supports.h[coarsest_level]) / 2;
   for (const Obstacle& obstacle : scene.obstacles) {
     if (thickness_m(obstacle) >= least) continue;
-    throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
-                      "is " + base::shortest(thickness_m(obstacle)) +
-                          " m thick: particles of this size could pass through it",
-                      "make it at least " + base::shortest(least) +
-                          " m thick, or use a larger n_* (--n-star, or n_star in a protocol)" +
-                          (coarsest_level > 0 ? ", or HiRes, which has the finest particles alone" : ""));
+    throw base::Error(
+        std::string("obstacle: ") + shape_name(obstacle.shape),
+        "is " + base::shortest(thickness_m(obstacle)) +
+            " m thick: the largest particles of the run pass through obstacles thinner than " +
+            base::shortest(least) + " m",
+        "make it thicker, or use a larger n_* (--n-star, or n_star in a protocol)" +
+            (coarsest_level > 0 ? ", or the method HiRes, which has only the finest particles" : ""));
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     if (obstacle.motion != ObstacleMotion::Free) continue;
     if (!(obstacle.density_kg_m3 >= lightest_free_kg_m3))
       throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
-                        "is free and has " + base::shortest(obstacle.density_kg_m3) + " kg/m3",
+                        "is free and too light: " + base::shortest(obstacle.density_kg_m3) + " kg/m3",
                         "give it " + base::shortest(lightest_free_kg_m3) + " kg/m3 or more");
     if (scene.central_force)
       throw base::Error(std::string("obstacle: ") + shape_name(obstacle.shape),
@@ -107,10 +108,11 @@ void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges) 
   for (const ObstacleGauge& gauge : gauges) {
     const std::string who = "gauge " + gauge.name;
     if (gauge.obstacle >= o.obstacles.size())
-      throw base::Error(who,
-                        "is on obstacle " + std::to_string(gauge.obstacle) + " of a scene with " +
-                            std::to_string(o.obstacles.size()),
-                        "count obstacles from 0, in the scene's order");
+      throw base::Error(
+          who,
+          "is on obstacle " + std::to_string(gauge.obstacle) + " of a scene with " +
+              std::to_string(o.obstacles.size()),
+          "name an obstacle by its number in the scene, from 0 to one less than the number of obstacles");
     const Obstacle& obstacle = o.obstacles[gauge.obstacle];
     const auto half = half_sides_m(obstacle);
     float low[3], high[3];

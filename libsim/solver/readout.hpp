@@ -23,7 +23,8 @@ HeatReport heat_of(const FluidState& state);
 
 LevelEvents events_of(const LevelCounts& counts);
 
-/// The report of the state: all but frame, time, substeps, tau, splits and merges, and the start.
+/// The report of the state. The caller sets its frame, time, substeps, temporal acceleration, splits and
+/// merges, and start.
 FrameReport report_of(const FluidState& state);
 
 /// The state of every particle, ordered by id.
@@ -36,7 +37,7 @@ void pack_for_drawing(const Particles& particles, Vec4* out);
 
 /// Counts of foam particles; all zero without foam.
 FoamReport report_of(const FoamPool& pool);
-/// Position and radius of each diffuse particle; it shrinks as it dissolves.
+/// Position and radius of each foam particle. The radius shrinks to 0 while the particle dissolves.
 void render_foam_of(const FluidState& state, std::vector<RenderParticle>& out);
 /// Writes position and radius of each slot of the foam's pool to `out`, in the back end's memory; unused
 /// slots have radius 0.

@@ -16,10 +16,10 @@ struct Schedule {
   std::string explanation;  ///< why each pass runs, and why each other known stage does not
 };
 
-/// Drops stages that are not required. The order changes only if two passes of one phase share a loop: the
-/// later one then runs with the earlier one, if no pass between them accesses a column that the later one
-/// writes, or writes a column that it reads. base::Error if a pass reads a column that no earlier pass has
-/// written; the error names the pass and the column.
+/// Drops stages that are not required. The order changes only if two passes of one phase can share one of
+/// `loops`: the later one then runs together with the earlier one. This needs that no pass from the earlier
+/// one on accesses a column that the later one writes, or writes a column that it reads. base::Error if a
+/// pass reads a column that no earlier pass has written; the error names the pass and the column.
 Schedule compile_schedule(const Demand& demand, const std::vector<Stage>& stages = all_stages(),
                           const std::vector<SharedLoop>& loops = shared_loops());
 

@@ -27,8 +27,9 @@ constexpr std::size_t most_bytes = std::size_t{32} * 8 * (4u << 20) + digest_siz
 constexpr std::chrono::hours forgotten_after{30 * 24};
 static_assert(std::is_trivially_copyable_v<ParticleState> && sizeof(ParticleState) == 32);
 
-/// True if all numbers are finite and the particles are numbered as a fill numbers them; otherwise the water
-/// is settled again. The file's hash detects damage, but not a state that was bad when it was written.
+/// True if all numbers are finite, the ids are 0, 1, 2, ... and the levels exist; if false, the water is
+/// settled again. The file's hash detects damage of the file, but not a state that was wrong when it was
+/// written.
 bool is_sound(const std::vector<ParticleState>& state) {
   int id = 0;
   return std::all_of(state.begin(), state.end(), [&](const ParticleState& p) {

@@ -15,8 +15,8 @@ namespace sim {
 std::filesystem::path default_cache_folder();
 
 /// Hash of everything that a settled state depends on: scene file, effects (a study varies them within one
-/// file), method, n_*, back end, step, solver numbers, and the bytes of the solver's libraries, so that a
-/// changed solver never reads an old state. Programs of one build share their states.
+/// file), method, n_*, back end, solver numbers with the frame time, and the bytes of the solver's libraries,
+/// so that a changed solver never reads an old state. Programs of one build share their states.
 std::string settled_key(const Scene& scene, const SimulationOptions& options);
 
 /// The state stored under `key`; none if it is missing or damaged (checksum, or values that are not finite),

@@ -11,8 +11,9 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Accepted mean compression of a start. The coarse pressure turns remaining compression into speed: at 1 %
-/// the surface of SingleDam at n_* = 32k had dents five frames later, and ejected lumps after fifteen.
+/// Maximum mean compression of a start that needs no further projection. The coarse pressure turns remaining
+/// compression into speed: at 1 % the surface of SingleDam at n_* = 32k had dents five frames later, and
+/// ejected lumps after fifteen.
 constexpr double enough = 0.002;
 
 /// Compression of each particle, max(rho / rho_0 - 1, 0), weighted by mass. In an unweighted mean, many fine
@@ -62,15 +63,17 @@ void check_start(const std::vector<ParticleState>& start, int capacity, bool ada
   for (const auto& particle : start) {
     const std::string who = "start, particle " + std::to_string(particle.id);
     if (particle.level < 0 || particle.level >= most_levels) {
-      throw base::Error(who, "has level " + std::to_string(particle.level), "use levels 0 to 3");
+      throw base::Error(who, "has level " + std::to_string(particle.level) + ", which does not exist",
+                        "use levels 0 to 3");
     }
     if (adaptive && (particle.id < 0 || particle.id >= capacity)) {
       throw base::Error(who, "has an id outside 0 .. " + std::to_string(capacity - 1),
-                        "number the particles from 0");
+                        "give ids from 0 on, or set a larger particle_capacity");
     }
     if (!adaptive) continue;
     const auto id = static_cast<std::size_t>(particle.id);
-    if (taken[id]) throw base::Error(who, "shares its id with another", "number the particles from 0");
+    if (taken[id])
+      throw base::Error(who, "has the same id as another particle", "give each particle another id");
     taken[id] = true;
   }
 }
@@ -264,7 +267,7 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
   if (const auto lost = state.guards.to_host()[0].not_finite; lost > 0) {
     throw base::Error("scene " + scene.name + ", settling",
                       std::to_string(lost) + " times a particle was not finite or far outside the tank",
-                      "use another time step, or the solver's default numbers");
+                      "use a shorter frame step or more substeps, or the solver's default numbers");
   }
   // Other guard events while settling are not part of the run.
   state.guards.zero();

@@ -69,7 +69,7 @@ class StateReader {
     (get(values), ...);
   }
   void finish() const {
-    if (!left_.empty()) fail("holds more than a run's state");
+    if (!left_.empty()) fail("contains more data than the state of this run");
   }
   [[noreturn]] static void fail(const std::string& problem) {
     throw base::Error("saved state", problem, "resume with the program that saved it");
@@ -120,12 +120,12 @@ template <class Archive>
 void keep_columns(Archive& archive, Particles& particles) {
   auto& columns = particles.all();
   const auto n = static_cast<std::size_t>(particles.size());
-#define SIM_KEEP(Name, member, ...)                                                      \
-  if (particles.has(Column::Name)) {                                                     \
-    archive(columns.member);                                                             \
-    if constexpr (Archive::reads) {                                                      \
-      if (columns.member.size() != n) Archive::fail("holds a column of another length"); \
-    }                                                                                    \
+#define SIM_KEEP(Name, member, ...)                                                         \
+  if (particles.has(Column::Name)) {                                                        \
+    archive(columns.member);                                                                \
+    if constexpr (Archive::reads) {                                                         \
+      if (columns.member.size() != n) Archive::fail("contains a column of a wrong length"); \
+    }                                                                                       \
   }
 #define SIM_NOTHING(...)
   SIM_COLUMNS(SIM_KEEP, SIM_NOTHING)

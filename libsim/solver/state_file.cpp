@@ -113,7 +113,7 @@ std::string read_state_file(const std::filesystem::path& path, std::string_view 
   if (base::sha256_hex(body) != all.substr(key_at + digest_size, digest_size))
     fail(path, "is damaged or cut short", "save the state again");
   if (all.substr(key_at, digest_size) != key) {
-    fail(path, "belongs to a run of another scene, method, size, back end or other numbers of the solver",
+    fail(path, "belongs to a run with another scene, method, n_* or back end, or other numbers of the solver",
          "resume with the scene and the options that the state was saved with");
   }
   return bytes.erase(0, head_size);

@@ -6,8 +6,8 @@
 
 namespace sim {
 
-/// A value measured at the end of the frame before last: using it never waits for its read-back. The lag is
-/// the same on every machine, so that runs are reproducible.
+/// Stores a value that each frame measures, and returns the value of two frames ago: its read-back has
+/// finished by then. The lag is the same on every machine, so that runs are reproducible.
 template <class T>
 class TwoFramesAgo {
  public:
@@ -29,8 +29,8 @@ struct SubstepLimits {
   double support_m = 0;          ///< h of the finest particles that the method can hold
   double courant = 0.5;          ///< maximum distance of the fastest particle per substep, as a share of h
   double acceleration_m_s2 = 0;  ///< from gravity and the central force
-  /// Maximum distance that the acceleration moves a particle in a substep, a dt^2, as a share of h. The
-  /// projections push particles back by this distance in water at rest (docs/decisions.md).
+  /// Maximum distance that the acceleration moves a particle in a substep, a dt^2, as a share of h. In water
+  /// at rest the projections must push particles back by this distance (docs/decisions.md).
   double push = 0.04;
   int least = 1;
   int most = 1;  ///< >= least
@@ -52,14 +52,14 @@ class SubstepRule {
   }
   /// Takes the largest speed at the end of a frame, m/s.
   void frame_ended(double fastest_m_s) { fastest_.frame_ended(fastest_m_s); }
-  /// Substeps that the next frame needs; next() limits this to `most`.
+  /// Number of substeps that the next frame needs, at least `least`; next() limits it to `most`.
   int wished() const {
     const double speed = fastest_.value() + 2 * limits_.acceleration_m_s2 * limits_.frame_dt_s;
     const double by_way = speed * limits_.frame_dt_s / (limits_.courant * limits_.support_m);
     const double by_push =
         limits_.frame_dt_s * std::sqrt(limits_.acceleration_m_s2 / (limits_.push * limits_.support_m));
     const double steps = by_way < by_push ? by_push : by_way;
-    // The bound also covers speeds that are not finite, which the guards repair.
+    // The bound 1e6 also applies if the speed is not finite; the guards repair such particles.
     const double counted = steps < 1e6 ? std::ceil(steps - 1e-9) : 1e6;
     return std::max(limits_.least, static_cast<int>(counted));
   }

@@ -19,12 +19,14 @@ inline constexpr const char* no_choice_of_pair =
 inline const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
 
 /// Returns H1 to H3 if the protocol shows methods one by one and asks for realism and cybersickness. Returns
-/// H4 to H6 if it asks for a choice between pairs of methods. A hypothesis about a method that the protocol
-/// does not show is listed in `left_out` with the reason, and so are all six if effects or frame rates vary.
+/// H4 to H6 if it asks for a choice between pairs of methods. Every hypothesis that is not returned is listed
+/// in `left_out` with the reason, such as a method that the protocol does not show. None of the six is
+/// returned if effects or frame rates vary.
 stats::ShownClaims hypotheses_of(const Protocol& protocol, const stats::AnalysisPlan& plan);
 
-/// True if participants rate several methods one by one, for realism and for each of `items`. Only then does
-/// the analysis plan's margin for the mean of the items have an effect.
+/// True if participants rate several treatments (methods, or methods with levels of effects) one by one, for
+/// realism and for each of `items`. Only then does the analysis plan's margin for the mean of the items have
+/// an effect.
 bool compares_scores(const Protocol& protocol, const std::vector<std::string>& items);
 
 /// A sentence that names the questions needed for H1 to H3 but missing from `asked`; empty if none is
@@ -34,8 +36,8 @@ std::string missing_items(const std::vector<Question>& asked);
 /// True if the question belongs to the FMS or the SSQ. Sickness questions have their own analysis.
 bool is_sickness(const Question& question);
 
-/// Scale questions, except those on sickness, asked in a study that varies the frame rate. A pilot fits one
-/// curve mu = a exp(b delta) to the answers to each question.
+/// The scale questions, except those on sickness, of a study that varies the frame rate and shows no pairs;
+/// empty for any other study. A pilot fits one curve mu = a exp(b delta) to the answers to each question.
 std::vector<Question> curve_questions(const Protocol& protocol);
 
 }  // namespace study

@@ -86,7 +86,7 @@ std::string setting_words(const RunSetting& setting) {
   return words.substr(words.find(' ') + 1) + " (setting " + setting.sha256 + ")";
 }
 
-/// In s. A clock that is set back by less than this is not doubted: such steps are normal corrections.
+/// Largest step back of a clock that is not doubted, in s: smaller steps are normal corrections.
 constexpr std::int64_t small_step_s = 3600;
 
 std::optional<DoubtfulTime> doubt_about(const TaskSession& session) {

@@ -25,7 +25,7 @@ struct TaskFlow {
                       ///< and repeats do not count
   int withdrawn = 0;  ///< participants who withdrew, counted over all protocols of the database
   int test_left_out = 0;       ///< sessions of test data, left out because real data exist
-  int simulated_left_out = 0;  ///< sessions of observer models, left out because sessions of people exist
+  int simulated_left_out = 0;  ///< sessions of observer models, left out because a person answered
   int protocols_left_out = 0;  ///< sessions of the protocols in TaskData::set_aside
   int excluded_visits = 0;
   int excluded_participants = 0;  ///< participants who answered, but whose answers are all excluded
@@ -63,7 +63,8 @@ struct DoubtfulTime {
 struct Report {
   int participant = 0, visit = 1, position = 0;
   int scene = 0, n_star = 0, method = 0;
-  int period = 0;                         ///< stats::periods_of(), numbered from 0 over all visits
+  int period = 0;  ///< number of the trial's period (a run of trials of one block, see stats::periods_of()),
+                   ///< from 0 over all visits
   std::map<std::string, double> answers;  ///< score by question id; unanswered questions are absent
 };
 
@@ -79,7 +80,7 @@ struct TaskData {
   std::vector<std::string> simulated;  ///< participants simulated by observer models, including excluded ones
   std::vector<std::string> observers;  ///< the distinct observer models
   std::map<std::string, int> gaze, stations, displays, angles, settings, unblinded,
-      mixed_pictures;            ///< number of analysed sessions by each value
+      mixed_pictures;            ///< number of analysed sessions with each value, such as gaze "tracked"
   std::string first_answer_utc;  ///< earliest first answer of the sessions without doubtful times, in UTC;
                                  ///< empty: none
   std::vector<DoubtfulTime> doubtful_times;

@@ -10,8 +10,8 @@ class Clock {
   virtual ~Clock() = default;
   /// The current time, ns; never decreases. The real clock reads CLOCK_MONOTONIC.
   virtual std::int64_t now_ns() const = 0;
-  /// Returns at deadline_ns or as soon after it as possible: sleeps first, then spins. Returns at once if
-  /// deadline_ns has passed.
+  /// Returns at deadline_ns or as soon after it as possible; at once if deadline_ns has passed. The real
+  /// clock sleeps first, then spins.
   virtual void wait_until(std::int64_t deadline_ns) = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Checks from measured step times that this machine reaches a protocol's frame rates with live methods.
+/// Predicts from measured step times whether this machine reaches a protocol's frame rates with live methods.
 
 #include <functional>
 #include <string>
@@ -22,10 +22,10 @@ struct MeasuredCell {
   stats::FpsMoments fps;  ///< frame rate; each frame counts as at least one refresh period long
   double mean_ms = 0;     ///< mean time to compute and draw a frame, without waiting
   double p95_ms = 0;      ///< 95th percentile of the time to compute and draw a frame, without waiting
-  double tau_min = 0;     ///< smallest tau over windows of 30 frames, frames/s (Eq. 11)
+  double tau_min = 0;     ///< smallest tau over windows of up to 30 frames, frames/s (Eq. 11)
   double showing_s = 0;   ///< expected duration of a showing of the cell
-  bool too_slow = false;  ///< the machine does not reach the cell's setting: a showing would fail
-  std::string words;      ///< description of the problem; empty: none
+  bool too_slow = false;  ///< the machine is too slow for the cell; see judge_measured()
+  std::string words;      ///< why the cell is too slow, or a showing would be degraded; empty: neither
 };
 
 struct MeasuredReport {
@@ -39,11 +39,13 @@ using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 
 /// Rehearses and judges each measured cell. refresh_hz: rate of the display; 0: frames are shown when ready.
 ///
-/// A cell with a wished frame rate is too slow if its mean frame time exceeds the mean interval. It is also
-/// too slow if its rehearsal fails the protocol's timing bounds; a cell without intervals skips this check.
-/// Under TimingSource::Native, a cell is too slow if its frame rate is below fps_min. Under Native,
-/// MeasuredReport::collapse is set if all cells reach the refresh rate, unless the cells have one method and
-/// differ in effects. It is also set if no method with temporal acceleration ever has a tau below zero.
+/// A cell with a requested frame rate is too slow if the machine's frame rate without waiting is below it.
+/// The cell is also too slow if its rehearsal fails the protocol's timing bounds; a cell without intervals
+/// skips this check. A cell without a requested rate (TimingSource::Native) is too slow if the machine's
+/// frame rate is below fps_min. Under Native on a display with a fixed refresh, MeasuredReport::collapse is
+/// set if all cells reach the refresh rate, unless the cells have one method and differ in effects.
+/// MeasuredReport::collapse is also set if the design has accelerated methods but tau never falls below zero
+/// in their cells: these methods then never accelerate.
 MeasuredReport judge_measured(const Protocol& protocol, const std::vector<MeasuredStimulus>& measured,
                               double refresh_hz, const IntervalsOf& intervals_of);
 

@@ -15,7 +15,8 @@ const Cell& cell_of(const Protocol& protocol, int index) {
 double seconds(const Clock& clock) { return 1e-9 * static_cast<double>(clock.now_ns()); }
 
 /// True if measure() must still measure content step `step` for this cell: the step is in the cell's trial,
-/// and the measurement is not behind the cell's schedule. In the first patience_s seconds it may be behind.
+/// and the measurement is not behind the cell's schedule. In the first patience_s seconds the measurement may
+/// be behind.
 bool wants(const Protocol& protocol, const Cell& cell, double refresh_hz, std::int64_t step, double gone_s) {
   const std::int64_t steps = content_steps(protocol, cell.setting, refresh_hz);
   if (step >= steps) return false;

@@ -32,7 +32,8 @@ class Costs {
   double later_s_ = 0;
 };
 
-/// A stimulus that computes nothing: preparing a step advances the virtual clock by the step's measured time.
+/// A stimulus that computes nothing. prepare() advances the virtual clock by the measured times to compute
+/// all steps since the last call and to draw the last one, but at least by least_s seconds.
 class MeasuredProcess final : public Stimulus {
  public:
   MeasuredProcess(const StepTimes& times, std::int64_t start_frame, double least_s, VirtualClock& clock)

@@ -45,10 +45,10 @@ std::string describe_block(const Protocol& protocol, const BlockOutline& outline
 /// How evenly the assignment spreads the sequences of groups over the planned participants.
 struct PlannedBalance {
   int planned = 0;
-  int sequences = 1;                   ///< number of group sequences; 1: nothing to balance
-  int least = 0, most = 0;             ///< fewest and most people per sequence
-  int interval_difference = 0;         ///< in a sequence: largest |people with AB - people with BA| of a pair
-  int even = 1;                        ///< any multiple of this number of people is balanced
+  int sequences = 1;            ///< number of group sequences; 1: nothing to balance
+  int least = 0, most = 0;      ///< fewest and most people per sequence
+  int interval_difference = 0;  ///< largest |people who see AB - people who see BA| of a pair in a sequence
+  int even = 1;                 ///< any multiple of this number of people is balanced
   int even_below = 0, even_above = 0;  ///< the multiples of `even` around `planned`; 0: none below
 };
 PlannedBalance check_balance(const Protocol& protocol);

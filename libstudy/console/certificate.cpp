@@ -56,7 +56,7 @@ Shown shown_in(const Rows& rows) {
   return out;
 }
 
-/// The numbers of one row. A row without a schedule shows "-" for nominal moments and deviations.
+/// The numbers of one row. A row without a schedule shows "-" for nominal moments, deviations and lateness.
 std::string format_row(const CertificateRow& row) {
   const bool scheduled = row.nominal.mean > 0;
   const auto nominal = [&](double value, const char* form) {

@@ -9,10 +9,12 @@
 namespace study {
 
 /// One line per row: nominal and realised mean mu and standard deviation delta of the frame rate (frames/s),
-/// late frames, verdicts, grade. "-" as nominal: frames were shown as fast as the method ran. Scene, n_*,
-/// method and effects are columns if the rows differ in them, else words of the heading. A row with a failed
-/// trial ends in FAIL, a row with a degraded trial in DEGRADED. `coloured` (for a terminal): these rows are
-/// red or yellow. `mean`: the kind of mean in the rows.
+/// the number of trials, the largest deviation of a trial from each nominal value, late frames and the
+/// largest lateness (ms), counts of verdicts, grades. The last line counts the trials that pass. "-" as
+/// nominal: frames were shown as fast as the method ran. Scene, n_*, method and effects are columns if the
+/// rows differ in them, else words of the heading. A row with a failed trial ends in FAIL, a row with a
+/// degraded trial in DEGRADED. `coloured` (for a terminal): a FAIL row is red, a DEGRADED row yellow. `mean`:
+/// the kind of mean in the rows.
 std::string format_certificate(const std::vector<CertificateRow>& rows, FpsMean mean, bool coloured);
 
 }  // namespace study

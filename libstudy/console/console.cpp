@@ -239,7 +239,8 @@ void Console::note(const std::string& words) {
       [=, this] { say("noted: " + words); });
 }
 
-/// Reopens the trial in the database at once: it is shown again even if this program ends before.
+/// Reopens the trial in the database at once, so that it is shown again even if this program ends before
+/// then.
 void Console::repeat(const std::string& reason) {
   const std::int64_t session = session_->id;
   const OpenUnit trial = unit_ && unit_->trial && !unit_done_ ? *unit_ : *last_trial_;

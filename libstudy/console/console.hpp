@@ -16,10 +16,10 @@
 
 namespace study {
 
-/// Hides method, frame rate and all hints at them until the experimenter reveals them; the database logs
-/// this. The session's thread and the key thread use it. The key thread stores a requested change in the
-/// database at once, even during a trial, and then confirms it. If storing fails, the console says "NOT KEPT"
-/// and the session goes on.
+/// Hides method, frame rate and all hints at them until the experimenter reveals them; the database logs when
+/// they are revealed or hidden. The session's thread and the key thread call this class. The key thread
+/// stores a requested change in the database at once, even during a trial, and then confirms it. If storing
+/// fails, the console says "NOT KEPT" and the session goes on.
 class Console {
  public:
   /// Seconds since the participant's last key, button or movement of the mouse; none: not known.
@@ -32,7 +32,7 @@ class Console {
   Console& operator=(const Console&) = delete;
 
   /// Called on the session's thread: begin() at the start of a session, the others as its SessionHooks.
-  /// request() returns each cut only once.
+  /// request() returns a cut of the current trial only once.
   void begin(const OpenSession& session);
   void begins(const OpenUnit& unit);
   void shown(const FrameRecord& frame);
@@ -51,7 +51,7 @@ class Console {
   void key(char byte);
   /// Returns the messages since the last call, one per line.
   std::vector<std::string> take_lines();
-  /// The content of the screen without `said`. now_ns: time of the steady clock.
+  /// The content of the screen without the messages (ConsoleView::said). now_ns: time of the steady clock.
   ConsoleView view(std::int64_t now_ns) const;
 
  private:
@@ -94,9 +94,9 @@ class Console {
   std::mutex acting_;         ///< held while a key is handled; locked before mutex_
   mutable std::mutex mutex_;  ///< guards all members below
   const OpenSession* session_ = nullptr;
-  std::optional<OpenUnit> unit_;  ///< begun last
+  std::optional<OpenUnit> unit_;  ///< the unit that began last
   bool unit_done_ = false;
-  std::optional<OpenUnit> last_trial_;  ///< finished last
+  std::optional<OpenUnit> last_trial_;  ///< the trial that finished last
   std::size_t done_ = 0;                ///< number of units done since begin()
   bool paused_ = false, ended_ = false, repeat_ = false, revealed_ = false, reopened_ = false;
   Asking asking_ = Asking::Nothing;
@@ -107,7 +107,7 @@ class Console {
   std::optional<Trouble> trouble_;  ///< the reason of the current pause
   std::optional<Ending> ending_;
   std::vector<TimingVerdict> verdicts_;  ///< verdicts on last_trial_
-  std::int64_t page_since_ns_ = 0;       ///< steady clock: start of the step, or its last frame
+  std::int64_t page_since_ns_ = 0;  ///< steady clock, at the start of the current step or at its last frame
 
   /// Timing of the current stimulus so far.
   struct Course {

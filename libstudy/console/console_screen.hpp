@@ -10,10 +10,10 @@ namespace study {
 struct ConsoleView {
   std::string title, clock;
   double done = 0;          ///< fraction of the session's steps that are done, 0 to 1
-  std::string plan;         ///< "step 5 of 44, trial 3; about 12 min left"
-  std::string now;          ///< the current step
+  std::string plan;         ///< "5 of 44 steps done; left: about 12 min"
+  std::string now;          ///< the current step: "step 6 of 44: stimulus 'task', trial 3"
   std::string person;       ///< what the participant does
-  std::string station;      ///< gaze and disk
+  std::string station;      ///< gaze source, free disk space and the station's name
   std::string rate, strip;  ///< timing of the current showing
   std::string last;         ///< timing of the last trial
   std::vector<std::string> alarms;

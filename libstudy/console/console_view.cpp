@@ -67,7 +67,9 @@ std::string Console::describe_cells(const PlannedTrial& trial) const {
   return all;
 }
 
-/// Verdict, relative deviation of the mean and late frames; frame rates only while settings are revealed.
+/// Verdict, grade, relative deviation of the mean frame rate, late frames and the largest lateness. Frame
+/// rates and the reason only while method and setting are revealed. A showing without a schedule has only the
+/// words "no schedule", or the reason of its cut.
 std::string Console::describe(const TimingVerdict& verdict) const {
   if (!(verdict.nominal.mean > 0))
     return verdict.cut ? "timing fail: " + verdict.reason : "timing: no schedule";

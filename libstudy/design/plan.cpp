@@ -17,12 +17,14 @@ struct Deal {
   std::vector<int> groups;  ///< in order of presentation, as indices into cell_groups()
   int round = 0;            ///< number of complete passes through all sequences before this slot
   /// Row of the square (Latin or Williams) for the first group; each later group takes the next row. Over all
-  /// slots, each sequence of groups begins equally often with each row; with pairs, in both interval orders.
+  /// slots, each sequence of groups begins with each row equally often. In a design with pairs, each row also
+  /// occurs equally often in each of the two interval orders.
   int row = 0;
 };
 
-/// Rounds come in couples: in the second round of a couple, each pair has the opposite interval order of the
-/// first round. 32 rounds are 16 couples with different random interval orders.
+/// In a balanced design with pairs, the number of rounds before the assignment starts over is a multiple of
+/// this number. Rounds come in couples: in the second round of a couple, each pair has the opposite interval
+/// order of the first round. 32 rounds are 16 couples with different random interval orders.
 constexpr int rounds_of_intervals = 32;
 
 const StimulusSpec& stimulus_of(const Design& design, const std::vector<int>& group) {
@@ -138,7 +140,8 @@ std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t ke
 namespace {
 
 // First random counters of schedule seeds, and of practice, repeats, catches and random interval orders. The
-// shuffles of trials start at counter 0, so that no two purposes share random numbers.
+// shuffles of trials start at counter 0. The ranges are separate, so that no two purposes share random
+// numbers.
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
@@ -227,8 +230,9 @@ class Planner {
     }
   }
 
-  /// All trials of the participant's g-th group (from 0), in the protocol's order of cells. With pairs, one
-  /// trial for each pair of cells. `index`: the block.
+  /// All trials of the participant's g-th group (from 0), in the protocol's order of cells:
+  /// design.repetitions times one trial for each cell or, in a design with pairs, for each pair of cells.
+  /// `index`: the block.
   std::vector<PlannedTrial> trials_of(int g, int index) const {
     const auto cells =
         cell_groups(design_)[static_cast<std::size_t>(deal_.groups[static_cast<std::size_t>(g)])];
@@ -324,7 +328,7 @@ class Planner {
     }
   }
 
-  /// Puts each catch page after a different, randomly drawn trial.
+  /// Puts each catch page after a different trial, drawn at random from the trials of block `like`.
   void scatter_catches() {
     for (std::size_t index = 0; index < protocol_.blocks.size(); ++index) {
       const Block& catches = protocol_.blocks[index];

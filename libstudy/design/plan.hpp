@@ -15,8 +15,8 @@ namespace study {
 /// One planned trial.
 struct PlannedTrial {
   int position = 0;                 ///< 0-based order of presentation among the session's trials
-  int block = 0;                    ///< index into Protocol::blocks: practice, stimulus, repeat or catch
-  int group = 0;                    ///< 0-based order of its group among the participant's groups
+  int block = 0;                    ///< index into Protocol::blocks: a practice, stimulus or repeat block
+  int group = 0;                    ///< 0-based position of its group of cells among the participant's groups
   int first = 0;                    ///< cell shown first, index into Design::cells
   std::optional<int> second;        ///< cell shown second; none: not a pair
   std::uint64_t schedule_seed = 0;  ///< seed for the order of frame intervals; second cell: this value + 1
@@ -27,7 +27,7 @@ struct PlannedTrial {
 struct PlannedUnit {
   int position = 0;          ///< 0-based order in the session
   int block = 0;             ///< index into Protocol::blocks
-  std::optional<int> trial;  ///< position of its trial; none for a page
+  std::optional<int> trial;  ///< PlannedTrial::position of the unit's trial; none for a page
 };
 
 struct Plan {
@@ -51,12 +51,12 @@ int slot_count(const Protocol& protocol);
 int next_slot(const Protocol& protocol, const std::vector<int>& taken);
 
 /// The groups of cells that a participant in this slot sees, in order of presentation, as indices into
-/// cell_groups(). Under Assignment::PaperRandom the groups are drawn with `key` and ignore the slot.
+/// cell_groups(). Under Assignment::PaperRandom the groups are drawn with `key`, and the slot has no effect.
 std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t key);
 
-/// Plans a whole session. A trial's schedule_seed depends on its cells and its block, not on its position; a
-/// repeat has the seed of the trial that it repeats. slot >= 0. base::Error if no order of trials was found
-/// that satisfies never_adjacent.
+/// Plans a whole session. A trial's schedule_seed depends on its cells, its block and the number of its
+/// repetition, not on its position. A trial of a repeat block has the schedule_seed of the trial that it
+/// repeats. slot >= 0. base::Error if no order of trials was found that satisfies never_adjacent.
 Plan make_plan(const Protocol& protocol, const std::string& participant, std::uint64_t seed, int slot);
 
 }  // namespace study

@@ -15,8 +15,9 @@ std::optional<StationNumber> parse_station_number(const std::string& station) {
   if (!found) return {};
   const StationNumber out{std::stoi(found->at(1)), std::stoi(found->at(2))};
   if (out.number < 1 || out.number > out.count || out.count > 999)
-    throw base::Error("--station " + station, "is not a station number",
-                      "write 2/5 for station 2 of 5: from 1 to the number of stations, at most 999");
+    throw base::Error(
+        "--station " + station, "is not a station number",
+        "write NUMBER/COUNT, such as 2/5 for station 2 of 5; NUMBER is from 1 to COUNT, COUNT at most 999");
   return out;
 }
 

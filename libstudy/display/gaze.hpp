@@ -32,8 +32,8 @@ struct GazeSample {
   std::optional<GazeRay> ray{};           ///< none: the source gives only points of the picture
 };
 
-/// A source of samples at its own rate. Calls come from the session's thread; a device with its own thread
-/// buffers its samples until take().
+/// A source of gaze samples, which arrive at the rate of the device. Calls come from the session's thread; a
+/// device with its own thread buffers its samples until take().
 class GazeSource {
  public:
   virtual ~GazeSource() = default;

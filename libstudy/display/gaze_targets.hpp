@@ -23,8 +23,8 @@ class GazeTargets {
   virtual ~GazeTargets() = default;
   /// Places the grid of targets straight ahead of the head's current pose.
   virtual void begin() = 0;
-  /// Shows a target for settle_s + sample_s and returns the samples of the last sample_s. Angles are to the
-  /// right and up from the middle of the grid. `check` is called often and may throw.
+  /// Shows a target for settle_s + sample_s seconds and returns the samples of the last sample_s seconds.
+  /// Angles are to the right and up from the middle of the grid. `check` is called often and may throw.
   virtual std::vector<TargetSample> look_at(double azimuth_deg, double elevation_deg, double settle_s,
                                             double sample_s, const std::function<void()>& check) = 0;
   /// Hides the targets.
@@ -36,7 +36,8 @@ struct GazeQuality {
   std::int64_t samples = 0, valid = 0;
   std::optional<double> accuracy_deg;  ///< angle from target to mean gaze; none: no valid sample
   std::optional<double> sd_deg;        ///< root mean square angle to the mean gaze; none: no valid sample
-  std::optional<double> rms_s2s_deg;   ///< likewise, between successive valid samples; none: < 2
+  /// root mean square angle between successive valid samples; none: fewer than two
+  std::optional<double> rms_s2s_deg;
 };
 
 /// Computes accuracy and precision from directions relative to the target. The target may move in the

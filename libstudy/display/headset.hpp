@@ -22,8 +22,9 @@ struct HeadsetFacts {
   std::array<EyeFacts, 2> eyes;  ///< left and right
   std::string format;            ///< pixel format of the submitted pictures
   std::optional<double> refresh_told_hz, refresh_measured_hz;
-  std::string hold = "image";  ///< "image", "state" or "head_locked" (Hold): picture between two frames
-  std::string blend;           ///< environment blend mode: "opaque"
+  /// hold mode of a picture between two frames: "image", "state" or "head_locked"
+  std::string hold = "image";
+  std::string blend;  ///< environment blend mode: "opaque"
   bool times_convert = false;
   bool position_tracking = false;  ///< the runtime reports that it tracks the head's position
   bool eye_tracking = false;       ///< an eye tracker was requested and is available
@@ -31,8 +32,8 @@ struct HeadsetFacts {
 };
 
 /// Position (m) and orientation of the midpoint of the eyes in the runtime's room frame: x right, y up, z
-/// back. A part that is not valid is unknown. A part that is valid but not tracked is an estimate of the
-/// runtime.
+/// back. A position or orientation that is not valid is unknown. One that is valid but not tracked is an
+/// estimate of the runtime.
 struct HeadPose {
   std::array<double, 3> place_m{};
   std::array<double, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
@@ -40,7 +41,7 @@ struct HeadPose {
   bool place_tracked = false, turn_tracked = false;
 };
 
-/// Smallest change of the distance between the eyes that is recorded, mm.
+/// The distance between the eyes is recorded again once it has changed by more than this, mm.
 inline constexpr double ipd_change_mm = 0.2;
 
 /// A period of the headset's compositor.

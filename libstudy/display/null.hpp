@@ -1,5 +1,5 @@
 #pragma once
-/// A stimulus and a display that show nothing. With them plans, observers and stores run without a fluid or a
+/// A stimulus and a display that show nothing. With them, a session runs without a fluid and without a
 /// screen.
 
 #include "libstudy/base/clock.hpp"

@@ -24,7 +24,7 @@ constexpr double most_held_s = 2, fade_s = 0.3;
 
 std::int64_t system_ns() { return RealClock().now_ns(); }
 
-/// Refresh period of the display; 0 before any slot.
+/// Refresh period of the display, ns; 0 before any slot.
 std::int64_t period_of(const LoopFacts& facts) {
   const auto hz = facts.rate.measured_hz;
   return hz ? std::llround(1e9 / *hz) : facts.last.period_ns;
@@ -168,7 +168,8 @@ bool FrameLoop::poll() {
   events_.insert(events_.end(), events.begin(), events.end());
   for (const HeadsetEvent& event : events) {
     using Kind = HeadsetEvent::Kind;
-    // Lost events may include a move of the world's origin. Their at_ns is -1, before all slots.
+    // The events that EventsLost stands for may include a move of the world's origin. The at_ns of EventsLost
+    // is -1, so the move takes effect at the next slot.
     if (event.kind == Kind::Recentred || event.kind == Kind::EventsLost) moves_ns_.push_back(event.at_ns);
     runtime_ends_ |= event.kind == Kind::RuntimeEnds;
   }
@@ -184,8 +185,8 @@ void FrameLoop::follow_world(std::int64_t predicted_ns) {
   black_out(CutCause::Recentred);
 }
 
-/// Removes picture and page, because their positions are those of the old world. Notes the cause if a picture
-/// was shown or waiting.
+/// Removes picture and page, because their positions refer to the world's old origin. Notes the cause if a
+/// picture was shown or waiting.
 void FrameLoop::black_out(CutCause cause) {
   if (picture_turns_.shows() || picture_turns_.waits()) note_cut(unseen_, cause);
   picture_turns_.drop();

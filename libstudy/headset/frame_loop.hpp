@@ -1,5 +1,6 @@
 #pragma once
-/// Runs the slots (frames) of a headset one after the other, independently of the rest of the program.
+/// Runs the slots (frames) of a headset one after the other, on the caller's thread or on a thread of its
+/// own.
 
 #include <condition_variable>
 #include <cstdint>
@@ -65,7 +66,7 @@ struct SeenNow {
 /// black until another picture is shown.
 class FrameLoop {
  public:
-  /// Largest number of stored records: slots of more than a minute.
+  /// Largest number of stored records, enough for the slots of more than a minute.
   static constexpr std::size_t most_records = 20000;
 
   /// Connects to the headset.
@@ -106,8 +107,8 @@ class FrameLoop {
   void show_page(const HeadsetPage& place);
   void hide_page();
 
-  /// Events, and records of finished slots, since the last call. Beyond most_records, the older half is
-  /// dropped.
+  /// Events, and records of finished slots, since the last call. Beyond most_records records, the older half
+  /// of them is dropped.
   std::vector<HeadsetEvent> take_events();
   std::vector<HeadsetRecord> take_records();
   /// Why a picture could not be seen in some slot since the last call; none if all pictures could be seen.

@@ -37,7 +37,7 @@ HeadsetChoice with_rate(HeadsetChoice choice, const HeadsetRules& rules) {
   return choice;
 }
 
-/// Why the participant sees no picture in a state other than focused.
+/// The cause of a cut if the session's state is not Focused.
 CutCause cause_of(HeadsetState state) {
   if (state == HeadsetState::LossPending) return CutCause::SessionLost;
   return state == HeadsetState::Visible ? CutCause::Focus : CutCause::TakenOff;
@@ -63,7 +63,7 @@ HeadsetDisplay::HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice, con
         "put it on, and close menus, overlays and other programs in it");
   await([this] { return (refresh_hz_ = met_hz().value_or(0)) > 0; }, rate_problem(rules), rate_mend);
   if (drive == SlotDrive::Caller) check_time_stands_still();
-  spoilt_.reset();  // discards the change to the requested rate
+  spoilt_.reset();  // discards the cut that a change to the requested rate noted
 }
 
 /// The nominal rate, Hz, if the measured rate has settled and meets the rules; none otherwise.
@@ -129,7 +129,8 @@ std::int64_t HeadsetDisplay::lead_ns() const {
   return slots_by_thread_ ? draw_ns_ + draw_ns_ / 2 + loop_.period_ns() : 0;
 }
 
-/// Processes the session's events: notes causes of a cut, throws if the headset's software ends.
+/// Processes the session's events: notes causes of a cut; throws if the headset's software ends or asks the
+/// program to leave.
 void HeadsetDisplay::poll_requests() {
   using Kind = HeadsetEvent::Kind;
   for (const HeadsetEvent& event : loop_.take_events()) {

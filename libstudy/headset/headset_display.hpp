@@ -16,14 +16,15 @@
 
 namespace study {
 
-/// Shows each picture in all slots (frames of the runtime) of its scheduled interval. The rules' hold mode
-/// says how the picture follows head movements in between. A slot without a picture is black. If the runtime
-/// loses the session, FrameLoop makes a new session. Destroy stimuli that drew on the display before the
-/// display. All calls except look() and look_away() come from the thread that made the display.
+/// Shows each picture in all slots (frames of the runtime) of its scheduled interval. HeadsetRules::hold says
+/// how a picture follows head movements until the next picture. A slot without a picture is black. If the
+/// runtime loses the session, FrameLoop makes a new session. Destroy stimuli that drew on the display before
+/// the display. All calls except look() and look_away() come from the thread that made the display.
 class HeadsetDisplay final : public Display {
  public:
-  /// Connects, then waits until the headset is worn and its refresh rate has settled. base::Error if a part
-  /// is missing, if the headset is not put on, or if its rate does not reach the rules' rate.
+  /// Connects, then waits until the headset is worn and its refresh rate has settled. base::Error if the
+  /// OpenXR loader, the runtime or the headset is missing, if the headset is not put on, or if its refresh
+  /// rate does not settle at the rate that the rules require.
   explicit HeadsetDisplay(SlotDrive drive, const HeadsetChoice& choice = {}, const HeadsetRules& rules = {});
 
   std::string description() const override;
@@ -33,8 +34,8 @@ class HeadsetDisplay final : public Display {
   double refresh_hz() const override { return refresh_hz_; }
   double measured_hz() const override;
   std::int64_t first_onset(std::int64_t earliest_ns) const override;
-  /// Stores the stimulus. present() draws it as late as possible, for the predicted head pose. The first
-  /// frame of a showing is also drawn here, to measure the drawing time.
+  /// Stores the stimulus. present() draws it as late as possible, for the predicted head pose. With
+  /// SlotDrive::Thread, the first frame of a showing is also drawn here, to measure the drawing time.
   void render(Stimulus& stimulus) override;
   PresentTimes present(std::int64_t scheduled_ns, Clock& clock) override;
   /// With Hold::State, draws the shown content again for each slot, for the new head pose; otherwise does
@@ -47,7 +48,7 @@ class HeadsetDisplay final : public Display {
   std::int64_t now_ns() const { return loop_.now_ns(); }
   /// Waits until the next slot is the slot nearest to deadline_ns, or a later slot.
   void turn_until(std::int64_t deadline_ns);
-  /// Waits for the next slot, 0.1 s at most, and processes events.
+  /// Runs a slot, or with SlotDrive::Thread waits for the next one, 0.1 s at most; then processes events.
   void turn();
 
   /// The canvas to draw the page into, of the size in HeadsetChoice. Call it for each drawing.
@@ -73,8 +74,9 @@ class HeadsetDisplay final : public Display {
 
   /// True if the participant sees pictures and can give input.
   bool focused() const { return facts().state == HeadsetState::Focused && !new_session_; }
-  /// Cause for which the showing must be cut, since the last call: a shown picture could not be seen, the
-  /// world's origin moved, or the refresh rate changed. None: no cause.
+  /// The cause noted since the last call for which the showing must be cut; none: no cause. Causes: the
+  /// session or its focus was lost, the headset was taken off, a picture was not drawn, the poses of the eyes
+  /// were unknown, the world's origin moved, or the refresh rate changed.
   std::optional<CutCause> take_spoilt();
   /// Lines for the log since the last call: the session was lost, or a new session was made.
   std::vector<std::string> take_news() { return std::exchange(news_, {}); }

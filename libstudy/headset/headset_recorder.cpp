@@ -114,7 +114,8 @@ void HeadsetRecorder::add_gaze(const HeadsetRecord& record) {
     last_reported_ns_ = *sample.device_ns;
     lag_ns_ = std::max(lag_ns_, record.slot.predicted_ns - last_reported_ns_);
   } else if (!sample.valid) {
-    // The eyes are lost. The runtime may still report the time of the last sample: it is not used.
+    // The eyes are lost. The runtime may still report the time of the last valid sample; this time is not
+    // used.
     sample.device_ns.reset();
     sample.sampled_ns = std::max(record.slot.predicted_ns - lag_ns_, last_ns_);
   }

@@ -51,12 +51,14 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
   std::vector<GazeSample> gaze_;
   std::vector<SlotRecord> slots_;
   std::optional<HeadsetRecord> newest_;
-  std::int64_t last_reported_ns_ = 0, lag_ns_ = 0;  ///< last sample time; largest lag before its slot
-  std::int64_t last_ns_ = 0;                        ///< time of the last sample
+  /// last reported sample time; largest lag of a sample behind its slot
+  std::int64_t last_reported_ns_ = 0, lag_ns_ = 0;
+  std::int64_t last_ns_ = 0;  ///< time of the last sample
 };
 
-/// The gaze sample of a slot; its ray is in the head's frame. Not valid if the eyes or the head's orientation
-/// are not valid. The point is in the picture shown to the left eye; none without a picture.
+/// The gaze sample of a slot; its ray is in the head's frame. Not valid if the orientation of the head is not
+/// valid or, for a tracker, that of the eyes. The point is in the picture shown to the left eye; none without
+/// a picture.
 GazeSample gaze_of(const HeadsetRecord& record, GazeOrigin origin);
 
 /// Distance between the eyes, mm; none if their poses are not valid.

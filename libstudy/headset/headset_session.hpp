@@ -57,11 +57,12 @@ struct HeadsetGaze {
 
 /// Buttons and pointing of both hands. A button held on both hands counts once.
 struct HeadsetHands {
-  bool select = false;                            ///< is pressed
-  bool select_began = false;                      ///< was pressed since the last input()
-  bool menu = false;                              ///< is pressed
-  std::array<float, 2> stick{};                   ///< deflection right and up, [-1, 1]; 0 without a stick
-  std::array<std::optional<HeadsetPose>, 2> aim;  ///< left, right hand; points along direction_of()
+  bool select = false;           ///< is pressed
+  bool select_began = false;     ///< was pressed since the last input()
+  bool menu = false;             ///< is pressed
+  std::array<float, 2> stick{};  ///< deflection right and up, [-1, 1]; 0 without a stick
+  /// pose of the left and the right hand, which points along direction_of()
+  std::array<std::optional<HeadsetPose>, 2> aim;
 };
 
 /// The participant's input: gaze, head pose, buttons and pointing.
@@ -108,8 +109,8 @@ struct HeadsetLayers {
   float light = 1;                       ///< factor on the picture's levels, [0, 1]
   const sim::Offscreen* page = nullptr;  ///< in front of the picture; null: no page
   HeadsetPage place{};                   ///< position of the page
-  /// Numbers of the content: while a number is unchanged, the content is not copied to the runtime again. 0:
-  /// copied in each slot.
+  /// Version numbers of the picture and the page. While a number stays the same, the picture (or page) is not
+  /// copied to the runtime again. 0: it is copied in every slot.
   std::uint64_t picture_number = 0, page_number = 0;
 };
 
@@ -143,8 +144,9 @@ class HeadsetSession {
   HeadsetSession& operator=(const HeadsetSession&) = delete;
 
   std::string description() const;  ///< headset, picture size and pixel format
-  bool keeps_levels() const;        ///< each of the 256 levels is shown within one level
-  bool times_convert() const;       ///< false: predicted_ns uses a guessed clock offset
+  /// true: the pixel format shows each of the 256 sRGB levels with an error of at most one level
+  bool keeps_levels() const;
+  bool times_convert() const;  ///< false: predicted_ns uses a guessed clock offset
   bool has_eye_gaze() const;
   HeadsetNames names() const;
 

@@ -14,7 +14,8 @@ namespace {
 /// Distance of the targets, m: about the focal distance of headsets' lenses.
 constexpr double distance_m = 2;
 constexpr double size_deg = 1, dot_share = 0.2;
-/// A longer call of check() means that the participant read another page meanwhile.
+/// Longest call of check() after which the samples still count, ns. A longer call means that the participant
+/// read another page meanwhile.
 constexpr std::int64_t most_checking_ns = 200'000'000;
 constexpr int most_turns = 200;  ///< slots to wait for a valid head pose
 

@@ -86,7 +86,8 @@ XrConnection::XrConnection(const std::vector<std::string>& needed, const std::ve
     : get_(open_loader()), offered_(offered_extensions()) {
   for (const std::string& name : needed) {
     if (!lists_word(offered_, name))
-      throw base::Error("OpenXR", "the runtime does not offer " + name, "use a runtime that does");
+      throw base::Error("OpenXR", "the runtime does not offer " + name,
+                        "make another OpenXR runtime the active one, such as Monado or SteamVR");
     enabled_.push_back(name);
   }
   for (const std::string& name : wanted) {

@@ -11,7 +11,8 @@
 
 namespace study {
 
-/// Error: the session or the whole runtime is gone. Objects made from it can only be destroyed.
+/// Error: the session or the whole runtime is gone. Objects of a lost session or runtime can only be
+/// destroyed.
 class HeadsetLost final : public base::Error {
  public:
   HeadsetLost(const std::string& place, const std::string& problem, const std::string& mend,
@@ -60,7 +61,7 @@ class XrConnection {
   XrConnection& operator=(const XrConnection&) = delete;
 
   XrInstance instance() const { return instance_; }
-  /// Call it after a call into the runtime never returned: the destructor then leaves the instance open.
+  /// Call it if a call into the runtime does not return: the destructor then leaves the instance open.
   void leave_behind() { left_behind_ = true; }
   /// Names of all extensions that the runtime offers.
   const std::vector<std::string>& offered() const { return offered_; }

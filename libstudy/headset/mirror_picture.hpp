@@ -20,8 +20,8 @@ class MirrorPicture {
   MirrorPicture(const MirrorPicture&) = delete;
   MirrorPicture& operator=(const MirrorPicture&) = delete;
 
-  /// Draws the view; with_picture = false: stimuli are black. Returns false, without drawing, if all of it is
-  /// black.
+  /// Draws the view; with_picture = false: stimuli are black. Returns false, without drawing, if the whole
+  /// view would be black.
   bool draw(const SeenNow& seen, bool with_picture) const;
   /// Returns the drawn picture; waits until the drawing is done.
   sim::Image read() const { return drawn_.read(); }

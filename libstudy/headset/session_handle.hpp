@@ -69,8 +69,8 @@ class SessionHandle {
   void destroy(const char* name, Handle handle) const {
     if (handle != XR_NULL_HANDLE && !left_behind_) attempt<F>(name, handle);
   }
-  /// Call it after a call into the runtime never returned: the session's objects must not be used any more,
-  /// and exist until the process ends.
+  /// Call it if a call into the runtime does not return: the session's objects must not be used any more, and
+  /// exist until the process ends.
   void leave_behind() { left_behind_ = true; }
 
   /// GL internal formats for pictures, in the runtime's order of preference.

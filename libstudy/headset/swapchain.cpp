@@ -93,7 +93,7 @@ std::vector<std::unique_ptr<Swapchain>> make_swapchains(const SessionHandle& ses
   const std::vector<std::int64_t> formats = picture_formats(session.formats());
   if (formats.empty()) {
     throw base::Error("headset", "the runtime offers no format of pictures that OpenGL draws into",
-                      "use another runtime");
+                      "make another OpenXR runtime the active one, such as Monado or SteamVR");
   }
   for (const std::int64_t format : formats) {
     try {

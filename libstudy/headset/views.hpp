@@ -13,7 +13,7 @@ struct HeadsetPose {
   std::array<float, 3> place_m{};
   std::array<float, 4> turn{0, 0, 0, 1};  ///< unit quaternion x, y, z, w
   bool place_valid = false, turn_valid = false;
-  /// False for a valid part: the part is an estimate of the runtime.
+  /// False for a valid position or orientation: it is an estimate of the runtime.
   bool place_tracked = false, turn_tracked = false;
 
   bool valid() const { return place_valid && turn_valid; }

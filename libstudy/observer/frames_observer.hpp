@@ -16,14 +16,15 @@ namespace study {
 /// delta of the shown frame rate. The features granularity and flicker are those of PictureFeatures. x is 1
 /// for a level of effects other than "none", else 0. A rating is the score nearest to the scale's midpoint +
 /// q + participant + noise. A symptom, on a scale from 0 to 3, is the score nearest to 0.6 - sickness q +
-/// fatigue position + participant' + noise', scaled to longer scales in proportion; of two stimuli the
-/// smaller q counts. The second of two stimuli is preferred if q_2 - q_1 + bias + noise > 0. The weights are
-/// our choice: they order the methods plausibly and were not fitted to the paper's results.
+/// fatigue position + participant' + noise', scaled to longer scales in proportion; noise' has half the
+/// standard deviation of noise, and of two stimuli the smaller q counts. The second of two stimuli is
+/// preferred if q_2 - q_1 + bias + noise > 0. The weights are our choice: they order the methods plausibly
+/// and were not fitted to the paper's results.
 struct FramesObserverParameters {
   double grain = 4;             ///< scores per octave of granularity, >= 0
   double flicker = 0.6;         ///< scores per octave of flicker, >= 0
   double timing = 1.2;          ///< largest gain or loss by tau, scores, >= 0
-  double noise = 0.9;           ///< standard deviation per answer, scores, >= 0
+  double noise = 0.9;           ///< standard deviation per answer, scores, >= 0; half of it for a symptom
   double participant_sd = 0.5;  ///< standard deviation over participants, scores, >= 0
   double bias = 0;              ///< scores in favour of the second interval
   double effects = 0;           ///< scores that a level with effects adds; recorded only if not 0

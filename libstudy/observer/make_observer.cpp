@@ -16,7 +16,8 @@ namespace study {
 
 namespace {
 
-// Observers whose answers carry no information about the stimulus. A report should detect them.
+// The answers of RandomObserver and ConstantObserver carry no information about the stimulus. A report should
+// detect these observers.
 
 /// "random": every score of a question is equally likely for every stimulus.
 class RandomObserver final : public Observer {

@@ -23,7 +23,7 @@ class Observer : public Participant {
   void pause(const Pause& pause, Clock& clock, const Check& check) final;
 
   /// Returns one of the question's scores. Never called for a question of kind Text or with `accept`.
-  /// `judges`: true for the first question of kind Scale or Choice after a stimulus.
+  /// `judges`: true for the first question of kind Scale or Choice after the stimulus of a trial.
   virtual int score(const Question& question, const Occasion& occasion, bool judges) const = 0;
   /// True if the observer models symptom scores. Otherwise a score that would stop the session is lowered to
   /// stop_at - 1.
@@ -56,7 +56,8 @@ std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureS
 
 /// For a constant observer such as "constant:9" (alone or after "dropout"): one sentence for each rating
 /// scale of the trials that does not contain the observer's score. On such a scale the observer gives the
-/// nearest score. Empty for other kinds of observers. base::Error if no question's scale contains the score.
+/// nearest score. Empty for other kinds of observers. base::Error if the score is outside the scale of every
+/// question of the protocol.
 std::vector<std::string> scales_beyond(std::string_view specification, const Protocol& protocol);
 
 }  // namespace study

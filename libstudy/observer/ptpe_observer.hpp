@@ -31,9 +31,9 @@ struct PtpeObserverParameters {
   double effects = 0;           ///< scores that a level with effects adds; recorded only if not 0
 };
 
-/// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..][,effects=..]". base::Error names the
-/// character of another kind, of an unknown, repeated or missing key, and of a wrong number or one out of
-/// range.
+/// Reads "ptpe:a=31,b=0.035[,slope=..][,noise=..][,participant_sd=..][,effects=..]". base::Error, with the
+/// position of the character, for another kind of observer, for a key that is unknown, repeated or missing,
+/// and for a number that is wrong or out of range.
 PtpeObserverParameters parse_ptpe_observer(std::string_view specification);
 
 /// Answers the first question about a stimulus by the model. Of two stimuli the observer prefers the stimulus

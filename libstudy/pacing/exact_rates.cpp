@@ -48,8 +48,8 @@ struct Problem {
   }
 };
 
-/// The root of `excess` between low and high. Fails if `excess` has one sign there: double precision cannot
-/// distinguish the moments.
+/// The root of `excess` between low and high. Fails if `excess` has the same sign at both ends: the moments
+/// then differ too little for double precision.
 double root_of(const Problem& problem, const std::function<double(double)>& excess, double low, double high) {
   try {
     return stats::find_root(excess, low, high);
@@ -79,7 +79,8 @@ std::vector<double> solve_open(const Problem& problem) {
     return scaled(problem, std::move(strata), scale);
   };
   const auto excess = [&](double cut) { return problem.mean_of(rates(cut)) - problem.setting.mean; };
-  const double exponential = 1e4;  // a parent mean so far below the bound gives an exponential
+  // with a parent mean this many sd below the bound, the distribution is exponential
+  const double exponential = 1e4;
   const double bell = -10 * (problem.setting.mean + sd) / sd;
   if (excess(exponential) > 0) {
     const double least = problem.setting.mean + excess(exponential);

@@ -12,9 +12,10 @@ namespace study {
 inline constexpr double least_sd_fps = 1e-3;
 
 /// N = frame_count(setting) instantaneous rates, frames/s, ascending: stratified quantiles of a truncated
-/// normal on [fps_min, fps_max] with the requested mean (harmonic or arithmetic, as the rules say) and
-/// population standard deviation to 1e-9 relative. base::Error naming the setting and the nearest possible
-/// moments if there is no solution.
+/// normal with the requested mean (harmonic or arithmetic, as the rules say) and population standard
+/// deviation to 1e-9 relative. The normal is truncated to the range from the larger of fps_min and 1000 /
+/// max_interval_ms to fps_max. If the standard deviation is 0, all rates equal the mean. base::Error naming
+/// the setting if there is no solution.
 std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& rules);
 
 /// The harmonic or arithmetic mean of the rates, frames/s.

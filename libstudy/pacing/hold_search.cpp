@@ -105,9 +105,9 @@ class Holds {
 };
 
 /// Sets the holds that minimise sum_i (f_i - x_i)^2 + spread sum_i (f_i - m)^2 - 2 price sum_i f_i. f_i: rate
-/// of frame i; x_i: its target rate; m: target mean. For a harmonic mean, the last term is 2 price (total
-/// periods). Frame i gets the shorter hold of an edge if x_i is above the edge's threshold. Updates mean()
-/// only; recount() updates the other sums.
+/// of frame i; x_i: its target rate; m: target mean. For a harmonic mean, the last term is + 2 price (total
+/// of periods) instead. Frame i gets the shorter hold of an edge if x_i is above the edge's threshold.
+/// Updates mean() only; recount() updates the other sums.
 void place(Holds& holds, const HoldTarget& target, double spread, double price) {
   std::int64_t last = 0;
   const auto& x = target.rates;
@@ -246,8 +246,8 @@ HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total
           total > 0 && holds.total() != total ? HUGE_VAL : holds.excess()};
 }
 
-/// Calls descend() from every list that has only two different holds, around the mean, until the excess is 0:
-/// these lists have the extreme standard deviations. Returns the best list.
+/// Calls descend() from every list of two different holds, one at most and one at least the mean hold: such
+/// lists have the extreme standard deviations. Stops once the excess is 0. Returns the best list.
 HoldList from_pairs(const HoldTarget& target, std::int64_t total, HoldList best) {
   const auto n = static_cast<std::int64_t>(target.rates.size());
   const auto first = static_cast<std::int64_t>(target.shortest);
@@ -279,8 +279,8 @@ HoldList search_holds(const HoldTarget& target, std::int64_t total) {
   auto best = result(holds, target, total);
   if (best.excess == 0) return best;
   if (total > 0) return from_pairs(target, total, std::move(best));
-  // With a free total, the search may stop where a better mean costs standard deviation and the reverse.
-  // Repeats it with a high weight of the mean.
+  // If the total is free, the search may stop at a list where every change improves one moment and worsens
+  // the other. So it is repeated with a high weight of the mean.
   for (Holds* start : {&holds, &strict}) {
     start->weigh_mean(1000);
     descend(*start, total);
@@ -296,7 +296,7 @@ namespace {
 /// Calls f(fast rate, slow rate, fraction of frames at the fast rate) for every pair of holds that can have
 /// the target mean. Rates in frames/s.
 void for_each_pair(const HoldTarget& target, const std::function<void(double, double, double)>& f) {
-  const auto value = [&](int hold) {  // its average over the frames gives the mean
+  const auto value = [&](int hold) {  // quantity whose average over the frames gives the mean
     return target.mean_kind == FpsMean::Harmonic ? static_cast<double>(hold) : target.refresh_hz / hold;
   };
   const double wished = target.mean_kind == FpsMean::Harmonic ? target.refresh_hz / target.mean : target.mean;

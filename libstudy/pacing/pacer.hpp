@@ -17,17 +17,18 @@ namespace study {
 enum class AtEnd { Loop, Hold };
 
 /// How content advances. real_time = false (per_frame, the paper's interpretation): frame i shows content
-/// step start_frame + i. real_time = true: frame i shows the step at its scheduled time since the first
-/// frame. At its end, a process of finite length goes back to start_frame (Loop) or stays at its last step
-/// (Hold).
+/// step start_frame + i. real_time = true: frame i shows the content step of its scheduled time; both times
+/// count from the first frame. At its end, a process of finite length goes back to start_frame (Loop) or
+/// stays at its last step (Hold).
 struct ContentRules {
   bool real_time = false;
   double content_step_s = 1.0 / 60;
   std::int64_t start_frame = 0;
   AtEnd at_end = AtEnd::Loop;
-  double latency_s = 0;  ///< real_time: the content lags behind its frame by this
+  double latency_s = 0;  ///< real_time: the content lags behind the time of its frame by this
   /// real_time: the content's step between two frames differs from the frame's interval by this, alternately
-  /// more and less, s. Content never runs backwards, so a larger error than an interval is cut to it.
+  /// more and less, s. Content never runs backwards: where the error exceeds the interval, the content stands
+  /// still.
   double animation_error_s = 0;
 };
 
@@ -48,7 +49,8 @@ struct FrameRecord {
 struct PlayedTrial {
   std::vector<FrameRecord> frames;
   std::int64_t end_ns = 0;
-  std::optional<std::int64_t> cut;  ///< set if the trial overran: number of frames not shown
+  /// set if the trial overran: number of frames not shown; 0 without a schedule
+  std::optional<std::int64_t> cut;
 };
 
 /// Timing bounds of a trial while it is shown.
@@ -59,11 +61,11 @@ struct ShowingBounds {
 
 /// Shows one trial. Frame i + 1 is prepared and rendered while frame i is on, then shown at its deadline.
 /// Deadlines are absolute: they count from the first frame. A late frame is shown at once and moves no
-/// deadline. No frame and no content step is skipped. The last frame stays on until the planned end of the
-/// trial; if it came after the planned end, it stays on for its whole interval. A frame that is ready later
-/// than overrun_ns after the planned end is not shown: the trial is cut, and ends when the interval of the
-/// frame before is over. `each` (may be empty) is called after every frame, for the journal. base::Error if
-/// there is no interval, if an interval is not positive, or if the content ends before start_frame.
+/// deadline. No frame is skipped to catch up. The last frame stays on until the planned end of the trial; if
+/// it came after the planned end, it stays on for its whole interval. A frame that is ready later than
+/// overrun_ns after the planned end is not shown: the trial is cut, and ends when the interval of the frame
+/// before is over. `each` (may be empty) is called after every frame, for the journal. base::Error if there
+/// is no interval, if an interval is not positive, or if the content ends before start_frame.
 PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
                        Stimulus& stimulus, Display& display, Clock& clock, const ShowingBounds& bounds,
                        const std::function<void(const FrameRecord&)>& each);

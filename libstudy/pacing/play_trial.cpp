@@ -40,7 +40,8 @@ class ContentCourse {
  private:
   std::int64_t step_at(std::int64_t index, std::int64_t onset_ns) {
     // Adds a millionth of a step, because rounding may put an onset at a step's start into the step before.
-    // The error moves every second frame by its whole size: steps are alternately longer and shorter.
+    // The animation error moves the content of every second frame by its whole size: content steps are
+    // alternately longer and shorter.
     const double moved_s = (index % 2 == 1 ? rules_.animation_error_s : 0) - rules_.latency_s;
     const double elapsed =
         std::max(0.0, 1e-9 * static_cast<double>(onset_ns) + moved_s) / rules_.content_step_s;
@@ -61,7 +62,7 @@ class ContentCourse {
   Stimulus& stimulus_;
   std::int64_t length_ = 0;
   std::int64_t step_ = 0;
-  std::int64_t gone_ = 0;  ///< content steps since the first frame, without rewinds
+  std::int64_t gone_ = 0;  ///< content steps since the first frame; a rewind does not reset it
 };
 
 /// Prepares and renders frame `index` of a trial.
@@ -79,8 +80,8 @@ void check_intervals(const std::vector<std::int64_t>& intervals_ns) {
   const bool good = !intervals_ns.empty() && std::all_of(intervals_ns.begin(), intervals_ns.end(),
                                                          [](std::int64_t ns) { return ns > 0; });
   if (!good) {
-    throw base::Error("schedule", "is empty or holds an interval that is not positive",
-                      "compile it again from the protocol");
+    throw base::Error("schedule", "is empty or has an interval of 0 ns or less",
+                      "correct the code that made the intervals; compile_schedule() makes valid ones");
   }
 }
 
@@ -142,7 +143,9 @@ PlayedTrial play_native(double duration_s, const ContentRules& content, Stimulus
     FrameRecord record = make_frame(index, begun_ns, course, stimulus, display);
     record.scheduled_ns = clock.now_ns();
     if (index > 0 && record.scheduled_ns <= played.frames.back().scheduled_ns) {
-      throw base::Error("native timing", "needs a clock that runs while frames are made", "use --clock real");
+      throw base::Error("timing = \"native\"",
+                        "needs a clock that runs while frames are made; the virtual clock stands still",
+                        "use --clock real");
     }
     const std::int64_t gone_ns =
         played.frames.empty() ? 0 : record.scheduled_ns - played.frames[0].scheduled_ns;

@@ -7,9 +7,9 @@
 
 namespace study {
 
-/// In protocols: profile_word(), e.g. "hitches".
+/// The kind of a timing profile. Protocols name it by its profile_word(), e.g. "hitches".
 enum class ProfileKind {
-  Moments,  ///< mean_fps and sd_fps, as in protocols of formats 1 and 2
+  Moments,  ///< mean_fps and sd_fps, as in protocols of format 2
   Hitches,  ///< a steady rate; one frame in each period stays on for hitch_ms
   Floor,    ///< one frame in 20 lasts 1/low_fps; the others share the rest of the time evenly
   Trace     ///< recorded frame times, in their order, repeated or cut to the length of the stimulus
@@ -21,14 +21,15 @@ struct TimingProfile {
   double sd_fps = 0;     ///< Moments
   double hitch_ms = 0;   ///< Hitches: time for which the long frame stays on; at least 1000 / mean_fps
   double period_s = 1;   ///< Hitches: one hitch in each period, in its middle when jitter is 0
-  double jitter = 0;     ///< Hitches: the hitch is uniform over this middle part of the period, 0 to 1
-  double low_fps = 0;    ///< Floor: "5 % low", at most mean_fps
+  /// Hitches: share of the period, around its middle, over which the hitch is uniform, 0 to 1
+  double jitter = 0;
+  double low_fps = 0;                 ///< Floor: "5 % low", at most mean_fps
   std::vector<double> frame_ms = {};  ///< Trace
   bool smoothed = false;              ///< Trace: as many frames in the same time, all equally long
-  /// The content shown lags behind by this constant, ms. Real-time content only.
+  /// The content shown lags behind the time of its frame by this constant, ms. Real-time content only.
   double latency_ms = 0;
-  /// The step of the content differs from the step of the display by this much, alternately more and less,
-  /// ms. Real-time content only.
+  /// The content's step between two frames differs from the interval between them by this much, alternately
+  /// more and less, ms. Real-time content only.
   double animation_error_ms = 0;
 
   bool operator==(const TimingProfile&) const = default;

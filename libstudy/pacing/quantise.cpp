@@ -65,8 +65,8 @@ double mean_miss(const HoldList& list, const HoldTarget& target) { return std::a
 
 /// The best list of holds with a mean within 0.5 % of the target; no holds if there is none. For a harmonic
 /// mean it searches every total of periods in this range. Lists within the tolerance of the standard
-/// deviation come first. If there are none, those whose error is at most a tolerance above the least error
-/// remain. Among the remaining lists the nearest mean wins.
+/// deviation come first. If there are none, the lists remain whose error of the standard deviation is at most
+/// one tolerance above the least such error. Among the remaining lists the nearest mean wins.
 HoldList approximate_list(HoldTarget target) {
   const double bound = approximate_mean * target.mean;
   std::vector<HoldList> found;
@@ -140,7 +140,8 @@ void fill(RefreshVerdict& verdict, const HoldList& list, const PacingRules& rule
     verdict.holds.push_back(static_cast<int>(std::lround(refresh_hz / rate)));
 }
 
-/// Moves each deadline of a pattern to the nearest period.
+/// Moves each deadline of a pattern to the nearest period, but to at least one period after the deadline
+/// before.
 RefreshVerdict quantise_pattern(const FpsSetting& setting, double refresh_hz, std::uint64_t seed) {
   RefreshVerdict out;
   const auto wanted_s = pattern_intervals(*setting.profile, setting.duration_s, seed);
@@ -184,7 +185,7 @@ RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& requested_
                         std::uint64_t seed) {
   if (!(refresh_hz > 0 && std::isfinite(refresh_hz)))
     throw base::Error(fmt::format("refresh {:g} Hz", refresh_hz), "is not a refresh rate",
-                      "give the display's refresh in hertz");
+                      "give the display's refresh rate in hertz, such as 60");
   if (has_pattern(setting)) return quantise_pattern(setting, refresh_hz, seed);
   const auto rules = for_display(requested_rules, refresh_hz);
   RefreshVerdict verdict;

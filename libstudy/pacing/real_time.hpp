@@ -1,5 +1,5 @@
 #pragma once
-/// Requests from the operating system that it wakes the pacing thread on time.
+/// Asks the operating system to wake the pacing thread on time.
 
 #include <string>
 

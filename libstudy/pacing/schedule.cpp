@@ -28,8 +28,8 @@ struct Sums {
     square += sign / (dt * dt);
   }
 
-  /// The larger error of the two moments: of the mean relative to it, of the sd relative to max(sd, 1
-  /// frame/s).
+  /// The larger of two errors: of the mean, relative to setting.mean; of the standard deviation, relative to
+  /// the larger of setting.sd and 1 frame/s.
   double error(std::size_t count, const FpsSetting& setting, FpsMean mean) const {
     const auto n = static_cast<long double>(count);
     const long double mean_rate = rate / n;
@@ -72,10 +72,10 @@ double descend(std::vector<std::int64_t>& intervals_ns, Sums& sums, double error
   return error;
 }
 
-/// Rounds intervals to nanoseconds. First rounds every deadline, so that none drifts by more than 0.5 ns.
-/// Then changes single intervals by 1 ns until the mean (relative) and the standard deviation (relative to
-/// max(sd, 1 frame/s)) are met to 1e-6. With sd = 0, all intervals stay equal. base::Error naming the setting
-/// if no such list is found.
+/// Rounds intervals to nanoseconds. First rounds every deadline, so that rounding errors do not add up. Then
+/// changes single intervals by 1 ns until the mean (relative) and the standard deviation (relative to max(sd,
+/// 1 frame/s)) are met to 1e-6. With sd = 0, all intervals stay equal. base::Error naming the setting if no
+/// such list is found.
 std::vector<std::int64_t> whole_nanoseconds(const std::vector<double>& intervals_s, const FpsSetting& setting,
                                             FpsMean mean) {
   if (setting.sd == 0)

@@ -37,8 +37,8 @@ struct FpsSetting {
   double mean = 0;  ///< frames/s
   double sd = 0;    ///< standard deviation of the frame rate, frames/s
   double duration_s = 10;
-  /// Format 3. If it is not of kind Moments, `mean` and `sd` are those of its intervals before a display
-  /// rounds them.
+  /// The timing profile, in protocols of format 3; null: none. If it is not of kind Moments, `mean` and `sd`
+  /// are those of the profile's intervals before a display rounds them.
   std::shared_ptr<const TimingProfile> profile = {};
 
   bool operator==(const FpsSetting& other) const;
@@ -54,16 +54,18 @@ std::string setting_name(const FpsSetting& setting);
 /// The number of frames of a trial, N = round(mean * duration), at least 1.
 std::int64_t frame_count(const FpsSetting& setting);
 
-/// A schedule. Interval i is the time for which frame i is shown.
+/// A schedule. Interval i is the time for which frame i is shown. If compile_schedule() makes it from a mean
+/// and a standard deviation, intervals_s meet both to 1e-9 and intervals_ns to 1e-6.
 struct Schedule {
-  std::vector<double> intervals_s;         ///< mean and sd are exact to 1e-9
-  std::vector<std::int64_t> intervals_ns;  ///< whole nanoseconds; mean and sd are exact to 1e-6
+  std::vector<double> intervals_s;
+  std::vector<std::int64_t> intervals_ns;  ///< whole nanoseconds
 };
 
 /// Makes the schedule of a setting without a fixed refresh. Its frame rates are N = round(mean * duration)
 /// stratified quantiles of a truncated normal, whose parameters are solved so that the list has exactly the
 /// requested mean and sd. `seed` and the rules determine their order. base::Error naming the setting if there
-/// is no solution. With a pattern: its intervals, without any rule.
+/// is no solution. For a setting with a pattern, the schedule has the pattern's intervals, and the rules are
+/// not applied.
 Schedule compile_schedule(const FpsSetting& setting, const PacingRules& rules, std::uint64_t seed);
 
 enum class Feasibility { Exact, Approximate, Unreachable };
@@ -85,14 +87,15 @@ struct RefreshVerdict {
 /// the fixed refresh R = refresh_hz > 0.
 ///
 /// exact: the holds sum to exactly R N / mean periods, the sd is within max(2 %, 0.25 frames/s), and no hold
-/// exceeds max_interval_ms or the longest interval of the unquantised schedule, rounded up to a period.
-/// approximate: the mean is within 0.5 %, the sd as near as possible, the same bound on holds. unreachable:
-/// neither, or there is no unquantised schedule. Among lists that meet mean and sd, the search aims at the
-/// list nearest to the unquantised rates (hold_search.hpp). Sums of R / k seldom equal a given number, so an
-/// arithmetic mean counts as met within 0.01 %. Applies for_display().
+/// exceeds max_interval_ms, 1 / fps_min or the longest interval of exact_rates() rounded up to a period. An
+/// arithmetic mean need only be within 0.01 %, because sums of R / k seldom equal a given number.
+/// approximate: the mean is within 0.5 %, the sd is as near as possible, and the same bounds on holds apply.
+/// unreachable: neither, or exact_rates() fails. Among lists that meet mean and sd, the search aims at the
+/// list nearest to exact_rates() (hold_search.hpp). Applies for_display().
 ///
-/// With a pattern, each deadline moves to the nearest period, at least one after the last, without any rule.
-/// exact: no interval moved by more than 1 % of itself. approximate: the mean moved by at most 0.5 %.
+/// With a pattern, each deadline moves to the nearest period, but to at least one period after the deadline
+/// before; the rules are not applied. exact: no interval changed by more than 1 % of itself. approximate: the
+/// mean changed by at most 0.5 %. unreachable: otherwise.
 RefreshVerdict quantise(const FpsSetting& setting, const PacingRules& rules, double refresh_hz,
                         std::uint64_t seed);
 

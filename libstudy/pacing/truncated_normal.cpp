@@ -39,8 +39,8 @@ double hazard(double t) {
   return std::exp(-0.5 * t * t) / std::sqrt(2 * std::numbers::pi) / upper_tail(t);
 }
 
-/// Solves log_survival(cut, y) = target for y; target < 0. log Q is concave, so Newton's method converges
-/// monotonically from the right after its first step.
+/// Solves log_survival(cut, y) = target for y; target < 0. The log of the upper tail is concave, so Newton's
+/// method converges monotonically from the right after its first step.
 double quantile(double cut, double target, double guess) {
   double y = guess;
   for (int i = 0; i < 200; ++i) {

@@ -38,7 +38,7 @@ class PageState {
   /// Sets the input device of the following calls; default: keyboard.
   void use(AnswerInput input) { input_ = input; }
   /// Handles a key. Enter chooses the score that the arrow keys mark; pressed again, it goes to the next
-  /// question; at the button to go on, it confirms the page.
+  /// question, or confirms a page with a single question; at the button to go on, it confirms the page.
   void press(PageKey key, std::int64_t now_ns);
   /// Handles a typed digit, 0 to 9: chooses this score if all scores have one digit; appends it to a Number.
   void digit(int digit, std::int64_t now_ns);
@@ -76,8 +76,8 @@ class PageState {
   bool confirmed() const { return confirmed_ns_.has_value(); }
 
   /// The answers of a confirmed page. A response time runs from the page's appearance to the last change of
-  /// the answer; for an empty answer, to the confirmation. `input` is the device of this change or
-  /// confirmation.
+  /// the answer (for an empty answer, to the confirmation), without the periods of leave_out(). `input` is
+  /// the device of this change or confirmation.
   std::vector<TimedAnswer> answers() const;
 
  private:

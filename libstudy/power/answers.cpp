@@ -48,9 +48,11 @@ const Question& question(const Protocol& protocol, const char* id) {
 
 double latent_variance(const char* option, double wanted, double rounding) {
   if (wanted >= rounding) return wanted - rounding;
-  throw base::Error(option,
-                    "is too small: rounding to whole scores alone makes a person's answers scatter more",
-                    "give a larger value, a smaller --person-by-method, or --answers continuous");
+  throw base::Error(
+      option,
+      "is too small: rounding to whole scores and --person-by-method alone make a person's answers "
+      "scatter more",
+      "give a larger value, a smaller --person-by-method, or --answers continuous");
 }
 
 double answer(const Task1Scatter& scatter, double latent, double low, double high) {

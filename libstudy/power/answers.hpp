@@ -29,7 +29,8 @@ struct Task1Scatter {
 
 /// Scatter for which the difference between two methods' answers has the requested standard deviation, as
 /// long as no answer is cut off at an end of the scale. The variance from rounding, 1/12 per answer
-/// (Sheppard), is included. base::Error if rounding alone exceeds the requested standard deviation.
+/// (Sheppard), is included. base::Error if rounding and the effect of person by method alone exceed the
+/// requested standard deviation.
 Task1Scatter task1_scatter(const PowerRequest& request);
 
 struct Task1Answers {
@@ -45,8 +46,8 @@ std::vector<stats::PairChoice> answer_task2(std::span<const ShownTrial> trials, 
 
 /// Nominal and realised moments of a frame-rate setting, in frames/s.
 struct RealisedSetting {
-  double mu = 0, delta = 0;  ///< nominal mean and standard deviation
-  double harmonic = 0, arithmetic = 0, sd = 0;
+  double mu = 0, delta = 0;                     ///< nominal mean and standard deviation
+  double harmonic = 0, arithmetic = 0, sd = 0;  ///< realised means and standard deviation
 };
 
 /// The moments of each cell of the design, from one compiled schedule each. The order of the frames in a

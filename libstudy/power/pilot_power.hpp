@@ -51,7 +51,7 @@ struct PilotPower {
   std::vector<PilotPoint> curve;  ///< one point for each of PowerRequest::n
   /// The smallest requested n such that, at this n and every larger one, a share of pilots reaches the
   /// requested precision. The share is PowerRequest::power, for n_for_a_median and n_for_b_median it is one
-  /// half.
+  /// half. n_for_both is the larger of n_for_a and n_for_b.
   std::optional<int> n_for_a, n_for_b, n_for_both;
   std::optional<int> n_for_a_median, n_for_b_median;
 };

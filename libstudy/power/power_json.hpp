@@ -18,8 +18,8 @@ Json studies_json(const PowerRequest& request);
 Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds);
 Json power_json(const PowerRequest& request, const PilotPower& pilot);
 
-/// CSV with one line for each n and each value that has a standard error, and for closed forms and mean
-/// estimates.
+/// CSV with one line for each n and each value that has a standard error, and one for each n and each closed
+/// form and mean estimate.
 std::string power_csv(const Json& json);
 
 }  // namespace study

@@ -43,7 +43,8 @@ struct PowerRequest {
   std::vector<std::string> worlds;  ///< "effect", "null", "margin", "paper"; each at most once
 
   /// True effect. Task 1: difference between two methods, in standard deviations of the paired differences.
-  /// Task 2: probability that the better method is chosen.
+  /// Task 2: probability that the better method is chosen, or if effects vary, that a level of effects is
+  /// chosen over none.
   std::optional<double> effect;
   std::optional<double> difference;  ///< Task 1: true difference in points of realism, in place of `effect`
   AnswerScale answers = AnswerScale::Likert;

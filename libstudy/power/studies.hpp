@@ -38,10 +38,10 @@ Estimated quantile_of(std::span<const double> values, double share);
 /// Counts of one test over simulated studies of Task 1 or 2. All are whole numbers, so a sum depends neither
 /// on its order nor on the processes that counted.
 struct TestCount {
-  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;  ///< studies; see TestPoint
+  std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;  ///< numbers of studies, see TestPoint
   std::int64_t estimates = 0;                                         ///< number of studies with an estimate
   std::int64_t estimate_units = 0;                          ///< sum of the estimates in units of 1e-9
-  int participants_least = 1 << 30, participants_most = 0;  ///< participants who gave both answers
+  int participants_least = 1 << 30, participants_most = 0;  ///< of participants with both answers
 
   void add(const TestCount& other);
   double mean_estimate() const;  ///< mean of the estimates; 0 without an estimate

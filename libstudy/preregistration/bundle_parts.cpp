@@ -91,7 +91,8 @@ struct ByOrder {
 };
 
 /// If the answer's time is impossible, the session's clock was wrong, and the times of the rows before the
-/// answer decide. Otherwise it is unknown which of the two times is wrong.
+/// answer decide. Otherwise it is unknown which of the two times is wrong, and the bundle counts as older
+/// only if it is older than the answer's time.
 ByOrder judge_by_order(const std::string& frozen, const Json& used) {
   ByOrder out;
   for (const Json& one : used.value("doubtful_times", Json::array())) {

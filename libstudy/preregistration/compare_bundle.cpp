@@ -92,7 +92,7 @@ std::string name_in_bundle(const Json& about, const std::string& sha256) {
 }
 
 /// True if the study's protocol is in the bundle. Otherwise adds its differences from the bundle's protocol
-/// of the same name.
+/// of the same name, or that there is none. (A pilot that the bundle lacks adds nothing.)
 bool same_protocol(const Bundle& bundle, const ProtocolRow& used, bool pilot, Json& differences) {
   if (bundle.protocols.contains(used.sha256)) return true;
   const auto planned = std::find_if(bundle.protocols.begin(), bundle.protocols.end(), [&](const auto& entry) {

@@ -130,7 +130,7 @@ class Draft {
     // written only into a new folder.
     if (failed || !fs::create_directory(path_, failed))
       throw base::Error(path_.string(), failed ? failed.message() : "exists already",
-                        "choose a folder in which you may create files");
+                        "choose another folder, in which you may create files");
   }
   ~Draft() {
     std::error_code ignored;

@@ -25,7 +25,8 @@ struct BundleRequest {
 /// the protocols test, each test with its margin); plan.toml (margins, levels, exclusion rules, seed);
 /// power.json if requested; about.json; PREREGISTRATION.txt for people; MANIFEST.sha256 for `sha256sum -c`.
 /// Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and no folder is left, if
-/// `out` exists and is not an empty folder, if a protocol cannot be read, or if two have the same name.
+/// `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same name or
+/// different levels for one question, or if `power` is no JSON.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
 /// The hypotheses of H1 to H6 that the requested protocols do not test, each with the reason: "H1 of task1:
@@ -45,8 +46,9 @@ struct Bundle {
 Bundle read_bundle(const std::filesystem::path& folder);
 
 /// The entry "preregistration" of the results (docs/report.md): for each task, true if its protocol and
-/// hypotheses are those of the bundle and the bundle is older than the answers; and all differences.
-/// `protocols`: the database's protocols. `results`: from study_results() with the bundle's plan.
+/// hypotheses are those of the bundle, the bundle is older than the answers and no file of the bundle was
+/// altered; and all differences. `protocols`: the database's protocols. `results`: from study_results() with
+/// the bundle's plan.
 base::Json compare_with_bundle(const Bundle& bundle, const std::vector<ProtocolRow>& protocols,
                                const base::Json& results);
 

@@ -1,5 +1,5 @@
-/// Checks names of methods and questions that libsim and the analyses must know. Without the check, an
-/// unknown name could stay unnoticed until after the study.
+/// Checks names of methods, numbers of particles and ids of questions, which libsim and the analyses must
+/// know. Without the check, an unknown name could stay unnoticed until after the study.
 #include <algorithm>
 #include <charconv>
 

@@ -45,15 +45,15 @@ inline bool has_effects(const StimulusSpec& what) {
 
 /// Source of the mean and standard deviation (moments) of each cell's frame rate.
 enum class TimingSource {
-  Settings,  ///< all pairs from mean_fps and sd_fps of the design, as in the pilot
+  Settings,  ///< each mean_fps of the design with each smaller sd_fps, as in the pilot
   Native,    ///< as fast as the method runs: no schedule, and the moments in Cell::setting are 0
   Equal,     ///< the same mean and SD of the frame rate for all cells
   Table2,    ///< moments by cell from [[design.moments]], such as those of the paper's Table 2
   Profiles   ///< each cell's own timing profile (format 3)
 };
 
-/// An experimental factor of format 3. Formats 1 and 2 have fixed factors instead: scene, n_*, method,
-/// effects and moments.
+/// An experimental factor of format 3. Format 2 has fixed factors instead: scene, n_*, method, effects and
+/// moments.
 struct DesignFactor {
   std::string name;  ///< an id
   /// True: between subjects, so that a participant sees one level only. False: within subjects, all levels.
@@ -65,7 +65,7 @@ struct DesignFactor {
 struct Cell {
   StimulusSpec stimulus;
   FpsSetting setting;            ///< mean and standard deviation are 0 under TimingSource::Native
-  std::vector<int> levels = {};  ///< by factor: index into DesignFactor::levels; empty in formats 1 and 2
+  std::vector<int> levels = {};  ///< by factor: index into DesignFactor::levels; empty in format 2
 };
 
 enum class TrialOrder {
@@ -81,18 +81,18 @@ enum class Assignment {
 };
 
 /// Cells are grouped by (scene, n_star), in format 3 by the levels of the between-subject factors, with
-/// equally many in each group. A participant sees `groups` groups, one after
-/// another. In each group the participant sees all cells, or all pairs of cells.
+/// equally many in each group. A participant sees `groups` groups, one after another. In each group the
+/// participant sees all cells, or all pairs of pairs_of_group().
 struct Design {
   std::vector<Cell> cells;            ///< by group, in file order; trials name cells by their index
-  std::vector<DesignFactor> factors;  ///< of format 3, in file order; empty in formats 1 and 2
+  std::vector<DesignFactor> factors;  ///< of format 3, in file order; empty in format 2
   std::vector<EffectSet> effects;     ///< levels in file order; empty: the design does not vary effects
-  bool paint_temperature = false;     ///< on the water of every cell, which then needs the effect heat
+  bool paint_temperature = false;  ///< true: paints the water of every cell; each then needs the effect heat
   TimingSource timing = TimingSource::Settings;
   bool pairs =
       false;  ///< true: each trial shows two cells; without `standard` all unordered pairs of a group
   /// Two-interval trials of format 3: each other cell is paired with the standard of its group. `pairs` is
-  /// true then. By within-subject factor: index of the standard's level.
+  /// true then. By factor: index of the standard's level; 0 for a between-subject factor, which is ignored.
   std::optional<std::vector<int>> standard;
   /// Adaptive trials of format 3; none: every cell, or pair, is shown `repetitions` times.
   std::optional<Procedure> procedure;
@@ -121,7 +121,7 @@ bool is_standard(const Design& design, const Cell& cell);
 
 /// The level of a factor of format 3 as text, such as "h50".
 const std::string& level_name(const Design& design, const Cell& cell, std::size_t factor);
-/// Levels of all factors, such as "hitch h50, content dam"; in formats 1 and 2 treatment_name().
+/// Levels of all factors, such as "hitch h50, content dam"; in format 2 treatment_name().
 std::string cell_name(const Design& design, const Cell& cell);
 /// True if both cells share a level of one of the never_adjacent factors.
 bool share_level(const Design& design, const Cell& a, const Cell& b);

@@ -148,13 +148,16 @@ int read_format(const base::TomlTable& root) {
   return static_cast<int>(format);
 }
 
-/// Real time is needed where the content may leave the time of the display.
+/// base::Error if a cell has a latency or an animation error and the mode of the content is not real_time: in
+/// mode per_frame, the time of the content cannot differ from the time of the display.
 void check_content(const base::TomlTable& table, const ContentRules& content, const Design& design) {
   for (const Cell& cell : design.cells) {
     const auto& profile = cell.setting.profile;
     if (content.real_time || !profile) continue;
     if (profile->latency_ms > 0 || profile->animation_error_ms > 0)
-      table.fail("mode", "= \"per_frame\" has no time that could lag: " + profile_text(*profile),
+      table.fail("mode",
+                 "= \"per_frame\" ties the content to the frames, so it cannot lag behind the display: " +
+                     profile_text(*profile),
                  "write mode = \"real_time\", or remove latency_ms and animation_error_ms");
   }
 }

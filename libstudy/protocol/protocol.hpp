@@ -142,8 +142,8 @@ struct Protocol {
 /// Every question of the protocol with the index of its block, in the order of the file.
 std::vector<std::pair<int, const Question*>> all_questions(const Protocol& protocol);
 
-/// How strictly to read a protocol. Stored accepts protocols of earlier program versions, with any method
-/// name, any question id and any form of gaze_question and sharing_question.
+/// How strictly to read a protocol. Stored accepts protocols of earlier program versions, with any question
+/// id, any form of gaze_question and sharing_question, and in format 2 any method name and n_*.
 enum class ProtocolUse { New, Stored };
 
 /// Reads a protocol; base::Error at file:line:column for an unknown key, a wrong type, a value out of range

@@ -41,9 +41,9 @@ struct Question {
   bool operator==(const Question&) const = default;
 };
 
-/// Properties of a kind of answer. Code that reads, stores, exports or analyses answers looks them up here
-/// and never names a kind. Only the code that draws questions names kinds: libstudy/pages/gui has a switch
-/// over all kinds.
+/// Properties of a kind of answer. Code that reads, stores, exports or analyses answers looks up these
+/// properties instead of comparing kinds. Only the code that draws questions (libstudy/pages/gui) has a
+/// switch over all kinds.
 struct AnswerKindTraits {
   AnswerKind kind{};
   const char* word = "";     ///< name of the kind in protocols, databases and exports
@@ -104,7 +104,9 @@ enum class AnswerInput {
 
 struct TimedAnswer {
   Answer answer;
-  double response_time_s = 0;  ///< from the first display of the page to the last change of this answer
+  /// From the first display of the page to the last change of this answer, or for an empty answer to the
+  /// confirmation of the page; without the time in a dialog above the page.
+  double response_time_s = 0;
   /// Device that last changed this answer; for an empty answer, the device that confirmed the page; none: not
   /// known.
   std::optional<AnswerInput> input{};

@@ -124,7 +124,8 @@ std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
   });
 }
 
-constexpr double most_sequences = 50000;  // of groups; the assignment lists them all
+// Largest number of sequences of groups; the assignment lists all of them.
+constexpr double most_sequences = 50000;
 constexpr double most_places = 1e7;
 
 TimingSource read_timing_source(const base::TomlTable& table) {

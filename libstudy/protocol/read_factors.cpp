@@ -17,7 +17,7 @@ constexpr std::size_t most_factor_levels = 100;
 constexpr base::Range trace_ms_range{0.1, 10000};
 constexpr std::size_t most_trace_frames = 100000;
 
-/// What [stimulus] or a level sets.
+/// The keys that [stimulus] or a level of a factor sets.
 struct StimulusKeys {
   std::optional<std::string> scene, method, n_star, effects;
   std::optional<TimingProfile> timing;
@@ -173,7 +173,8 @@ std::vector<std::vector<int>> listed(const base::TomlTable& root, const std::vec
   return out;
 }
 
-/// Sorts the combinations so that those of one between-subject group stand together, else in file order.
+/// Sorts the combinations so that those of one between-subject group are neighbours. Otherwise keeps the
+/// order of the file.
 void sort_by_group(std::vector<std::vector<int>>& combinations, const std::vector<ReadFactor>& factors) {
   std::stable_sort(combinations.begin(), combinations.end(), [&](const auto& a, const auto& b) {
     for (std::size_t f = 0; f < factors.size(); ++f)
@@ -202,8 +203,8 @@ Cell cell_of(const base::TomlTable& root, const StimulusKeys& keys, double durat
   return cell;
 }
 
-/// Levels of effects that any cell shows, in order of first use. If some cells name one, the others show the
-/// effects of their scene.
+/// Levels of effects that any cell shows, in order of first use. If some cells name a level, the others get
+/// the level "scene".
 std::vector<std::string> used_effects(std::vector<Cell>& cells) {
   const bool any =
       std::any_of(cells.begin(), cells.end(), [](const Cell& c) { return !c.stimulus.effects.empty(); });

@@ -28,13 +28,13 @@ std::string shown(double value);
 /// a test can list the keys that the readers ask for.
 Protocol read_protocol_table(const base::TomlTable& root, ProtocolUse use = ProtocolUse::New);
 
-/// Reads [design] of formats 1 and 2.
+/// Reads [design] of format 2.
 Design read_design(const base::TomlTable& table);
 /// Reads [stimulus], [[factor]], [[combination]] and [design] of format 3; `table` is [design], `procedure`
 /// is [procedure] or null.
 Design read_factor_design(const base::TomlTable& root, const base::TomlTable& table,
                           const base::TomlTable* procedure);
-/// Reads order, never_adjacent and assignment; the cells are known.
+/// Reads order, never_adjacent and assignment into `out`, which must already have its cells.
 void read_assignment(const base::TomlTable& design, Design& out);
 /// The effects of each level, from [[design.effect_set]]. `no_table` is called with the index of a level that
 /// has no table and needs one; it must throw.
@@ -53,7 +53,7 @@ TimingProfile read_profile(const base::TomlTable& table);
 bool is_method(const std::string& word);
 /// True for a positive whole number, optionally with the suffix k.
 bool is_particle_count(const std::string& word);
-inline constexpr int most_trials = 1000;  ///< of one participant
+inline constexpr int most_trials = 1000;  ///< largest number of trials of one participant
 inline constexpr std::size_t most_cells = 1000;
 /// Every combination of the factors, ordered by scene, n_*, method, effects and moments.
 std::vector<Cell> read_cells(const base::TomlTable& design, TimingSource timing,
@@ -72,8 +72,9 @@ void check_question_ids(const std::vector<base::TomlTable>& tables, const std::v
 /// Reads the questions of a block of this kind.
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);
-/// Checks what involves several blocks: unique ids, and the ids in `like` and `ask`. Copies steps to blocks
-/// with `like`. tables: the blocks' TOML tables.
+/// Checks what involves several blocks: unique ids, equal stop_at of all fms blocks, `accept` only before the
+/// first trials, the ids in `like` and `ask`, and `count`. Copies steps and the policy for interruptions to
+/// practice and repeat blocks. tables: the blocks' TOML tables.
 void join_blocks(const std::vector<base::TomlTable>& tables, const Design& design,
                  std::vector<Block>& blocks);
 

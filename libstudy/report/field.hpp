@@ -72,7 +72,8 @@ std::string percent(const Field& field, int decimals = 0);
 /// A p value. p(): "= .029" or "< .001", for sentences. p_bare(): ".029" or "< .001", for tables.
 std::string p(const Field& field);
 std::string p_bare(const Field& field);
-/// An interval: "[0.12, 0.34]". A missing bound is printed as infinity.
+/// An interval: "[0.12, 0.34]". A bound "Inf" or "-Inf" is printed as an infinity sign, a missing bound as a
+/// dash.
 std::string interval(const Field& field, int decimals);
 /// The interval of a frame rate. An upper end above highest_rate (1000 frames/s) is printed as "no upper
 /// bound".

@@ -53,10 +53,10 @@ inline Field tested_share(const Field& pair) {
 svg::Picture preference_bars(const Field& pairs);
 
 /// Shares of timing verdicts over the showings of each method at each n_* (pilot: of each frame-rate
-/// setting), for those with a degraded or failed showing.
+/// setting), only for methods (settings) with a degraded or failed showing.
 svg::Picture timing_chart(const Field& timing, const std::string& task);
 
-/// Flow chart of participants in CONSORT style. `flow`: flow.task1 or flow.task2.
+/// Flow chart of participants in CONSORT style. `flow`: an entry of "flow", such as flow.task1.
 svg::Picture flow_chart(const Field& flow, const std::string& id, const std::string& task);
 
 /// FMS scores at the first, second, ... time of asking: quartiles, median, mean and largest. `fms`: member

@@ -90,8 +90,8 @@ std::string paired(const Field& hypothesis) {
          tests_table(hypothesis, beside["tests"], "paired tests beside").html();
 }
 
-/// A note if a test of participants' shares replaced the binomial test that the rule names. It replaces it
-/// for pairs that a person answered more than once.
+/// A note if a test of participants' shares replaced the binomial test that the rule names. The test of
+/// shares is used for pairs that a person answered more than once.
 std::string other_test(const Field& hypothesis) {
   for (const Field& test : hypothesis["tests"].entries())
     if (hypothesis["kind"].words() == "preference" && test["p"].is_number() &&

@@ -31,8 +31,8 @@ std::string people_notes(const Field& task1) {
          "</div>";
 }
 
-/// Calls `row` for each comparison for which `wanted` is true. Before the first of a score and n_*, adds a
-/// heading with both to the table.
+/// Calls `row` for each comparison for which `wanted` is true. Before the first such comparison of each score
+/// and n_*, adds a heading with both to the table.
 template <class Wanted, class Row>
 void by_score(Table& table, const Field& task1, Wanted wanted, Row row) {
   std::string last;

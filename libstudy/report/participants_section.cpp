@@ -25,7 +25,8 @@ std::string exclusions_table(const Field& root) {
          (one_trial ? " Trials are counted from nought, in the order of showing." : "") + "</p>\n";
 }
 
-/// A sentence that names the parts without exclusions; "" if there are none.
+/// A sentence that names the parts of the study (pilot, tasks) of which nothing was excluded; "" if there are
+/// none.
 std::string untouched(const Field& root) {
   std::vector<std::string> parts;
   for (const auto& [key, title] : all_parts) {

@@ -23,7 +23,8 @@ std::string interval_line(double low, double high, double y) {
          svg::path(moves, "stroke=\"#000000\" stroke-width=\"1.8\" fill=\"none\"");
 }
 
-/// Stars of the uncorrected test, a slash, and stars after Holm's correction: "** / *".
+/// Stars of the uncorrected test, a slash, and stars after Holm's correction ("n.s." without stars): "** /
+/// *". "" if the uncorrected test has no stars.
 std::string stars_of(const Field& pair) {
   const std::string plain = pair["stars"].words(), holm = pair["stars_holm"].words();
   if (plain.empty()) return "";

@@ -86,7 +86,7 @@ std::size_t place(const std::vector<Field>& list, const std::string& word) {
       list.begin());
 }
 
-/// Scores of one participant or scene: first index panel, second index method.
+/// Scores of one participant: first index panel, second index method.
 using Line = std::vector<std::vector<std::optional<double>>>;
 
 Line empty_line(const Panels& panels) {

@@ -16,7 +16,8 @@ bool of(const Field& entry, const std::string& score, const std::string& n_star)
   return entry["score"].words() == score && entry["n_star"].words() == n_star;
 }
 
-/// The table with a row by `row` for each entry of task1's list `list` that has this score, grouped by n_*.
+/// Fills the table: calls `row` for each entry of the list `list` of task1 that has this score, grouped by
+/// n_*. Returns the table's HTML, or "" without such an entry.
 template <class Row>
 std::string by_n_star(Table table, const Field& task1, const std::string& list, const std::string& score,
                       Row row) {

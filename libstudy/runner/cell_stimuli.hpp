@@ -12,8 +12,8 @@
 
 namespace study {
 
-/// Shows a cell from its bake if one exists, else as live fluid; with --display none, as an empty stimulus.
-/// Uses the stimulus of the last cell again if the next cell needs the same stimulus.
+/// Shows a cell from its bake if it has one. A cell without a bake is live fluid, or with --display none an
+/// empty stimulus. Uses the stimulus of the last cell again if the next cell needs the same stimulus.
 class CellStimuli final : public StimulusSource {
  public:
   /// base::Error if a solver setting is for a cell that is not computed live.
@@ -25,7 +25,8 @@ class CellStimuli final : public StimulusSource {
   bool is_live(const Cell& cell) const { return shown_ && !bakes_.of(cell); }
   /// Description of the stimuli of all cells, for the record, whether or not a cell was shown.
   std::string description() const { return description_; }
-  /// Guard counts summed over all live fluid that was computed.
+  /// Numbers of interventions of the solver's guards (sim::GuardCounts), summed over all live fluid computed
+  /// so far.
   sim::GuardCounts guards() const;
   const SessionBakes& bakes() const { return bakes_; }
   const SessionSettings& settings() const { return settings_; }

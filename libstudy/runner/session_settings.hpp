@@ -25,8 +25,8 @@ class SessionSettings {
   /// Text for the record: "; at setting SHA-256 (Ours n_star=16384 ...)" for each setting; empty without
   /// settings.
   std::string description() const;
-  /// Lines for each setting: its content and measured cost, scenes other than the measured scene, and a tau
-  /// that follows the setting instead of the frame rate.
+  /// Lines for each setting: its content and measured cost, a note for each shown scene other than the
+  /// measured scene, and a note if tau follows the setting instead of the frame rate.
   std::vector<std::string> notes(const Protocol& protocol) const;
 
  private:

@@ -115,10 +115,11 @@ void take_headset(const RunOptions& options, const Protocol& protocol, SessionSe
     display->clear();
     do {
       if (others() == Request::Stop) return Request::Stop;
-      // At least once, because the headset may report an unseen frame before the event that caused it.
+      // The loop runs at least once, because the headset may report an unseen frame before the event that
+      // caused it.
       display->turn();
     } while (!display->focused());
-    // Further cuts in the loop, where nothing was shown.
+    // Adds the cuts that the headset reported during the loop, in which nothing was shown.
     if (const auto more = display->take_spoilt()) note_cut(spoilt, *more);
     return *spoilt;
   };

@@ -21,7 +21,7 @@ struct SessionSetup {
   bool virtual_clock = false;
   std::unique_ptr<Clock> clock;
   std::unique_ptr<Display> display;
-  std::unique_ptr<FeatureSource> features;  ///< for the frames observer
+  std::unique_ptr<FeatureSource> features;  ///< picture features for simulated observers; null: a person
   std::unique_ptr<Participant> participant;
   std::unique_ptr<CellStimuli> stimuli;
   std::shared_ptr<GazeSource> gaze;      ///< the recorded gaze source; null: no gaze is recorded
@@ -36,7 +36,7 @@ struct SessionSetup {
   std::function<void(bool reveal)> open_mirror;
   std::function<void()> poll;         ///< handles events of the window; empty: no window
   std::optional<ScreenFacts> screen;  ///< facts of the window's screen; none: no window
-  std::vector<FramedScene> scenes;    ///< scenes as framed; empty for openxr and none
+  std::vector<FramedScene> scenes;    ///< scenes as framed; empty for --display openxr and none
   std::vector<std::string> warnings;  ///< warnings about clock and database (warn_of_station())
   MeasuredReport rates;               ///< measured rates of live cells; none: nothing was measured
 
@@ -48,9 +48,9 @@ struct SessionSetup {
 /// True if participants are asked for permission to record gaze.
 bool asks_gaze(const Protocol& protocol);
 
-/// `ptpe`: text of the PTPE file for temporal acceleration; none: the paper's model. `ptpe_place` names this
-/// file in errors, `setting_place` the options' solver settings. base::Error naming a missing, wrong or
-/// inconsistent part.
+/// Makes the parts of a session. `ptpe`: text of the PTPE file for temporal acceleration; none: the paper's
+/// model. `ptpe_place` names this file in errors, `setting_place` the options' solver settings. base::Error
+/// naming a missing, wrong or inconsistent part.
 SessionSetup make_session_setup(const RunOptions& options, const Protocol& protocol,
                                 const std::optional<std::string>& ptpe, const std::string& ptpe_place,
                                 const std::string& setting_place = "--setting");

@@ -34,7 +34,8 @@ class Farewell {
  private:
   bool offer(Offer what) { return run_.parts.participant.offer(what, run_.parts.clock, check_); }
 
-  /// Offers the SSQ. Every item is optional, so that participants who feel unwell can leave at once.
+  /// Offers the last SSQ page that is not done. Every item is optional, so that participants who feel unwell
+  /// can leave at once.
   void ask_how_they_feel(std::span<const OpenUnit> left) {
     const auto last = std::find_if(left.rbegin(), left.rend(), [this](const OpenUnit& unit) {
       return run_.block(unit).kind == BlockKind::Ssq;

@@ -1,6 +1,6 @@
 #pragma once
-/// Buffers the frames of a running trial with gaze and slots, so that the session's thread never waits for
-/// the disk between two frames.
+/// Buffers the frames, gaze and slots of a running trial, so that the session's thread never waits for the
+/// disk between two frames.
 
 #include <atomic>
 #include <condition_variable>
@@ -25,15 +25,15 @@ struct Unwritten {
   std::vector<IpdChange> ipds;
 };
 
-/// The session and the presentation whose records a journal writes.
+/// The session and the presentation (showing of a stimulus) whose records a FrameJournal writes.
 struct JournalPlace {
   std::int64_t session = 0, presentation = 0;
   std::int64_t start_ns = 0;  ///< start of the presentation
 };
 
-/// With in_background, a thread commits the buffered records every half second, so that a killed program
-/// loses at most half a second; only this thread uses the store until finish(). Without in_background, all
-/// records stay in memory until finish().
+/// Writes the frames, gaze and slots of one presentation to the store. With in_background, a thread commits
+/// the buffered records every half second, so that a killed program loses at most half a second; only this
+/// thread uses the store until finish(). Without in_background, all records stay in memory until finish().
 class FrameJournal {
  public:
   /// origin: source of the gaze samples passed to add().

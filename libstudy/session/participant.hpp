@@ -1,5 +1,5 @@
 #pragma once
-/// The participant's interface: a person or a simulated observer. Both get the same pages.
+/// The interface to the participant, who is a person or a simulated observer. Both get the same pages.
 
 #include <cstdint>
 #include <functional>
@@ -40,11 +40,12 @@ enum class PauseKind {
   Break,   ///< a countdown, then a page until the participant continues
   First,   ///< a word announces the first of two stimuli
   Second,  ///< a word announces the second
-  Held,    ///< paused by the experimenter: a text until over() is true
-  Trouble  ///< a problem prevents a trial: a text until over() is true, or with a button if `over` is empty
+  Held,    ///< paused by the experimenter: a text until Pause::over() is true
+  /// a problem prevents a trial: a text until Pause::over() is true, or with a button if it is empty
+  Trouble
 };
 
-/// Durations of the word before a stimulus of a pair and of the black screen after it, s.
+/// Durations of the word before a stimulus of a pair and of the black screen after the word, s.
 inline constexpr double word_s = 1, after_word_s = 0.5;
 
 struct Pause {
@@ -87,7 +88,8 @@ class Participant {
   virtual std::optional<std::string> simulated() const = 0;
   /// Shows the block's text for at least `least_s`, until the participant continues.
   virtual void read(const Block& block, double least_s, Clock& clock, const Check& check) = 0;
-  /// Asks `questions` on one page. Returns one answer each, valid for its question (is_valid).
+  /// Asks `questions` on one page. Returns one answer for each question, in their order; every answer is
+  /// valid (is_valid).
   virtual std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                        const Occasion& occasion, Clock& clock, const Check& check) = 0;
   /// Called before each showing of a trial; may throw Left.

@@ -20,8 +20,10 @@ void check_answers(std::span<const Question> questions, std::span<const TimedAns
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (is_valid(questions[i], answers[i].answer)) continue;
-    throw base::Error("question '" + questions[i].id + "'", "was answered outside its scale",
-                      "answer within the scale");
+    throw base::Error(
+        "question '" + questions[i].id + "'",
+        "got an answer that is outside its scale, or none although one is required",
+        "correct the observer model or the page that answered; the protocol has the question's scale");
   }
 }
 

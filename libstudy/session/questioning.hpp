@@ -9,8 +9,8 @@
 
 namespace study {
 
-/// True if the score is on the scale, one of the choices, or left out where allowed. Only answers of kind
-/// Text have words.
+/// True if the score is on the question's scale or one of its choices, or if an optional question has no
+/// score. A question of kind Text takes words instead of a score; only an optional one may stay empty.
 bool is_valid(const Question& question, const Answer& answer);
 
 class Questioning {
@@ -19,11 +19,11 @@ class Questioning {
 
   /// Asks those of `questions` that have no answer in `unit` yet, on one page, and commits the answers
   /// together. Personal answers go to the personal file; a personal question with an answer in the file is
-  /// not asked again. With `last`, the unit is then done. attempt: the judged showing of the trial, from 1; 0
-  /// for a page. Returns the ending if an answer ends the session. The ending is committed together with the
-  /// answers, but before personal answers: if the program is killed in between, an excluded person is still
-  /// excluded. Refused consent stores no answers. base::Error for an invalid answer; then no answer of the
-  /// page is stored.
+  /// not asked again if its wording is unchanged. With `last`, the unit is then done. attempt: number of the
+  /// trial's showing that the questions are about, from 1; 0 for a page. Returns the ending if an answer ends
+  /// the session. The ending is committed together with the answers, but before personal answers: if the
+  /// program is killed in between, an excluded person is still excluded. Refused consent stores no answers.
+  /// base::Error for an invalid answer; then no answer of the page is stored.
   std::optional<Ending> ask(const OpenUnit& unit, int attempt, const std::vector<Question>& questions,
                             const Occasion& occasion, bool last, const Check& check);
 

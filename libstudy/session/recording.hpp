@@ -26,8 +26,8 @@ struct Recorded {
   std::vector<IpdChange> ipds{};
 };
 
-/// Records one presentation from construction to destruction. The constructor reads whether the participant
-/// allows gaze.
+/// Records one presentation from construction to destruction. The constructor reads from the store whether
+/// the participant allows gaze recording.
 class Recording {
  public:
   explicit Recording(const Running& run);
@@ -35,16 +35,16 @@ class Recording {
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
-  /// Kind of source of the recorded gaze.
+  /// The kind of the recorded gaze's source; Mouse if no gaze is recorded.
   GazeOrigin origin() const { return gaze_ ? gaze_->origin() : GazeOrigin::Mouse; }
   /// Returns the gaze, slots and changes of the IPD recorded since the last call.
   Recorded take();
-  /// Throws TrialAgain if the samples of an eye tracker that take() returned had no eyes for longer than
-  /// longest_gaze_gap_ns.
+  /// Throws TrialAgain if the eye tracker's samples that take() returned had a gap longer than
+  /// longest_gaze_gap_ns without a valid sample.
   void require_gaze() const;
 
   /// Name of the gaze source that the fluid follows now. An eye tracker without permission to record is not
-  /// read: the fluid then follows the head ("head") or the middle of the picture ("fixed").
+  /// read: the fluid then follows the head in a headset ("head"), else the middle of the picture ("fixed").
   static std::string followed(const Running& run);
 
  private:

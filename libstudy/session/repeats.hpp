@@ -1,12 +1,13 @@
 #pragma once
-/// How often a cut trial is shown again, and how long the screen is black before the next showing. The rule
-/// is the same for every display and every cause of a cut. Repeated cuts then do not make a stimulus flash.
+/// How often a cut trial is shown again, and how long the screen is black before the next showing. The rules
+/// are the same for every display and every cause of a cut. The black screen keeps repeated cuts from making
+/// a stimulus flash.
 
 #include "libstudy/session/running.hpp"
 
 namespace study {
 
-/// Largest number of repeats of a trial. After one more cut the session pauses.
+/// Largest number of repeats of a trial without a pause: one more cut pauses the session.
 inline constexpr int most_repeats = 3;
 /// Shortest black screen between a cut and the next showing, s.
 inline constexpr double black_after_cut_s = 1;
@@ -14,9 +15,9 @@ inline constexpr double black_after_cut_s = 1;
 /// a cut for lack of gaze, s. Otherwise the session pauses.
 inline constexpr double eyes_within_s = 3;
 
-/// Applies the rule in one running session. Each pause reports the problem (SessionHooks::trouble). It lasts
-/// until the experimenter continues or, without a console, the participant. With a simulated participant,
-/// base::Error instead of a pause; the session stays open.
+/// Repeats cut trials and pauses by the rules of this file, in one running session. Each pause reports the
+/// problem (SessionHooks::trouble). It lasts until the experimenter continues or, without a console, the
+/// participant. With a simulated participant, base::Error instead of a pause; the session stays open.
 class Repeats {
  public:
   explicit Repeats(const Running& run) : run_(run) {}

@@ -1,5 +1,5 @@
 #pragma once
-/// State that the parts of a running session share, and the exceptions that end it early.
+/// State that the parts of a running session share, and the exception that cuts a trial.
 
 #include <functional>
 #include <string>
@@ -37,7 +37,7 @@ struct TrialAgain {
 };
 
 /// Acts on the current request: Stop throws Stopped, EndSession throws Ending, Cut throws TrialAgain if
-/// `in_trial`. Before that, logs the headset's events.
+/// `in_trial`. Before acting, logs the headset's events.
 void poll_requests(const Running& run, bool in_trial);
 
 }  // namespace study

@@ -18,8 +18,8 @@ namespace {
 /// At each target: time for a saccade and for the eyes to settle, then time in which samples count, s.
 constexpr double settle_s = 0.8, sample_s = 1;
 
-/// Positions (x, y) of the targets, from -1 to 1: first the middle, then each next to the last. Long jumps
-/// between corners would take longer.
+/// Positions (x, y) of the targets, from -1 to 1: first the middle, then a corner; each later target is a
+/// neighbour of the target before. Long jumps between corners would take longer.
 constexpr std::array<std::array<int, 2>, 9> grid{
     {{0, 0}, {-1, 1}, {0, 1}, {1, 1}, {1, 0}, {1, -1}, {0, -1}, {-1, -1}, {-1, 0}}};
 

@@ -14,8 +14,8 @@ int cell_index(const PlannedTrial& trial, int interval) {
   return interval == 0 ? trial.first : trial.second.value();
 }
 
-/// Simulated time between the first and the last frame, divided by their display time. Steps back in
-/// simulated time do not count.
+/// Simulated time between the first and the last frame, divided by the display time between them. Steps back
+/// in simulated time do not count.
 double play_speed(const PlayedTrial& played, TimingGrade grade) {
   double simulated_s = 0;
   for (std::size_t i = 1; i < played.frames.size(); ++i) {
@@ -39,8 +39,8 @@ FpsSetting shown_setting(FpsSetting setting, FpsMean mean, const std::vector<std
   return setting;
 }
 
-/// Mean absolute difference between the step of the simulated time and the step of the display; rewinds do
-/// not count. 0 for fewer than two frames.
+/// Mean absolute difference, ms, between the simulated time and the display time from one frame to the next.
+/// Rewinds do not count. 0 for fewer than two frames.
 double animation_error_ms(const PlayedTrial& played, TimingGrade grade) {
   double sum_s = 0;
   int count = 0;

@@ -93,7 +93,8 @@ class LiveFluid final : public Stimulus {
   void draw(const Canvas& canvas) override;
   /// The simulation at the prepared step; exists from the first start() or prepare() on.
   sim::Simulation& simulation() { return *simulation_; }
-  /// Guard counts over all frames since the stimulus was made, including frames before a rewind.
+  /// Numbers of interventions of the solver's guards over all frames since the stimulus was made, including
+  /// frames before a rewind.
   const sim::GuardCounts& guards() const { return guards_; }
   /// True if the method uses the picture of the last frame, so that every frame must be drawn.
   bool follows_picture() const { return simulation_ && simulation_->follows_picture(); }
@@ -140,8 +141,8 @@ struct StimulusChoice {
   /// Live fluid only: frame rate from which temporal acceleration computes tau. None = the measured frame
   /// rate.
   std::optional<sim::FrameRate> fixed_rate;
-  /// Live fluid only: all numbers of the solver, for this method and n_*. tau then follows from the setting's
-  /// beta instead of a frame rate. None = the default numbers.
+  /// Live fluid only: all numbers of the solver; it replaces `method`, `n_star`, `fixed_rate` and `model`.
+  /// tau then follows from the setting's beta instead of a frame rate. None = the default numbers.
   std::optional<sim::SolverSetting> setting = {};
   stats::PtpeModel model;
   /// Live fluid only: effects that replace the effects of the scene's file. None = the effects of the file.

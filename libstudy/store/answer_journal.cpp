@@ -118,7 +118,7 @@ void AnswerJournal::require_written() {
   if (!unmarked_ || try_mark()) return;
   throw base::Error(file_.path().string(), "lacks the last answers, which are in the database only",
                     "free space on the disk and see that the file can be written; vip-study resume then "
-                    "writes it");
+                    "writes the missing answers into it");
 }
 
 void AnswerJournal::say(const std::string& line) const {
@@ -130,7 +130,7 @@ void AnswerJournal::remove_if_blank() noexcept {
   try {
     if (blank_) replace_journal(file_.path(), "");
   } catch (const base::Error&) {
-    // The file that stays contains no row marked as kept, so it does no harm.
+    // A journal that could not be removed contains no row marked as kept, so it does no harm.
   }
 }
 

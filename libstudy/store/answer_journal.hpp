@@ -2,17 +2,18 @@
 /// "<database>.answers.jsonl": a readable copy of all answers beside the database, from which `vip-study
 /// salvage` rebuilds them when the database is damaged or gone. Mode 0600; links are not followed.
 ///
-/// Each line is a JSON object: a table row as it is after a commit (journal_rows.hpp). If a row has several
-/// lines, the last one is valid. The journal contains the answers and all data that decide which answers
-/// count: plans, exclusions, endings, notes, permissions and the event log. It omits frames, slots, head
-/// poses and gaze because they have too many rows. Personal answers are in the personal file only.
+/// Each line is a JSON object: a table row as it is after a commit (journal_rows.hpp), or a mark such as
+/// {"ready": n}. If a row has several lines, the last one is valid. The journal contains the answers and all
+/// data that decide which answers count: plans, exclusions, endings, notes, permissions and the event log. It
+/// omits frames, slots, head poses and gaze because they have too many rows. Personal answers are in the
+/// personal file only.
 ///
 /// Order of writing for each commit: append the rows and the line {"ready": n}, flushed to disk if the batch
 /// contains answers; commit; append the line {"kept": n}. So every acknowledged row is in both files. If the
 /// last batch has "ready" but no "kept", the program ended during its commit. The next AnswerJournal commits
 /// this batch, so its answers are neither lost nor asked again. A truncated last line is ignored. If the
-/// database lacks a row marked as kept, the file is not the database that was written: opening it for writing
-/// is then an error that names vip-study salvage.
+/// database lacks a row marked as kept, the file at its path is not the database that was written: opening it
+/// for writing is then an error that names vip-study salvage.
 ///
 /// For code that writes the database:
 /// - Store::commit() writes the journal too; every method of Store that changes rows must end with it.
@@ -46,11 +47,12 @@ class AnswerJournal {
   AnswerJournal(const AnswerJournal&) = delete;
   AnswerJournal& operator=(const AnswerJournal&) = delete;
 
-  /// Call before the commit: appends the rows that the open transaction changed. base::Error, with the
-  /// journal unchanged, if the journal cannot be written.
+  /// Call before the commit: appends to the journal the rows that the open transaction changed. base::Error,
+  /// with the journal unchanged, if the journal cannot be written.
   void write();
-  /// Call after the commit: marks the batch of the last write() as kept. If the mark cannot be written, gives
-  /// a warning; the next write(), require_written() and the destructor try again.
+  /// Call after the commit: marks the batch of the last write() in the journal as kept (committed). If the
+  /// mark cannot be written, gives a warning; the next write(), require_written() and the destructor try
+  /// again.
   void kept();
   /// base::Error if the journal still lacks committed rows or their mark, after one more try to write them.
   void require_written();

@@ -151,7 +151,8 @@ RegisteredExport::RegisteredExport(const fs::path& database, const std::string& 
   keep_own();
   Transaction transaction(*file);
   enter(*file, own_.kind, own_.path, own_.people);
-  // The journal may contain events of a lost or interrupted commit, so the new event_id must exceed theirs.
+  // The answer journal beside the database may contain events that the database lacks. The new event_id must
+  // exceed the ids of those events.
   Statement(*file,
             "INSERT INTO event (event_id, utc, kind, detail) SELECT max(coalesce(max(event_id), 0), ?) + 1, "
             "?, 'export', ? FROM event")
@@ -199,8 +200,8 @@ void RegisteredExport::will_be(const std::string& sha256) {
   named_ = true;
 }
 
-// The transaction checks for tombstones after the rename. So a withdrawal either finds the export at its
-// path, or is found here.
+// The transaction checks after the rename for people who withdrew (tombstones). So a withdrawal either finds
+// the export at its path, or is found here.
 void RegisteredExport::is_in_place() {
   base::sync_folder_of(own_.path);
   const auto file = open_register(database_);

@@ -99,8 +99,8 @@ void delete_exports_of_withdrawn(sqlite::Connection& database, CleanUp& done);
 /// Functions on rows of the table `export`, used by the register and by the deletion of exports.
 namespace export_rows {
 
-/// Column `kind` of a folder made for registered files. Such a row lists no people; the folder is removed
-/// once it is empty.
+/// Value of the column `kind` for a folder that was made for registered files. Such a row lists no people;
+/// the folder is removed once it is empty.
 inline constexpr const char* folder_kind = "folder";
 
 /// Name of this computer; empty if it has none.

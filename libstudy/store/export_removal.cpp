@@ -85,8 +85,8 @@ void forget(const std::vector<OwnExport>& made) {
   forget_own_exports(ids);
 }
 
-/// Updates this installation's register for exports that no longer exist: finishes the entries of exports
-/// that this program deleted, and removes the other entries.
+/// Updates this installation's register for exports that no longer exist: reduces the entries of exports that
+/// this program deleted to a digest (has_deleted_own_export()), and removes the other entries.
 void settle_gone(const std::vector<OwnExport>& made) {
   std::vector<OwnExport> moved;
   for (const OwnExport& one : made) {

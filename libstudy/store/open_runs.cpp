@@ -256,7 +256,8 @@ void Store::mark_excluded(std::int64_t session, std::int64_t trial, const std::s
 }
 
 void Store::throw_no_trial() const {
-  throw base::Error(path_.string(), "holds no such trial of this session", "name a trial of the session");
+  throw base::Error(path_.string(), "lacks the trial of this session that was to be changed",
+                    "restore a backup of it");
 }
 
 void Store::choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second) {

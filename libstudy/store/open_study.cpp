@@ -46,7 +46,8 @@ std::vector<std::string> withdrawn(Connection& database, const JournalContent& c
 }
 
 /// Writes into `copy` the journal's permission changes and consent answers that the database lacks or has
-/// otherwise. Skips a row whose parent is missing: its session, and so the data to withhold, are missing too.
+/// with other values. Skips a row whose parent is missing: its session, and so the data to withhold, are
+/// missing too.
 void take_decisions(Connection& copy, const JournalRows& rows) {
   Statement asks(copy,
                  "SELECT 1 FROM question WHERE question_id = ? AND code IN ('gaze_kept', 'data_shared')");

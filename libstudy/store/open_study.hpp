@@ -12,8 +12,8 @@ namespace study {
 /// A database that is open for reading.
 struct OpenedStudy {
   std::unique_ptr<sqlite::Connection> database;
-  /// Rows that only its journal contains, in words: "3 answers and 9 other rows are in the journal only";
-  /// empty: none.
+  /// Rows that only the database's journal of answers contains, in words: "3 answers and 9 other rows are in
+  /// the journal only"; empty: none.
   std::string lacking;
 };
 

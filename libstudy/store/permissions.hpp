@@ -40,7 +40,8 @@ struct PermissionRequest {
 
 /// The result of change_permissions(), and the files that the experimenter must handle.
 struct PermissionChange {
-  std::int64_t gaze_deleted = 0;          ///< deleted samples, with those of an earlier interrupted refusal
+  /// number of deleted gaze samples, with those that an interrupted earlier refusal left
+  std::int64_t gaze_deleted = 0;
   std::vector<std::string> backups;       ///< backups that still contain the participant's gaze: delete them
   std::vector<std::string> left;          ///< files that could not be cleaned: path, reason and remedy
   std::vector<std::string> gaze_exports;  ///< exports that may contain the gaze: delete or repeat them

@@ -29,8 +29,9 @@ class PersonalFile {
   /// Stores and commits entries; a participant's new answer to a question replaces the earlier one.
   void keep(const std::vector<PersonalEntry>& entries);
   std::vector<PersonalEntry> read(const std::string& participant);
-  /// Renames participants in one transaction; `codes`: new code by old code. Does nothing if `batch` was done
-  /// before: one participant's new code may be another's old code, so a second renaming would be wrong.
+  /// Renames participants in one transaction; `codes`: new code by old code. Does nothing if the renaming
+  /// with the id `batch` was done before: one participant's new code may be another's old code, so a second
+  /// renaming would be wrong.
   void rename(const std::string& batch, const std::map<std::string, std::string>& codes);
   /// Deletes the entries of a participant and overwrites their bytes.
   void forget(const std::string& participant);

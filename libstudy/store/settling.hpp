@@ -16,8 +16,8 @@ namespace study {
 std::string head_for(sqlite::Connection& database);
 
 struct Comparison {
-  std::string news;            ///< journal lines of database rows that the journal lacks or has otherwise
-  std::int64_t lost = 0;       ///< rows marked as kept in the journal that the database lacks
+  std::string news;       ///< journal lines of database rows that the journal lacks or has with other values
+  std::int64_t lost = 0;  ///< rows marked as kept in the journal that the database lacks
   std::int64_t answers = 0;    ///< answers among the lost rows
   std::int64_t different = 0;  ///< answers that differ between database and journal
 };

@@ -153,7 +153,7 @@ void Store::keep_file() {
 void Store::commit(Transaction& transaction) {
   if (given_up_) {
     throw sqlite::LockedOut(path_.string(), "was locked by another program; nothing more is written now",
-                            "run vip-study resume --db " + path_.string());
+                            "close that program, then run vip-study resume --db " + path_.string());
   }
   journal_->write();
   transaction.commit();
@@ -250,7 +250,9 @@ void Store::mark_done(std::int64_t session, std::int64_t unit, const std::string
                  "UPDATE unit SET state = 'done', done_utc = ? WHERE unit_id = ? AND session_id = ? "
                  "RETURNING position");
   if (!done.bind_all(now, unit, session).step())
-    throw base::Error(path_.string(), "holds no such unit of this session", "restore a backup of it");
+    throw base::Error(path_.string(),
+                      "has no unit " + std::to_string(unit) + " of session " + std::to_string(session),
+                      "restore a backup of it");
   const std::string where = "unit " + done.text(0);
   done.reset();
   Statement(*database_,

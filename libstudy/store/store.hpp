@@ -1,6 +1,6 @@
 #pragma once
-/// Writes a study's database during sessions: first the whole plan, then one commit per page of answers. All
-/// failures are base::Error and name the file; earlier commits stay in the database.
+/// Writes a study's database during sessions: first the whole plan, then each page of answers in a commit of
+/// its own. All failures are base::Error and name the file; earlier commits stay in the database.
 
 #include <atomic>
 #include <cstdint>
@@ -53,10 +53,11 @@ struct SessionPlan {
   std::optional<std::string> observer;  ///< simulated observer; none = a person
   bool virtual_clock = false;
   std::string display, stimulus, machine, time_zone;
-  std::optional<std::string> ptpe;              ///< the PTPE file in full
-  std::string gaze_source = "none";             ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
-  std::string station;                          ///< name of the station that records the session
-  std::optional<StationNumber> station_number;  ///< open_runs() leaves it empty: slot and seed include it
+  std::optional<std::string> ptpe;   ///< the PTPE file in full
+  std::string gaze_source = "none";  ///< "tracked", "head", "mouse", "fixed", "fixation" or "none"
+  std::string station;               ///< name of the station that records the session
+  /// open_runs() leaves it empty, because slot and seed already depend on it
+  std::optional<StationNumber> station_number;
   std::optional<double> screen_width_mm, viewing_distance_mm;
   std::optional<double> refresh_hz;   ///< rate of the display; none: frames are shown when ready
   std::vector<SceneFraming> framing;  ///< open_runs() leaves it empty; empty in a new plan: nothing is drawn
@@ -77,7 +78,7 @@ struct OpenUnit {
   std::int64_t trial_id = 0;          ///< 0 for a page
   std::optional<PlannedTrial> trial;  ///< none for a page
   int attempts = 0;                   ///< showings of the trial so far
-  bool begun = false;                 ///< the trial was shown after it was last set aside, if it ever was
+  bool begun = false;  ///< a showing of the trial began since the trial was planned or last set aside
   std::vector<std::string> answered;  ///< ids of answered questions, which are not asked again
 };
 

@@ -92,7 +92,7 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
   Statement insert(database,
                    "INSERT INTO question (protocol_id, code, wording, language, kind, scale_min, scale_max, "
                    "anchors, personal) VALUES (?,?,?,?,?,?,?,?,?)");
-  std::set<std::string> written;  // ids of written questions: blocks that ask the same ones share them
+  std::set<std::string> written;  // ids of written questions; blocks that ask the same question share its row
   for (const auto& [block, question] : all_questions(protocol)) {
     if (!written.insert(question->id).second) continue;
     insert
@@ -276,7 +276,7 @@ void Store::check_newcomer(std::int64_t protocol_id, const SessionPlan& plan) {
   Statement gone(*database_, "SELECT 1 FROM tombstone WHERE participant = ?");
   if (gone.bind_all(plan.participant).step()) {
     throw base::Error(path_.string(), "participant " + plan.participant + " withdrew from this study",
-                      "give another code: every merge deletes the data under this one");
+                      "give another code: every merge deletes the data under this code");
   }
 }
 

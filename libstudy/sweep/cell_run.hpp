@@ -13,8 +13,8 @@ namespace study {
 struct KeptPicture {
   double time_s = 0;  ///< time since the gate opened
   std::string png;
-  /// Masks of the fovea and of the most salient part, packed by to_bits(). Only the reference run stores
-  /// masks, with the first picture of each pair.
+  /// Masks of the fovea and of the most salient part, packed by to_bits(). Only runs of the reference setting
+  /// store masks, with the first picture of each pair.
   std::string fovea = {}, salient = {};
 };
 
@@ -34,7 +34,7 @@ struct WaterSample {
 };
 
 struct FrameCost {
-  double solve_ms = 0;            ///< time of the solver, with passing the picture to the saliency
+  double solve_ms = 0;  ///< time of the solver, including the transfer of the picture to the saliency
   std::optional<double> draw_ms;  ///< time of transfer and rendering; empty: no picture is drawn
   double all_ms() const { return solve_ms + draw_ms.value_or(0); }
 };

@@ -19,8 +19,8 @@ enum class PictureError {
   Ssim,     ///< E5: 1 - SSIM
   Flip,     ///< E5: LDR-FLIP
   Film,     ///< E6: mean of 1 - SSIM over the whole run
-  Flicker   ///< E7: root mean square difference over 255, over the whole run, between the changes within 1/30
-            ///< s of the run's and of the reference's pictures
+  Flicker  ///< E7: root mean square difference over 255 between the change of the run's picture within 1/30 s
+           ///< and the change of the reference's picture, over the whole run
 };
 inline constexpr std::size_t picture_error_count = 7;
 using PictureErrors = std::array<double, picture_error_count>;

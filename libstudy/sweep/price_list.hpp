@@ -122,7 +122,7 @@ PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
 
 /// Cells with seeds 1 to `seeds` of each setting that is on the Pareto front of some error, in the order of
-/// the sweep.
+/// PriceList::settings.
 std::vector<SweepCell> more_seeds_of_fronts(const PriceList& list, const SweepPlan& plan, int seeds);
 
 /// A setting in words: n_* and each knob that differs from its usual value: "n_* 512, projections 8".

@@ -19,7 +19,8 @@ struct SweepTable {
 /// All tables of a sweep file. Cells that are not comparable are in different tables.
 struct SweepTables {
   std::vector<SweepTable> tables;
-  /// Sentences that say why cells are in no table: the reference is missing, or the scene file has changed.
+  /// Sentences that say why cells are in no table, for example that the reference is missing or the scene
+  /// file has changed.
   std::vector<std::string> left_out;
 };
 SweepTables sweep_tables(const std::vector<StoredCell>& cells);

@@ -43,7 +43,8 @@ class SweepFile {
   void add(const StoredCell& cell);
   /// Keys of the cells that were run on this machine.
   std::set<std::string> keys(const std::string& machine);
-  /// All cells, ordered by origin, scene, setting and seed. The order does not depend on when they were run.
+  /// All cells, ordered by origin, scene, setting, run length, picture sizes and seed. The order does not
+  /// depend on when they were run.
   std::vector<StoredCell> cells();
   /// Adds the cells of the sweep file `shard` that this file lacks, in one transaction. Returns their number.
   std::int64_t merge(const std::filesystem::path& shard);

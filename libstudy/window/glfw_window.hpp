@@ -57,7 +57,8 @@ class GlfwWindow {
   /// GLFW codes of the keys pressed since the last call, also of short presses during a slow frame. A key
   /// held down counts once.
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
-  /// Seconds since the last key, button or movement of the mouse, or since the window was opened. Any thread.
+  /// Seconds since the last key, button or movement of the mouse, or since the window was opened. Any thread
+  /// may call it.
   double idle_s() const;
   /// True if the window is minimised, or was minimised at any time since the last call: the participant could
   /// not see it then.

@@ -66,7 +66,7 @@ class PictureTaker {
   std::unique_ptr<MirrorPicture> picture_;
 };
 
-/// The mirror's window. Its context is current only while it shows a picture.
+/// The mirror's window. Its OpenGL context is current only during the constructor and during show().
 class PictureWindow {
  public:
   explicit PictureWindow(bool reveal) : window_(choice_of(reveal)) {

@@ -14,7 +14,8 @@ namespace study {
 /// Shows the middle of the left eye's view, about ten times a second, or less often if drawing is slow. A
 /// separate thread draws the view in a context that shares the headset's pictures, reads the pixels back and
 /// shows them in the window. The window has another context, because the headset's OpenGL may be on another
-/// display or device. The headset's slots and the session's thread never wait for the mirror.
+/// display or device. The session's thread never waits for the mirror. A slot waits for at most one strip of
+/// the mirror's picture (mirror_picture.cpp).
 class HeadsetMirror {
  public:
   /// Call it on the display's thread; the display must outlive the mirror. reveal: shows stimuli too;

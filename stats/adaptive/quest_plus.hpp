@@ -13,11 +13,11 @@ namespace stats {
 class QuestPlus {
  public:
   /// `likelihood(s, p, o)` is the probability of outcome o for stimulus s under parameters p; over o it sums
-  /// to 1. `prior` has one weight of 0 or more for each parameter point; the sum need not be 1.
-  /// `interest` gives each parameter point the index of its marginal cell. The entropy is that of these
-  /// cells, so parameters that a cell sums over do not steer the choice (Prins 2013). Empty: each point is a
-  /// cell. std::invalid_argument: no stimulus or outcome, no positive weight, a probability outside [0, 1],
-  /// or a wrong length of `interest`.
+  /// to 1. `prior` has one weight of 0 or more for each parameter point; the sum need not be 1. `interest`
+  /// gives each parameter point the index of its marginal cell: the points of a cell share the values of the
+  /// parameters of interest. The entropy is that of the cells, so the other parameters do not steer the
+  /// choice (Prins 2013). Empty: each point is a cell. std::invalid_argument: no stimulus or outcome, no
+  /// positive weight, a probability outside [0, 1], or a wrong length of `interest`.
   QuestPlus(int stimuli, int outcomes, std::span<const double> prior,
             const std::function<double(int, int, int)>& likelihood, std::span<const int> interest = {});
 
@@ -57,7 +57,7 @@ struct GridEstimate {
   double low = 0, high = 0;  ///< equal-tailed credible interval
 };
 
-/// `values[p]` is the parameter's value at point p, `weights` the posterior. Each distinct value stands for
+/// `values[p]` is the parameter's value at point p, `weights` the posterior. Each distinct value represents
 /// the interval that reaches half-way to its neighbours; within it the probability is spread evenly, so the
 /// interval's ends are not bound to grid values. std::invalid_argument: unequal lengths or no value.
 GridEstimate grid_estimate(std::span<const double> values, std::span<const double> weights,

@@ -16,7 +16,8 @@ struct StaircaseRules {
   /// down, this many negative ones in a row one step up. 2 and 1 lead to the stimulus with 70.7 % positive
   /// responses, 3 and 1 to 79.4 %, 1 and 1 to 50 %.
   int down_after = 1, up_after = 1;
-  /// Size of a step, by the number of reversals so far; the last holds from there on. Not empty, above 0.
+  /// steps[r] is the size of a step after r reversals; the last size holds for all further reversals. Not
+  /// empty, each above 0.
   std::vector<double> steps{1};
   /// Size of an upward step relative to a downward one. Under down_after = up_after = 1 the weighted rule
   /// (Kaernbach 1991) leads to the stimulus with the share up/(1 + up) of positive responses: 3 to 75 %.
@@ -26,8 +27,9 @@ struct StaircaseRules {
   /// Until the first reversal every response moves the track, as in a 1-up 1-down rule.
   bool fast_start = false;
 
-  int trials = 0;     ///< the track ends after so many responses; 0: no such bound
-  int reversals = 0;  ///< and not before this many reversals
+  /// The track ends when both numbers are reached. If both are 0, it never ends.
+  int trials = 0;     ///< least number of responses
+  int reversals = 0;  ///< least number of reversals
 };
 
 /// The share of positive responses to which the rules lead for a smooth psychometric function.
@@ -46,8 +48,8 @@ struct StaircaseTrack {
 /// same stimuli. std::invalid_argument for rules that are out of range.
 StaircaseTrack replay_staircase(const StaircaseRules& rules, std::span<const bool> positive);
 
-/// Mean of the stimuli at the reversals but the first `skip`, an even number of them (Levitt 1971); none if
-/// fewer than two remain. Under `decibels` the geometric mean.
+/// Mean of the stimuli at the reversals after the first `skip`; of an odd number of these, the first is left
+/// out too (Levitt 1971: an even number). None if fewer than two remain. Under `decibels` the geometric mean.
 std::optional<double> reversal_mean(const StaircaseRules& rules, const StaircaseTrack& track, int skip);
 
 }  // namespace stats

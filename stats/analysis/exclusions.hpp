@@ -44,7 +44,8 @@ struct Exclusion {
   std::string rule;    ///< "experimenter", "interruption", "timing", "catch", "repeat", "straight_lining" or
                        ///< "incomplete"
   std::string reason;  ///< the reason in words, with the numbers that triggered the rule
-  int answers = 0;     ///< number of answers excluded
+  /// Number of answers excluded; for a whole visit without those of its trials that are listed separately.
+  int answers = 0;
 
   bool by_hand() const { return rule == "experimenter"; }
 };

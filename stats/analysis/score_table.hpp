@@ -54,7 +54,7 @@ class ScoreTable {
   std::span<const char> planned(int n_star, int method) const;
   /// Single reports, without those that lack an answer.
   const std::vector<MethodScore>& answers() const { return answers_; }
-  /// Index of a size n_* or a method by its name; -1 if there is none.
+  /// Index of an n_* or a method by its name; -1 if there is none.
   int n_star_index(const std::string& n_star) const;
   int method_index(const std::string& method) const;
 

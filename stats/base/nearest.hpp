@@ -12,7 +12,8 @@ namespace base {
 /// `a` into `b`. The case of ASCII letters does not count.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The known word nearest to `word`; empty if more than a third of the letters of `word` differ.
+/// The known word nearest to `word`; empty if the least edit_distance() exceeds a third of the length of
+/// `word`, or `word` is longer than 100 bytes.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
 /// Advice for an unknown word: `use one of "a", "b"`, followed by the nearest known word if one is near.

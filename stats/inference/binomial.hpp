@@ -26,7 +26,8 @@ struct BinomialTest {
   std::array<double, 2> clopper_pearson{};  ///< exact (Clopper and Pearson 1934)
   std::array<double, 2> wilson{};           ///< score interval (Wilson 1927)
   std::array<double, 2> wilson_cc{};  ///< score interval with continuity correction (Newcombe 1998, method 4)
-  std::array<double, 2> jeffreys{};   ///< quantiles of Beta(k + 1/2, n - k + 1/2); 0 at k = 0, 1 at k = n
+  /// Quantiles of Beta(k + 1/2, n - k + 1/2). At k = 0 the lower end is 0, at k = n the upper end is 1.
+  std::array<double, 2> jeffreys{};
   std::array<double, 2> agresti_coull{};  ///< Agresti and Coull 1998; may leave [0, 1]
   double cohen_g = 0;                     ///< estimate - p0
   double cohen_h = 0;                     ///< 2 asin sqrt(estimate) - 2 asin sqrt(p0)

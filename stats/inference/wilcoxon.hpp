@@ -33,9 +33,9 @@ struct SignedRank {
   /// is at least the confidence; if n is too small for that, the interval is the range of all Walsh averages.
   /// Empty beyond n = 1000.
   std::optional<std::array<double, 2>> hodges_lehmann_ci;
-  /// The probability that hodges_lehmann_ci covers the centre: above the confidence, or 1 - 2^(1 - n) if n is
-  /// too small for the confidence (below 6 at .95). Exact without ties and zeros; with them the coverage is
-  /// at least this probability (Noether 1967, J. Am. Stat. Assoc. 62, 184-188).
+  /// The probability that hodges_lehmann_ci covers the centre: at least the confidence, or 1 - 2^(1 - n) if n
+  /// is too small for the confidence (below 6 at .95). Exact without ties and zeros; with them the coverage
+  /// is at least this probability (Noether 1967, J. Am. Stat. Assoc. 62, 184-188).
   double hodges_lehmann_level = 0;
 };
 

@@ -103,8 +103,8 @@ struct DirectEstimate {
 inline constexpr double reach_margin = 1.15;
 /// Settings above this multiple of the curve are excluded. Near the top of the scale the scores level off,
 /// and a quadratic fitted to these scores misses the level. With the exclusion, for a = 18 frames/s, b = 0.01
-/// s/frame and 40 people, the bias of a falls from 1.4 to 0.4 frames/s and its intervals cover it in 93
-/// instead of 67 %.
+/// s/frame and 40 people, the bias of a falls from 1.4 to 0.4 frames/s and its intervals cover the true a in
+/// 93 instead of 67 % of the cases.
 inline constexpr double far_factor = 2.46;
 
 /// The result of within_reach().

@@ -55,9 +55,9 @@ struct LapseCount {
 
 /// Level of PersonSlope::reversed, divided by the number of participants (Bonferroni).
 inline constexpr double reverse_level = 0.01;
-inline constexpr double drift_level = 0.05;  ///< level of SessionDrift::found(), two-sided
-inline constexpr double lapse_tail = 0.005;
-inline constexpr double lapse_level = 0.001;
+inline constexpr double drift_level = 0.05;   ///< level of SessionDrift::found(), two-sided
+inline constexpr double lapse_tail = 0.005;   ///< below this probability the lowest score is improbable
+inline constexpr double lapse_level = 0.001;  ///< level of LapseCount::found()
 
 struct PilotPeople {
   std::vector<PersonSlope> slopes;  ///< of participants with at least three more ratings than standard

@@ -33,19 +33,19 @@ struct PlacementPrior {
   double level = 4;                                 ///< score on the contour
 };
 
-/// Grids of a and b that hold every contour that crosses the range of the settings: a from half the lowest to
-/// the highest mean, in equal ratios; b from 0 to the value at which the contour of the lowest mean reaches
-/// the highest one at the largest delta, at most 0.1. std::invalid_argument: fewer than two settings, or
-/// equal ones.
+/// Grids of a and b that cover every contour that crosses the range of the settings: a from half the lowest
+/// to the highest mean, in equal ratios; b from 0 to the value at which the contour of the lowest mean
+/// reaches the highest one at the largest delta, at most 0.1. std::invalid_argument: fewer than two settings,
+/// settings of one mean only, or a mean that is not above 0.
 PlacementPrior placement_prior(std::span<const PlacementSetting> settings);
 
-/// What keeps the checks of the model possible.
+/// Rules that keep enough variety in a session to check the model with its ratings.
 struct PlacementGuards {
   /// The first trials show these settings, in this order (indices): a fixed part for the checks of the model.
   std::vector<int> fixed;
-  int most_of_one = 3;  ///< times that a setting is shown at most in a session; the fixed part counts
-  /// The settings shown so far span at least this share of the range of delta, before the same delta is
-  /// chosen twice in a row.
+  int most_of_one = 3;  ///< largest number of times that a session shows a setting, with the fixed part
+  /// While the settings shown so far span less than this share of the range of delta, the next setting has
+  /// another delta than the last one, if the guards leave one.
   double least_spread = 0.5;
 };
 
@@ -53,6 +53,7 @@ struct PlacementGuards {
 /// resumed session continues with the same settings.
 class Placement {
  public:
+  /// std::invalid_argument if a fixed index does not exist.
   Placement(std::vector<PlacementSetting> settings, const PlacementPrior& prior, PlacementGuards guards = {});
 
   /// Index of the next setting. std::logic_error when the guards leave none.

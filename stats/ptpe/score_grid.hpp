@@ -55,7 +55,8 @@ Contour column_crossings(const ScoreGrid& grid, double level, std::span<const do
 /// Nominal deltas of the lines: from the first column on in steps of 1 frame/s, and the last column.
 std::vector<double> contour_lines(const ScoreGrid& grid);
 
-/// Fits mu = a exp(b delta) to the contour's points. Refused: no point, or fewer than three.
+/// Fits mu = a exp(b delta) to the contour's points. Refused: fewer than three points, or as in
+/// fit_exponential().
 Result<ExponentialFit> fit_contour(std::span<const ContourPoint> points);
 
 }  // namespace stats

@@ -227,8 +227,8 @@ TEST(Obstacles, AreAsThickAsTheCoarsestParticlesThatTheRunMayHoldAreApart) {
     EXPECT_EQ(error(2.01 * d, traits.kind), "") << traits.name;
     if (traits.kind == sim::MethodKind::HiRes) continue;
     EXPECT_THAT(error(1.99 * d, traits.kind),
-                AllOf(HasSubstr("obstacle: box"), HasSubstr("could pass through it"),
-                      HasSubstr("make it at least 0.18"), HasSubstr("or HiRes")))
+                AllOf(HasSubstr("obstacle: box"), HasSubstr("pass through obstacles thinner than 0.18"),
+                      HasSubstr("or the method HiRes")))
         << traits.name;
   }
 }

@@ -34,12 +34,12 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
 /// Replaces scores in `anchors`, keys of an effect and names of factors by the placeholders of the reference.
 /// A level's keys are listed once, under stimulus.
 std::string without_scores(const std::string& name) {
-  const std::string effect =
-      std::regex_replace(name, std::regex(R"((effect_set\.effect)\.(?!kind$)\w+$)"), "$1.KEY");
-  const std::string score = std::regex_replace(effect, std::regex(R"(anchors\.[0-9]+$)"), "anchors.SCORE");
-  const std::string level =
-      std::regex_replace(score, std::regex(R"(^factor\.level\.(?!name$))"), "stimulus.");
-  return std::regex_replace(level, std::regex(R"(^(combination|design\.standard)\.\w+$)"), "$1.FACTOR");
+  static const std::regex effect(R"((effect_set\.effect)\.(?!kind$)\w+$)"), score(R"(anchors\.[0-9]+$)"),
+      level(R"(^factor\.level\.(?!name$))"), factor(R"(^(combination|design\.standard)\.\w+$)");
+  std::string out = std::regex_replace(name, effect, "$1.KEY");
+  out = std::regex_replace(out, score, "anchors.SCORE");
+  out = std::regex_replace(out, level, "stimulus.");
+  return std::regex_replace(out, factor, "$1.FACTOR");
 }
 
 /// All keys that are asked for when all protocols of the source tree are read.

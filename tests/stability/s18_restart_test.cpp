@@ -191,7 +191,7 @@ TEST_F(S18Restart, AFileThatDoesNotFitIsOneClearError) {
   EXPECT_THAT(error_of(deeper, options, path_), HasSubstr("another scene"));
   other = options;
   other.start = fluid->read_state();
-  EXPECT_THAT(error_of(scene, other, path_), HasSubstr("give one of them"));
+  EXPECT_THAT(error_of(scene, other, path_), HasSubstr("only the saved state"));
 
   const std::string good = base::read_file(path_, 1 << 28);
   const auto with = [&](const std::string& bytes) {

@@ -14,9 +14,10 @@ constexpr float pull_share = 0.75f;
 /// Constant c = 315 / 256 of the function f (see Adhesion).
 constexpr float poly6_behind = 1.23046875f;
 
-/// Corrects the derivatives of a plane's f (see Adhesion) for a round surface of radius R, with k = h / R. f'
-/// becomes f' (1 + k q)^(-1/2) at a cylinder and f' / (1 + k q) at a sphere. f'' gets an additional part f' k
-/// / (1 + k q) perpendicular to the normal; a plane's f'' acts only along the normal.
+/// Corrects f' and f'', the derivatives of a plane's f (see Adhesion), for a round surface of radius R. k = h
+/// / R, q: distance divided by h. f' becomes f' (1 + k q)^(-1/2) at a cylinder and f' / (1 + k q) at a
+/// sphere. f'' gets an additional part f' k / (1 + k q) perpendicular to the normal; a plane's f'' acts only
+/// along the normal.
 struct Rounding {
   float share = 1, share_slope = 0, turn = 0;
   Vec3 straight{0, 0, 0};  ///< direction in which the surface is not curved
@@ -60,8 +61,8 @@ struct Adhesion {
   Walls walls;
   Bodies bodies;
   Vec4* velocity;
-  float held;      ///< dt sigma / rho_0 times (work / sigma)^2, at most 1, m3/s
-  float strength;  ///< dt w / rho_0 times pull_share, m3/s
+  float held;      ///< dt sigma / rho_0 times the square of min(work / sigma, 1), m3/s
+  float strength;  ///< dt w / rho_0 times pull_share, w = max(work - sigma, 0), m3/s
   float whole;     ///< integral of A from 1/2 to 1
   float per_g;     ///< 1 / G
   float widest;    ///< largest support that takes part, m

@@ -1,4 +1,4 @@
-/// Spray, foam and bubbles: one-way coupling, once per frame.
+/// Spray, foam and bubbles, computed once per frame: the water moves them, but they do not act on the water.
 
 #include "libsim/foam/motion.hpp"
 #include "libsim/solver/stages/stages.hpp"

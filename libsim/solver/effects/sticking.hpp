@@ -17,8 +17,9 @@ struct BodyRows {
   const Body* bodies;
   const FreeBody* free;  ///< nullptr: no body is free
   int count;             ///< number of rows
-  /// Unit of the fixed-point sums in the rows, m_* m/s. Residuals and directions exceed the fluid's speeds by
-  /// as much as the stiffest particle's term exceeds 1, and the range of fixed point is limited.
+  /// Unit of the fixed-point sums in the rows, m_* m/s. It grows with the stiffest particle's term, because
+  /// residuals and directions exceed the fluid's speeds by up to this factor, and fixed point has a limited
+  /// range.
   float unit;
 
   SIM_FN bool moves(int b) const { return rows && free && free[b].mass > 0; }
@@ -109,7 +110,8 @@ struct StickingBodies {
     const BodyTurn p = rows.rows[b].direction;
     return p.along + cross(p.round, x - solids.bodies[b].centre);
   }
-  /// Sum of the parts of v that all bodies remove; each part is also added to its body's row.
+  /// Sum of the parts of v that all bodies remove. Each part times the particle's mass is also added to its
+  /// body's row.
   template <bool First>
   SIM_FN Vec3 taken(Vec4 at, Vec3 v) const {
     Vec3 out{0, 0, 0};
@@ -158,7 +160,8 @@ struct TakeNext {
   }
 };
 
-/// Adds the momentum that the rows gained to the recorded sums of the bodies.
+/// Subtracts the momentum that each row gained, times dt, from the body's recorded sums, which are pushes of
+/// the body on the fluid.
 struct RecordGained {
   BodyRows rows;
   BodyListener to;

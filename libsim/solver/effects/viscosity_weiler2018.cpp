@@ -119,7 +119,8 @@ struct Friction {
   Vec4* direction;
   Vec4* bent;    ///< A times direction
   float widest;  ///< largest support that takes part, m
-  // The fourth component w of residual and direction is the factor that Shares computes.
+  // The fourth component w of residual and direction is the factor that Shares computes; 1 if all particles
+  // are solved.
 
   struct Self {
     Vec4 at, moving;

@@ -6,8 +6,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Share of |omega|. If the gradient of |omega| times h is smaller, its direction is uncertain, and the
-/// confinement is weakened.
+/// Share of |omega|. If h times the gradient of |omega| is smaller than this share, the gradient's direction
+/// is uncertain, and the confinement is weakened.
 constexpr float least_slope = 0.03f;
 
 /// The mean of omega over the neighbours and the particle, weighted by poly6's slope over distance; its
@@ -77,7 +77,7 @@ struct Confine {
   SIM_FN void skip(int) const {}
 
  private:
-  /// f: rises from 0 at `from` to 1 at twice that; falls from 1 at half of `most` to 0 at `most`.
+  /// The factor f: rises from 0 at `from` to 1 at 2 `from`, and falls from 1 at `most` / 2 to 0 at `most`.
   SIM_FN float fed(float omega) const {
     const float rise = omega - from;
     const float begins = rise >= from ? 1.0f : at_least(rise, 0.0f) / from;

@@ -34,8 +34,9 @@ struct Gather {
     CellSum& sum = sums[block.index(x, y, z)];
     float volume = mass_of(p.w, 1) / unit_volume;
     float excess = at_most(at_least(density[i] - 1, -1.0f), most_excess);
-    // Near fresh particles the excess is reduced by at most a quarter. The cells must limit the density of a
-    // tank in which all particles split, and remaining compression would later become speed.
+    // Near fresh particles the excess is reduced by at most a quarter. A larger reduction is not possible:
+    // the cells must limit the density of a tank in which all particles split, and remaining compression
+    // would later become speed.
     if (ease) excess *= 0.75f + 0.25f * ease[i];
     const auto fixed = [](float value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value * fixed_point));
@@ -68,7 +69,7 @@ struct GatherVolume {
 };
 
 /// Sets kind and source of each cell from its sums. The source is the mean C of the cell's particles times
-/// the cell's volume.
+/// the cell's floor area (PressureFrame::floor_area).
 struct Classify {
   PressureFrame frame;
   GridView grid;
@@ -164,7 +165,7 @@ float cell_edge(const FluidState& state) {
 template <class Selection>
 void launch(FluidState& state, CoarsePressureView p, Selection select) {
   auto& coarse = state.coarse;
-  // While the water settles at one level, the column Ease is not written.
+  // While the water settles, all particles have one level and the column Ease is not written.
   const float* ease = state.one_level ? nullptr : p.ease();
   constrain_density(state, p);
   coarse.fit(state.domain, cell_edge(state), state.walls.have_lid());

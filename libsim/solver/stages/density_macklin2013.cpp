@@ -131,7 +131,8 @@ void constrain(FluidState& state, DensityView p, const float* ease) {
 
 using EasedView = ColumnView<DensityView::reads, DensityView::writes, columns(Column::Ease)>;
 
-/// While the water settles at one level, the column Ease is not written.
+/// While the water settles, all particles have one level and the column Ease is not written: each particle
+/// then enforces the whole constraint.
 void run_density(FluidState& state, EasedView p) {
   constrain(state, p, state.one_level ? nullptr : p.ease());
 }

@@ -16,7 +16,7 @@ struct Displace {
   Boundary walls;
   Vec4* next;
   Guards* guards;
-  int half;  ///< index of the half substep, see TroubleKey
+  int half;  ///< number of half substeps since the frame's start, see TroubleKey::of
   float rest_density, tensile, wall_gap, momentum;
 
   /// Adds particle j to the step; see SIM_LANES. own: lambda of the particle itself.

@@ -36,7 +36,8 @@ struct Pour {
   SIM_FN void operator()(int k) const {
     const int site = k % sites;
     const int layer = k / sites;
-    // Vogel 1979: sunflower sites, each layer turned by 1 rad.
+    // The sites of a layer form Vogel's sunflower pattern (1979): each site is turned by the golden angle,
+    // 0.382 turns, from the one before. Each layer is turned by 1 rad from the one before.
     constexpr double golden = 0.38196601125010515;
     constexpr double radian = 0.15915494309189535;
     const double turns = first_turn + layer * radian + site * golden;

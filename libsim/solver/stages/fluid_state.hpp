@@ -27,7 +27,7 @@ namespace sim::SIM_BACKEND {
 
 /// Acceleration -strength r towards an axis, with r the vector from the axis (sim::CentralForce).
 struct CentralPull {
-  float strength = 0;  ///< Omega^2, 1/s2; 0 removes the term from the kernel
+  float strength = 0;  ///< Omega^2, 1/s2; with 0 the solver runs a kernel without this term
   Vec3 centre{};
   Vec3 axis{0, 0, 1};
 };
@@ -39,7 +39,7 @@ struct SolverParameters {
   CentralPull pull;       ///< in addition to gravity
   float dt = 1.0f / 180;  ///< substep, s
   int substeps = 3;       ///< per frame
-  /// True without gravity and central force; cohesion does not count.
+  /// True without gravity and central force, even if the scene has the effect cohesion.
   bool weightless() const { return gravity.strength <= 0 && pull.strength <= 0; }
   double frame_s() const { return static_cast<double>(dt) * substeps; }
   int iterations = 4;  ///< constraint projections per substep
@@ -49,7 +49,7 @@ struct SolverParameters {
   /// Kinematic viscosity nu, m2/s; 0 omits the pass.
   float viscosity = 0;
   EffectCoefficients effects;  ///< coefficients in SI units; 0 = no stage of the effect runs
-  /// Speed that no water exceeds by itself, m/s: faster particles are braked and counted.
+  /// Speed limit, m/s (most_speed() in fluid_simulation.hpp): faster particles are slowed to it and counted.
   float most_speed = 0;
   /// Minimum distance to a wall, as a share of d.
   float wall_gap = 0.1f;
@@ -207,14 +207,15 @@ struct FluidState {
   /// before the particles move need no new search. List entries between h and the lists' margin may be
   /// slightly out of date.
   bool lists_hold = false;
-  bool lists_by_slot = false;  ///< lists are indexed by the last substep's slots, not by particles
+  /// lists are indexed by the slots of the last substep (particles/selection.hpp), not by particles
+  bool lists_by_slot = false;
   CoarseGrid coarse;
   Jets jets;
   Outflow outflow;
   Drained drained;         ///< water that left through outlets since the run began
   Array<HeatLedger> heat;  ///< one element, if particles have a temperature
   Buoyancy buoyancy;
-  FoamPool foam;  ///< capacity 0 if the scene lists none
+  FoamPool foam;  ///< capacity 0 if the scene does not list the effect foam
   SaliencyState saliency;
   LevelState levels;
   /// False during a frame that does not solve all particles. Passes then run over active(), and lists are

@@ -42,7 +42,7 @@ Stage forced_targets_stage() {
 
 namespace {
 
-/// A box about a narrow outlet, and the coarsest level whose particles fit through the outlet.
+/// A box around a narrow outlet, and the coarsest level whose particles fit through the outlet.
 struct NarrowOpening {
   Vec3 low, high;
   int fits;
@@ -116,7 +116,8 @@ Stage opening_targets_stage() {
 
 namespace {
 
-/// Sets the target to the present level, unless N (1 - s) exceeds the next coarser level by `dead_band`.
+/// Replaces a target coarser than the present level by the present level, unless N (1 - s) exceeds the next
+/// coarser level by `dead_band`.
 struct Hold {
   const std::uint8_t* level;
   const float* saliency;

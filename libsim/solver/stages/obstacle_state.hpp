@@ -21,17 +21,17 @@ struct ObstacleState {
   /// Volume of each body below the water level, in volumes of m_*, in the fixed point of CellWater.
   Array<std::uint64_t> wet;
   Array<FreeBody> free;  ///< one per body; empty if no obstacle is free
-  Array<BodyRow> rows;   ///< one per body; empty until an effect solves for them
+  Array<BodyRow> rows;   ///< one per body; empty until the effect viscosity needs them
   // Empty if no obstacle is a mesh:
   Array<MeshGrid> meshes;     ///< one per body
   Array<float> distances;     ///< distance values of all grids
   Array<Vec3> mesh_contacts;  ///< contact points of all meshes
-  // Empty if no free obstacle meets another or has friction:
+  // Empty if no free obstacle can touch another obstacle and none has friction:
   Array<Vec3> by_others;              ///< momentum that each body received from others in this frame, m_* m/s
   Array<float> friction;              ///< friction coefficient of each body
   bool rough = false;                 ///< true if a friction coefficient is not 0
   int feelers = 0;                    ///< the largest number of contact points on one body
-  Array<unsigned char> meeting_room;  ///< scratch memory
+  Array<unsigned char> meeting_room;  ///< scratch memory of Meeting
 
   bool exists() const { return bodies.size() > 0; }
   bool meet() const { return by_others.size() > 0; }

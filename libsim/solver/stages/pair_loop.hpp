@@ -10,9 +10,10 @@ namespace sim::SIM_BACKEND {
 /// A pair i, j as a term receives it.
 struct NeighbourPair {
   int j;
-  float x, y, z;  ///< from j to i, m
-  float h;        ///< of j, m
-  /// (m_j / m_i) poly6 (h^2 - r^2)^2: the gradient of W is -6 (m_i / m_j) slope (x, y, z).
+  float x, y, z;  ///< vector from particle j to particle i, m
+  float h;        ///< support of particle j, m
+  /// (m_j / m_i) poly6 (h^2 - r^2)^2, with h here the pair's mean support: the gradient of W is -6 (m_i /
+  /// m_j) slope (x, y, z).
   float slope;
 };
 
@@ -46,7 +47,7 @@ struct PairLoop {
     typename Second::Self second;
   };
 
-  /// Adds particle j; a function of its own, so that the loop vectorises (SIM_LANES).
+  /// Adds particle j. This is a separate function, so that the loop vectorises (SIM_LANES).
   SIM_FN void add(int j, const Self& me, float& a0, float& a1, float& a2, float& a3, float& b0, float& b1,
                   float& b2, float& b3) const {
     const Vec4 other = position[j];

@@ -34,8 +34,9 @@ void find_surroundings(FluidState& state, SurroundingsView p, bool densities) {
   if (densities) constrain_density(state, p);
 }
 
-/// Reuses the last substep's lists and densities as far as valid: there are no lists before the first frame
-/// or after a nozzle moved particles, and unsolved particles have no density of the last frame.
+/// Reuses the last substep's lists and densities if FluidState::lists_hold; otherwise computes both anew. If
+/// the last frame did not solve all particles, it computes all densities with the old lists, because unsolved
+/// particles have none.
 void recall_surroundings(FluidState& state, SurroundingsView p, bool densities) {
   if (!state.lists_hold) {
     find_surroundings(state, p, densities);

@@ -12,7 +12,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// What a scene, a method and the requested outputs require.
+/// Requirements on the schedule by a scene, a method and the requested outputs.
 struct Demand {
   SolverParameters parameters;
   std::vector<Effect> effects;    ///< effects that the scene lists
@@ -33,7 +33,8 @@ struct Demand {
   bool wall_impulse = false;      ///< an output needs the walls' impulse on the water
 };
 
-/// True if the scene lists the effect with a coefficient other than 0, for levels that its water may have.
+/// True if the scene lists the effect with a coefficient other than 0, and its water may have a level on
+/// which the effect acts.
 inline bool acts(const Demand& demand, EffectKind kind) {
   return std::any_of(demand.effects.begin(), demand.effects.end(), [&](const Effect& effect) {
     return effect.kind == kind && effect.coefficient != 0 &&
@@ -43,7 +44,8 @@ inline bool acts(const Demand& demand, EffectKind kind) {
 
 enum class Phase { FrameStart, Substep, Iteration, SubstepEnd, FrameEnd };
 
-/// Sums over neighbours that a stage computes, for stages that can share a loop (SharedLoop).
+/// The sum over neighbours that a stage computes. Stages with certain pairs of sums can share a loop
+/// (SharedLoop).
 enum class SharedTerm { None, SurfaceNormals, Curl, Conduction };
 
 struct Stage {
@@ -104,7 +106,7 @@ inline std::string if_thick(const Demand& demand) {
   return acts(demand, EffectKind::Viscosity) ? "viscosity acts before the particles move" : "";
 }
 
-/// Moves the lowest water of the corner columns into the jets.
+/// Takes the lowest water in the tank's four corners, and pours it from the nozzles.
 Stage nozzle_stage();
 /// Saliency and target levels from the eyes, the last picture and the fluid.
 Stage saliency_stage();
@@ -139,20 +141,21 @@ Stage present_neighbours_stage();
 Stage predict_stage();
 /// Grid and combined neighbour list at the predicted positions.
 Stage neighbours_stage();
-/// Share of the density constraint that particles enforce near ones that just split or merged.
+/// Computes the share of its density constraint that each particle enforces: below 1 near particles that just
+/// split or merged.
 Stage ease_stage();
 /// The low-frequency part of the pressure, solved on cells and applied before the projections.
 Stage coarse_pressure_stage();
-/// Removes compression that existed before the substep, without adding velocity.
+/// Removes compression that existed before a frame's first substep, without adding velocity.
 Stage pre_stabilisation_stage();
 /// Separates particles that overlap after a split or a merge, without adding velocity.
 Stage parting_stage();
 /// Density, unilateral constraint and its multiplier lambda, times the shares of ease_stage.
 Stage density_stage();
-/// Position correction, which conserves momentum exactly, and wall projection.
+/// Moves particles by their multipliers, and back inside the walls. The pair terms conserve momentum exactly.
 Stage displacement_stage();
-/// These three stages record the momentum that walls give the water: by holding particles back, by the
-/// density that they replace, and by the coarse pressure's cells.
+/// These three stages record the momentum that walls and obstacles give the water: by holding particles back,
+/// by the density that they replace, and by the coarse pressure's cells.
 Stage held_at_walls_stage();
 Stage missing_density_stage();
 Stage wall_cells_stage();
@@ -223,8 +226,8 @@ void balance_push(FluidState& state, ClampView particles);
 /// momentum steps.
 float times_taken(const SolverParameters& parameters, int iteration);
 
-/// The two halves of one projection of a few particles. All other particles need lambda = 0 and equal
-/// positions in Predicted and PredictedNext.
+/// The two halves of one projection that moves only the particles `few`. All other particles need lambda = 0
+/// and equal positions in Predicted and PredictedNext.
 void constrain_density(FluidState& state, DensityView particles, Listed<AllParticles> few);
 void constrain_density(FluidState& state, DensityView particles, Listed<ActiveParticles> few);
 void displace(FluidState& state, DisplacementView particles, Listed<AllParticles> few);

@@ -20,7 +20,8 @@ struct Advance {
   float dt;
   Calm still;            ///< criterion of rest for the finest particles
   float finest_support;  ///< m
-  bool before_kicks;     ///< particles at rest before this substep's velocity change count as at rest
+  /// particles that were at rest before this substep's velocity change count as at rest too
+  bool before_kicks;
   SIM_FN void operator()(int i) const {
     const Vec3 v = xyz(velocity[i]);
     const Vec3 free = fused(xyz(position[i]), dt, v);

@@ -1,4 +1,4 @@
-/// Records the momentum that walls give the water (libsim/impulse), in passes of their own.
+/// Passes that record the momentum that walls and obstacles give the water (libsim/impulse).
 
 #include "libsim/solver/stages/stages.hpp"
 
@@ -84,7 +84,8 @@ void record_held_back(FluidState& state, MovingView p) {
            Wetted{p.position(), state.solids(), state.obstacles.listening_patches(), state.finest_support});
 }
 
-/// Factor on the density that walls miss; 1 in scenes without obstacles.
+/// Factor on the missing density at walls: the share of the kernel outside all bodies, because bodies at the
+/// wall reduce the walls' part. 1 in scenes without obstacles.
 SIM_FN float beside_bodies(const Walls&, Vec3, float) { return 1; }
 SIM_FN float beside_bodies(const Solids& solids, Vec3 x, float h) { return solids.beside_bodies(x, h); }
 

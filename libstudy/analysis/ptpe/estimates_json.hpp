@@ -6,7 +6,8 @@
 
 namespace study {
 
-/// Adds a, b, their standard errors and intervals to `json`; null where undefined.
+/// Adds to `json` if the fit converged, and a and b with their standard errors and intervals; null where
+/// undefined.
 void add_estimate(base::Json& json, const MainEstimate& estimate);
 /// The direct estimate with its jackknife and bootstrap.
 base::Json direct_json(const stats::DirectEstimate& estimate);
@@ -19,7 +20,7 @@ base::Json estimators_json(const PilotFit& fit);
 /// the solver. For each level, delta goes from the smallest to the largest shown in steps of 1 frame/s.
 base::Json bands_json(const PilotFit& fit);
 /// The entry "form": the test that mu(delta) is an exponential, at the fit's level, and the curve fitted
-/// without this assumption in steps of 1 frame/s.
+/// without this assumption, at each 1 frame/s of delta.
 base::Json form_json(const PilotFit& fit);
 /// The lack-of-fit test of the straight form (m = q = 0), with the a and b of this form. The straight form
 /// may be used if p >= 0.05.

@@ -22,7 +22,8 @@ std::string count_words(int n, const std::string& thing) {
 }
 
 /// Adds a flag for each kind of line (of constant delta) on which the scores do not cross the level exactly
-/// once. `fitted`: true if a curve was fitted to the contour.
+/// once, and one if they cross it on fewer than half of the lines. `fitted`: true if a curve was fitted to
+/// the contour.
 void flag_contour(std::vector<FitFlag>& flags, const stats::Contour& contour, bool fitted) {
   const std::string inner = fitted ? "; the contour's curve goes by the others" : "";
   const auto lines = [&](int n) { return std::to_string(n) + " of " + count_words(contour.lines, "line"); };

@@ -13,7 +13,8 @@ namespace study {
 /// The entry "study" for the given tasks. `database`: the database's name for display.
 Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks);
 /// Names of the exclusion rules that could exclude some of the data for some answers. A rule is missing if
-/// the data lack what it checks: timing verdicts, catch pages, repeated trials or enough trials.
+/// the data lack what it checks (timing verdicts, catch pages, repeated trials, enough trials), if it is for
+/// pairs and the study shows none (or the reverse), or if its limit is not below the scale's range.
 Json acting_rules_json(const TaskData& data, const stats::ExclusionRules& rules);
 Json flow_json(const TaskFlow& flow);
 /// The entry "roster": counts of all participants and sessions of the database, by protocol. `sections`:

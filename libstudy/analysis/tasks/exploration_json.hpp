@@ -13,7 +13,8 @@
 
 namespace study {
 
-/// Counts of each score by question, n_* and method; for a pilot by frame-rate setting. Empty for pairs.
+/// Counts of each score: for Task 1 by question, n_* and method, for a pilot by frame-rate setting. Empty for
+/// other tasks.
 Json distributions_json(const TaskData& data);
 
 /// One entry for each question with recorded response times in s. The times are null if a participant was

@@ -20,7 +20,7 @@ void add_once(std::vector<std::string>& list, const std::string& item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// Those of the factors "effects" and "method" that have several levels; empty if effects are not a factor.
+/// The factors "effects" and "method", each only if it has several levels; empty if effects are not a factor.
 std::vector<Factor> factors_of(const TaskProtocol& protocol) {
   if (protocol.effects.empty()) return {};
   Factor effects{"effects", {}, {}}, methods{"method", {}, {}};

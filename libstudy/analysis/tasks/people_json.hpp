@@ -13,8 +13,8 @@ namespace study {
 
 /// Smallest number of people with the same answer whose count is shown separately.
 inline constexpr int smallest_group = 3;
-/// Fewest numbers for which mean, SD and range are shown. With fewer, these would nearly reveal the numbers
-/// themselves.
+/// Fewest numeric answers for which mean, SD and range are shown. With fewer answers, mean, SD and range
+/// would nearly reveal the answers.
 inline constexpr int fewest_numbers = 5;
 
 /// Answers and the number of people who gave each. Answers of fewer than smallest_group people are pooled.

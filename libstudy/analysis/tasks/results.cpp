@@ -110,8 +110,8 @@ std::vector<std::string> described_questions(const ChosenTask& chosen, const std
   return out;
 }
 
-/// Analyses one protocol and question. Without an answer to analyse, the part still counts the participants
-/// and exclusions, and the reason is added to `missing`.
+/// Analyses one protocol and question. If no answer can be analysed or no built-in analysis applies, the part
+/// still counts the participants and exclusions, and the reason is added to `missing`.
 TaskPart analyse(const TaskStudy& study, const ChosenTask& chosen, const ResultsRequest& request,
                  std::vector<MissingTask>& missing) {
   const TaskSelection selection{kind_of(chosen.protocol), request.protocol, request.plan.plan};

@@ -1,5 +1,6 @@
 #pragma once
-/// Tests the hypotheses again under other rules, to show if a verdict depends on exclusions or on pooling.
+/// Tests the hypotheses again under other rules, to show if a verdict depends on exclusions, on sessions
+/// without tracked gaze, or on pooling.
 
 #include <vector>
 

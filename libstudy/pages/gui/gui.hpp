@@ -24,7 +24,7 @@ extern const unsigned background, panel, button, hovered, chosen, text, dim, fai
 struct TypeSizes {
   float body = 0, title = 0, huge = 0;
 };
-/// Font heights for a screen at arm's length: fixed fractions of the screen's height.
+/// Font heights for a screen at arm's length: fixed fractions of the screen's height, within limits in px.
 TypeSizes type_for_screen(int height_px);
 /// Font heights with which the letter x of body text has at least the height x_height_px.
 TypeSizes type_for_x_height(float x_height_px);
@@ -50,7 +50,8 @@ class Gui {
   /// Clears the framebuffer to a colour and begins a picture; end() draws it.
   void begin(unsigned clear_colour);
   void end();
-  /// Draws the last picture again, with all colours multiplied by `share`, 0 to 1.
+  /// Draws the last picture again, with all colours multiplied by `share`, 0 to 1. Repeated calls multiply:
+  /// two calls with 0.5 give a quarter.
   void dim(float share);
 
   ImFont* body() const { return body_; }

@@ -23,7 +23,8 @@ class Pad {
   /// Types a key into the focused question.
   void type(const std::string& key, PageState& state, std::int64_t now_ns) const;
   /// Arrow keys move the marker; Enter types the marked key. Returns false if the pad does not use the key:
-  /// Enter without a marker, and arrows that move the marker off the pad at its top or bottom.
+  /// Enter or Up without a marker, an arrow that moves the marker off the pad at its top or bottom, and any
+  /// other key.
   bool press(PageKey key, PageState& state, std::int64_t now_ns);
 
  private:

@@ -29,7 +29,7 @@ struct FontFile {
 };
 /// Fonts that together have the needed characters: first find_font(), then system fonts (chosen by
 /// fontconfig, if built with it). The list ends when all characters are found, or when no other font has a
-/// missing one.
+/// missing one. Without fontconfig, all installed fonts of a fixed list follow.
 std::vector<FontFile> find_fonts(const PageCharacters& needed);
 
 /// Adds the pages' fonts to an atlas of Dear ImGui, which the caller then builds. They have the usual
@@ -39,7 +39,7 @@ class PageType {
  public:
   explicit PageType(const PageCharacters& needed);
   ImFont* add(ImFontAtlas& atlas, float size) const;
-  /// Those of the characters that no font has.
+  /// The part of `characters` that no font of the pages can draw.
   std::u32string undrawn(const std::u32string& characters) const;
 
  private:

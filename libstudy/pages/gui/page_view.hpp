@@ -63,7 +63,7 @@ class PageView {
   bool score_button(const PageState& state, std::size_t i, int score, const std::string& label, float width,
                     float height, bool left_aligned);
   struct Target {
-    const char* kind;  ///< with row and column, the ImGui ID
+    const char* kind;  ///< part of the ImGui ID, with row and column
     std::size_t row;
     int column;
     float width, height;
@@ -86,8 +86,8 @@ class PageView {
   bool pointed_ = false;                  ///< the mouse moved since the page appeared
   float mouse_x_ = -1, mouse_y_ = -1;     ///< mouse position when the page appeared
   std::size_t seen_focus_ = 0;            ///< question to which the page has scrolled
-  std::size_t editing_ = ~std::size_t{};  ///< Text whose field has the keyboard focus
-  std::string edited_;                    ///< content of this field, padded to most_bytes
+  std::size_t editing_ = ~std::size_t{};  ///< index of the Text question in whose edit field one types
+  std::string edited_;                    ///< content of this edit field, padded to PageState::most_bytes
   std::optional<Pad> pad_;                ///< on-screen keyboard of pad_question_
   std::size_t pad_question_ = 0;
 };

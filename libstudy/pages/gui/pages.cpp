@@ -191,7 +191,7 @@ void Pages::set_over(bool over) {
 }
 
 Request Pages::wait_while_unseen(const std::function<Request()>& others) {
-  do {  // at least once: the surface may report the cause later
+  do {  // runs at least once: the surface may report late that it cannot be seen
     surface_.poll(poll_s);
     const Request other = others ? others() : Request::GoOn;
     if (other == Request::Stop || other == Request::EndSession) return other;

@@ -8,7 +8,8 @@ namespace study {
 class Dwell {
  public:
   static constexpr std::int64_t whole_ns = 1'000'000'000;
-  /// A gap in the tracking of the eyes: a shorter gap (a blink) pauses the dwell, a longer gap restarts it.
+  /// Shortest gap in the tracking of the eyes that restarts the dwell. A shorter gap, such as a blink, only
+  /// pauses the dwell.
   static constexpr std::int64_t blink_ns = 300'000'000;
 
   /// target: the target looked at since the last call, 0 for none. seen: true if the eyes are tracked.

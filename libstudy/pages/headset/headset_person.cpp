@@ -88,7 +88,7 @@ class HeadsetSurface final : public PageSurface {
   bool pressed_ = false;                 ///< true: the pointer's button is down
   int clicks_ = 0;                       ///< calls of take_look() until a click by dwell is over
   std::size_t hand_ = 1;                 ///< the hand that pointed last
-  std::int64_t used_ns_;                 ///< steady clock
+  std::int64_t used_ns_;                 ///< time of the last input, on the steady clock
 };
 
 constexpr double fade_s = 0.2;
@@ -159,7 +159,7 @@ void HeadsetSurface::take_in(const HeadsetRecord& record) {
 bool HeadsetSurface::be_away(bool focused, std::int64_t now_ns) {
   if (!focused && !away_since_ns_) {
     away_since_ns_ =
-        last_ns_.value_or(now_ns);  // from the last slot: an unworn headset or a lost session has none
+        last_ns_.value_or(now_ns);  // time of the last slot: an unworn headset or a lost session has no slots
     pointer_.reset();
     pressed_ = false;
     dwell_.reset();

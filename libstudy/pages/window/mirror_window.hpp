@@ -11,10 +11,10 @@
 
 namespace study {
 
-/// A mirror on another monitor than the participant's window, or beside it if that window is not full-screen.
-/// The participant's thread only makes a small copy of each finished picture. The mirror's thread, whose
-/// OpenGL context shares the copies, shows the newest copy about ten times a second, without waiting for the
-/// screen. Input to the mirror's window is ignored.
+/// A mirror on another monitor than the participant's window, or on the same monitor if there is only one and
+/// the participant's window does not fill it. The participant's thread only makes a small copy of each
+/// finished picture. The mirror's thread, whose OpenGL context shares the copies, shows the newest copy about
+/// ten times a second, without waiting for the screen. Input to the mirror's window is ignored.
 class MirrorWindow {
  public:
   /// Call it on the thread of the participant's window, with that window's context current. The participant's

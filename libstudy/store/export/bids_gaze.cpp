@@ -1,6 +1,6 @@
-/// Exports gaze and headset data to BIDS 1.11. Samples of an eye tracker become an eye recording. Mouse and
-/// head direction are not eyes, so they become behavioural data. The headset's facts are in the JSON file of
-/// the events; head poses become a motion recording.
+/// Exports gaze and headset data to BIDS 1.11. Samples of an eye tracker become an eye recording. Positions
+/// of the mouse and directions of the head are not eye data, so they become behavioural data. The headset's
+/// facts are in the JSON file of the events; head poses become a motion recording.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -14,9 +14,10 @@ using sqlite::Statement;
 
 namespace {
 
-/// Names of a page in an exported table.
+/// The texts by which the columns of an exported table name a page.
 struct Page {
-  std::string prefix, words;  ///< prefix of the columns' names; words in brackets after their meanings
+  /// prefix of the columns' names; words that follow the columns' meanings in brackets
+  std::string prefix, words;
 };
 
 /// The names of the `time`-th page (from 1) of a block in a session. block empty: of the session as a whole.

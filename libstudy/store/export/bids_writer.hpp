@@ -69,8 +69,8 @@ class SessionTime {
 
 /// Onset of each presentation of a session, ns since the onset of its first stimulus, by presentation id.
 std::map<std::int64_t, std::int64_t> onsets_of(sqlite::Connection& database, std::int64_t session);
-/// Sampling rate from the median interval between samples, Hz. The median excludes the pauses between
-/// stimuli, in which nothing is recorded. With fewer than two distinct times, returns the display's refresh
+/// Sampling rate from the median interval between samples, Hz. The pauses between stimuli, in which nothing
+/// is recorded, hardly change the median. With fewer than two distinct times, returns the display's refresh
 /// rate, or 0 if that rate is unknown.
 double rate_hz(sqlite::Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns);
 
@@ -98,8 +98,8 @@ std::vector<Item> items(sqlite::Connection& database, std::int64_t session, cons
 std::pair<std::string, std::string> answer_of(sqlite::Connection& database, std::int64_t unit,
                                               std::int64_t question, std::int64_t attempt);
 
-/// Writes the answers on pages as phenotype tables: one table for the SSQ with its scores, one for the FMS
-/// with mean and peak, and one for each other block.
+/// Writes the answers on pages as phenotype tables: a table "ssq" with answers and scores, a table "fms" with
+/// answers, a table "fms_summary" with mean and peak, and one table for each other block.
 void write_phenotypes(sqlite::Connection& database, const std::vector<LabelledSession>& sessions,
                       Writer& writer);
 

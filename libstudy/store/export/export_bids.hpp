@@ -12,15 +12,18 @@
 namespace study {
 
 /// Writes a public export, which contains only shared_sessions(), into `folder`. "n/a": not known. Folder and
-/// base::Error as for export_csv(). The files, each table with a JSON description:
+/// base::Error as for export_csv(). The files, besides README.md, dataset_description.json and
+/// code/setting_*; each table has a JSON description:
 /// - participants.tsv, and sub-<code>/sub-<code>_sessions.tsv.
 /// - sub-<code>/ses-<protocol>v<visit>/beh/..._task-<protocol>_events.tsv for each session: one line per
-///   stimulus shown, beginning with onset and duration in seconds. The last stimulus that an answer judges
-///   has the answer in its line.
+///   stimulus shown, beginning with onset and duration in seconds. The line of a trial's last stimulus has
+///   the answers about the trial.
 /// - phenotype/<block>.tsv: answers on pages, without free text. One line per participant, with columns
 ///   <session>_<block>_<question>; the block of a repeated page is <block>-2 and so on.
-/// - With `gaze` true: ..._recording-eye1_physio.tsv.gz of an eye tracker, ..._acq-mouse_beh.tsv of a mouse,
-///   ..._acq-head_beh.tsv of the head's direction, and head poses as a motion recording.
+///   SSQ and FMS pages are in ssq.tsv and fms.tsv instead, and fms_summary.tsv has mean and peak of the FMS.
+/// - With `gaze` true, for sessions that allow gaze: ..._recording-eye1_physio.tsv.gz of an eye tracker,
+///   ..._acq-mouse_beh.tsv of a mouse, ..._acq-head_beh.tsv of the head's direction, and head poses as a
+///   motion recording.
 PublicExport export_bids(const StudyFile& study, const std::filesystem::path& folder, bool gaze = false);
 
 /// Name of the file that describes a public data set, in BIDS and in Psych-DS.

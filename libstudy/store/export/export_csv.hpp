@@ -21,9 +21,10 @@ struct CsvChoice {
 };
 
 /// Writes an export with all participants, for the lab itself, into `folder`. Column sharing_allowed of
-/// sessions.csv records who may be in public exports. The files: one per table; ratings.csv with one line per
-/// planned trial and question; the tables of sickness_tables(); dictionary.csv with the meaning of each
-/// column; each protocol's text as protocol_<hash>.toml; each solver setting's file (setting_file_name()).
+/// sessions.csv records who may be in public exports. The files: one for each table with study data, as far
+/// as `choice` includes it; ratings.csv with one line per planned trial and question; the tables of
+/// sickness_tables(); dictionary.csv with the meaning of each column; each protocol's text as
+/// protocol_<hash>.toml; each solver setting's file (setting_file_name()).
 ///
 /// Only the owner can read folder and files. The export is written beside `folder` and renamed to it at the
 /// end, so that `folder` is never partial. `folder` may be absent, empty or an unchanged earlier export,

@@ -66,8 +66,8 @@ struct ExportSource {
 class ExportDraft {
  public:
   /// Makes the draft. The target must be absent, an empty folder, or an unchanged earlier export of the same
-  /// kind. base::Error, with nothing made, if it is not (the error names an added or changed file), or if the
-  /// database cannot be written (RegisteredExport).
+  /// kind. base::Error, with nothing made, if the target is anything else (the error names an added or
+  /// changed file), or if the database cannot be written (RegisteredExport).
   ExportDraft(const ExportSource& source, const std::filesystem::path& target);
   ~ExportDraft();
   ExportDraft(const ExportDraft&) = delete;

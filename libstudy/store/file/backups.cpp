@@ -141,8 +141,8 @@ bool delete_from_backup(const fs::path& path, const std::string& person) {
   const auto sessions = version == 1 ? sessions_in_schema_1(path, person) : sessions_of(backup, person);
   if (version == 1 && !sessions.empty()) bury_in_schema_1(backup, sessions);
   if (version > 1 && !sessions.empty()) bury_later(backup, person, version);
-  // An earlier deletion may have been interrupted before VACUUM. A tombstone shows that; schema 1 has none,
-  // so VACUUM always runs.
+  // An earlier deletion may have been interrupted before VACUUM. A tombstone shows an earlier deletion.
+  // Schema 1 has no tombstones, so VACUUM runs for every writable backup of it.
   if (sessions.empty() && !(version == 1 ? ::access(path.c_str(), W_OK) == 0 : is_buried(backup, person)))
     return false;
   backup.execute("VACUUM");

@@ -69,8 +69,8 @@ std::optional<FileWatch::Id> FileWatch::id_of(const fs::path& path) {
 std::optional<FileWatch::Look> FileWatch::seen_now() const {
   const volatile char* memory = shared_memory(database_);
   if (!memory) return {};
-  // Before SQLite copies the log, it marks the copy as under way in the shared memory. So read the marks
-  // after the file's size and time: a change that a copy made is then always marked.
+  // Before SQLite copies the log into the file, it marks the copy as under way in the shared memory. So read
+  // the marks after the file's size and time: a change that a copy made is then always marked.
   struct stat file {};
   if (::stat(path_.c_str(), &file) != 0) return {};
   Look seen;
@@ -90,7 +90,8 @@ std::string FileWatch::trouble() {
   if (id_of(log_) != log_id_)
     return keeps_a_log(database_) ? "lost its log " + log_.string() + " while it was in use" : "";
   if (!written_by_somebody()) return {};
-  // A program that copies the log into the file has this lock. If the lock is taken, the next call decides.
+  // A program that copies the log into the file has this lock. If the lock is taken, the next call of
+  // trouble() decides.
   const auto lock = [this](int how) {
     sqlite3_file* main = main_file(database_);
     return main && main->pMethods->xShmLock(main, copy_lock, 1, how | SQLITE_SHM_EXCLUSIVE) == SQLITE_OK;

@@ -23,7 +23,7 @@ struct JournalContent {
   JournalRows pending;                 ///< rows of the last batch if it is ready but not marked as kept
   bool torn = false;                   ///< the last batch has unreadable lines: it was never complete
   bool rewriting = false;              ///< the last line announces a rewrite
-  std::vector<std::string> forgotten;  ///< persons whose withdrawal the announced rewrite belongs to
+  std::vector<std::string> forgotten;  ///< persons whose withdrawal caused the announced rewrite
   std::int64_t last_number = 0;        ///< largest batch number n in a line {"ready": n}
   std::uintmax_t end = 0;              ///< number of bytes up to the end of the last valid line
   std::int64_t unreadable = 0;         ///< number of lines before `end` that are not journal lines

@@ -70,8 +70,7 @@ class Connection {
   std::string header();
   /// True if SQLite can read the file; false if reading needs files beside it that SQLite may not write.
   bool can_read();
-  /// keep true: the log stays unchanged beside the file, and no page of it is copied into the file. Default:
-  /// false.
+  /// keep true: the log stays beside the file, and no page of it is copied into the file. Default: false.
   void keep_log(bool keep);
   /// Treats the file as untrusted until recognise(): forbids changes, and runs no view or trigger of the
   /// file. With Work::OfASchema, a statement that takes longer than reading a schema fails with a
@@ -146,8 +145,10 @@ class Connection {
   struct Lost {
     std::string problem, mend;
   };
-  std::optional<Lost> lost_;   ///< set once watch() found the file changed: nothing more is written
-  std::recursive_mutex turn_;  ///< locked by Transactions; in a thread, a committed one may still exist
+  std::optional<Lost> lost_;  ///< set once watch() found the file changed: nothing more is written
+  /// locked by each Transaction; recursive, because a thread's committed Transaction may still exist at its
+  /// next one
+  std::recursive_mutex turn_;
 };
 
 /// A value of SQLite's type BLOB: bytes that are not text.

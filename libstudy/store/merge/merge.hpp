@@ -14,8 +14,9 @@ namespace study {
 /// How evenly the sessions of one protocol use the assignment. The sessions of Store::taken_slots() count.
 struct Balance {
   std::string name, version;
-  int sessions = 0;                ///< number of sessions that count
-  std::vector<int> sequence_uses;  ///< number of sessions by sequence of groups; one entry: a single sequence
+  int sessions = 0;  ///< number of sessions that count
+  /// number of sessions by sequence of groups; one entry: one sequence, or random groups
+  std::vector<int> sequence_uses;
   std::vector<int> slot_uses;  ///< number of sessions by slot; empty: this program cannot read the protocol
   /// True if a sequence, or a slot, has at least two sessions more than another.
   bool off() const;

@@ -14,7 +14,7 @@
 
 namespace study {
 
-/// The answers on one page with the items of the SSQ.
+/// One answered page of the SSQ.
 struct SsqPage {
   int position = 0;  ///< 0-based position of the page among the session's units
   std::string block;

@@ -46,7 +46,8 @@ struct StudyStatus {
   std::vector<std::string> withdrawn;  ///< codes of people who withdrew
   std::int64_t frames = 0;
   std::int64_t gaze = 0;  ///< number of gaze samples
-  std::string lacking;    ///< rows that only the journal contains, in words (OpenedStudy); empty: none
+  /// rows that only the journal of answers contains (OpenedStudy::lacking); empty: none
+  std::string lacking;
 };
 StudyStatus read_status(const StudyFile& study);
 

@@ -123,8 +123,9 @@ struct TaskProtocol {
 
 struct TaskStudy {
   std::vector<TaskProtocol> protocols;
-  int withdrawn = 0;         ///< number of participants who withdrew, under all protocols
-  std::string lacking = {};  ///< rows that only the journal contains, in words (OpenedStudy); empty: none
+  int withdrawn = 0;  ///< number of participants who withdrew, under all protocols
+  /// rows that only the journal of answers contains (OpenedStudy::lacking); empty: none
+  std::string lacking = {};
   /// Answers to TaskProtocol::about_people; empty until read_about_people() adds them.
   std::vector<PersonalEntry> about_people = {};
 };
