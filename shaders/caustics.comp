@@ -1,7 +1,8 @@
 // Sums on the floor the sunlight that the water's surface refracts: one invocation per cell of the surface map. The
 // light between four neighbouring rays is spread evenly over the piece of floor between the points where the rays
 // land. The brightness of that piece is the ratio of the two areas. Light is lost where the surface reflects it,
-// where an obstacle above the surface blocks it, beyond the edge of the floor, and into water whose surface breaks.
+// where an obstacle above the surface blocks it, beyond the edge of the floor, and where the surface breaks: water
+// whose neighbouring rays land more than torn_cells apart.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #include "caustic_units.glsl"

@@ -1,5 +1,5 @@
-// Writes per pixel the lowest index among the small particles whose depth is the pixel's; one invocation per
-// particle.
+// Writes per pixel the lowest index among the particles whose depth is the pixel's; one invocation per particle.
+// Takes only particles with small footprints; splat_wide.comp does the same for large ones.
 #include "view.glsl"
 #include "sphere.glsl"
 #include "targets.glsl"

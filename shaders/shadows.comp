@@ -1,5 +1,6 @@
-// Sunlight that obstacles and flying water block on its way to the floor: one invocation per cell of the floor map.
-// The ray to the cell is refracted by a flat surface, as high as the water where the ray enters it.
+// Computes the share of sunlight that obstacles and flying water let through to the floor, and the length of the
+// ray's path in the pool: one invocation per cell of the floor map. The ray to the cell is refracted by a flat
+// surface, as high as the water where the ray enters it.
 #include "light.glsl"
 #include "floor_maps.glsl"
 #ifdef OBSTACLES
@@ -21,7 +22,7 @@ vec4 surface_near(vec2 place) {
   return mix(mix(surface[at], surface[at + 1], f.x), mix(surface[next], surface[next + 1], f.x), f.y);
 }
 
-// Surface map where the ray that reaches a point of the floor enters the water; found by iteration.
+// Value of the surface map where the ray that reaches a point of the floor enters the water; found by iteration.
 vec4 entry_of(vec2 place) {
   vec4 found = surface_near(place);
   for (int k = 0; k < 3; ++k) {

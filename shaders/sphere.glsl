@@ -77,7 +77,7 @@ vec2 tangent_slopes(float x, float z, float radius) {
   return vec2(x * z - root, x * z + root) / (z * z - radius * radius);
 }
 
-// Lowest and highest slope along one axis of the part of a sphere in front of the near plane.
+// Lowest and highest slope along one axis of the visible part of a sphere: the part beyond the near plane.
 vec2 clipped_slopes(float x, float z, float radius) {
   const float low = x - radius, high = x + radius;
   return vec2(low / (low < 0 ? origin.z : z + radius), high / (high > 0 ? origin.z : z + radius));

@@ -96,13 +96,13 @@ void print_frame(const base::Json& result) {
                 measure::launch_lines(result["launches"], result["bandwidth_gb_s"].get<double>()).c_str());
 }
 
-// The conditions under which the rows of data/peers.csv were measured.
+// The scene, method, n_* and step at which the rows of data/peers.csv were measured.
 constexpr const char* peers_scene = "data/scenes/peers_dam.toml";
 constexpr const char* peers_method = "HiRes";
 constexpr const char* peers_n_star = "4k";
 constexpr double peers_dt_s = 0.005;
 
-/// Refuses options that change the run of --peers, which is fixed.
+/// Refuses all options but `allowed` beside --peers, which fixes the conditions of the run.
 void refuse_beside_peers(const CLI::App& command) {
   constexpr std::array allowed{"--peers",  "--backend", "--frames",     "--warm-up",      "--no-render",
                                "--passes", "--json",    "--save-state", "--measure-every"};
@@ -113,7 +113,9 @@ void refuse_beside_peers(const CLI::App& command) {
   }
 }
 
-/// Runs the conditions of data/peers.csv instead of those in `options`, and prints the comparison.
+/// Runs the fixed scene, method, n_* and step at which the rows of data/peers.csv were measured (constants
+/// above). These values and "no picture" replace those in `options`; the other options apply. Prints our
+/// figures beside the rows.
 base::Json run_peers(FrameOptions options) {
   const auto peers = measure::read_peers(base::find_input("data/peers.csv"));
   options.scene = peers_scene;
@@ -134,7 +136,7 @@ base::Json run_peers(FrameOptions options) {
   return result;
 }
 
-/// Refuses options that change numbers of the solver, because --setting fixes them all.
+/// Refuses all options but `allowed` beside --setting, which fixes all numbers of the solver.
 void refuse_beside_setting(const CLI::App& command) {
   constexpr std::array allowed{"scene",     "--setting",   "--backend", "--frames",
                                "--warm-up", "--no-render", "--passes",  "--look",

@@ -117,7 +117,7 @@ Plan plan_of(const measure::Table1Options& options) {
 }
 
 /// Writes the output files after the pictures of each scene and size, and again after its film, so that an
-/// interrupted run has stored its results.
+/// interrupted run has stored the finished parts.
 void run_table1(const measure::Table1Options& options) {
   check_apart("", {{"--csv", options.csv},
                    {"--markdown", options.markdown},

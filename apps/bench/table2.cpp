@@ -48,7 +48,7 @@ struct CellRun {
   std::vector<double> saliency_ms, levels_ms, activation_ms, solve_ms;
   /// Mean time of passing the picture to saliency; contained in step_ms, but not in frame_ms.
   double seen_ms = 0;
-  std::vector<double> followed_ms;  ///< frame times from which tau was computed, including warm-up
+  std::vector<double> followed_ms;  ///< frame times from which a measured tau follows, including warm-up
   sim::PictureWay seen_way = sim::PictureWay::None;
 };
 
@@ -64,7 +64,8 @@ Moments moments_of(const std::vector<double>& values) {
   return out;
 }
 
-/// Measures the wall times of all frames. Within a step only the method itself waits for the device.
+/// Measures the wall times of all frames. Waits for the device after each step and each picture; within a
+/// step only the method itself waits.
 CellRun time_frames(const sim::CellScene& scene, const sim::SimulationOptions& choice,
                     const Table2Options& options) {
   const auto made = sim::make_simulation(scene.scene, choice);
@@ -154,8 +155,8 @@ std::vector<std::string> row_of(const sim::CellScene& scene, const measure::Cell
           figures::number(hires_ms / step_ms, 3)};
 }
 
-/// True if `words` names the method. Always true for HiRes, because the other methods are compared with
-/// HiRes.
+/// True if `words` is "all" or names the method. Always true for HiRes, because the other methods are
+/// compared with HiRes.
 bool wanted(sim::MethodKind method, const std::string& words) {
   if (words == "all" || method == sim::MethodKind::HiRes) return true;
   bool found = false;
@@ -269,7 +270,8 @@ void add_table2_command(CLI::App& app) {
   add_count(*command, "--warm-up", options->warm_up, 0, 99999, "Of these, left out of the figures");
   command->callback([options] {
     if (options->warm_up >= options->frames) {
-      throw base::Error("--warm-up", "leaves no frame to measure", "make it smaller than --frames");
+      throw base::Error("--warm-up " + std::to_string(options->warm_up), "leaves no frame to measure",
+                        "make it smaller than --frames, which is " + std::to_string(options->frames));
     }
     options->model = load_model(options->ptpe);
     run_table2(*options);

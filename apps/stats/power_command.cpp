@@ -44,7 +44,7 @@ void check_kind(const study::PowerRequest& request, study::PowerKind kind, const
   const auto only = [&](const char* option, bool fits, const char* where) {
     if (options.count(option) > 0 && !fits)
       refuse(option, "does not apply to protocol " + request.protocol.name,
-             std::string("it is for ") + where);
+             std::string("leave it out: it is for ") + where);
   };
   const bool task1 = kind == study::PowerKind::Task1, task2 = kind == study::PowerKind::Task2,
              pilot = kind == study::PowerKind::Pilot;

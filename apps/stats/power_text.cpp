@@ -10,7 +10,7 @@ namespace apps {
 
 namespace {
 
-/// Largest count of numbers of participants that are printed; the output files contain all.
+/// Largest number of columns that are printed, one per number of participants; output files contain all.
 constexpr std::size_t printed_columns = 6;
 
 std::vector<std::size_t> columns_to_print(const study::Json& json) {

@@ -15,7 +15,8 @@ struct ProtocolBakes {
   bool pictures = false;  ///< true: also store pictures
 };
 
-/// Upper bound of a bake's size, bytes, from method, n_*, frames, foam and pixels in its header.
+/// Upper bound of a bake's size, bytes, from method, n_*, frames, temperatures, foam and pixels in its
+/// header.
 std::uint64_t most_bytes(const sim::BakeHeader& header);
 
 /// Makes the bakes of plan_bakes() in `folder`, which is made if missing; prints on stdout which bakes it

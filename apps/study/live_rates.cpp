@@ -113,7 +113,7 @@ std::function<void()> stoppable(const study::Protocol& protocol, const study::Se
     if (setup.poll) setup.poll();
     if (StopSignals::stop_requested())
       throw base::Error(protocol.name, "stopped while live cells were measured; nothing was shown",
-                        "start it again");
+                        "give the command again");
   };
 }
 

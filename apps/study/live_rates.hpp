@@ -25,15 +25,16 @@ struct LiveTimes {
 };
 
 /// Times each live stimulus during one trial at the display's size and angle. Uses the times in
-/// sim::default_cache_folder() if the same program measured the stimulus on this machine before. First prints
-/// on stderr how long the measuring takes. base::Error for an unknown scene, method or n_*.
+/// sim::default_cache_folder() if the same program measured the stimulus on this machine before, except
+/// for cells with place.anew. Before measuring, prints on stderr how long it takes at most. base::Error for
+/// an unknown scene, method or n_*.
 LiveTimes measure_live(const study::Protocol& protocol, study::CellStimuli& stimuli,
                        const MeasuringPlace& place);
 
 /// Measures and judges the live cells of a session, and prints their rates on stderr. Does nothing on a
-/// virtual clock. base::Error for cells that do not reach their setting, unless accept_slow. A cell that is
-/// too slow by cached times is measured again first, because the station may have been busy at the earlier
-/// measurement.
+/// virtual clock. Unless accept_slow: base::Error for cells that do not reach their setting. Before that
+/// error, cells that are too slow by cached times are measured again, because the station may have been busy
+/// at the earlier measurement.
 study::MeasuredReport check_live(const study::Protocol& protocol, study::SessionSetup& setup,
                                  bool accept_slow);
 

@@ -32,9 +32,10 @@ study::Protocol read_again(const study::OpenRun& run, const std::string& place) 
                                  study::ProtocolUse::Stored);
   } catch (const base::Error& error) {
     const std::string reason = error.what();
-    throw base::Error(place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
-                      "finish it with the version of vip-study that wrote it; if this version upgraded it, "
-                      "use the copy '.bak' beside it; it can still be read, by status, export and vip-stats");
+    throw base::Error(
+        place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
+        "finish the sessions with the version of vip-study that began them; if this version upgraded the "
+        "database, use its copy with the ending .bak; status, export and vip-stats still read it");
   }
 }
 
@@ -44,7 +45,7 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
   if (run.trial_seconds) study::override_trial_seconds(protocol, *run.trial_seconds);
   if (protocol.sha256 != run.protocol_sha256) {
     throw base::Error(place, "protocol '" + run.protocol_name + "' does not have the hash stored with it",
-                      "restore a backup of it, or use the version of vip-study that wrote it");
+                      "restore a backup of the database, or use the version of vip-study that wrote it");
   }
   return protocol;
 }
@@ -67,8 +68,8 @@ void check_settings(const std::vector<std::string>& files, const study::RunOptio
   }
 }
 
-/// Refuses stimuli that differ from the recorded stimuli. Does not refuse another station or framing, but
-/// stores them.
+/// Refuses stimuli that differ from the recorded stimuli, and a display on which a session would become test
+/// data. Another station or framing is not refused; both are stored with each session.
 void check_unchanged(study::Store& store, const study::OpenRun& run, const study::SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {

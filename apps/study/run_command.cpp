@@ -132,8 +132,9 @@ study::RunPlan make_run_plan(const RunCommand& command, const study::Protocol& p
   return run;
 }
 
-/// Refuses a run without a station number if earlier sessions have a station number, because each station
-/// assigns only its part of the slots. Prints only a warning if the station number differs.
+/// Refuses a run without a station number if all earlier sessions of the protocol have one, because each
+/// station assigns only its part of the slots. If this run has a station number that no earlier session has,
+/// prints only a warning.
 void check_station_number(study::Store& store, const study::Protocol& protocol,
                           const study::SessionPlan& common, const std::string& database) {
   std::optional<study::StationNumber> other;

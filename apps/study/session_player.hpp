@@ -55,8 +55,8 @@ enum class RunEnd {
   Stopped      ///< a session was stopped by the participant, a stop rule or the experimenter
 };
 
-/// Plays all sessions of an open run with a progress bar, and prints which sessions ended early. If the run
-/// is stopped on request, base::Error whose remedy is vip-study resume.
+/// Plays all sessions of an open run, with the console or a progress bar. Prints which sessions ended early,
+/// and summaries. If the run is stopped on request, base::Error whose remedy is vip-study resume.
 RunEnd play_run(study::Store& store, const study::OpenRun& run, const study::Protocol& protocol,
                 study::SessionSetup& setup, const PlayOptions& options);
 

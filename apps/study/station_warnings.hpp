@@ -10,9 +10,9 @@
 
 namespace apps {
 
-/// The problem of this computer's clock: `now` is before the day `built`, before `newest`, or more than a
-/// year after `newest`. newest: latest time in the database; empty: no data. Returns an empty text if there
-/// is no problem.
+/// The problem of this computer's clock: `now` is before `built` (the day of the build), more than a minute
+/// before `newest`, or more than a year after `newest`. newest: latest time in the database; empty: no data.
+/// Returns an empty text if there is no problem.
 std::string clock_problem(const std::string& now, const std::string& newest, const std::string& built);
 
 /// Prints clock_problem() and place_problems() on stderr and returns them. The session may continue in spite

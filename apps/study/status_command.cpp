@@ -19,8 +19,7 @@ std::string state_of(const study::SessionRow& session) {
   return session.done > 0 ? "under way" : "planned";
 }
 
-/// The permissions that the participant gave or refused; omits permissions that the protocol does not ask
-/// for.
+/// The permissions that the participant gave or refused; omits permissions without an answer.
 std::string permissions_of(const study::SessionRow& session) {
   std::string text;
   if (session.gaze) text += *session.gaze ? ", gaze kept" : ", gaze not kept";

@@ -31,12 +31,13 @@ class FrameStrip {
  public:
   static constexpr int length = 240;
 
-  /// Adds the time of one frame, ms. Ignores negative values and NaN.
+  /// Adds the time of one frame, ms. Ignores values that are negative or not finite.
   void push(double ms);
   void clear() { *this = {}; }
   /// Top of the scale, ms: the smallest of 1, 2, 5, 10, 20, ... that no frame exceeds; 1 without frames.
   double scale_ms() const;
-  const float* ms() const { return ms_; }  ///< times of `length` frames, ms; 0 for missing frames
+  /// Times of the last `length` frames, ms, as a ring that begins at oldest(); 0: no frame yet.
+  const float* ms() const { return ms_; }
   int oldest() const { return next_; }
 
  private:

@@ -89,7 +89,7 @@ class HeadsetViewer {
         display_.turn();
         continue;
       }
-      display_.take_spoilt();  // discards cuts, because the viewer draws every picture anew
+      display_.take_spoilt();  // clears the cause of a cut: the viewer cuts nothing
       const std::int64_t before_ns = display_.now_ns();
       fluid_->prepare(shown.frames);
       recorder_.take();

@@ -9,12 +9,12 @@
 ///   footer (index offset, chunk count, XXH3 of the index, content hash, magic "VIPBEND\n").
 /// The footer is written last, so that a truncated file is detected. Positions have 16 bit per axis over each
 /// frame's bounding box: the error is at most extent / 131070, which the writer keeps below a twentieth of
-/// the finest radius. Foam's radii and temperatures are stored likewise, each over its range in the frame.
-/// All else is exact, including each frame's account (not in format 1). Since format 3 the header contains
-/// the view (BakedView) and the inputs of tau. Since format 4 it contains the computed effects, and foam is
-/// stored. Since format 5 particles may have temperatures, and the header contains the overlay and the
-/// picture's effects. A bake without contents of format 5 is written in format 4. Equal content gives equal
-/// bytes (no date is stored).
+/// the finest radius. The radii of foam particles and the temperatures of water particles are stored
+/// likewise, each over its range in the frame. All else is exact, including each frame's account (not in
+/// format 1). Since format 3 the header contains the view (BakedView) and the inputs of tau. Since format 4
+/// it contains the computed effects, and foam is stored. Since format 5 particles may have temperatures, and
+/// the header contains the overlay and the picture's effects. A bake without contents of format 5 is written
+/// in format 4. Equal content gives equal bytes (no date is stored).
 
 #include <cstdint>
 #include <filesystem>
@@ -37,7 +37,7 @@ struct BakedView {
   int width_px = 0, height_px = 0;
   /// Vertical angle of the picture's camera, in (0, 180); 0 = no picture was drawn.
   double camera_angle_deg = 0;
-  /// Assumed angle that the picture fills of the eye's view; none = unknown.
+  /// Assumed vertical angle between the edges of the shown picture at the participant's eye; none = unknown.
   std::optional<double> visual_angle_deg;
   std::string renderer;  ///< renderer of the picture: gl_description()
   /// Assumed gaze: "middle" (of the picture), "scene" (the scene's gaze keys) or "none" (the method follows
@@ -50,7 +50,7 @@ struct BakedView {
 
 /// Inputs of temporal acceleration.
 struct BakedTolerance {
-  FrameRate rate;          ///< from which tau was computed
+  FrameRate rate;          ///< the frame rate from which tau was computed
   stats::PtpeModel model;  ///< the PTPE model that gives tau and beta
   std::uint32_t seed = 1;  ///< for the random choice of active particles
 };

@@ -42,7 +42,9 @@ BakedView get_view(ByteReader& in) {
   view.camera_angle_deg = in.get<double>();
   if (const auto degrees = in.get<double>(); degrees != 0) view.visual_angle_deg = degrees;
   const auto keys = in.get<std::uint32_t>();
-  if (keys > max_gaze_keys) in.fail("states " + std::to_string(keys) + " gaze keys");
+  if (keys > max_gaze_keys)
+    in.fail("states " + std::to_string(keys) + " gaze keys; at most " + std::to_string(max_gaze_keys) +
+            " are allowed");
   for (std::uint32_t i = 0; i < keys; ++i) {
     GazeKey& key = view.gaze_path.emplace_back();
     key.frame = in.get<std::int32_t>();

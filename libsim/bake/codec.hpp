@@ -12,10 +12,11 @@
 
 namespace sim {
 
-/// Facts of a frame, stored before its particles and before its picture.
+/// Facts of a frame, stored at the front of its particle chunk and of its picture chunk.
 struct BakeFacts {
-  double time_s = 0;     ///< since the gate opened
-  FrameAccount account;  ///< particle counts, one per radius of the file's header; format 1 stores only these
+  double time_s = 0;  ///< since the gate opened
+  /// Includes a particle count per radius of the file's header. Format 1 stores nothing else of the account.
+  FrameAccount account;
 };
 
 /// The particles of one frame, ordered by level, and within a level in the solver's order.
@@ -97,9 +98,9 @@ inline constexpr std::uint32_t bake_format = 5;
 void put_facts(ByteWriter& out, const BakeFacts& facts);
 BakeFacts get_facts(ByteReader& in, std::uint32_t format, std::size_t levels);
 
-/// pack() appends a byte for the kind, then `data` compressed by zstd, or unchanged if the ratio would exceed
-/// 4096 to 1. unpack() refuses any size other than `size`, and allocates only after checking the ratio, so
-/// that memory stays proportional to the file.
+/// pack() appends a byte for the kind, then `data` compressed by zstd. It appends `data` unchanged if zstd
+/// does not make them smaller, or at a ratio of 4096 to 1 or more. unpack() refuses any size other than
+/// `size`, and allocates only after checking the ratio, so that memory stays proportional to the file.
 void pack(ByteSpan data, int zstd_level, Bytes& out);
 void unpack(ByteReader& in, std::size_t size, Bytes& out);
 

@@ -158,10 +158,11 @@ Axis temperature_range(const std::vector<float>& temperature_k, const std::strin
     range.max = i == 0 ? one : std::max(range.max, one);
   }
   if (error_of(range) <= max_temperature_error_k) return range;
-  throw base::Error(place,
-                    fmt::format("temperatures span {:.4g} K, which 16 bit resolve to {:.3g} K only",
-                                double(range.max) - double(range.min), error_of(range)),
-                    "the simulation has failed; raise time.min_substeps in the scene file");
+  throw base::Error(
+      place,
+      fmt::format("temperatures span {:.4g} K, which 16 bit resolve to {:.3g} K; at most {:.3g} K is allowed",
+                  double(range.max) - double(range.min), error_of(range), max_temperature_error_k),
+      "the simulation has failed; raise time.min_substeps in the scene file");
 }
 
 }  // namespace
@@ -205,7 +206,9 @@ void decode_particles(ByteSpan payload, const ParticleLayout& layout, const std:
   ByteReader in(payload, place);
   out.facts = get_facts(in, layout.format, radius_by_level_m.size());
   const std::int64_t total = out.facts.account.particles();
-  if (total > layout.max_particles) in.fail("states " + std::to_string(total) + " particles");
+  if (total > layout.max_particles)
+    in.fail("states " + std::to_string(total) + " particles; its header allows " +
+            std::to_string(layout.max_particles));
   const Box box = get_axes<3>(in);
   const Axis warmth = layout.temperatures ? get_axes<1>(in)[0] : Axis{};
   const auto n = static_cast<std::size_t>(total);
@@ -276,7 +279,9 @@ void decode_foam(ByteSpan payload, std::int64_t max_foam, const std::string& pla
                  std::vector<RenderParticle>& out) {
   ByteReader in(payload, place);
   const std::size_t n = in.get<std::uint32_t>();
-  if (static_cast<std::int64_t>(n) > max_foam) in.fail("states " + std::to_string(n) + " particles of foam");
+  if (static_cast<std::int64_t>(n) > max_foam)
+    in.fail("states " + std::to_string(n) + " particles of foam; its header allows " +
+            std::to_string(max_foam));
   const auto ranges = get_axes<fields>(in);
   if (n > 0 && !(ranges[3].min > 0)) in.fail("holds foam without a radius");
   unpack(in, 2 * fields * n, scratch);

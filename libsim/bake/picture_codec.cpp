@@ -33,7 +33,8 @@ void join_planes(const std::uint8_t* planes, std::size_t pixels, std::uint8_t* r
   }
 }
 
-/// residual = row - prediction. `above` and `before` may be null (zero).
+/// residual = row - prediction. `above`: the row above; `before`: the same row of the previous picture. A
+/// null row counts as zeros.
 void residual_row(Predictor predictor, ConstRow row, ConstRow above, ConstRow before, std::size_t width,
                   Row residual) {
   for (std::size_t x = 0; x < width; ++x) {
@@ -46,7 +47,7 @@ void residual_row(Predictor predictor, ConstRow row, ConstRow above, ConstRow be
   }
 }
 
-/// Sum of the residuals' sizes as signed bytes: estimates the compressed size.
+/// Sum of the absolute residuals, read as signed bytes. A smaller sum promises a smaller compressed row.
 long cost(ConstRow residual, std::size_t width) {
   long sum = 0;
   for (std::size_t x = 0; x < width; ++x) sum += std::abs(static_cast<std::int8_t>(residual[x]));

@@ -56,8 +56,8 @@ const BakePicture& PictureRing::take(std::int64_t frame) {
   return slot(freed_).picture;
 }
 
-/// True if `frame` comes within the next two ring lengths: then the pictures before it are decoded and
-/// dropped. For any other jump the decoding restarts, at a key picture.
+/// True if `frame` is one of the next 2 x capacity pictures; take() then drops the pictures before it. For
+/// any other frame take() restarts the decoding, which begins at the key picture before the frame.
 bool PictureRing::comes_later(std::int64_t frame) const {
   std::int64_t next = expected_;
   for (std::size_t i = 0; i < 2 * slots_.size(); ++i, next = after(next)) {
@@ -100,7 +100,7 @@ void PictureRing::decode_loop() {
     const std::uint64_t calls = calls_;
     if (stop_) return;
     if (round != round_) {
-      // If the consumer starts a newer round meanwhile, the next slots have the older number and are dropped.
+      // If the consumer starts another round now, slots that still get this round's number are dropped.
       round = round_;
       next = first_;
     }

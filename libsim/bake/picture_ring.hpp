@@ -16,8 +16,8 @@ namespace sim {
 /// ring. Taking a ready picture takes no lock: a preempted decoding thread never blocks the consumer.
 class PictureRing {
  public:
-  /// `capacity`: number of pictures. 24 pictures are 0.2 s at the pilot's shortest interval (8 ms), and 22 MB
-  /// at 640x360.
+  /// `capacity`: number of pictures, at least 2. 24 pictures are 0.2 s at the pilot's shortest interval (8
+  /// ms), and 22 MB at 640x360.
   explicit PictureRing(const BakeReader& bake, std::size_t capacity = 24);
   ~PictureRing();
   PictureRing(const PictureRing&) = delete;
@@ -27,8 +27,8 @@ class PictureRing {
   /// full.
   void start(std::int64_t frame);
   /// The picture of `frame`; valid until the next call. Waits if it is not decoded yet. If `frame` is not
-  /// among the next pictures, decoding restarts at `frame`. Errors of the file are thrown here, at their
-  /// frame.
+  /// among the next 2 x capacity pictures, decoding restarts at `frame`. A picture that cannot be read throws
+  /// its error here, when its frame is taken.
   const BakePicture& take(std::int64_t frame);
   /// Number of times that take() had to wait since start().
   std::int64_t waits() const { return waits_; }
@@ -63,8 +63,8 @@ class PictureRing {
   // counter is written by one thread only.
   std::atomic<std::uint64_t> filled_ = 0;
   std::atomic<std::uint64_t> freed_ = 0;
-  // The consumer's request: round number round_ begins at frame first_, and after the last frame continues at
-  // loop_to_. Slots of earlier rounds are dropped.
+  // The consumer's request. Each restart begins a new round, with number round_, at frame first_. After the
+  // last frame the round continues at loop_to_. Slots of earlier rounds are dropped.
   std::atomic<std::uint64_t> round_ = 0;
   std::atomic<std::int64_t> first_ = 0;
   std::atomic<std::int64_t> loop_to_ = 0;
@@ -72,7 +72,7 @@ class PictureRing {
   std::atomic<std::uint64_t> calls_ = 0;
   std::atomic<bool> stop_ = false;
 
-  /// The frame last given to the consumer, in the slot at freed_; none = released.
+  /// The frame whose picture the consumer has now, in slot freed_; none = the consumer has no picture.
   std::optional<std::int64_t> held_;
   std::int64_t expected_ = 0;  ///< next frame of this round that the consumer has not received
   std::int64_t waits_ = 0;

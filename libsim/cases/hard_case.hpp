@@ -35,14 +35,16 @@ struct Finding {
   double value = 0;
   Gate gate = Gate::Reported;
   double limit = 0;
-  /// The limit that the catalogue of cases requires, if the gate is looser (docs/results.md has the reason).
+  /// The limit that the catalogue of cases requires; none = `limit`. Where `limit` is looser, docs/results.md
+  /// has the reason.
   std::optional<double> asked;
   std::string unit;  ///< empty = a ratio or a count
 
   /// True if the value meets its limit; false for NaN with a limit.
   bool passes() const;
   /// Distance to the limit, as a share of the limit: 0 at the limit, below 0 beyond it. Infinite for a value
-  /// that is only reported, and for a limit of 0 that is met.
+  /// that is only reported, and for a limit of 0 that is met. -infinite for a value that is not finite, and
+  /// for a limit of 0 that is not met.
   double margin() const;
 };
 
@@ -64,8 +66,9 @@ struct Outcome {
   std::string text() const;
 };
 
-/// True if the finding shows that water was lost, braked or compressed, which no effect may cause. Other
-/// findings, such as where and how fast water comes to rest, may change with effects.
+/// True if the finding measures lost, braked or compressed water: particles outside, braked particles, or the
+/// largest rho / rho_0. Its gate holds with effects too. Other findings, such as where and how fast water
+/// comes to rest, may change with effects.
 bool is_of_stability(const Finding& finding);
 /// The outcome with only those findings for which is_of_stability() is true.
 Outcome of_stability(Outcome outcome);
@@ -76,9 +79,10 @@ struct HardCase {
   const char* title;
   const char* asked;  ///< requirement in words
   std::vector<MethodKind> methods;
-  const char* scaled;  ///< the quantity that Setting::scale multiplies: "30 m/s of the jet"; empty = nothing
-  double frame_dt_s;   ///< simulated time of a frame, if the setting has none, s
-  int iterations;      ///< projections per substep, if the setting has none
+  /// The quantity that Setting::scale multiplies, such as "30 m/s of the jet"; empty = the case has none.
+  const char* scaled;
+  double frame_dt_s;  ///< simulated time of a frame, if the setting has none, s
+  int iterations;     ///< projections per substep, if the setting has none
   /// base::Error for a missing back end; results of the simulation are never an error.
   Outcome (*run)(const Setting&);
 };

@@ -15,8 +15,8 @@ Outcome run_s02(const Setting& setting) {
   SimulationOptions options = options_of(setting);
   options.n_star = std::lround(10 * 10 * height / d / 8);
   if (setting.substeps == 0) options.substeps = 2;
-  // The gates are looser for methods with levels, which keep splitting and merging, and for LoRes, whose 40
-  // layers fall as far as 80 finest layers.
+  // The gates are looser for methods with levels, whose splits and merges keep stirring the water, and for
+  // LoRes, whose column has only 40 layers, each twice as thick.
   const MethodTraits& method = traits_of(setting.method);
   const bool fine = !method.adaptive() && method.start_level == 0;
   // With temporal acceleration the largest density is chaotic: 1.13 to 1.19 for eight seeds of the random
@@ -39,7 +39,7 @@ Outcome run_s02(const Setting& setting) {
       at_most("rise of 99.9 % of the water", (top - height) / start_spacing(setting.method), 5, "d");
   rise.asked = 2;
   return watch.outcome({lost, densest, rise,
-                        // Before the solver had its pre-stabilisation at the frame's beginning, the lattice
+                        // An earlier solver had no pre-stabilisation at the frame's beginning: the lattice
                         // shot up at 7 m/s, and its centre rose by 41 %.
                         at_most("v_rms", fastest_rms, 2.5, "m/s"),
                         reported("v_rms at last", rms_speed(watch.state()), "m/s")});

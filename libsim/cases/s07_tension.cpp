@@ -23,14 +23,16 @@ void stir(State& state, const Vec3d& centre, Flow flow) {
   }
 }
 
-/// Runs one of the two cases; appends its findings to `out`. Required are no clumps and no energy gain. A
-/// unilateral constraint cannot sustain negative pressure, so voids open; they are only reported.
+/// Runs the square or the sphere (`what`) and appends its findings to `out`. Gates: no clumps and no energy
+/// gain. Voids open, because a unilateral constraint cannot sustain negative pressure; they are only
+/// reported. least: limit for the distance of close pairs, in spacings.
 void follow(Outcome& out, const std::string& what, const Setting& setting, Scene& scene, const State& start,
             double seconds, double least) {
   scene.gravity_m_s2 = 0;
   Watch watch(with_effects(scene, setting), options_of(setting, scene, start),
               {.density = 1.5, .outside_m = 0.1 * d});
-  // Measured at 1 % of the particles: one close pair in a thousand is chance, one in a hundred is a clump.
+  // `close` is the distance that 99 % of the particles keep to their nearest neighbour, because a close pair
+  // in a thousand particles is chance, and a clump has one in a hundred.
   double close = 2, closest = 2, energy = 1;
   const double began = kinetic_energy(start);
   for (int frame = 0; frame < frames_of(setting, seconds) && watch.step(); ++frame) {

@@ -66,8 +66,9 @@ double densest_in_corners(const Simulation& fluid, const Scene& scene) {
   return out;
 }
 
-/// Counts particles that hang in the air: two frames without motion, and no neighbours. A flying particle's
-/// motion per frame grows by g dt^2 each frame.
+/// Counts particles that hang in the air: above 2 d, without neighbours, and without motion for two frames.
+/// Without motion means less than g dt^2 / 3 per frame. A flying particle moves less in at most
+/// one frame, because its motion per frame changes by g dt^2 each frame.
 class Hanging {
  public:
   explicit Hanging(double frame_dt_s) : still_m_(gravity * frame_dt_s * frame_dt_s / 3) {}
@@ -123,7 +124,7 @@ Outcome slosh(const Setting& setting, bool with_wedge) {
   Hanging air(frame_dt_of(setting));
   for (int frame = 0; frame < frames; ++frame) {
     if (frame % period == 0) {
-      // The velocity change points towards each corner in turn.
+      // All particles get a sudden change of velocity, towards each corner in turn.
       const int turn = frame / period;
       State state = watch.state();
       for (auto& p : state) {

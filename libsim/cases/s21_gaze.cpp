@@ -57,7 +57,8 @@ Outcome run_s21(const Setting& setting) {
     }
   };
   double least_mass = mass(pool.state);
-  // Number of frames until 90 % of the fovea's mass is on target; most + 1 if it never is.
+  // Number of frames with the gaze at `point` until 90 % of the mass in the fovea is at least as fine as its
+  // target; most + 1 if this takes longer than `most` frames.
   const auto frames_to_follow = [&](const Vec3d& point, int most) {
     for (int frame = 1; frame <= most; ++frame) {
       frames_at(point, 1, true);
@@ -77,7 +78,7 @@ Outcome run_s21(const Setting& setting) {
   return watch.outcome(
       {at_most("frames after a jump", followed, 20), at_most("frames after a loss", back, 10),
        at_most("frames in which more than 5 % split", beyond, 0),
-       // A larger value would mean that no level followed the gaze.
+       // With a larger share, the levels would not have followed the gaze.
        at_most("particles before the jump over all", coarse, 0.75),
        at_least("mass in the fovea", least_mass, 100, "m_*"),
        at_least("frames without gaze", static_cast<double>(watch.report().guards.gaze_lost), 60),

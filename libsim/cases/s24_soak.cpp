@@ -70,8 +70,8 @@ Outcome run_s24(const Setting& setting) {
                         // runs this case alone has a gate for it.
                         reported("growth of the process", resident_mib() - memory, "MiB"),
                         watch.outside_finding(),
-                        // Only reported, because a tank of 64 coarsest particles sometimes has none in the
-                        // corners.
+                        // Only reported: in the small case the water has the mass of 64 coarsest
+                        // particles, and sometimes none is in the corners.
                         reported("layers left out", static_cast<double>(watch.report().guards.nozzle_waited)),
                         reported("largest rho / rho_0", watch.densest()),
                         at_least("poured", static_cast<double>(watch.report().poured), 1, "m_*")});

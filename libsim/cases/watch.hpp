@@ -29,18 +29,19 @@ class Watch {
   const FrameReport& report() const { return report_; }
   int frame() const { return frame_; }
   double densest() const { return densest_; }  ///< largest rho / rho_0 over all frames
-  /// The rho / rho_0 that is not exceeded in this share of the frames, 0 < share <= 1; 0 if there is no
-  /// frame.
+  /// Quantile of the frames' largest rho / rho_0: the value that this share of the frames does not exceed,
+  /// 0 < share <= 1; 0 if there is no frame.
   double densest_in(double share) const;
   double fastest_m_s() const { return fastest_; }
   int out() const { return out_; }                    ///< largest number of particles outside in a frame
   int short_frames() const { return short_frames_; }  ///< frames that requested more substeps than they got
 
-  /// Findings shared by most cases. Each gets its gate from the bounds.
+  /// Findings shared by most cases. The limits of density and speed are the bounds; the limit of the number
+  /// of particles outside is 0.
   Finding density_finding() const;
   Finding speed_finding() const;
   Finding outside_finding() const;
-  /// The case's result: these findings, and the reason of a stop.
+  /// The case's result: the given findings, and the reason of a stop if the run has stopped.
   Outcome outcome(std::vector<Finding> findings) const;
 
  private:
@@ -62,8 +63,8 @@ class Watch {
 Scene with_effects(Scene scene, const Setting& setting);
 /// Options with the setting's method, back end and parameters. Ours-TSp runs at tau = -10: beta = 0.67.
 SimulationOptions options_of(const Setting& setting);
-/// Options for a run that starts with the particles `start`; sets the scene's water so that the finest
-/// spacing is d.
+/// Options for a run that starts with the particles `start`. Sets the size of the scene's water and n_* so
+/// that the finest spacing is d (libsim/cases/water.hpp).
 SimulationOptions options_of(const Setting& setting, Scene& scene, const State& start);
 /// Simulated time of a frame, s: the setting's or `usual`.
 double frame_dt_of(const Setting& setting, double usual = 1.0 / 60);

@@ -29,7 +29,7 @@ struct ListCorners {
     keys[place] = std::uint64_t{ordered(dot(up, xyz(position[i])))} << 32 | static_cast<std::uint32_t>(id[i]);
     order[place] = i;
   }
-  /// The float's bits as an unsigned integer that has the same order.
+  /// Converts a float to an unsigned integer; larger floats give larger integers.
   SIM_FN static std::uint32_t ordered(float height) {
     std::uint32_t bits = 0;
     memcpy(&bits, &height, sizeof bits);
@@ -68,7 +68,8 @@ struct Weigh {
   SIM_FN void operator()(int k) const { mass[k] = 1 << level[taken[k]]; }
 };
 
-/// Finds the shortest front part of the list whose mass reaches `need` > 0. Exactly one k writes the result.
+/// Finds the smallest number of particles at the list's front whose mass is at least `need` > 0. At most one
+/// index k writes the result.
 struct FindCut {
   const int* mass;
   const int* sum;
@@ -184,7 +185,8 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   }
   if (layers <= 0) return 0;
 
-  // The new order: the remaining particles, then copies of a particle, which the new particles overwrite.
+  // The new order: the remaining particles, then one entry per new particle. These entries repeat particle 0,
+  // which Make overwrites.
   kept_.resize(static_cast<std::size_t>(n));
   id_.resize(static_cast<std::size_t>(made));
   for_each("keep", n, SetAll{kept_.data(), 1});

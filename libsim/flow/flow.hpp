@@ -72,7 +72,7 @@ using ExchangeView =
 /// Exchanges particles of any levels for particles of one level, with equal mass in units of m_*.
 class Exchange {
  public:
-  /// The particles that are taken from the front of the list.
+  /// Number of particles taken from the front of `lowest_first` (see run).
   struct Cut {
     int taken;
     int mass;  ///< mass of these particles, m_*
@@ -99,7 +99,9 @@ class Exchange {
 /// The nozzles of a run, and the amounts of water that they took and added.
 struct Jets {
   std::vector<Nozzle> nozzles;
-  std::vector<Poured> before;   ///< amount that each nozzle has added, in layers of its present level
+  /// Per nozzle: the part of the jet that was due before this frame, including layers that could not be
+  /// poured.
+  std::vector<Poured> before;
   double finest_spacing_m = 0;  ///< d_*
   double frame_dt_s = 0;        ///< > 0
   Corners corners;
@@ -115,7 +117,8 @@ struct Jets {
   std::int64_t poured = 0;     ///< since the run began, in m_*
   std::int64_t made = 0;       ///< particles added by pouring since the run began
   std::int64_t taken = 0;      ///< particles taken from the corners since the run began
-  std::uint64_t waited = 0;    ///< layers not poured because the corners held too little mass
+  /// Layers that were due and not poured: the corners had too little mass, or the capacity was reached.
+  std::uint64_t waited = 0;
 };
 
 using OutflowView = ColumnView<columns(Column::Position, Column::Level),
@@ -123,7 +126,8 @@ using OutflowView = ColumnView<columns(Column::Position, Column::Level),
                                        Column::Predicted, Column::Density),
                                columns(Column::Temperature)>;
 
-/// Removes particles that left through outlets: those on the far side of a plane that has an opening.
+/// Removes particles that left through outlets: the particles on the far side of the plane of a wall that has
+/// an opening.
 class Outflow {
  public:
   /// Number of particles, and their mass in units of m_*.

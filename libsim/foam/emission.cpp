@@ -29,7 +29,8 @@ struct SumSurface {
   }
 };
 
-/// Computes the outward normal n_i = -h_i sum_j V_j grad W_ij, and samples the closing speed of the water.
+/// Computes the outward normal n_i = -h_i sum_j V_j grad W_ij, as if water continued behind walls and in
+/// obstacles, and samples the closing speed of the water. Both are 0 for water that cannot emit foam.
 template <class Bounds>
 struct Surface {
   const Vec4* position;
@@ -65,8 +66,8 @@ struct Surface {
 constexpr float least_normal = 0.3f;
 constexpr float least_push = 0.6f;
 
-/// Mean of (1 - n_i n_j) / r_ij over surface neighbours below the tangent plane: convex crests count, troughs
-/// do not (Eq. 4 and 5, divided by the distance).
+/// Mean, weighted by kernel and mass, over surface neighbours j of (1 - n_i n_j) / r_ij below the tangent
+/// plane and 0 above it: convex crests count, troughs do not (Eq. 4 and 5, divided by the distance).
 struct SumCurvature {
   Vec4 self;
   Vec3 out;
@@ -112,9 +113,9 @@ struct CountBirths {
     births[i] = static_cast<int>(volume / rules.volume + uniform_of(chance));
   }
 
-  /// Potential of a convex surface that moves outwards, times its area per volume of the particle, 1/m; 0
-  /// elsewhere. The factor is the area, because curvature grows with the resolution and the area of crests
-  /// does not.
+  /// Potential of a convex surface that moves outwards, times the surface's area per volume of the particle,
+  /// 1/m; 0 elsewhere. Crests emit in proportion to their area, because the area does not depend on the
+  /// resolution.
   SIM_FN float crest(int i) const {
     const Vec3 n = xyz(normal[i]);
     const float size = length(n);

@@ -26,10 +26,10 @@ struct FoamKinds {
   static constexpr float bubble = 0.75f;  ///< above this: bubble
 };
 
-/// Cells on which the closing speed of the water is measured (at which parts of the water approach each
-/// other), and this frame's results. The scene gives the edge of the cells. Differences between neighbouring
-/// particles depend on their sizes, their time steps and unsolved particles; differences between cell means
-/// do not.
+/// Cells on which the closing speed of the water is measured, and this frame's results. The closing speed is
+/// the speed at which parts of the water approach each other. The scene gives the edge of the cells.
+/// Differences between neighbouring particles depend on their sizes, their time steps and unsolved particles;
+/// differences between cell means do not.
 struct MeetingCells {
   static constexpr int most_cells = 1 << 20;
 

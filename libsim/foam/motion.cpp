@@ -8,8 +8,8 @@ namespace {
 
 constexpr float earth_gravity = 9.81f;
 
-/// Sums over the water at a position: rho / rho_0, and its velocity and support, each weighted by its share
-/// of rho / rho_0.
+/// Sums over the water particles that reach a position: rho / rho_0 (`share`), and their velocities and
+/// supports, weighted by each particle's part of rho / rho_0.
 struct SumWater {
   Vec3 x;
   const Vec4* velocity;

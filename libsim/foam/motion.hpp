@@ -20,13 +20,16 @@ struct Potential {
 struct FoamRules {
   float dt = 0;  ///< duration of the frame, s
   Fall gravity{0};
-  float rate = 0;        ///< volume of foam per second and volume of water at full potential, 1/s
-  Potential approach{};  ///< potential of tau_ta, 1/s: closing speed of water divided by its distance
-  Potential crest{};     ///< potential of tau_wc, 1/m: curvature of moving crests
+  float rate = 0;  ///< volume of foam per second and volume of water at full potential, 1/s
+  /// Potential of trapped air, tau_ta, of a value in 1/s: the closing speed of two points in the water
+  /// divided by their distance.
+  Potential approach{};
+  /// Potential of wave crests, tau_wc, of a value in 1/m: the curvature of a moving crest.
+  Potential crest{};
   /// Weight of crests: the surface of a full crest emits as much as water of this depth whose potential of
   /// trapped air is 1, m.
   float crest_depth = 1;
-  Potential energy{};     ///< potential of tau_k, J/kg: v^2 / 2
+  Potential energy{};     ///< potential of kinetic energy, tau_k, of a value in J/kg: v^2 / 2
   int coarsest = 3;       ///< coarsest level that still emits
   int coarsest_seen = 3;  ///< coarsest level that may lie next to emitting water
   float lifetime = 1;     ///< mean time on the water, s
@@ -54,9 +57,9 @@ void emit_foam(FoamPool& pool, FoamView water, const Bounds& bounds, const FoamR
 
 using FoamWaterView = Reads<Column::Position, Column::Velocity>;
 
-/// Moves the diffuse particles over a frame, ages foam, and records in the ledger which particles dissolved
-/// or left: they have left if they are beyond an opening in a wall. Walls and obstacles stop particles; a
-/// moving obstacle carries them along.
+/// Moves the diffuse particles over a frame, ages foam, and counts in the ledger the particles that dissolved
+/// or left. A particle has left if it is beyond an opening in a wall, or not finite. Walls and obstacles stop
+/// particles; a moving obstacle carries them along.
 template <class Bounds>
 void move_foam(FoamPool& pool, FoamWaterView water, const Grid& grid, const Bounds& bounds,
                const FoamRules& rules);

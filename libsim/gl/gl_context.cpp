@@ -170,7 +170,7 @@ GlContext GlContext::make_shared() const {
 void GlContext::make_current() {
   if (state_->make_current()) return;
   throw base::Error("OpenGL", "the headless context cannot be made current",
-                    "release it on the other thread first");
+                    "release the context on the other thread first");
 }
 
 void GlContext::release() { state_->release(); }

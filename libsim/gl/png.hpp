@@ -18,10 +18,11 @@ struct Image {
   std::vector<std::uint8_t> rgba;  ///< 4 * width * height bytes
 };
 
-/// The bytes of a PNG file. Errors (base::Error, at `place`): an empty picture.
+/// The bytes of a PNG file. Errors (base::Error, at `place`): an empty picture, or an rgba array of the wrong
+/// size.
 std::string png_bytes(const Image& image, const std::string& place);
 /// Decodes a PNG of 8 or 16 bits, grey or colour, widened to RGBA; at most 16,384 px per side. Errors
-/// (base::Error, at `place`): truncated, not a PNG.
+/// (base::Error, at `place`): truncated, not a PNG, too large.
 Image png_of(std::string_view bytes, const std::string& place);
 
 /// Writes a temporary file in the same folder and renames it. Errors (base::Error): an empty picture, not

@@ -31,13 +31,13 @@ struct WallSum {
   static constexpr float unit = 1.0f / (1ull << 36);
 };
 
-/// Records the pushes of walls, for kernels. `sums`: first those of the walls, then those of the gauges.
+/// Records the pushes of walls, for kernels. `sums`: one sum per wall, then one per gauge.
 struct WallRecord {
   WallSum* sums;
   const GaugeBox* gauges;
   int gauge_count;
   float finest_support;
-  /// Weight of a push, including its repeats in later momentum steps.
+  /// Factor on each recorded push; above 1 if later iterations repeat the push (SolverParameters::momentum).
   float times;
 
   /// Adds a wall's push on a particle, m_* m along the wall's normal; the push is spread over the box at -

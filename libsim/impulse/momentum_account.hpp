@@ -12,7 +12,7 @@ namespace sim {
 
 /// A rectangle on a wall that measures the push of this part of the wall on the water. The part beyond the
 /// wall's edges and the extent across the wall are ignored. It should be several particle spacings d wide: a
-/// particle counts with the share of its square d x d inside.
+/// particle counts with the share of its square d x d that lies in the gauge.
 struct Gauge {
   std::string name;
   Wall wall = Wall::Floor;
@@ -22,8 +22,8 @@ struct Gauge {
 double area_m2(const Gauge& gauge, const Vec3d& room_m);
 
 /// A part of an obstacle's surface that measures its push on the water: the part inside a box in the
-/// obstacle's own axes, by default the whole surface. Where the box reaches the obstacle's end or beyond, it
-/// has no bound.
+/// obstacle's own axes, by default the whole surface. The gauge has no bound on a side on
+/// which the box reaches the obstacle's end.
 struct ObstacleGauge {
   std::string name;
   std::size_t obstacle = 0;  ///< index of the obstacle in the scene's order
@@ -35,8 +35,8 @@ struct ObstacleGauge {
 /// average over 5 ms or more.
 struct WallPush {
   double missing_density = 0;  ///< by the density projections, in which walls stand in for missing water
-  double coarse_pressure = 0;  ///< by the coarse pressure: rho_0 q A of the cells at the wall
-  double clamp = 0;            ///< by keeping particles before the wall and moving them back to it
+  double coarse_pressure = 0;  ///< by the coarse pressure q: rho_0 q A per cell face of area A at the wall
+  double clamp = 0;            ///< by holding particles back in front of the wall, and moving them back to it
   double sum() const { return missing_density + coarse_pressure + clamp; }
 };
 

@@ -30,7 +30,8 @@ struct CellKey {
     return order(a) < order(b);
   }
 };
-/// One value per metric of still_metrics: infinite if the pictures are equal, NaN if the mask is too small.
+/// One value per metric of still_metrics. A PSNR is infinite if the compared pixels are equal; a value is NaN
+/// if its mask is too small.
 using CellValues = std::array<double, still_metrics.size()>;
 using CellScores = std::map<CellKey, CellValues>;
 
@@ -45,7 +46,8 @@ CellScores read_cells(const std::filesystem::path& path);
 void check_paired(const std::vector<ScoreBlock>& blocks, const CellScores& then, const std::string& path);
 
 /// Mean of now - then with its 95 % interval (Student's t over pairs of checkpoint and gaze point, repeats
-/// averaged first), one row per scene, method and metric. Uses only pictures with two finite values.
+/// averaged first), one row per scene, n_*, preset, method and metric. Uses only pictures whose value is
+/// finite in both runs.
 figures::TextTable change_rows(const std::vector<ScoreBlock>& now, const CellScores& then);
 
 }  // namespace measure

@@ -100,7 +100,8 @@ Checkpoint read_checkpoint(const fs::path& folder, const CheckpointOf& of) {
     const std::string its = take_line(rest, key, path);
     if (its == value) continue;
     throw base::Error(path.string(), "has " + key + " " + base::shortened(its) + ", this run has " + value,
-                      "run with what it was stored with, or store it again with --checkpoints-to");
+                      "use the scene, n_*, checkpoints and --size with which it was stored, or store it "
+                      "again with --checkpoints-to");
   }
   const std::string digest = take_line(rest, "sha256", path);
   if (base::sha256_hex(rest) != digest) damaged(path);

@@ -24,7 +24,8 @@ struct CheckpointOf {
 /// File name of a checkpoint, such as SingleDam_32768_f060.checkpoint.
 std::string checkpoint_name(const CheckpointOf& of);
 
-/// Writes the checkpoint to a file of this name in an existing folder; a rename replaces an older file.
+/// Writes the checkpoint to the file checkpoint_name(of) in an existing folder; a rename replaces an older
+/// file.
 void write_checkpoint(const std::filesystem::path& folder, const CheckpointOf& of,
                       const Checkpoint& checkpoint);
 
@@ -32,8 +33,8 @@ void write_checkpoint(const std::filesystem::path& folder, const CheckpointOf& o
 /// water.
 std::string checkpoint_digest(const Checkpoint& checkpoint);
 
-/// Reads the file of this name. base::Error at the file if it is missing, damaged, not a checkpoint, or has
-/// other fields than `of`; the first different field is named.
+/// Reads the file checkpoint_name(of). base::Error at the file if it is missing, damaged, not a checkpoint,
+/// or has other fields than `of`; the first different field is named.
 Checkpoint read_checkpoint(const std::filesystem::path& folder, const CheckpointOf& of);
 
 }  // namespace measure

@@ -48,7 +48,7 @@ std::vector<LevelVariant> level_variants_of(const sim::Scene& scene) {
   }
   if (out.empty())
     throw base::Error("scene " + scene.name, "lists no effect that has a coarsest_level",
-                      "give one with such an effect, such as data/scenes/sea_spray.toml");
+                      "give a scene with such an effect, for example data/scenes/sea_spray.toml");
   return out;
 }
 
@@ -153,7 +153,8 @@ void compare(Running& running, const Running& reference) {
 
 std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, const LevelRuns& runs) {
   if (!sim::traits_of(runs.choice.method).adaptive())
-    throw base::Error("--levels", "compares levels, and " + sim::method_name(runs.choice.method) + " has one",
+    throw base::Error("--levels",
+                      "compares levels, and method " + sim::method_name(runs.choice.method) + " has only one",
                       "choose a method that splits and merges, such as --method Ours");
   const auto context = sim::GlContext::make_headless();
   const sim::Scene& scene = variants.front().scene;

@@ -40,7 +40,8 @@ struct LevelRuns {
   base::PictureSize size;
 };
 
-/// All variants start from one settled state, with the gaze on the scene's gaze point. They step in turn,
+/// All variants start from one settled state (perturbed if LevelVariant::moved), with the gaze on the scene's
+/// gaze point. They step in turn,
 /// with each pass timed, and are drawn at four equally spaced frames up to the last one. base::Error for a
 /// method with one level.
 std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, const LevelRuns& runs);
@@ -48,7 +49,7 @@ std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, con
 /// One row per variant, grouped by effect. The added time is relative to the group's first row, without the
 /// effect; the saved time is a share of the effect's own passes in the group's second row, at all levels.
 figures::TextTable to_table(const EffectsRun& run, const std::vector<LevelCost>& costs);
-/// One bar per variant: ms of the effect's own passes.
+/// One bar per variant, except those without the effect: ms of the effect's own passes.
 std::string to_svg(const EffectsRun& run, const std::vector<LevelCost>& costs);
 
 }  // namespace measure

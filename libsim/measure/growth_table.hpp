@@ -19,8 +19,8 @@ struct GrowthRow {
   double ms_frame_mean = 0;
   double density_error_mean = 0;  ///< mean of max(rho / rho_0 - 1, 0)
   /// Simulation::particle_bytes / final number of particles: the particles' columns and the data of
-  /// saliency, temporal acceleration, nozzles and outlets, at their capacity. Excludes neighbour lists, cells
-  /// and the pressure's grids.
+  /// saliency, temporal acceleration, nozzles, outlets and foam, at their capacity. Excludes neighbour lists,
+  /// cells and the pressure's grids.
   double column_bytes = 0;
   /// Bytes of device memory after the run, beyond those in use before the fluid was made, per particle; NaN
   /// on the CPU.
@@ -30,7 +30,7 @@ struct GrowthRow {
 /// ms per substep = factor particles^exponent, by least squares over the logarithms.
 struct Growth {
   double exponent = 0, factor = 0;
-  /// Of the exponent; NaN for two sizes, which always lie on a line.
+  /// Standard error of the exponent; NaN for two sizes, because a line fits two points exactly.
   double standard_error = std::numeric_limits<double>::quiet_NaN();
 };
 /// base::Error unless two rows have different numbers of particles.

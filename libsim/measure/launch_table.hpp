@@ -30,7 +30,8 @@ struct PassWater {
   double listed = 0;  ///< neighbours per list; 0: unknown, which makes the bytes of passes with lists unknown
 };
 
-/// Bytes of one launch; none if the table has no such pass.
+/// Least bytes of one launch; none if the table has no such pass, or if the pass reads lists and
+/// PassWater::listed is unknown.
 std::optional<double> least_bytes(const std::string& label, const PassWater& water);
 
 struct PassFloor {
@@ -38,7 +39,8 @@ struct PassFloor {
   double ms_a_frame = 0;  ///< at the given bandwidth
   double times = 0;       ///< measured time / ms_a_frame
 };
-/// gb_s: bandwidth of the memory, reads plus writes, 1e9 bytes per second; above 0.
+/// The floor of a pass; none if least_bytes() gives none, or without launches. gb_s: bandwidth of the memory,
+/// reads plus writes, 1e9 bytes per second; above 0.
 std::optional<PassFloor> floor_of(const std::string& label, double launches_a_frame, double ms_a_frame,
                                   const PassWater& water, double gb_s);
 
@@ -46,7 +48,7 @@ std::optional<PassFloor> floor_of(const std::string& label, double launches_a_fr
 class LaunchSums {
  public:
   void add(const std::vector<sim::LaunchTime>& stretch);
-  /// The sums, that with the longest time first.
+  /// The sums of each pass; the pass with the longest time comes first.
   std::vector<sim::LaunchTime> all() const { return sim::longest_first(passes_); }
 
  private:
@@ -54,7 +56,7 @@ class LaunchSums {
 };
 
 /// An array with pass, launches_a_frame, ms_a_frame, bytes_a_frame, floor_ms_a_frame and times_floor of each
-/// pass; the last three are null if pass_bytes() has no row for it.
+/// pass; the last three are null if floor_of() gives none.
 base::Json launches_json(const std::vector<sim::LaunchTime>& passes, int frames, const PassWater& water,
                          double gb_s);
 

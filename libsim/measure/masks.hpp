@@ -13,7 +13,7 @@ namespace measure {
 
 using Mask = std::vector<std::uint8_t>;
 
-/// Masks with fewer pixels are left out of the table.
+/// Smallest mask, px, over which a metric is computed; metrics of smaller masks are left out of the table.
 inline constexpr std::size_t least_mask_pixels = 1000;
 
 std::size_t pixels_of(const Mask& mask);

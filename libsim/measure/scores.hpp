@@ -30,8 +30,8 @@ struct MetricTraits {
 };
 const std::array<MetricTraits, metric_count>& all_metrics();
 
-/// One metric of one method: cells ordered by checkpoint, gaze point, repeat. A value is infinite if the
-/// pictures were equal and NaN if the mask was too small.
+/// One metric of one method: cells ordered by checkpoint, gaze point, repeat. A PSNR is infinite if the
+/// compared pixels were equal; a value is NaN if its mask was too small.
 struct Series {
   std::vector<stats::ImageScore> cells;
   std::size_t repeats = 1;  ///< number of consecutive cells that are not independent
@@ -55,8 +55,9 @@ struct ScoreBlock {
 };
 
 /// Columns scene, n_star, method, preset, metric, mean, ci_low, ci_high (95 %, Student's t over groups),
-/// groups (checkpoint x gaze point, repeats averaged), cells (finite values), equal (equal pictures, left
-/// out), skipped (masks too small), pixels (mean of a mask).
+/// groups (checkpoint x gaze point, repeats averaged), cells (number of finite values), equal (number of
+/// infinite values, left out of the mean), skipped (number of masks that were too small), pixels (mean size
+/// of a mask).
 figures::TextTable score_rows(const std::vector<ScoreBlock>& blocks);
 
 /// The paper's layout: one row per method, one column per metric, mean +- half the interval.

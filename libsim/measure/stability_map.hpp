@@ -29,13 +29,13 @@ struct Limit {
   int runs = 0;
 };
 
-/// The largest factor from 1 to `most` that passes, if 1 does: the smallest failing factor is at most
-/// `resolution` times larger. Assumes that all factors below a passing one pass; only the bisection's points
-/// are tried. most > 1, resolution > 1.
+/// The largest factor from 1 to `most` that passes: a factor at most `resolution` times as large fails. Tries
+/// `most` and the bisection's points only. Assumes, without trying, that the factor 1 passes, and all factors
+/// below a passing one. most > 1, resolution > 1.
 Limit<double> largest_factor(const Trial<double>& trial, double most, double resolution);
 
-/// The smallest whole number from 1 to `usual` that passes, if `usual` does. Assumes that all numbers between
-/// a passing one and `usual` pass.
+/// The smallest whole number from 1 to `usual` that passes, by bisection. Assumes, without trying, that
+/// `usual` passes, and all numbers between a passing one and `usual`.
 Limit<int> fewest(const Trial<int>& trial, int usual);
 
 // The map.
@@ -48,7 +48,7 @@ const char* knob_name(Knob knob);  ///< as in the CSV: "frame_step", "iterations
 struct MapCell {
   std::string case_id, title, method;
   Knob knob{};
-  std::string of;    ///< unit of the number: "s", "projections a substep", "30 m/s of the jet"
+  std::string of;    ///< unit of the number: "s", "projections a substep", "times 30 m/s of the jet"
   double usual = 0;  ///< the case's own number
   double limit = 0;  ///< the farthest value that passed
   Reach reach = Reach::Found;

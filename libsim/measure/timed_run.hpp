@@ -18,7 +18,8 @@ std::unique_ptr<sim::Simulation> make_settled(const sim::Scene& scene, sim::Simu
 /// Processor and number of cores. Leaves out the operating system, which does not affect the numbers.
 std::string processor();
 
-/// Density error averaged over states spread over the run, so that no single calm or wild moment decides.
+/// Density error and numbers of neighbours, averaged over states spread over the run, and the largest density
+/// of these states. A single calm or wild moment then does not decide.
 struct Accuracy {
   double error_mean = 0;
   double density_max = 0;

@@ -14,7 +14,8 @@ namespace sim {
 struct PtpeBandPoint {
   double delta = 0;            ///< frames/s
   std::array<double, 2> mu{};  ///< 95 % interval of mu(delta) over participants, frames/s
-  bool in_reach = true;  ///< false: no frame rates near the curve were shown at this delta; extrapolated
+  /// False if the study showed no frame rates near the curve at this delta: mu is then extrapolated.
+  bool in_reach = true;
 };
 
 /// Contents of ptpe.toml, which `vip-stats fit-ptpe` writes and every solver program can load.

@@ -38,8 +38,8 @@ class ToleranceSwitch {
                            std::optional<FrameRate> fixed_rate = {});
 
   /// Adds the duration of a whole frame, ms. A value that is not positive and finite is ignored and counted;
-  /// with a fixed tau the call changes nothing. The switch waits for a full window: delta cannot be estimated
-  /// from few frames.
+  /// with a fixed tau the call changes nothing. on() does not change before window_frames durations are
+  /// known, because delta cannot be estimated from few frames.
   void frame_time(double ms);
 
   /// tau = mu - a exp(b delta), frames/s; none before the first frame time is known.

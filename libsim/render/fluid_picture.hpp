@@ -32,10 +32,10 @@ class FluidPicture {
   /// The two steps of draw(), for callers that time them separately.
   void take(Simulation& fluid);
   void show(std::span<const View> views, unsigned framebuffer);
-  /// Passes the gaze of the coming frame to the simulation and, once something was drawn, the last picture.
-  /// The picture stays on the device if the back end shares memory with GL; otherwise it is copied through
-  /// the host.
-  /// visual_scale: as sim::EyeLook::visual_scale.
+  /// Passes the gaze of the coming frame to the simulation and, if the method uses pictures, the last
+  /// picture; before the first draw, the picture given to begin(). The picture stays on the device if the
+  /// back end shares memory with GL; otherwise it is copied through the host. visual_scale: as
+  /// sim::EyeLook::visual_scale.
   void look(Simulation& fluid, const View& view, const Gaze& gaze, double visual_scale = 1);
   FluidRenderer& renderer() { return renderer_; }
   const FluidRenderer& renderer() const { return renderer_; }
@@ -55,7 +55,7 @@ class FluidPicture {
   bool uploaded_ = false;
 };
 
-/// Name of the way for records: "device", "host" or "none".
+/// Name, for records, of the way in which a picture was passed to saliency: "device", "host" or "none".
 std::string picture_way_name(PictureWay way);
 /// "picture of frame 41 by way of device", or "no picture".
 std::string in_words(const SeenReport& seen);

@@ -58,7 +58,8 @@ struct RenderOptions {
   /// layers of water and smears droplets over the background, so the default is two layers. A surface seen
   /// at a slant spans more depth; pairs of samples extend the range there (shaders/narrow_range.glsl).
   float filter_delta_r = 4;
-  float filter_mu_r = 1;  ///< samples farther behind count as this far behind
+  /// Samples behind the narrow range count as if they were this far behind the filtered pixel's surface.
+  float filter_mu_r = 1;
   /// Number of rounds, each along x and then y (Truong and Yuksel iterate too). One round leaves streaks,
   /// because its last pass spreads the values at a crest along the column.
   int filter_rounds = 2;

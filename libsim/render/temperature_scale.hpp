@@ -9,7 +9,7 @@
 
 namespace sim {
 
-/// A scale from the coldest to the hottest temperature that a scene with heat names (sim::temperatures_of).
+/// A scale from the lowest to the highest temperature in a scene with the effect heat (sim::temperatures_of).
 class TemperatureScale {
  public:
   /// Do not call overlay() for a scene without heat.

@@ -22,15 +22,17 @@ class SaliencyInput {
  public:
   /// Stores gazes and cameras and copies the pictures; without `pictures` the last ones remain. Returns
   /// false, and changes nothing, if a picture is in GL buffers that cannot be shared. base::Error: no eye or
-  /// more than two, a camera that is not finite, a G-buffer with incomplete arrays.
+  /// more than two, a camera that is not finite, a visual scale that is not positive, a G-buffer with
+  /// incomplete arrays or without a perspective camera.
   bool look(const Looks& looks, bool pictures = true);
-  /// Degrees by which the gaze has turned since mark_gazes(), for `looks` or those of the last look(); the
-  /// larger value of two eyes. A shift of the eye by s m adds atan(s). A gaze that was valid at the mark and
-  /// is lost now has turned by 0; one that was lost at the mark too is replaced by the view's axis. Before
-  /// the first mark the result is 180.
+  /// Degrees by which the gaze of `looks` (without an argument: of the last look()) has turned since
+  /// mark_gazes(); the larger value of two eyes. A shift of the eye by s m adds atan(s). A gaze that was
+  /// valid at the mark and is lost now has turned by 0; one that was lost at the mark too is replaced by the
+  /// view's axis. Before the first mark the result is 180.
   double turned_deg(const Looks& looks) const;
   double turned_deg() const;
-  /// Stores the present gazes for turned_deg(). A gaze that got lost at most hold_s ago keeps its old mark.
+  /// Stores the present gazes for turned_deg(). A gaze that has been lost for at most hold_s keeps its
+  /// old mark if the mark was a valid gaze. Otherwise the mark of a lost gaze is the view's axis.
   void mark_gazes(double hold_s);
   /// Unmaps the GL buffers of the pictures that look() mapped. Required before GL draws.
   void give_back();
@@ -42,7 +44,7 @@ class SaliencyInput {
   Eyes next_frame(double dt_s, double hold_s);
   /// Number of frames without a valid gaze, summed over the eyes.
   std::uint64_t gaze_lost() const { return gaze_lost_; }
-  /// How the pictures of the last look() with pictures were passed.
+  /// How the last call of look() with `pictures` set received its pictures.
   SeenReport seen() const { return seen_; }
   /// Bytes used by the pictures.
   std::size_t bytes() const;

@@ -102,7 +102,8 @@ struct SaliencyFluid {
   int n = 0;
   float finest_support = 0;  ///< h_*, m
   float gravity = 0;         ///< m/s2; without gravity a substitute (FluidState::gravity_of_rest)
-  /// f_T gamma_t smoothed over frames, NaN if unknown; nullptr: use only this frame's.
+  /// f_T gamma_t smoothed over frames, NaN if unknown; nullptr: no smoothing, only this frame's value is
+  /// used.
   float* unrest = nullptr;
   SwirlSeen swirl{};  ///< added to `unrest`
   float* saliency = nullptr;

@@ -137,8 +137,8 @@ SIM_FN Spot find_spot(const Eye& eye, Vec3 x) {
 
 /// |grad Phi_n| of Eq. 5, dimensionless: the mean of |n(q) - n(p)| over the fluid pixels q of a square window
 /// of half side R = clamp(round(window), 1, most) px around p. At most 64 pixels are read, in a fixed pattern
-/// with equally dense columns and rows. A window of R px covers R + 1/2; the last factor corrects this, so
-/// that a surface has the same value at every resolution.
+/// with equally dense columns and rows. The pixels of the window extend R + 1/2 px from the centre of p; the
+/// last factor corrects for this, so that a surface has the same value at every resolution.
 SIM_FN float normal_variation(const GBufferView& g, int x, int y, float window, int most) {
   const Vec3 centre = g.normal_at(x, y);
   if (!(dot(centre, centre) > 0.25f)) return 0;

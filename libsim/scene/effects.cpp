@@ -193,12 +193,14 @@ void check_effects(const std::vector<Effect>& effects) {
     if (!has_effects()) fail(without_effects, build_them);
     if (find(effects, effect.kind) != &effect) fail("is listed twice", "keep one of the two");
     if (!(effect.coefficient >= 0 && effect.coefficient <= largest_coefficient))
-      fail(std::string(traits_of(effect.kind).key) + " is out of range", "use 0 to 1e6");
+      fail(std::string(traits_of(effect.kind).key) + " = " + base::shortest(effect.coefficient) +
+               " is out of range",
+           "use 0 to 1e6");
     for (std::size_t k = 0; k < option_count; ++k) {
       const OptionTraits& option = option_traits[k];
       if (option.of == effect.kind &&
           !(effect.options[k] >= option.least && effect.options[k] <= option.most))
-        fail(std::string(option.key) + " is out of range",
+        fail(std::string(option.key) + " = " + base::shortest(effect.options[k]) + " is out of range",
              "use " + base::shortest(option.least) + " to " + base::shortest(option.most));
     }
     if (!stands(effects, effect)) fail(needs_text(effect), needs_mend(effect));

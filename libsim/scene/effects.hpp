@@ -18,8 +18,8 @@ inline constexpr double rest_density_kg_m3 = 1000;
 /// Largest coefficient of an effect, in the effect's unit.
 inline constexpr double largest_coefficient = 1e6;
 
-/// Unit of an effect's coefficient c. With the rest density rho_0 and the finest spacing d, the unit
-/// determines the natural time T, in which the longest stable step of the effect is given.
+/// Unit of an effect's coefficient c. It gives the formula of the effect's natural time T, from c, the rest
+/// density rho_0 and the finest spacing d. The longest stable substep of an effect is a multiple of its T.
 enum class EffectUnit {
   NewtonPerMetre,         ///< T = sqrt(rho_0 d^3 / c)
   PerSecond,              ///< T = 1 / c
@@ -59,8 +59,8 @@ inline constexpr std::size_t effect_count = static_cast<std::size_t>(EffectKind:
 inline constexpr EffectKind no_effect = EffectKind::count;
 
 // Further parameters of effects, one row each: OPTION(enumerator, its effect, key, default, minimum,
-// maximum). cg_steps = 0 means as many as converge. wall_k = 0 means insulating walls; length_m = 0 means a
-// sixth of the edge of a cube that holds the water.
+// maximum). cg_steps = 0: as many steps as convergence needs. wall_k = 0: insulating walls. length_m = 0: a
+// sixth of the edge of a cube with the volume of the water.
 #define SIM_EFFECT_OPTIONS(OPTION)                                  \
   OPTION(ViscositySteps, Viscosity, cg_steps, 0, 0, 200)            \
   OPTION(ViscosityStick, Viscosity, stick, 1, 0, 1)                 \
@@ -137,7 +137,7 @@ struct Effect {
 
   friend bool operator==(const Effect&, const Effect&) = default;
 };
-/// " key = value" for each option of an effect, for records and people; empty without options.
+/// One " key = value" per option of the effect's kind, for records and people; empty without options.
 std::string options_in_words(const Effect& effect);
 
 /// Coefficient of each effect, 0 if it is not listed, and the options of the effects.
@@ -151,8 +151,8 @@ struct EffectCoefficients {
 };
 EffectCoefficients coefficients_of(const std::vector<Effect>& effects);
 
-/// True if the effect acts on no water of finest_level or coarser: its coarsest_level is finer. `among` holds
-/// the options.
+/// True if the effect acts on no water of finest_level or coarser, because its coarsest_level is finer than
+/// finest_level. `among`: all effects of the scene; an effect may take its coarsest_level from another one.
 bool is_idle(const Effect& effect, const std::vector<Effect>& among, int finest_level);
 /// The effects that are not idle in water of finest_level and coarser.
 std::vector<Effect> acting_effects(const std::vector<Effect>& effects, int finest_level);

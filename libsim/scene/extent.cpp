@@ -56,7 +56,8 @@ namespace {
 constexpr double always_allowed_cells = 1 << 20;
 constexpr double cells_per_particle = 16;
 constexpr int most_substeps = 1000;
-constexpr int most_looks = 1024;  ///< largest tank side / spacing for which undersides are measured
+/// Largest ratio of tank side to spacing for which undersides are measured. Larger tanks are not checked.
+constexpr int most_looks = 1024;
 
 void check_water(const Scene& scene, const std::string& place, const Resolution& resolution) {
   const bool several = scene.water.size() > 1;
@@ -155,8 +156,9 @@ class Underside {
   std::vector<double> heights_;
 };
 
-/// The underside of an obstacle at its start; none if water can pass the obstacle. A convex obstacle closes
-/// the tank if it covers the four corners. A mesh is tested for holes at points one spacing apart.
+/// The underside of an obstacle at its start; none if water can pass the obstacle. An obstacle closes the
+/// tank if the vertical lines through all points of Underside meet it. The points for a mesh are at most one
+/// spacing apart, and the mesh must be solid a quarter of its thickness above its underside.
 std::optional<Underside> closing(const Obstacle& o, const Scene& scene, double spacing) {
   const auto [shortest, longest] = std::minmax(scene.tank_size_m[0], scene.tank_size_m[2]);
   if (shortest < 3 * spacing || longest > most_looks * spacing) return {};

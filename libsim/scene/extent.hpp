@@ -16,9 +16,10 @@ namespace sim {
 /// water from the floor. A scene with an outlet below the obstacle is accepted too.
 void check_ways(const Scene& scene, std::int64_t n_star);
 
-/// Calls check_ways(). base::Error that names the key if the water is thinner than a particle, a frame takes
-/// more than 1000 substeps, or the tank is so much larger than its water that the cells of the coarse
-/// pressure, of `cell_edge_m`, would outnumber particles sixteen times (a million are always allowed).
+/// Calls check_ways(). base::Error that names the key if a block of water is thinner than the finest spacing,
+/// one of several blocks has less volume than a particle, a gate is to hold several blocks, a frame takes
+/// more than 1000 substeps, or the tank is too large for its water: the cells of the coarse pressure, of
+/// `cell_edge_m`, would be more than sixteen times as many as the particles (2^20 cells are always allowed).
 void check_extent(const Scene& scene, MethodKind method, std::int64_t n_star, double cell_edge_m);
 
 /// Memory that programs can use without swapping, in bytes; none if the system does not report it.

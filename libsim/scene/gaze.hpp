@@ -10,8 +10,9 @@ namespace sim {
 /// Duration of a jump from one key's point to the next, in frames.
 inline constexpr int gaze_jump_frames = 2;
 
-/// The point of the last key at or before `frame`, reached within gaze_jump_frames from the previous point;
-/// before the first key, the first key's point. Without keys, the view's target.
+/// The point at which the gaze is directed in `frame`: the point of the last key at or before `frame`. In the
+/// first gaze_jump_frames frames of a key the gaze moves there from the previous key's point. Before the
+/// first key, the first key's point; without keys, the view's target.
 Vec3d gaze_point(const Scene& scene, int frame);
 
 /// Number of the scene's frame at the time of frame `frame` of a run whose frames last frame_dt_s. The

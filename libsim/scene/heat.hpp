@@ -7,7 +7,7 @@ namespace sim {
 
 struct Scene;
 
-/// A box whose water is warm, or cold, at frame 0. Where boxes overlap, the later one counts. Water outside
+/// A box whose water has temperature_k at frame 0. Where boxes overlap, the later one counts. Water outside
 /// all boxes has the effect's reference temperature.
 struct WarmBox {
   std::array<double, 3> min_m{}, max_m{};

@@ -16,8 +16,8 @@ namespace {
 
 using Matrix = std::array<Vector, 3>;
 constexpr int usual_cells = 48, fewest_cells = 4;
-constexpr int margin = 2;   ///< cells around the mesh
-constexpr int spread = 64;  ///< directions of contacts, in addition to the axes
+constexpr int margin = 2;   ///< grid cells beyond the mesh on each side
+constexpr int spread = 64;  ///< directions in which contacts_m() looks, in addition to the axes
 constexpr unsigned most_threads = 8;
 
 /// Diagonalises a symmetric matrix by Jacobi rotations; returns the principal axes as columns.
@@ -92,7 +92,9 @@ Settled settled(const Triangles& mesh) {
 /// Computes Mesh::round_about() of a settled() surface. The integrals over a triangle are sums over the
 /// midpoints of its edges, which is exact because the integrands are quadratic.
 std::array<bool, 3> round_about(const Triangles& mesh) {
-  constexpr double most = 0.01;  ///< a long prism of 19 sides counts as round
+  // Largest mean of (r x n)_k^2 of a round body, as a share of the mean squared distance from axis k. A long
+  // regular prism counts as round if it has at least 19 sides.
+  constexpr double most = 0.01;
   Vector turning{}, from_axis{};
   for (const auto& face : mesh.faces) {
     const auto at = [&](std::size_t k) { return mesh.places[static_cast<std::size_t>(face[k % 3])]; };

@@ -63,8 +63,8 @@ std::string_view file_named_by(std::string_view line) {
   return rest.empty() || rest[0] == '#' ? name : std::string_view{};
 }
 
-/// The quotes of a multi-line string that a line of TOML leaves open: three, or none. open: those left open
-/// by the previous line.
+/// The quotes of a multi-line string that a line of TOML leaves open: three, or none. open: the quotes
+/// that the previous line left open.
 std::string_view left_open(std::string_view line, std::string_view open) {
   constexpr std::string_view quotes[] = {"\"\"\"", "'''", "\"", "'"};
   std::size_t k = 0;
@@ -117,7 +117,8 @@ std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range 
                  "choose a scale so that all sides are within " + base::range_text(size_m) + " m");
   }
   if (2 * out->spacing_m() > shortest)
-    table.fail("spacing_m", "is more than half of the mesh's shortest side", "make it smaller");
+    table.fail("spacing_m", "is more than half of the mesh's shortest side",
+               "use at most " + base::shortest(shortest / 2) + " m");
   if (out->grid_nodes() > static_cast<double>(most_grid_nodes))
     table.fail("spacing_m", "gives the mesh a grid of " + base::shortest(out->grid_nodes()) + " nodes",
                "use at most " + std::to_string(most_grid_nodes));

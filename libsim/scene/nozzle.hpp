@@ -25,7 +25,7 @@ struct JetLayer {
 };
 JetLayer jet_layer(const Nozzle& nozzle, double spacing_m);
 
-/// The part of the jet that has been poured.
+/// The part of a nozzle's jet that has passed the mouth, as a length and as a number of layers.
 struct Poured {
   double length_m = 0;
   std::int64_t layers = 0;

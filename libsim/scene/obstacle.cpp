@@ -286,7 +286,9 @@ std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector&
     check_apart(table, out);
     if (top_speed(out.back()) > most_speed_m_s)
       table.fail("motion", "is faster than time.v_ref_m_s, from which the substeps follow",
-                 "raise time.v_ref_m_s or slow the obstacle down");
+                 "raise time.v_ref_m_s to at least " +
+                     base::shortest(std::ceil(1e3 * top_speed(out.back())) / 1e3) +
+                     ", or slow the obstacle down");
   }
   return out;
 }

@@ -40,7 +40,7 @@ struct Pose {
 /// Pose and motion of a body.
 struct BodyMotion {
   Pose pose;
-  // The following vectors are 0 unless the body is free, except for others_n_s.
+  // Each of the following vectors except others_n_s is 0 unless the body is free.
   std::array<double, 3> velocity_m_s{};  ///< of its centre
   std::array<double, 3> spin_rad_s{};
   /// Impulse from the water that is not yet applied to the body. A light body receives it with a delay,
@@ -92,7 +92,8 @@ double volume_m3(const Obstacle& obstacle);
 /// Moments of inertia about the obstacle's own axes divided by its mass, for uniform density, m2.
 std::array<double, 3> inertia_m2(const Obstacle& obstacle);
 bool any_free(const std::vector<Obstacle>& obstacles);
-/// True if contacts must be computed: one obstacle is free, and there are several or one has friction.
+/// True if contacts must be computed: at least one obstacle is free, and there are several obstacles or any
+/// obstacle has friction.
 bool any_meet(const std::vector<Obstacle>& obstacles);
 bool any_mesh(const std::vector<Obstacle>& obstacles);
 /// Thickness, m: a box's shortest side, the diameter of a sphere or capsule, twice a mesh's greatest depth.

@@ -167,7 +167,8 @@ std::vector<WaterBlock> read_blocks(const base::TomlTable& table, const Scene& s
   if (tables.empty()) return {read_block(table, scene)};
   for (const char* key : {"min_m", "max_m"})
     if (table.has(key))
-      table.fail(key, "is given together with [[water.block]]", "make it one more [[water.block]]");
+      table.fail(key, "is given together with [[water.block]]",
+                 "write these corners as one more [[water.block]], or leave them out");
   std::vector<WaterBlock> out;
   for (const auto& block : tables) {
     if (out.size() == most_water_blocks)
@@ -231,7 +232,8 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
     check_place(table, nozzle, scene);
     if (nozzle.speed_m_s > scene.v_ref_m_s)
       table.fail("speed_m_s", "is faster than time.v_ref_m_s, from which the substeps follow",
-                 "raise time.v_ref_m_s or slow the nozzle down");
+                 "raise time.v_ref_m_s to at least " + base::shortest(nozzle.speed_m_s) +
+                     ", or slow the nozzle down");
     scene.nozzles.push_back(nozzle);
   }
   if (scene.nozzles.empty()) return;

@@ -43,7 +43,8 @@ struct Camera {
   double far_m = 200;
 };
 
-/// From `frame` on the gaze stays on `point_m`; it jumps there in 2 frames.
+/// At `frame` the gaze starts to move from the last key's point to `point_m`. It reaches `point_m` after
+/// gaze_jump_frames frames and stays there until the next key. The first key has no motion.
 struct GazeKey {
   int frame = 0;
   Vec3d point_m{};

@@ -8,7 +8,7 @@
 namespace sim {
 
 /// Throws base::Error naming `place` if a particle was not finite or far outside the tank at any time in the
-/// run, or if a figure of the report is not finite now.
+/// run, or if the density error or the largest speed is not finite now.
 void check_finite(Simulation& fluid, const std::string& place);
 
 /// Sum of two counts, field by field.

@@ -18,7 +18,7 @@ enum class SolverKnob {
   Iterations,    ///< projections per substep
   Substeps,      ///< per frame; 0 = as many as the fastest particle needs
   CoarseCycles,  ///< V-cycles of the coarse pressure
-  Momentum,      ///< share of the last projection that is applied again
+  Momentum,      ///< share of the last projection's displacement that the next one repeats
   Levels,        ///< N
   Alpha,         ///< weight of the temporal feature, Eq. 1
   Fovea,         ///< theta_f, degrees, Eq. 3

@@ -27,8 +27,8 @@ struct GBuffer {
 
   std::vector<float> depth;           ///< front of the splatted spheres, not smoothed (Eq. 8)
   std::vector<float> filtered_depth;  ///< after the narrow-range filter
-  /// 3 values per pixel: unit normal in eye space (x right, y up, z to the viewer); 0: no fluid. Noisy in
-  /// foam.
+  /// 3 values per pixel: unit normal in eye space (x right, y up, z to the viewer); 0: no fluid. Where foam
+  /// covers the water, random normals are mixed in (shaders/composite.comp).
   std::vector<float> normal;
   /// Sum of the chords of all spheres along the pixel's ray, m, not smoothed. The path length in water is
   /// this sum / RenderOptions::packing.

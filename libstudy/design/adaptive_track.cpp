@@ -109,15 +109,6 @@ stats::QuestPlus quest_of(const std::vector<stats::PsychometricCurve>& curves,
           }};
 }
 
-/// Places spread evenly over `count` levels.
-std::vector<int> spread(int fixed, int count) {
-  std::vector<int> out;
-  for (int i = 0; i < fixed; ++i)
-    out.push_back(fixed == 1 ? count / 2
-                             : (i % count) * (count - 1) / std::max(1, std::min(fixed, count) - 1) % count);
-  return out;
-}
-
 int next_by_staircase(const Procedure& procedure, const std::vector<TrackStep>& steps, int count) {
   const auto positive = std::make_unique<bool[]>(steps.size() + 1);
   for (std::size_t i = 0; i < steps.size(); ++i) positive[i] = steps[i].positive;
@@ -195,7 +186,7 @@ PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
   const auto count = static_cast<int>(cells.size());
   int place = 0;
   if (static_cast<int>(steps.size()) < procedure.fixed)
-    place = spread(procedure.fixed, count)[steps.size()];
+    place = stats::spread_evenly(procedure.fixed, count)[steps.size()];
   else if (procedure.kind == ProcedureKind::Staircase)
     place = next_by_staircase(procedure, steps, count);
   else if (procedure.kind == ProcedureKind::QuestPlus)

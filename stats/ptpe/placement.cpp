@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 
 namespace stats {
@@ -14,15 +13,14 @@ constexpr int grid_points = 13;
 constexpr double largest_b = 0.1;  // s/frame
 
 struct PlacementPoint {
-  double a = 0, b = 0, slope = 0, person = 0;
+  double a = 0, b = 0, slope = 0;
 };
 
 std::vector<PlacementPoint> points_of(const PlacementPrior& prior) {
   std::vector<PlacementPoint> out;
   for (const double a : prior.a)
     for (const double b : prior.b)
-      for (const double slope : prior.slope)
-        for (const double person : prior.person) out.push_back({a, b, slope, person});
+      for (const double slope : prior.slope) out.push_back({a, b, slope});
   return out;
 }
 
@@ -36,21 +34,23 @@ double chance_of(const PlacementPrior& prior, double mean, int score) {
 
 QuestPlus make_quest(const std::vector<PlacementSetting>& settings, const PlacementPrior& prior) {
   const auto points = points_of(prior);
-  std::vector<double> weights;
-  std::vector<int> cells;
-  const auto nuisance = static_cast<int>(prior.slope.size() * prior.person.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double z = points[i].person / prior.person_sd;
-    weights.push_back(std::exp(-z * z / 2));
-    cells.push_back(static_cast<int>(i) / nuisance);
-  }
+  const std::vector<double> even(points.size(), 1.0);
   const auto chance = [&](int s, int p, int o) {
     const PlacementSetting& setting = settings[static_cast<std::size_t>(s)];
     const PlacementPoint& point = points[static_cast<std::size_t>(p)];
     const double tau = setting.mu - point.a * std::exp(point.b * setting.delta);
-    return chance_of(prior, prior.level + point.slope * tau + point.person, prior.lowest + o);
+    return chance_of(prior, prior.level + point.slope * tau, prior.lowest + o);
   };
-  return {static_cast<int>(settings.size()), prior.highest - prior.lowest + 1, weights, chance, cells};
+  return {static_cast<int>(settings.size()), prior.highest - prior.lowest + 1, even, chance};
+}
+
+/// The standard deviation of trial `trial` among those between the ends: the middle one first, then the
+/// others by their distance from it. `deltas` has at least three.
+double inner_delta(const std::vector<double>& deltas, std::size_t trial) {
+  std::vector<double> inner(deltas.begin() + 1, deltas.end() - 1);
+  const double middle = inner[(inner.size() - 1) / 2];
+  std::ranges::stable_sort(inner, {}, [&](double delta) { return std::abs(delta - middle); });
+  return inner[trial % inner.size()];
 }
 
 }  // namespace
@@ -75,41 +75,45 @@ PlacementPrior placement_prior(std::span<const PlacementSetting> settings) {
 }
 
 Placement::Placement(std::vector<PlacementSetting> settings, const PlacementPrior& prior,
-                     PlacementGuards guards)
+                     const PlacementRules& rules)
     : settings_(std::move(settings)),
-      guards_(std::move(guards)),
+      rules_(rules),
       lowest_(prior.lowest),
       quest_(make_quest(settings_, prior)) {
+  if (!(rules.bracket > 1) || rules.between < 0 || rules.most_of_one < 1)
+    throw std::invalid_argument("the rules of the placement are out of range");
+  for (const PlacementSetting& one : settings_) deltas_.push_back(one.delta);
+  std::ranges::sort(deltas_);
+  deltas_.erase(std::unique(deltas_.begin(), deltas_.end()), deltas_.end());
   for (const PlacementPoint& point : points_of(prior)) {
     a_values_.push_back(point.a);
     b_values_.push_back(point.b);
   }
-  for (const int index : guards_.fixed)
-    if (index < 0 || index >= static_cast<int>(settings_.size()))
-      throw std::invalid_argument("a fixed setting does not exist");
 }
 
 int Placement::next() const {
-  if (shown_.size() < guards_.fixed.size()) return guards_.fixed[shown_.size()];
-  double low = HUGE_VAL, high = -HUGE_VAL, all_low = HUGE_VAL, all_high = -HUGE_VAL;
-  for (const PlacementSetting& one : settings_) {
-    all_low = std::min(all_low, one.delta);
-    all_high = std::max(all_high, one.delta);
-  }
-  for (const int index : shown_) {
-    low = std::min(low, settings_[static_cast<std::size_t>(index)].delta);
-    high = std::max(high, settings_[static_cast<std::size_t>(index)].delta);
-  }
-  const bool narrow = !shown_.empty() && high - low < guards_.least_spread * (all_high - all_low);
-  std::vector<int> allowed, apart;
+  const std::size_t trial = shown_.size();
+  const bool inner = deltas_.size() > 2 && trial < static_cast<std::size_t>(rules_.between);
+  const double end = trial % 2 == 0 ? deltas_.front() : deltas_.back();
+  const double delta = inner ? inner_delta(deltas_, trial) : end;
+  const bool above = inner ? trial % 2 == 0 : trial / 2 % 2 == 0;
+  const double contour = a().mean * std::exp(b().mean * delta);
+  const double wanted = contour * (above ? rules_.bracket : 1 / rules_.bracket);
+  // The nearest setting, of this delta if any of it may still be shown.
+  constexpr double other_delta = 1e3;
+  int best = -1;
+  double least = 0;
   for (int i = 0; i < static_cast<int>(settings_.size()); ++i) {
-    if (std::ranges::count(shown_, i) >= guards_.most_of_one) continue;
-    allowed.push_back(i);
-    const double last = shown_.empty() ? -1 : settings_[static_cast<std::size_t>(shown_.back())].delta;
-    if (settings_[static_cast<std::size_t>(i)].delta != last) apart.push_back(i);
+    const PlacementSetting& one = settings_[static_cast<std::size_t>(i)];
+    if (std::ranges::count(shown_, i) >= rules_.most_of_one) continue;
+    const double distance = std::abs(std::log(one.mu / wanted)) + other_delta * std::abs(one.delta - delta);
+    if (best < 0 || distance < least) {
+      best = i;
+      least = distance;
+    }
   }
-  if (allowed.empty()) throw std::logic_error("every setting was shown as often as the guards allow");
-  return quest_.next(narrow && !apart.empty() ? apart : allowed);
+  if (best < 0) throw std::logic_error("every setting was shown as often as the rules allow");
+  return best;
 }
 
 void Placement::add(int setting, int score) {

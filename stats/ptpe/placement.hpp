@@ -1,6 +1,11 @@
 #pragma once
-/// Adaptive placement for the PTPE: the next setting is the one whose rating is expected to say most about a
-/// and b.
+/// Adaptive placement for the PTPE: each setting is chosen near the contour that the ratings so far suggest.
+///
+/// A rating says equally much about the contour wherever it lies on the scale, except near the scale's ends.
+/// So the settings of one person bracket the present estimate of the contour, above and below it in turn, at
+/// the smallest and the largest standard deviation in turn. There a and b are determined best (the D-optimal
+/// design of a line). Choosing by expected entropy, as QUEST+ does, was no better than drawing settings at
+/// random (docs/decisions.md).
 
 #include <cstddef>
 #include <span>
@@ -11,62 +16,62 @@
 
 namespace stats {
 
-/// A frame rate that can be shown, frames/s.
+/// A mean and a standard deviation of the frame rate that can be shown, frames/s.
 struct PlacementSetting {
   double mu = 0;     ///< mean; above 0
   double delta = 0;  ///< standard deviation
 };
 
-/// The rater that the placement assumes, with its prior. A rating is
+/// The assumed rater and the prior of its parameters. A rating is
 ///
-///   m + slope (mu - a exp(b delta)) + person + noise,
+///   level + slope (mu - a exp(b delta)) + noise,
 ///
-/// rounded to the nearest score; m is the level of the contour. a and b are of interest, slope and person are
-/// not. Each grid gets equal weights, person those of a normal distribution.
+/// rounded to the nearest score of the scale. a and b are those of this person. All points of the grid have
+/// equal weight.
 struct PlacementPrior {
-  std::vector<double> a, b;                         ///< grids, frames/s and s/frame
-  std::vector<double> slope{0.07, 0.14, 0.28};      ///< scores per frame/s
-  std::vector<double> person{-1, -0.5, 0, 0.5, 1};  ///< scores
-  double person_sd = 0.5;                           ///< scores
-  double noise = 1;                                 ///< standard deviation of one rating, scores
-  int lowest = 1, highest = 7;                      ///< of the scale
-  double level = 4;                                 ///< score on the contour
+  std::vector<double> a, b;                   ///< grids, frames/s and s/frame
+  std::vector<double> slope{0.1, 0.14, 0.2};  ///< grid, scores per frame/s
+  double noise = 1;                           ///< standard deviation of one rating, scores
+  int lowest = 1, highest = 7;                ///< scores at the ends of the scale
+  double level = 4;                           ///< mean score on the contour
 };
 
-/// Grids of a and b that cover every contour that crosses the range of the settings: a from half the lowest
-/// to the highest mean, in equal ratios; b from 0 to the value at which the contour of the lowest mean
-/// reaches the highest one at the largest delta, at most 0.1. std::invalid_argument: fewer than two settings,
-/// settings of one mean only, or a mean that is not above 0.
+/// Grids of a and b. a runs from half the lowest mean of the settings to the highest mean, in equal ratios. b
+/// runs from 0 to the value at which a contour rises from the lowest to the highest mean over the largest
+/// delta, but at most to 0.1. std::invalid_argument: fewer than two settings, settings of one mean, or a mean
+/// that is not above 0.
 PlacementPrior placement_prior(std::span<const PlacementSetting> settings);
 
-/// Rules that keep enough variety in a session to check the model with its ratings.
-struct PlacementGuards {
-  /// The first trials show these settings, in this order (indices): a fixed part for the checks of the model.
-  std::vector<int> fixed;
-  int most_of_one = 3;  ///< largest number of times that a session shows a setting, with the fixed part
-  /// While the settings shown so far span less than this share of the range of delta, the next setting has
-  /// another delta than the last one, if the guards leave one.
-  double least_spread = 0.5;
+/// Rules of one session.
+struct PlacementRules {
+  /// The first trials use the standard deviations between the smallest and the largest, in turn. Without such
+  /// trials the form of the contour cannot be checked, and estimate_direct() has no fit.
+  int between = 3;
+  double bracket = 1.35;      ///< a setting lies by this factor above or below the estimated contour; above 1
+  int most_of_one = 1000000;  ///< times that a setting is shown at most in a session
 };
 
 /// The placement of one session. Its state follows from the settings shown and the ratings given, so a
 /// resumed session continues with the same settings.
 class Placement {
  public:
-  /// std::invalid_argument if a fixed index does not exist.
-  Placement(std::vector<PlacementSetting> settings, const PlacementPrior& prior, PlacementGuards guards = {});
+  /// std::invalid_argument: no setting, or rules out of range.
+  Placement(std::vector<PlacementSetting> settings, const PlacementPrior& prior,
+            const PlacementRules& rules = {});
 
-  /// Index of the next setting. std::logic_error when the guards leave none.
+  /// Index of the next setting. std::logic_error if every setting was shown as often as the rules allow.
   int next() const;
-  /// A rating of the setting; std::invalid_argument outside the scale.
+  /// Adds a rating of a setting. std::invalid_argument if the score is not on the scale.
   void add(int setting, int score);
 
+  /// Posterior of this person's a and b.
   GridEstimate a() const;
   GridEstimate b() const;
 
  private:
   std::vector<PlacementSetting> settings_;
-  PlacementGuards guards_;
+  PlacementRules rules_;
+  std::vector<double> deltas_;  ///< distinct standard deviations, ascending
   int lowest_ = 1;
   std::vector<double> a_values_, b_values_;  ///< by parameter point
   QuestPlus quest_;

@@ -23,7 +23,7 @@ struct Figures {
   std::int64_t particles = 0;
   double frame_ms = 0;  ///< time of the last frame
   stats::FpsMoments fps;
-  double tau = 0, beta = 1;  ///< computed from the rate of the shown frames
+  double tau = 0, beta = 1;  ///< tau: fixed, or computed from the rate of the shown frames; beta from tau
   std::string model;         ///< source of the PTPE model's a and b
   FrameStrip strip;
   std::string legend;              ///< legend of the values painted over the water

@@ -1,0 +1,50 @@
+#pragma once
+/// Simulated studies that compare adaptive placement with a fixed list of settings.
+
+#include <cstdint>
+#include <vector>
+
+#include "stats/ptpe/placement.hpp"
+
+namespace stats {
+
+/// How the simulated people differ from the model that the placement assumes.
+enum class PlacementTruth {
+  Model,   ///< as assumed: score = level + slope (mu - a exp(b delta)) + noise, rounded; a varies between
+           ///< people
+  Linear,  ///< the contour is a straight line with the same values at delta = 0 and 20 frames/s
+  Lapses,  ///< a tenth of the ratings are random scores
+  Drift    ///< ratings fall by one score from the first to the last trial
+};
+
+/// "model", "linear", "lapses", "drift".
+const char* placement_truth_word(PlacementTruth truth);
+
+struct PlacementStudy {
+  double a = 24, b = 0.02;  ///< true contour, frames/s and s/frame
+  PlacementTruth truth = PlacementTruth::Model;
+  int people = 16;
+  int trials = 10;  ///< of each person; not for fixed settings, which are all shown once
+  bool adaptive = true;
+  PlacementRules rules = {};  ///< adaptive
+};
+
+/// Averages over simulated studies. Each study is analysed by estimate_direct() with the jackknife over
+/// people.
+struct PlacementSummary {
+  int studies = 0, fitted = 0;          ///< fitted: studies with an interval; the rest describes these
+  double a_width = 0;                   ///< mean width of the interval of ln a
+  double b_width = 0;                   ///< mean width of the interval of b, s/frame
+  double a_covered = 0, b_covered = 0;  ///< shares of the intervals that hold the truth
+  double a_bias = 0;                    ///< mean error of a as a share of a
+  double form_rejected = 0;             ///< share of studies in which the form test rejects an exponential
+};
+
+/// `fixed`: the settings of studies that are not adaptive; `candidates`: those that an adaptive study may
+/// show. Equal seeds give equal summaries, whatever the number of threads. Under Linear the covered shares
+/// are of a and of the exponential through the line's ends.
+PlacementSummary simulate_placement(const PlacementStudy& study, const std::vector<PlacementSetting>& fixed,
+                                    const std::vector<PlacementSetting>& candidates, int studies,
+                                    std::uint64_t seed);
+
+}  // namespace stats
