@@ -51,8 +51,9 @@ class BinCounts {
     return sum;
   }
 
-  /// Calls found(bin, number of values before the bin, number in the bin) if run `at` contains the value of
-  /// rank `rank`. Rank and number of values before the bin count from the start of run `from`.
+  /// Finds the value of rank `rank`, counted from the start of run `from`. If it lies in run `at`, calls
+  /// found(its bin, number of values between the start of run `from` and the bin, number of values in the
+  /// bin).
   template <class Found>
   SIM_FN void find(int at, int from, int rank, Found found) const {
     int below = before(at) - before(from);

@@ -120,8 +120,8 @@ struct TakeFree {
   SIM_FN void operator()(int k) const { ids[k] = free_ids[k]; }
 };
 
-/// Initialises the new particles; their target and history equal their level. Their saliency is not measured
-/// yet and is set to 0.
+/// Initialises the new particles, except position and velocity. Their target is their level, and their
+/// history says that it was in the last four frames too. Their saliency is not measured yet and is set to 0.
 struct Make {
   const int* ids;
   Vec4* position;
@@ -142,7 +142,7 @@ struct Make {
     id[i] = ids[k];
     level[i] = new_level;
     if (target) target[i] = new_level;
-    if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);
+    if (history) history[i] = static_cast<std::uint8_t>(0x55 * new_level);  // four entries of two bits
     if (saliency) saliency[i] = 0;
     if (unrest) unrest[i] = 0;
     if (rest) rest[i] = 0;

@@ -81,8 +81,8 @@ class Multigrid {
   void solve(int cycles);
 
  private:
-  /// One grid. Grids that are coarser than the first small grid exist in scratch memory only: their arrays
-  /// are empty.
+  /// One grid. One thread block solves the small grids together, from first_small() on. Of these only the
+  /// finest has arrays; the coarser ones exist in scratch memory only.
   struct Level {
     CellBlock block;
     Array<CellKind> kind;

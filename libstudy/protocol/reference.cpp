@@ -330,6 +330,20 @@ Written by `vip-study reference`; `vip-study check FILE` checks a file and print
 TOML. Units are in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per second. An unknown key, a
 wrong type, a value out of range and keys that contradict each other are errors at line and column. Every
 byte of a file enters the SHA-256 that is stored with the data.
+
+Format 3 describes a study of your own: factors with levels, timing profiles, adaptive procedures. Format 2 has
+fixed factors (scene, n_*, method, effects, frame rate), as the paper's studies do. To begin, copy a file from
+`protocols/` or the example below into a file of your own, change it, and run `vip-study check FILE` after each
+change; then `vip-study run FILE --participants 2 --db try.db --observer random --display none` plays it with
+simulated people.
+
+## An example
+
+A factor within participants and one between them, in format 3.
+
+```toml
+)" + protocol_example() +
+         R"(```
 )" + base::reference_sections(protocol_tables(), protocol_reference());
 }
 

@@ -115,4 +115,74 @@ may stand beside them.
   return tables;
 }
 
+const std::string& protocol_example() {
+  static const std::string text = R"(format = 3
+name = "lag"
+version = "1.0"
+language = "en"
+participants = 20
+
+[stimulus]                       # what every stimulus shows unless a level sets it
+method = "HiRes"
+n_star = "8k"
+
+[[factor]]                       # each participant sees all its levels
+name = "lag"
+vary = "within"
+[[factor.level]]
+name = "none"
+timing = {profile = "moments", mean_fps = 60}
+[[factor.level]]
+name = "lag100"
+timing = {profile = "moments", mean_fps = 60, latency_ms = 100}
+
+[[factor]]                       # each participant sees one of its levels, dealt by quota
+name = "content"
+vary = "between"
+[[factor.level]]
+name = "dam"
+scene = "data/scenes/single_dam.toml"
+[[factor.level]]
+name = "drop"
+scene = "data/scenes/droplet.toml"
+
+[design]
+duration_s = 4
+repetitions = 5
+order = "shuffle"
+
+[pacing]
+fps_min = 4
+max_interval_ms = 250
+
+[content]
+mode = "real_time"
+content_step_s = 0.008333333333333333
+start_frame = 0
+at_end = "loop"
+
+[[block]]
+kind = "consent"
+id = "consent"
+text = "Your answers are stored without your name."
+[[block.question]]
+id = "take_part"
+kind = "choice"
+text = "I would like to take part."
+anchors = {0 = "no", 1 = "yes"}
+accept = [1, 1]
+
+[[block]]
+kind = "stimulus"
+id = "trials"
+steps = ["black 1", "stimulus", "ask delayed"]
+[[block.question]]
+id = "delayed"
+kind = "choice"
+text = "Did the water seem delayed?"
+anchors = {0 = "no", 1 = "yes"}
+)";
+  return text;
+}
+
 }  // namespace study

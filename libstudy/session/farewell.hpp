@@ -7,11 +7,16 @@
 
 namespace study {
 
-/// Call it once the end is committed; `left`: units that are not done. Refused and NotEligible: a page of
-/// thanks. Stopped: a page, which lasts at least 60 s if a stimulus was shown; after a shown stimulus, an
-/// offer to answer the last SSQ page in `left`; if answers are stored, a choice to keep or delete the data
-/// (delete logs withdrawal_request); thanks. DroppedOut: nothing. Request::Stop skips the remaining pages;
-/// other requests of the experimenter have no effect.
+/// Shows the pages of an ending that is committed. `left`: units that are not done.
+///
+/// - Refused, NotEligible: a page of thanks.
+/// - Stopped: a page, for at least 60 s if a stimulus was shown. Then, if a stimulus was shown, the offer to
+/// answer
+///   the last SSQ page in `left`. Then, if answers are stored, the choice to keep or delete them; "delete"
+///   logs a withdrawal_request. At the end a page of thanks.
+/// - DroppedOut: no page.
+///
+/// Request::Stop skips the remaining pages. Other requests of the experimenter have no effect.
 void say_farewell(const Running& run, Questioning& questioning, const Ending& ending,
                   std::span<const OpenUnit> left);
 

@@ -29,7 +29,7 @@ struct ScoreDifference {
 
 /// The data of one test of H1 to H3.
 struct ScoreContrast {
-  HypothesisTest test;  ///< label, methods and n; its reason says why there is no difference
+  HypothesisTest test;  ///< label, methods and n; its reason says why `difference` could not be computed
   std::optional<ScoreDifference> difference;
   std::optional<Unanimous> unanimous;  ///< set if all paired differences are equal, for the exact sign test
   bool higher_is_better = true;

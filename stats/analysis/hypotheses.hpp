@@ -93,11 +93,11 @@ struct Hypothesis {
   std::string paper_published;  ///< the paper's verdict on its own data
 };
 
-/// Tests H1 to H3 within each n_*: by paired t tests over participants, or by the mixed model of each score
-/// (the results then include the paired tests), two-sided or one-sided, as the plan says. `untestable`: why
-/// H1 cannot be tested, such as gaze that was not tracked; empty if it can. Two-sided, the p of H2 is twice
-/// the larger one-sided p, the p of H3 is the two-sided p against its margin, and both give the interval of 1
-/// - alpha. The paper's rule is always applied to the paired tests.
+/// Tests H1 to H3 within each n_*. The plan chooses paired t tests over participants or the mixed model of
+/// each score; with the mixed model the paired tests are reported too. The plan also chooses one-sided or
+/// two-sided tests. In the two-sided case p of H2 is twice the larger one-sided p, p of H3 is the two-sided p
+/// against its margin, and both give the interval of 1 - alpha. `untestable`: why H1 cannot be tested, such
+/// as gaze that was not tracked; empty if it can. The paper's rule is always applied to the paired tests.
 std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
                                          const AnalysisPlan& plan, const std::string& untestable);
 

@@ -11,8 +11,8 @@ struct Point {
   double x = 0, y = 0;
 };
 
-/// Okabe and Ito's colours (2008), which people with any common form of colour vision can distinguish.
-/// Figures never rely on colour alone.
+/// Seven colours of Okabe and Ito (2008), which people with common forms of colour blindness can distinguish,
+/// and a grey, which is not theirs. Figures never rely on colour alone.
 namespace colour {
 inline constexpr const char* orange = "#e69f00";
 inline constexpr const char* sky = "#56b4e9";

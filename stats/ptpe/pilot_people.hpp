@@ -68,8 +68,9 @@ struct PilotPeople {
   int reversed() const;
 };
 
-/// Drift is refused if positions are not known. Lapses are refused if the answers do not determine their
-/// scatter about the expected scores, or if the lowest score is nowhere improbable.
+/// `drift` is refused, for example, if a trial's position is not known. `lapses` are refused, for example, if
+/// the standard deviation about the expected scores cannot be estimated, or if the lowest score is improbable
+/// at no setting.
 PilotPeople pilot_people(std::span<const PilotRating> ratings, double confidence);
 
 /// Applies the rules to the ratings; drift is subtracted relative to the middle of the session.

@@ -9,6 +9,7 @@
 
 #include "libstudy/design/plan.hpp"
 #include "libstudy/protocol/protocol.hpp"
+#include "libstudy/protocol/reference.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 
@@ -39,6 +40,12 @@ std::string error_of(const std::string& text) {
 }
 
 }  // namespace
+
+TEST(Factors, TheExampleOfTheReferenceIsAProtocol) {
+  const Protocol protocol = read(protocol_example());
+  EXPECT_EQ(cell_groups(protocol.design).size(), 2u);
+  EXPECT_EQ(trials_of_group(protocol.design), 10);
+}
 
 TEST(Factors, CrossAndGroupByTheBetweenSubjectFactor) {
   const Protocol protocol = read(hitches_text);

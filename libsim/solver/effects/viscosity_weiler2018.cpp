@@ -52,11 +52,11 @@ struct Images {
   }
 };
 
-/// Computes factors that replace unsolved neighbours. Unsolved particles are not part of the system of
-/// equations; they later take the mean velocity change of the particles around them. Pairs of solved
-/// particles are strengthened instead. w of `bent` becomes the weight of all neighbours divided by the weight
-/// of the solved neighbours. It is 0 for particles that are unsolved or too coarse for the effect. Particles
-/// that are too coarse do not count as neighbours.
+/// Computes a factor for the pairs of each solved particle. Unsolved particles are not part of the system of
+/// equations; they later take the mean velocity change of the particles around them. To make up for their
+/// missing pairs, the pairs of a solved particle are multiplied by the factor in w of `bent`: the weight of
+/// all neighbours divided by the weight of the solved ones. It is 0 for particles that are unsolved or too
+/// coarse for the effect. Particles that are too coarse do not count as neighbours.
 template <bool OneLevel>
 struct Shares {
   ActiveParticles select;

@@ -152,8 +152,9 @@ void record_missing_density(FluidState& state, ConstraintView p) {
                            .mass_unit = mass_of(state.finest_support, k.rest_density)});
 }
 
-/// The pressure of the cells at a wall, counted as in push_balance.cpp. Gauges may be smaller than a cell:
-/// within a face the pressure is interpolated to its neighbours, on patches that sum up to the face.
+/// The pressure of the cells at a wall. A pressure gauge may be smaller than a cell. So each face of a cell
+/// is divided into patches, and the pressure varies linearly over them towards the neighbouring cells. The
+/// sum of the patches is the push on the face as push_balance.cpp counts it.
 template <class Boundary>
 struct WallCells {
   PressureFrame frame;

@@ -186,8 +186,8 @@ void carry_chores_over(Connection& into, Connection& result) {
   }
 }
 
-/// Plans chores for the files beside `into`: to delete people who withdrew, and to change codes as in
-/// `names`.
+/// Plans chores in `result`, the merged database: to delete people who withdrew from the files beside it, to
+/// change codes there as in `names`, and to rewrite the database file. Adds those people to merge.buried.
 void plan_chores(Connection& result, const std::vector<Resident>& residents,
                  const std::map<std::string, std::string>& names, const Content& content, Merge& merge) {
   sqlite::Transaction transaction(result);
