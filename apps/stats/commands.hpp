@@ -11,6 +11,7 @@ void add_fit_ptpe_command(CLI::App& app);
 /// Adds task1 and task2.
 void add_task_commands(CLI::App& app);
 void add_report_command(CLI::App& app);
+void add_study_command(CLI::App& app);
 void add_preregister_command(CLI::App& app);
 void add_power_command(CLI::App& app);
 

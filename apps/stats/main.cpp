@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   apps::add_fit_ptpe_command(*app);
   apps::add_task_commands(*app);
   apps::add_report_command(*app);
+  apps::add_study_command(*app);
   apps::add_preregister_command(*app);
   apps::add_power_command(*app);
   return apps::run_program(*app, argc, argv);

@@ -10,6 +10,8 @@
 #include "apps/common/options.hpp"
 #include "apps/stats/commands.hpp"
 #include "libstudy/preregistration/preregistration.hpp"
+#include "libstudy/protocol/find_protocol.hpp"
+#include "stats/base/error.hpp"
 
 namespace apps {
 
@@ -21,10 +23,23 @@ struct PreregisterCommand {
   std::optional<std::uint64_t> seed;
 };
 
+/// The plan. The hypotheses of the plan are about one protocol with factors, which they must fit.
+stats::AnalysisPlan read_checked_plan(const PreregisterCommand& command) {
+  auto plan = study::read_plan(command.plan).plan;
+  if (plan.hypotheses.empty()) return plan;
+  if (command.protocols.size() != 1)
+    throw base::Error(command.plan,
+                      "declares hypotheses of one study, but " + std::to_string(command.protocols.size()) +
+                          " protocols are given",
+                      "freeze the protocol of the hypotheses by itself");
+  const auto protocol = study::read_protocol(study::find_protocol(command.protocols.front()));
+  return study::read_plan(command.plan, &protocol).plan;
+}
+
 void preregister(const PreregisterCommand& command) {
   study::report::BundleRequest request;
   request.protocols.assign(command.protocols.begin(), command.protocols.end());
-  if (!command.plan.empty()) request.plan = study::read_plan(command.plan).plan;
+  if (!command.plan.empty()) request.plan = read_checked_plan(command);
   if (command.seed) request.plan.seed = *command.seed;
   if (!command.power.empty()) request.power = command.power;
   const std::string hash = study::report::freeze_bundle(request, command.out);
@@ -44,9 +59,9 @@ void add_preregister_command(CLI::App& app) {
                   "Protocols of the study: files, or names of those that come with the program")
       ->required();
   sub->add_option("--out", command->out, "Folder to be made")->required()->check(output_folder());
-  sub->add_option(
-      "--plan", command->plan,
-      "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules; without: the defaults");
+  sub->add_option("--plan", command->plan,
+                  "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, hypotheses; "
+                  "without: the defaults");
   sub->add_option("--seed", command->seed, "Seed of the resamples, instead of the plan's")
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--power", command->power, "Result of vip-stats power --json, to be frozen as well");

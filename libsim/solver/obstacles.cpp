@@ -64,7 +64,7 @@ void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, 
         "is " + base::shortest(thickness_m(obstacle)) +
             " m thick: the largest particles of the run pass through obstacles thinner than " +
             base::shortest(least) + " m",
-        "make it thicker, or use a larger n_* (--n-star, or n_star in a protocol)" +
+        std::string("make it thicker, or use a larger n_* (--n-star, or n_star in a protocol)") +
             (coarsest_level > 0 ? ", or the method HiRes, which has only the finest particles" : ""));
   }
   for (const Obstacle& obstacle : scene.obstacles) {

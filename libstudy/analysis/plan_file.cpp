@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "libstudy/analysis/plan_hypotheses.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -88,7 +89,8 @@ stats::PilotRules read_pilot(const base::TomlTable& table) {
   return rules;
 }
 
-stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::string>& protocols) {
+stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::string>& protocols,
+                              const Protocol* protocol) {
   stats::AnalysisPlan plan;
   root.integer("format", {1, 1});
   if (root.has("protocols")) protocols = root.strings("protocols");
@@ -113,6 +115,7 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
     const auto levels = root.table("levels");
     for (const auto& question : levels.keys()) plan.levels[question] = levels.number(question);
   }
+  plan.hypotheses = read_hypotheses(root, plan.confidence, protocol);
   return plan;
 }
 
@@ -148,11 +151,11 @@ stats::TimingRule timing_rule_of(const std::string& name) {
   return static_cast<stats::TimingRule>(at);
 }
 
-PlanInForce read_plan(const std::filesystem::path& file) {
+PlanInForce read_plan(const std::filesystem::path& file, const Protocol* protocol) {
   const std::string text = base::read_file(file, largest_plan);
   const auto root = base::parse_toml(text, file.string());
   PlanInForce out;
-  out.plan = read_keys(root, out.protocols);
+  out.plan = read_keys(root, out.protocols, protocol);
   root.finish();
   out.source = file.filename().string();
   out.sha256 = base::sha256_hex(text);
@@ -193,7 +196,7 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          std::to_string(rules.straight_lining_answers) +
          "     # one and the same answer to so many trials and all; 0: no such rule\nmin_answered = " +
          base::shortest(rules.min_answered) + "                # share of a visit's trials\n" +
-         format_pilot(plan.pilot) + format_levels(plan.levels);
+         format_pilot(plan.pilot) + format_levels(plan.levels) + format_hypotheses(plan.hypotheses);
 }
 
 Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& protocols) {
@@ -224,6 +227,7 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
             {"resamples", plan.resamples},
             {"seed", plan.seed}};
   if (!plan.levels.empty()) json["levels"] = plan.levels;
+  for (const auto& one : plan.hypotheses) json["hypotheses"].push_back(declared_json(one));
   if (!format_pilot(plan.pilot).empty())
     json["pilot"] = {{"reverse_coders", plan.pilot.exclude_reverse_coders ? "exclude" : "keep"},
                      {"drift", plan.pilot.model_drift ? "model" : "keep"},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/protocol/protocol.hpp"
 #include "stats/analysis/plan.hpp"
 
 namespace study {
@@ -21,16 +22,17 @@ struct PlanInForce {
 /// Reads a plan from a TOML file. Only `format` is required; a missing key has its default. A preregistered
 /// file (one with the key `protocols`) has older defaults: `decision` is Holm, `directional` holds for H2, H3
 /// and H6, `more_than_one_trial` is "refuse". base::Error at file:line:column for an unknown key, a wrong
-/// type or a value out of range.
-PlanInForce read_plan(const std::filesystem::path& file);
+/// type or a value out of range. `protocol`: the tables [[hypothesis]] must fit it; null: their factors,
+/// levels and questions are not checked.
+PlanInForce read_plan(const std::filesystem::path& file, const Protocol* protocol = nullptr);
 
 /// timing_rule_name() returns a rule's name: "none", "fail" or "degraded". timing_rule_of() returns the rule
 /// of a name, and throws base::Error for any other name.
 const char* timing_rule_name(stats::TimingRule rule);
 stats::TimingRule timing_rule_of(const std::string& name);
 
-/// Text of a plan file. read_plan() reads the same plan from it. The tables [pilot] and [levels] are written
-/// only if they differ from the defaults, all other keys always.
+/// Text of a plan file. read_plan() reads the same plan from it. The tables [pilot], [levels] and
+/// [[hypothesis]] are written only if they differ from the defaults, all other keys always.
 std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::string>& protocols);
 
 /// The entry "plan" of the results. `protocols`: SHA-256 of the study's protocols.

@@ -36,18 +36,6 @@ bool asks(const TaskProtocol& protocol, bool (*wanted)(const Question&)) {
 
 std::string name_of(const TaskProtocol& protocol) { return protocol.name + " " + protocol.version; }
 
-/// Name, version and first 12 digits of the SHA-256: "name 1.0 0123456789ab".
-std::string hashed_name(const TaskProtocol& protocol) {
-  return name_of(protocol) + " " + protocol.sha256.substr(0, 12);
-}
-
-/// True if `by` denotes the protocol: by the first digits of its SHA-256, by its name, by name and version,
-/// or by hashed_name(), which messages print.
-bool is_meant(const TaskProtocol& protocol, const std::string& by) {
-  return protocol.sha256.starts_with(by) || by == protocol.name || by == name_of(protocol) ||
-         by == hashed_name(protocol);
-}
-
 bool is_asked_for(const TaskProtocol& protocol, const TaskSelection& selection) {
   return kind_of(protocol) == selection.task && is_meant(protocol, selection.protocol);
 }
@@ -108,6 +96,15 @@ std::vector<const TaskProtocol*> protocols_for(const TaskStudy& study, const Tas
 }
 
 }  // namespace
+
+std::string hashed_name(const TaskProtocol& protocol) {
+  return name_of(protocol) + " " + protocol.sha256.substr(0, 12);
+}
+
+bool is_meant(const TaskProtocol& protocol, const std::string& by) {
+  return protocol.sha256.starts_with(by) || by == protocol.name || by == name_of(protocol) ||
+         by == hashed_name(protocol);
+}
 
 const char* task_name(TaskKind task) {
   switch (task) {

@@ -25,6 +25,12 @@ const char* task_name(TaskKind task);
 const char* task_title(TaskKind task);
 TaskKind kind_of(const TaskProtocol& protocol);
 
+/// Name, version and first 12 digits of the SHA-256: "name 1.0 0123456789ab".
+std::string hashed_name(const TaskProtocol& protocol);
+/// True if `by` denotes the protocol: by the first digits of its SHA-256, by its name, by name and version,
+/// or by hashed_name(), which messages print.
+bool is_meant(const TaskProtocol& protocol, const std::string& by);
+
 /// The selection made by a command's options.
 struct TaskSelection {
   TaskKind task = TaskKind::Task1;
@@ -58,6 +64,7 @@ struct ChosenTask {
   /// design the first or the selected question.
   Question question;
   bool first_of_protocol = true;  ///< true for the first question chosen from this protocol
+  bool own = false;               ///< true: analysed as TaskKind::Own, whatever the kind of the protocol
 };
 
 /// True if the question has a separate analysis: in a pilot every scale except those on sickness, in Task 1

@@ -194,6 +194,8 @@ class Collector {
   void add_answered(const TaskSession& session, const TaskTrial& trial) {
     AnsweredTrial answered;
     answered.participant = session.participant;
+    answered.first_cell = trial.first.cell;
+    if (trial.second) answered.second_cell = trial.second->cell;
     answered.first = trial.first.what;
     answered.first_nominal = trial.first.nominal;
     if (trial.second) {
@@ -307,7 +309,7 @@ std::string TaskData::gaze_problem() const {
 
 TaskData collect_task(const TaskStudy& study, const ChosenTask& chosen, const stats::ExclusionRules& rules) {
   TaskData data;
-  data.task = kind_of(chosen.protocol);
+  data.task = chosen.own ? TaskKind::Own : kind_of(chosen.protocol);
   data.protocol = chosen.protocol;
   data.set_aside = chosen.set_aside;
   for (const SetAside& one : chosen.set_aside) data.flow.protocols_left_out += one.sessions;

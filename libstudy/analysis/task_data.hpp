@@ -43,6 +43,8 @@ struct TimedShowing {
 /// An analysed trial with all of its answers.
 struct AnsweredTrial {
   std::string participant;  ///< code of the participant
+  int first_cell = 0;       ///< index into Design::cells
+  std::optional<int> second_cell;
   StimulusSpec first;
   std::optional<StimulusSpec> second;
   FpsSetting first_nominal, second_nominal;

@@ -205,9 +205,14 @@ TrackEstimate estimate_track(const Protocol& protocol, int cell, std::span<const
   const auto curves = curves_of(*design.procedure, values);
   stats::QuestPlus quest = quest_of(curves, values);
   TrackEstimate out;
+  out.values = values;
+  out.trials_at.resize(values.size());
+  out.positive_at.resize(values.size());
   for (const TrackStep& step : steps_of(protocol, cells, answers)) {
     quest.update(step.place, step.positive ? 0 : 1);
     ++out.trials;
+    ++out.trials_at[static_cast<std::size_t>(step.place)];
+    out.positive_at[static_cast<std::size_t>(step.place)] += step.positive ? 1 : 0;
   }
   std::vector<double> thresholds, shapes;
   for (const stats::PsychometricCurve& curve : curves) {

@@ -33,6 +33,9 @@ PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
 struct TrackEstimate {
   stats::GridEstimate threshold, shape;  ///< in the unit of Procedure::axis; 95 % credible intervals
   int trials = 0;
+  /// By level of the track, ascending: its value on the axis, its trials, and those with a positive answer.
+  std::vector<double> values = {};
+  std::vector<int> trials_at = {}, positive_at = {};
 };
 
 /// The posterior of threshold and shape over the grid of QUEST+, with the procedure's form, guess and lapse

@@ -8,6 +8,7 @@
 
 #include "libstudy/analysis/claims.hpp"
 #include "libstudy/analysis/plan_file.hpp"
+#include "libstudy/analysis/plan_hypotheses.hpp"
 #include "stats/base/file.hpp"
 #include "stats/figures/svg.hpp"
 
@@ -153,7 +154,8 @@ std::string bundle_text(const std::vector<Protocol>& protocols, const stats::Ana
            "\n";
   out += "\nHypotheses\n";
   for (const Json& hypothesis : hypotheses) out += hypothesis_text(hypothesis);
-  if (hypotheses.empty()) out += "None.\n";
+  for (const auto& declared : plan.hypotheses) out += "- " + declared_text(declared) + "\n";
+  if (hypotheses.empty() && plan.hypotheses.empty()) out += "None.\n";
   for (const std::string& one : untested) out += "- Not tested: " + one + ".\n";
   std::string curves;
   for (const auto& protocol : protocols) curves += curves_text(protocol, plan);

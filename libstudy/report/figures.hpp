@@ -63,6 +63,10 @@ svg::Picture flow_chart(const Field& flow, const std::string& id, const std::str
 /// "fms" of an entry of "sickness".
 svg::Picture fms_chart(const Field& fms, const std::string& id);
 
+/// The share of positive answers of all participants at each level, with the mean psychometric function.
+/// `thresholds`: the entry "thresholds" of a study's results; `track`: an entry of its list "tracks".
+svg::Picture psychometric_chart(const Field& thresholds, const Field& track, const std::string& id);
+
 /// The pilot's heat map (paper Fig. 6). `pilot`: the entry "pilot" of the results, with estimates.
 svg::Picture pilot_map(const Field& pilot);
 

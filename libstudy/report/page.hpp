@@ -12,4 +12,7 @@ namespace study::report {
 /// another schema.
 std::string results_page(const base::Json& results);
 
+/// The page of a study with factors, from a document of schema vip-study/1, made in the same way.
+std::string factor_study_page(const base::Json& results);
+
 }  // namespace study::report

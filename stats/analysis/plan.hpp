@@ -6,7 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "stats/analysis/declared_test.hpp"
+#include "stats/inference/adjust.hpp"
 #include "stats/ptpe/pilot_people.hpp"
 
 namespace stats {
@@ -66,6 +69,26 @@ enum class Directional {
   H2H3H6,  ///< H2, H3 and H6 one-sided; bundles frozen before the key `directional` existed use this rule
 };
 
+/// A hypothesis of a study with factors of its own, as declared in a plan file.
+struct DeclaredHypothesis {
+  /// Level by factor. Factors that are not named are averaged within each participant.
+  using Levels = std::map<std::string, std::string>;
+
+  std::string id;
+  std::string text = {};        ///< the hypothesis in words; may be empty
+  std::string outcome;          ///< id of a question, or threshold_outcome
+  std::vector<Levels> compare;  ///< a and b; one entry: a is compared with `against`
+  std::optional<double> against = {};
+  /// Choices: the score whose share of the answers is the outcome. Empty: the higher of two scores, or in
+  /// pairs the choice of the comparison.
+  std::optional<int> positive = {};
+  DeclaredTest test = {};
+  std::string family = {};  ///< tests that are adjusted together; empty: a family of its own
+  Adjustment adjust = Adjustment::None;
+};
+/// The outcome of an adaptive procedure: each participant's threshold.
+inline constexpr const char* threshold_outcome = "threshold";
+
 struct AnalysisPlan {
   double alpha = 0.05;  ///< level of the tests of each claim, in (0, 0.5)
   DecisionRule decision = DecisionRule::IntersectionUnion;
@@ -82,6 +105,7 @@ struct AnalysisPlan {
   /// score.
   std::map<std::string, double> levels = {};
   PilotRules pilot = {};  ///< how to treat reverse coders, drift and lapses in a pilot
+  std::vector<DeclaredHypothesis> hypotheses = {};  ///< of studies with factors (`vip-stats study`)
 };
 
 }  // namespace stats

@@ -313,6 +313,21 @@ Json timing_json(const TaskData& data) {
   return list;
 }
 
+Json timing_by_cell_json(const TaskData& data) {
+  const Design& design = data.protocol.whole->design;
+  std::map<int, TimedCell> cells;
+  for (const TimedShowing& one : data.showings) cells[one.shown.cell].add(one.shown);
+  Json list = Json::array();
+  for (const auto& [index, timed] : cells) {
+    const Cell& cell = design.cells.at(static_cast<std::size_t>(index));
+    Json json{{"cell", cell_name(design, cell)},
+              {"asked", cell.setting.profile ? Json(profile_text(*cell.setting.profile)) : Json()}};
+    json.update(timed_json(timed));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 Json timing_totals_json(const Json& timing) {
   Json list = Json::array();
   for (const Json& cell : timing) {

@@ -24,6 +24,9 @@ Json roster_json(const TaskStudy& study, const std::multimap<std::string, std::s
 Json exclusions_json(const TaskData& data);
 /// A list with one entry for each scene, n_*, method and frame rate: the timing of its showings.
 Json timing_json(const TaskData& data);
+/// A list with one entry for each cell of a protocol with factors that was shown: the timing that was asked
+/// for and that of its showings.
+Json timing_by_cell_json(const TaskData& data);
 /// Sums of the lists of timing_json(), one entry for each task. "flawed_cells" counts the cells in which the
 /// timing of a showing was degraded or failed.
 Json timing_totals_json(const Json& timing);

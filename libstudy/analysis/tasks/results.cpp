@@ -43,6 +43,8 @@ std::string what_it_lacks(const TaskData& data) {
 }
 
 std::string why_not_analysed(const TaskData& data) {
+  if (data.protocol.whole && !data.protocol.whole->design.factors.empty())
+    return "protocol " + data.protocol.name + " has factors of its own: vip-stats study analyses it";
   return what_it_lacks(data) + ", so no shipped analysis covers it; its answers are described by cell";
 }
 
@@ -167,6 +169,11 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
     json["study"]["protocols"][i]["rules"] = acting_rules_json(parts[i].data, request.plan.plan.exclusions);
   json["descriptives"] = Json::array();
   json["not_analysed"] = Json::array();
+  for (const auto& one : request.plan.plan.hypotheses)
+    json["not_analysed"].push_back({{"task", "own"},
+                                    {"protocol", ""},
+                                    {"what", one.id},
+                                    {"reason", "hypotheses of the plan are tested by vip-stats study"}});
   for (const TaskPart& part : parts) {
     json["flow"][task_name(part.data.task)] = flow_json(part.data.flow);
     append(json["exclusions"], exclusions_json(part.data));

@@ -104,7 +104,7 @@ constexpr const char* task_sessions_sql =
     "' and ') AS words FROM framing f WHERE f.session_id = session.session_id GROUP BY scene HAVING "
     "count(DISTINCT cells) > 1 ORDER BY scene)), stimulus, (SELECT detail FROM event e WHERE e.session_id = "
     "session.session_id AND kind = ?4 ORDER BY event_id DESC LIMIT 1), "
-    "max(coalesce(not_before_utc, ''), (SELECT started_utc FROM run r WHERE r.run_id = session.run_id)) "
+    "max(coalesce(not_before_utc, ''), (SELECT started_utc FROM run r WHERE r.run_id = session.run_id)), uid "
     "FROM session WHERE protocol_id = ?1 ORDER BY participant, visit";
 
 constexpr const char* trials_sql =
@@ -176,7 +176,8 @@ class Reader {
                      .stimulus = session_.text(13),
                      .settings = run_settings(database_, session_.integer(0)),
                      .frame_costs = frame_costs(),
-                     .not_before_utc = session_.text(15)});
+                     .not_before_utc = session_.text(15),
+                     .uid = session_.text(16)});
     }
     return out;
   }
@@ -208,6 +209,7 @@ class Reader {
   TaskShowing showing(std::int64_t trial, std::int64_t attempt, int interval, std::int64_t cell) {
     TaskShowing out;
     const Cell& planned = protocol_.design.cells.at(static_cast<std::size_t>(cell));
+    out.cell = static_cast<int>(cell);
     out.what = planned.stimulus;
     out.nominal = planned.setting;
     showing_.reset();
@@ -356,9 +358,11 @@ TaskStudy read_tasks(const StudyFile& file) {
   study.withdrawn = static_cast<int>(database->integer("SELECT count(*) FROM tombstone"));
   Statement row(*database, "SELECT protocol_id FROM protocol ORDER BY protocol_id");
   while (row.step()) {
-    const Protocol protocol = stored_protocol(*database, row.integer(0), file.path.string());
-    TaskProtocol out = describe(protocol);
-    out.sessions = Reader(*database, row.integer(0), protocol).sessions();
+    const auto protocol =
+        std::make_shared<const Protocol>(stored_protocol(*database, row.integer(0), file.path.string()));
+    TaskProtocol out = describe(*protocol);
+    out.sessions = Reader(*database, row.integer(0), *protocol).sessions();
+    out.whole = protocol;
     study.protocols.push_back(std::move(out));
   }
   return study;

@@ -4,13 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "libstudy/pacing/pacer.hpp"
-#include "libstudy/protocol/design.hpp"
-#include "libstudy/protocol/question.hpp"
+#include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/personal.hpp"
 #include "libstudy/store/read/frame_costs.hpp"
 #include "libstudy/store/read/run_settings.hpp"
@@ -32,6 +32,7 @@ struct TaskShowing {
   /// The solver's active fraction of particles and tau, means over the frames; none: not measured, or the
   /// method has none.
   std::optional<double> active_fraction, tau_fps;
+  int cell = 0;  ///< index into Design::cells
 };
 
 /// A question about a trial, with its answer if there is one. The score is on the question's scale; of a
@@ -95,6 +96,7 @@ struct TaskSession {
   /// Latest time stored in the database when the session was planned. The session's first answer came later,
   /// whatever the station's clock says. Empty: not known.
   std::string not_before_utc = {};
+  std::string uid = {};  ///< recognises the session in copies of the database
 };
 
 /// A protocol with all its sessions, ordered by participant and visit.
@@ -116,6 +118,8 @@ struct TaskProtocol {
   /// Questions on pages of kind demographics, screening and question that no trial asks, without text
   /// questions.
   std::vector<Question> about_people = {};
+
+  std::shared_ptr<const Protocol> whole = {};  ///< the protocol as stored; null: not read from a database
 
   /// True if the protocol is a pilot: it has a single method with a single level of effects.
   bool pilot() const { return methods.size() < 2; }

@@ -1,0 +1,56 @@
+#pragma once
+/// The tables [[hypothesis]] of an analysis plan.
+
+#include <string>
+#include <vector>
+
+#include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/protocol/protocol.hpp"
+#include "stats/analysis/plan.hpp"
+#include "stats/base/toml.hpp"
+
+namespace study {
+
+/// What a participant's value of an outcome in a cell is.
+enum class OutcomeValue {
+  Mean,        ///< mean of the scores
+  Share,       ///< share of the answers that are one choice
+  Comparison,  ///< pairs with a standard: share of the trials in which the comparison was chosen
+  Threshold    ///< adaptive procedure: threshold of the participant's track
+};
+/// "mean", "share", "comparison", "threshold".
+const char* outcome_word(OutcomeValue value);
+
+/// The value of a question's answers in this design. In pairs with a standard a choice of two is a choice
+/// between the intervals.
+OutcomeValue value_of(const Design& design, const Question& question);
+
+/// The score whose share is the outcome: the declared one, or the higher of two. None for
+/// OutcomeValue::Mean and Threshold, and if a choice of several has no declared score.
+std::optional<int> positive_score(const Question& question, std::optional<int> declared);
+
+/// True if the two conditions of the hypothesis are seen by different people.
+bool compares_groups(const Design& design, const stats::DeclaredHypothesis& hypothesis);
+
+/// Indices of the cells that have these levels; with a standard, without that one.
+std::vector<int> cells_with(const Design& design, const stats::DeclaredHypothesis::Levels& levels);
+
+/// Reads [[hypothesis]]. `confidence`: default of `confidence`. `protocol`: its factors, levels and questions
+/// must be those that the tables name; null: they are not checked. base::Error at file:line:column.
+std::vector<stats::DeclaredHypothesis> read_hypotheses(const base::TomlTable& root, double confidence,
+                                                       const Protocol* protocol);
+
+/// The tables as text, which read_hypotheses() reads back.
+std::string format_hypotheses(const std::vector<stats::DeclaredHypothesis>& hypotheses);
+
+/// Name of the test for display; a paired t test of one condition is a "one-sample t test".
+std::string test_title(const stats::DeclaredHypothesis& hypothesis);
+/// "H1: stall, hitch h50 against hitch none, paired t test, two-sided": one hypothesis in one line.
+std::string declared_text(const stats::DeclaredHypothesis& hypothesis);
+/// The levels of a condition: "hitch h50, content dam"; "all cells" without levels.
+std::string condition_text(const stats::DeclaredHypothesis::Levels& levels);
+
+/// A hypothesis as declared.
+Json declared_json(const stats::DeclaredHypothesis& hypothesis);
+
+}  // namespace study

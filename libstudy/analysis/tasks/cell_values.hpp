@@ -1,0 +1,70 @@
+#pragma once
+/// The answers of a study with factors, as values by participant and cell.
+
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "libstudy/analysis/plan_hypotheses.hpp"
+#include "libstudy/analysis/task_data.hpp"
+#include "libstudy/design/adaptive_track.hpp"
+#include "stats/analysis/declared_test.hpp"
+
+namespace study {
+
+/// An answer to one question.
+struct CellAnswer {
+  int participant = 0;  ///< index into TaskData::participants
+  /// Index into Design::cells. Pairs with a standard: the comparison. Other pairs: the lower of both.
+  int cell = 0;
+  std::optional<int> other;  ///< pairs without a standard: the higher of both
+  double value = 0;          ///< NaN: a choice of several without a score whose share is meant
+  int score = 0;
+};
+
+/// The analysed answers to the question, in the order of participants, visits and trials. The value is that
+/// of value_of(): the score; 1 or 0 for OutcomeValue::Share; for a choice between the intervals 1 if the
+/// comparison (or cell `cell`) was chosen. `positive` as DeclaredHypothesis::positive.
+std::vector<CellAnswer> cell_answers(const TaskData& data, const Question& question,
+                                     std::optional<int> positive);
+
+/// An adaptive track of the design: the cells that differ only in the procedure's factor.
+struct DesignTrack {
+  int cell = 0;      ///< its first cell, without the standard
+  std::string name;  ///< levels of the other factors; empty if there are none
+};
+std::vector<DesignTrack> tracks_of(const Design& design);
+
+/// The estimate of one participant's track.
+struct PersonTrack {
+  int participant = 0;
+  std::size_t track = 0;  ///< index into tracks_of()
+  TrackEstimate estimate;
+};
+/// One entry for each participant and track with answers. Empty without a procedure, and for
+/// ProcedureKind::Ptpe.
+std::vector<PersonTrack> person_tracks(const TaskData& data);
+
+/// The thresholds as values of the first cells of their tracks.
+std::vector<CellAnswer> threshold_values(const TaskData& data, std::span<const PersonTrack> tracks);
+
+/// For each participant, the index in cell_groups() of the group whose cells the participant saw; -1: none.
+std::vector<int> groups_of_people(const TaskData& data);
+
+/// Values of the two conditions, one of each participant who was to see both, or of groups one of each
+/// participant who was to see it.
+struct ConditionValues {
+  std::vector<stats::ExactMean> a, b;  ///< NaN: an answer about one of the condition's cells is missing
+};
+/// Means over the cells of each condition of the participant's means in the cell. A single condition has the
+/// constant `against` in all of `b`.
+ConditionValues condition_values(const TaskData& data, const stats::DeclaredHypothesis& hypothesis,
+                                 std::span<const CellAnswer> answers);
+
+/// The single answers of the two conditions, with the levels of the other factors as terms.
+stats::AnswerRows condition_rows(const TaskData& data, const stats::DeclaredHypothesis& hypothesis,
+                                 std::span<const CellAnswer> answers);
+
+}  // namespace study

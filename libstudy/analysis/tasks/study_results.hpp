@@ -1,0 +1,44 @@
+#pragma once
+/// The results of a study with factors (format 3) as one JSON document (docs/report.md).
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libstudy/analysis/json_parts.hpp"
+#include "libstudy/analysis/plan_file.hpp"
+#include "libstudy/analysis/task_data.hpp"
+
+namespace study {
+
+/// What a preregistration says about a study.
+struct FrozenFacts {
+  std::string sha256, frozen_utc;      ///< the bundle's hash and date
+  std::vector<std::string> altered;    ///< files that differ from the bundle's manifest
+  std::vector<std::string> protocols;  ///< SHA-256 of the protocols that it holds
+};
+
+struct FactorStudyRequest {
+  std::filesystem::path database;  ///< for its name
+  PlanInForce plan;
+  /// The preregistration whose plan is in force; none: the hypotheses count as declared only.
+  std::optional<FrozenFacts> frozen = {};
+  std::optional<Json> since = {};  ///< an earlier document of the same protocol
+  std::string since_file = {};     ///< its name for display
+};
+
+/// The protocol with factors that `by` denotes (is_meant(); empty: any). Protocols without real answers give
+/// way to one with some. base::Error if there is none, or more than one.
+const TaskProtocol& factor_protocol(const TaskStudy& study, const std::string& by,
+                                    const std::string& database);
+
+/// The document of schema vip-study/1. base::Error if `since` is not one of this protocol.
+Json factor_study_json(const TaskStudy& study, const TaskProtocol& protocol,
+                       const FactorStudyRequest& request);
+
+/// The tables of the document: name of the CSV file without ".csv", and its lines.
+std::vector<std::pair<std::string, Json>> factor_study_tables(const Json& document);
+
+}  // namespace study

@@ -1,0 +1,94 @@
+#pragma once
+/// The tests that an analysis plan can declare, in one form: which test, which side, and its result.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stats/inference/distributions.hpp"
+#include "stats/inference/exact_mean.hpp"
+#include "stats/ordinal/cumulative_link.hpp"
+#include "stats/result.hpp"
+
+namespace stats {
+
+enum class TestKind {
+  PairedT,              ///< t test of each participant's difference
+  Wilcoxon,             ///< signed ranks of each participant's difference
+  SignTest,             ///< exact binomial test of the signs of each participant's difference
+  Tost,                 ///< two one-sided t tests of each participant's difference against -+ margin
+  WelchT,               ///< t test of two groups of participants, unequal variances
+  StudentT,             ///< t test of two groups of participants, equal variances
+  LinearMixed,          ///< t test of the linear mixed model of single answers
+  CumulativeLinkMixed,  ///< z test of the cumulative-link mixed model of single answers
+};
+
+/// The word in plan files: "paired_t", "wilcoxon", "binomial", "tost", "welch_t", "student_t", "mixed",
+/// "clmm".
+const char* test_word(TestKind kind);
+const std::vector<std::string>& test_words();
+/// The kind of a word of test_words().
+TestKind test_of(const std::string& word);
+/// The name of the test for display, such as "paired t test".
+const char* test_name(TestKind kind);
+
+/// True if the test compares two groups of different participants.
+bool of_groups(TestKind kind);
+/// True if the test is a model of all single answers.
+bool of_answers(TestKind kind);
+
+/// "two-sided", "less", "greater".
+const char* alternative_word(Alternative alternative);
+Alternative alternative_of(const std::string& word);
+
+/// A test as declared, before there are data.
+struct DeclaredTest {
+  TestKind kind = TestKind::PairedT;
+  Alternative alternative = Alternative::TwoSided;
+  /// Tost: the difference lies within -+ this. A one-sided t test: the difference is above -margin (Greater)
+  /// or below margin (Less), that is, not inferior. In the unit of the outcome, above 0.
+  std::optional<double> margin = {};
+  double confidence = 0.95;  ///< of intervals; Tost has the interval of 2 confidence - 1
+};
+
+/// Result of a declared test. The estimate is that of a - b.
+struct TestOutcome {
+  std::string statistic;  ///< "t", "W+", "k" or "z"
+  double value = 0;       ///< the statistic; Tost: the t of the larger p
+  std::optional<double> df = {};
+  double p = 1;
+  std::string estimated;  ///< "mean difference", "Hodges-Lehmann shift", "share above", "log odds ratio"
+  double estimate = 0;
+  std::optional<std::array<double, 2>> ci = {};  ///< of the estimate; an end may be infinite
+  std::string effect = {};                       ///< name of the effect size; empty: none
+  std::optional<double> effect_size = {};
+  std::optional<std::array<double, 2>> effect_ci = {};
+  int n_a = 0, n_b = 0;  ///< participants used; equal for tests of differences
+  int n_missing = 0;     ///< participants left out because a value is missing
+  std::string note = {};
+};
+
+/// Tests one value of each participant. Of a kind of difference: a[i] and b[i] are of one participant; a
+/// comparison with a constant has it in all of `b`. of_groups(): a and b are different participants. Sums are
+/// NaN where a value is missing. std::invalid_argument: of_answers(), unequal lengths of paired values, a
+/// margin that is not above 0, one with a two-sided or an unfit test, or Tost without one. Refused as the
+/// test itself is.
+Result<TestOutcome> run_declared(const DeclaredTest& test, std::span<const ExactMean> a,
+                                 std::span<const ExactMean> b);
+
+/// Single answers for a model. All columns have one length.
+struct AnswerRows {
+  std::vector<double> answer;
+  std::vector<int> participant;
+  std::vector<int> condition;    ///< 0: a, 1: b
+  std::vector<Predictor> terms;  ///< further fixed terms, such as the levels of other factors
+};
+
+/// Fits the model of the test (of_answers()) and tests a against b. Random effects: the participant, and for
+/// LinearMixed the participant with the condition. std::invalid_argument for another kind or a margin.
+/// Refused as the fit is.
+Result<TestOutcome> run_declared(const DeclaredTest& test, const AnswerRows& rows);
+
+}  // namespace stats
