@@ -159,6 +159,14 @@ class Collector {
     if (!session.mixed_pictures.empty()) ++data_.mixed_pictures[session.mixed_pictures];
   }
 
+  /// True for a Reaction without a press: its time is the timeout.
+  bool too_late(const TaskAnswer& answer) const {
+    return answer.score == 0 && std::any_of(data_.protocol.questions.begin(), data_.protocol.questions.end(),
+                                            [&](const Question& one) {
+                                              return one.id == answer.question && traits_of(one.kind).timed;
+                                            });
+  }
+
   /// Counts the trial and stores its answers. Returns true if an answer about the trial is analysed.
   bool add_trial(const TaskSession& session, const TaskTrial& trial) {
     if (trial.kind == "practice") {
@@ -187,7 +195,8 @@ class Collector {
     if (!analysed) return false;
     add_answered(session, trial);
     for (const TaskAnswer& answer : trial.answers)
-      if (answer.response_time_s) data_.response_times[answer.question].push_back(*answer.response_time_s);
+      if (answer.response_time_s && !too_late(answer))
+        data_.response_times[answer.question].push_back(*answer.response_time_s);
     return add_answer(session, trial, record.answer);
   }
 

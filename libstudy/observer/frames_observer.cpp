@@ -77,8 +77,7 @@ int FramesObserver::score(const Question& question, const Occasion& occasion, bo
     return better + parameters_.bias + noise > 0 ? scores.back() : scores.front();
   }
   const double person = parameters_.participant_sd * normal_of(person_key(occasion), 0);
-  return nearest_score(question, 0.5 * (question.scale_min + question.scale_max) +
-                                     quality(occasion.shown[0]) + person + noise);
+  return rated_score(question, quality(occasion.shown[0]) + person + noise);
 }
 
 }  // namespace study

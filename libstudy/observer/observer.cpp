@@ -20,6 +20,14 @@ Answer answer_of(const Observer& observer, const Question& question, const Occas
   return {feigned ? *question.stop_at - 1 : score, ""};
 }
 
+/// Time until an answer, s.
+double answering_s(const Question& question, const Answer& answer, const Occasion& occasion) {
+  if (!traits_of(question.kind).timed) return 0;
+  const double u =
+      uniform_of(question_key(occasion, question), static_cast<std::uint64_t>(occasion.position));
+  return answer.score == 1 ? std::min(0.2 - 0.1 * std::log(u), question.timeout_s) : question.timeout_s;
+}
+
 }  // namespace
 
 std::vector<TimedAnswer> Observer::ask(const Block&, std::span<const Question> questions,
@@ -30,7 +38,8 @@ std::vector<TimedAnswer> Observer::ask(const Block&, std::span<const Question> q
   for (const Question& question : questions) {
     const bool judges = !judged && traits_of(question.kind).listed;
     judged = judged || judges;
-    out.push_back({answer_of(*this, question, occasion, judges), 0, AnswerInput::Observer});
+    const Answer answer = answer_of(*this, question, occasion, judges);
+    out.push_back({answer, answering_s(question, answer, occasion), AnswerInput::Observer});
   }
   return out;
 }
@@ -63,7 +72,8 @@ std::uint64_t question_key(const Occasion& occasion, const Question& question) {
 }
 
 bool asks_symptom(const Question& question) {
-  return traits_of(question.kind).rated() && question.scale_min == 0;
+  const AnswerKindTraits& traits = traits_of(question.kind);
+  return traits.rated() && !traits.line && question.scale_min == 0;
 }
 
 int nearest_score(const Question& question, double x) {
@@ -74,6 +84,12 @@ int nearest_score(const Question& question, double x) {
   return scores[i];
 }
 
+int rated_score(const Question& question, double latent) {
+  const double range = question.scale_max - question.scale_min;
+  const double point = traits_of(question.kind).line ? range / 6 : 1;
+  return nearest_score(question, 0.5 * (question.scale_min + question.scale_max) + latent * point);
+}
+
 int random_score(const Question& question, const Occasion& occasion) {
   const auto scores = scores_of(question);
   RandomStream random(question_key(occasion, question), static_cast<std::uint64_t>(occasion.position) << 8);
@@ -82,6 +98,7 @@ int random_score(const Question& question, const Occasion& occasion) {
 
 int bystander_score(const Question& question, const Occasion& occasion) {
   if (question.expect) return *question.expect;
+  if (traits_of(question.kind).timed) return question.scale_max;
   if (!asks_symptom(question)) return random_score(question, occasion);
   const double u =
       uniform_of(question_key(occasion, question), static_cast<std::uint64_t>(occasion.position));

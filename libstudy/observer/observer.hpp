@@ -1,6 +1,6 @@
 #pragma once
-/// Base of all simulated observers. Reading a page and answering questions take no time; pauses wait on the
-/// clock.
+/// Base of all simulated observers. Reading a page and answering questions take no time of the clock; pauses
+/// wait on it. The response time is 0, or of a Reaction made up: Observer::ask().
 
 #include <memory>
 #include <string>
@@ -18,12 +18,13 @@ namespace study {
 class Observer : public Participant {
  public:
   void read(const Block&, double, Clock&, const Check&) final {}
+  /// A press to a Reaction comes after 0.2 s and an exponential time of mean 0.1 s.
   std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                const Occasion& occasion, Clock& clock, const Check& check) final;
   void pause(const Pause& pause, Clock& clock, const Check& check) final;
 
   /// Returns one of the question's scores. Never called for a question of kind Text or with `accept`.
-  /// `judges`: true for the first question of kind Scale or Choice after the stimulus of a trial.
+  /// `judges`: true for the first question of a listed kind after the stimulus of a trial.
   virtual int score(const Question& question, const Occasion& occasion, bool judges) const = 0;
   /// True if the observer models symptom scores. Otherwise a score that would stop the session is lowered to
   /// stop_at - 1.
@@ -38,15 +39,18 @@ double normal_of(std::uint64_t key, std::uint64_t counter);
 std::uint64_t person_key(const Occasion& occasion);
 std::uint64_t question_key(const Occasion& occasion, const Question& question);
 
-/// True for a rating on a scale that starts at 0, as in the SSQ and the FMS. Observers take such a rating for
-/// a symptom.
+/// True for a rating on a scale that starts at 0, as in the SSQ and the FMS, but not for a Vas. Observers
+/// take such a rating for a symptom.
 bool asks_symptom(const Question& question);
 /// The question's score that is nearest to x. Thresholds lie halfway between neighbouring scores.
 int nearest_score(const Question& question, double x);
+/// The score of a rating by its latent value: points above the middle of the scale. A Vas has six points, as
+/// the distance between the ends of the paper's scale of 1 to 7.
+int rated_score(const Question& question, double latent);
 /// Draws a score of the question; every score is equally likely.
 int random_score(const Question& question, const Occasion& occasion);
 /// The answer of an attentive, healthy person to a question that the model does not cover: the expected score
-/// of a catch question, a low score on a symptom scale, else a random score.
+/// of a catch question, a press to a Reaction, a low score on a symptom scale, else a random score.
 int bystander_score(const Question& question, const Occasion& occasion);
 
 /// Makes an observer from "ptpe:a=31,b=0.035", "detect:hitch_ms,threshold=60", "random", "constant:4",

@@ -56,7 +56,7 @@ int PtpeObserver::score(const Question& question, const Occasion& occasion, bool
     const auto scores = scores_of(question);
     return latent(occasion, 1) > latent(occasion, 0) ? scores.back() : scores.front();
   }
-  return nearest_score(question, 0.5 * (question.scale_min + question.scale_max) + latent(occasion, 0));
+  return rated_score(question, latent(occasion, 0));
 }
 
 }  // namespace study

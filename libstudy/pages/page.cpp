@@ -10,13 +10,32 @@ namespace study {
 
 namespace {
 
+/// Percent of a Vas by which a key moves the mark; 0 for other keys.
+int percent_of(PageKey key) {
+  switch (key) {
+    case PageKey::Left:
+      return -1;
+    case PageKey::Right:
+      return 1;
+    case PageKey::Down:
+    case PageKey::FarLeft:
+      return -10;
+    case PageKey::Up:
+    case PageKey::FarRight:
+      return 10;
+    default:
+      return 0;
+  }
+}
+
 bool is_blank(const std::string& words) { return words.find_first_not_of(" \t\r\n") == std::string::npos; }
 
 }  // namespace
 
 bool one_digit_does(const Question& question) {
   const auto scores = scores_of(question);
-  return traits_of(question.kind).listed && scores.front() >= 0 && scores.back() <= 9;
+  const AnswerKindTraits& traits = traits_of(question.kind);
+  return traits.listed && !traits.line && scores.front() >= 0 && scores.back() <= 9;
 }
 
 PageState::PageState(std::span<const Question> questions, double least_s, std::int64_t shown_ns)
@@ -24,10 +43,15 @@ PageState::PageState(std::span<const Question> questions, double least_s, std::i
       items_(questions.size()),
       least_ns_(std::llround(1e9 * least_s)),
       shown_ns_(shown_ns),
-      guarded_from_ns_(shown_ns) {}
+      guarded_from_ns_(timed() ? shown_ns - guard_ns : shown_ns) {}
+
+bool PageState::timed() const { return size() == 1 && traits_of(questions_[0].kind).timed; }
+
+bool PageState::on_line() const { return focus_ < size() && traits_of(questions_[focus_].kind).line; }
 
 void PageState::press(PageKey key, std::int64_t now_ns) {
   if (guarded(now_ns)) return;
+  if (const int percent = percent_of(key); percent != 0 && on_line()) return move_mark(percent, now_ns);
   const bool list = focus_ < size() && traits_of(questions_[focus_].kind).labelled;
   switch (key) {
     case PageKey::Left:
@@ -38,6 +62,9 @@ void PageState::press(PageKey key, std::int64_t now_ns) {
       return list ? move_cursor(-1) : step_focus(-1);
     case PageKey::Down:
       return list ? move_cursor(+1) : step_focus(+1);
+    case PageKey::FarLeft:
+    case PageKey::FarRight:
+      return;
     case PageKey::Next:
       return step_focus(+1);
     case PageKey::Previous:
@@ -68,6 +95,40 @@ void PageState::move_cursor(int by) {
   if (next >= 0 && next < static_cast<std::ptrdiff_t>(scores.size())) {
     item.cursor = scores[static_cast<std::size_t>(next)];
   }
+}
+
+void PageState::move_mark(int percent, std::int64_t now_ns) {
+  const Question& line = questions_[focus_];
+  const auto one_percent = static_cast<double>(line.scale_max - line.scale_min) / 100;
+  const int step = std::max(1, static_cast<int>(std::lround(std::abs(percent) * one_percent)));
+  const std::optional<int> at = items_[focus_].chosen;
+  if (!at) return choose(focus_, percent > 0 ? line.scale_min : line.scale_max, now_ns);
+  choose(focus_, std::clamp(*at + (percent > 0 ? step : -step), line.scale_min, line.scale_max), now_ns);
+}
+
+void PageState::letter(const std::string& letter, std::int64_t now_ns) {
+  if (guarded(now_ns) || focus_ == size() || letter.empty()) return;
+  for (const int score : scores_of(questions_[focus_]))
+    if (letter_of(questions_[focus_], score) == letter) return choose(focus_, score, now_ns);
+}
+
+void PageState::react(std::int64_t now_ns) {
+  if (!timed() || guarded(now_ns)) return;
+  tick(now_ns);
+  if (!confirmed()) end_reaction(1, now_ns);
+}
+
+void PageState::tick(std::int64_t now_ns) {
+  if (!timed() || confirmed()) return;
+  const std::int64_t end_ns = shown_ns_ + std::llround(1e9 * questions_[0].timeout_s);
+  if (now_ns >= end_ns) end_reaction(0, end_ns);
+}
+
+void PageState::end_reaction(int score, std::int64_t at_ns) {
+  items_[0].chosen = score;
+  items_[0].changed_ns = at_ns;
+  if (score == 1) items_[0].input = input_;
+  confirmed_ns_ = at_ns;
 }
 
 void PageState::mark_changed(PageItem& item, std::int64_t now_ns) const {
@@ -166,8 +227,12 @@ void PageState::type(const std::string& letters, std::int64_t now_ns) {
 }
 
 void PageState::leave_out(std::int64_t from_ns, std::int64_t to_ns) {
-  left_out_ns_ += std::max<std::int64_t>(0, to_ns - std::max(from_ns, shown_ns_));
   guarded_from_ns_ = to_ns;
+  if (timed()) {
+    shown_ns_ = to_ns;
+    return;
+  }
+  left_out_ns_ += std::max<std::int64_t>(0, to_ns - std::max(from_ns, shown_ns_));
 }
 
 std::optional<int> PageState::number(std::size_t question) const {
@@ -178,7 +243,7 @@ std::optional<int> PageState::number(std::size_t question) const {
 
 bool PageState::answered(std::size_t question) const {
   const AnswerKindTraits& traits = traits_of(questions_[question].kind);
-  if (traits.listed) return items_[question].chosen.has_value();
+  if (traits.listed || traits.timed) return items_[question].chosen.has_value();
   return traits.typed() ? number(question).has_value() : !is_blank(items_[question].typed);
 }
 
@@ -211,7 +276,7 @@ std::vector<TimedAnswer> PageState::answers() const {
     const bool given = answered(i);
     const AnswerKindTraits& traits = traits_of(questions_[i].kind);
     if (given && !traits.scored) timed.answer.words = items_[i].typed;
-    if (given && traits.listed) timed.answer.score = items_[i].chosen;
+    if (given && (traits.listed || traits.timed)) timed.answer.score = items_[i].chosen;
     if (given && traits.typed()) timed.answer.score = number(i);
     const std::int64_t end_ns = given ? items_[i].changed_ns : *confirmed_ns_;
     timed.response_time_s = 1e-9 * static_cast<double>(end_ns - shown_ns_);

@@ -13,11 +13,11 @@
 
 namespace study {
 
-enum class PageKey { Left, Right, Up, Down, Next, Previous, Enter, Erase };
+enum class PageKey { Left, Right, Up, Down, FarLeft, FarRight, Next, Previous, Enter, Erase };
 
 /// State of the answer to one question.
 struct PageItem {
-  std::optional<int> chosen;           ///< chosen score of a Scale or Choice; none at first
+  std::optional<int> chosen;           ///< chosen score of a listed kind or of a Reaction; none at first
   std::optional<int> cursor;           ///< score marked by the arrow keys, not yet chosen
   std::string typed;                   ///< typed content of a Number or Text
   std::int64_t changed_ns = 0;         ///< time of the last change
@@ -25,7 +25,8 @@ struct PageItem {
 };
 
 /// State of one page. No answer is preselected. Answers can be changed until the page is confirmed.
-/// Confirming needs an answer to each required question. Input in the first 300 ms is ignored.
+/// Confirming needs an answer to each required question. Input in the first 300 ms is ignored, except by a
+/// page with a Reaction, which react() or tick() confirms.
 class PageState {
  public:
   static constexpr std::int64_t guard_ns = 300'000'000;
@@ -39,10 +40,18 @@ class PageState {
   void use(AnswerInput input) { input_ = input; }
   /// Handles a key. Enter chooses the score that the arrow keys mark; pressed again, it goes to the next
   /// question, or confirms a page with a single question; at the button to go on, it confirms the page.
+  /// On a Vas, the arrow keys set the mark: Left and Right move it by 1 % of the line, Up, Down, FarLeft and
+  /// FarRight by 10 %. The first one sets it at an end.
   void press(PageKey key, std::int64_t now_ns);
   /// Handles a typed digit, 0 to 9: chooses this score if all scores have one digit; appends it to a Number.
   void digit(int digit, std::int64_t now_ns);
   void minus(std::int64_t now_ns);
+  /// Handles a typed letter: chooses the answer of a YesNo; see letter_of().
+  void letter(const std::string& letter, std::int64_t now_ns);
+  /// Handles a press of any key, button or trigger: answers a Reaction and confirms its page.
+  void react(std::int64_t now_ns);
+  /// Confirms the page of a Reaction without a press once its time is over.
+  void tick(std::int64_t now_ns);
   void click(std::size_t question, int score, std::int64_t now_ns);
   /// Focuses a question without answering it.
   void click_question(std::size_t question, std::int64_t now_ns);
@@ -53,7 +62,7 @@ class PageState {
   /// Sets the content of a Text that was typed at the keyboard.
   void write(std::size_t question, const std::string& words, std::int64_t now_ns);
   /// Excludes a period from response times, such as the time in a dialog above the page. Then ignores input
-  /// for 300 ms.
+  /// for 300 ms. The time of a Reaction begins anew.
   void leave_out(std::int64_t from_ns, std::int64_t to_ns);
 
   std::size_t size() const { return questions_.size(); }
@@ -61,6 +70,10 @@ class PageState {
   const PageItem& item(std::size_t i) const { return items_[i]; }
   /// Index of the question that keys act on; size(): the button to go on.
   std::size_t focus() const { return focus_; }
+  /// True if the page has a Reaction.
+  bool timed() const;
+  /// True if keys act on a Vas.
+  bool on_line() const;
   /// True if input is ignored: in the first 300 ms, in the 300 ms after leave_out(), and after the
   /// confirmation.
   bool guarded(std::int64_t now_ns) const { return confirmed() || now_ns - guarded_from_ns_ < guard_ns; }
@@ -82,6 +95,8 @@ class PageState {
 
  private:
   void move_cursor(int by);
+  void move_mark(int percent, std::int64_t now_ns);
+  void end_reaction(int score, std::int64_t at_ns);
   void enter(std::int64_t now_ns);
   void choose(std::size_t question, int score, std::int64_t now_ns);
   void erase(std::int64_t now_ns);
@@ -101,7 +116,7 @@ class PageState {
   std::optional<AnswerInput> confirmed_by_;
 };
 
-/// True if the question lists scores and each is a single digit.
+/// True if the question lists scores for the participant to see and each is a single digit.
 bool one_digit_does(const Question& question);
 
 }  // namespace study

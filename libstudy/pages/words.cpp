@@ -35,6 +35,10 @@ DeskWords english() {
   words.digits = "Press a number or click, then Enter";
   words.arrows = "Choose with the arrow keys and Enter, or click";
   words.tab = "Tab leaves the field";
+  words.line = "Click on the line or use the arrow keys, then Enter";
+  words.letters = "Press {} or {} or click, then Enter";
+  words.react = "Press any key or button, as fast as you can";
+  words.react_by_hand = "Press the trigger, as fast as you can";
   words.stop = {"Stop the session?",
                 "If you stop, nothing more is shown. Then you say what becomes of your answers.",
                 "Do you want to stop?", "No, go on", "Yes, stop the session"};
@@ -106,6 +110,10 @@ DeskWords german() {
   words.digits = "Drücken Sie eine Zahl oder klicken Sie, dann Eingabe";
   words.arrows = "Wählen Sie mit den Pfeiltasten und Eingabe, oder klicken Sie";
   words.tab = "Tab verlässt das Feld";
+  words.line = "Klicken Sie auf die Linie oder nehmen Sie die Pfeiltasten, dann Eingabe";
+  words.letters = "Drücken Sie {} oder {} oder klicken Sie, dann Eingabe";
+  words.react = "Drücken Sie so schnell wie möglich irgendeine Taste";
+  words.react_by_hand = "Drücken Sie so schnell wie möglich den Abzug";
   words.stop = {"Sitzung abbrechen?",
                 "Wenn Sie abbrechen, wird nichts mehr gezeigt. Danach sagen Sie, was mit Ihren Antworten "
                 "geschieht.",

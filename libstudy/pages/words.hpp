@@ -29,7 +29,9 @@ struct DeskWords {
   std::string wait;                           ///< "{}" stands for the seconds until confirming is possible
   std::string range;                          ///< two "{}" stand for the lowest and the highest number
   std::string optional;
-  std::string digits, arrows, tab;  ///< how to answer with the keyboard
+  std::string digits, arrows, tab, line;  ///< how to answer with the keyboard
+  std::string letters;                    ///< the same for yes or no; two "{}" stand for the keys
+  std::string react, react_by_hand;       ///< how to answer a Reaction
   DeskChoice stop;
   DeskPage over, refused, not_eligible, kept, deleted, goodbye;
   DeskChoice stay_out, questionnaire, keep;

@@ -91,6 +91,20 @@ void check_ask(const base::TomlTable& table, std::size_t step, const std::string
   }
 }
 
+bool asks_reaction(const Question& question) { return traits_of(question.kind).timed; }
+constexpr const char* alone_mend = "ask it on a page of its own";
+
+/// Checks that no question of kind reaction shares the page of a block.
+void check_reactions(const Tables& tables, const std::vector<Block>& blocks) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto& questions = blocks[i].questions;
+    if (blocks[i].kind == BlockKind::Stimulus || questions.size() < 2) continue;
+    for (std::size_t q = 0; q < questions.size(); ++q)
+      if (asks_reaction(questions[q]))
+        tables[i].fail_at("question", q, "is a reaction and shares its page", alone_mend);
+  }
+}
+
 /// Checks that the trials ask every question of the block, and no question of any block twice.
 void check_asks(const base::TomlTable& table, const Block& block,
                 const std::map<std::string, Asked>& questions) {
@@ -98,6 +112,8 @@ void check_asks(const base::TomlTable& table, const Block& block,
   for (std::size_t step = 0; step < block.steps.size(); ++step) {
     for (const auto& id : block.steps[step].asks) {
       check_ask(table, step, id, questions);
+      if (block.steps[step].asks.size() > 1 && asks_reaction(*questions.at(id).question))
+        table.fail_at("steps", step, "asks \"" + id + "\", a reaction, together with others", alone_mend);
       if (!asked.insert(id).second)
         table.fail_at("steps", step, "asks \"" + id + "\" for the second time", "ask it once in a trial");
     }
@@ -153,6 +169,7 @@ void join_blocks(const Tables& tables, const Design& design, std::vector<Block>&
   check_ids(tables, blocks);
   check_fms(tables, blocks);
   check_accepts(tables, blocks);
+  check_reactions(tables, blocks);
   const auto questions = questions_by_id(blocks);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (blocks[i].kind == BlockKind::Stimulus) check_asks(tables[i], blocks[i], questions);

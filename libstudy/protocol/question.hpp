@@ -11,10 +11,13 @@ namespace study {
 
 /// How a question is answered. answer_kinds() says how answers of a kind are stored, asked and analysed.
 enum class AnswerKind {
-  Scale,   ///< a row of scores, some with words below them (Likert)
-  Choice,  ///< one of a list; every score has words
-  Number,  ///< typed, such as years of age
-  Text     ///< typed text; exported only on request
+  Scale,    ///< a row of scores, some with words below them (Likert)
+  Choice,   ///< one of a list; every score has words
+  Number,   ///< typed, such as years of age
+  Text,     ///< typed text; exported only on request
+  Vas,      ///< a point of a line with words at both ends (visual analogue scale)
+  YesNo,    ///< a choice of 0 (no) and 1 (yes), also by a letter
+  Reaction  ///< a press as soon as the page appears: 1, or 0 if none came within Question::timeout_s
 };
 
 struct Question {
@@ -36,7 +39,8 @@ struct Question {
   std::optional<int> stop_at;  ///< this score or more offers a rest, then ends the session (Fms)
   std::optional<int> expect;   ///< the answer of an attentive person (Catch)
   std::optional<double>
-      level;  ///< Scale: score at which a pilot's curve is fitted; none: the scale's midpoint
+      level;             ///< Scale, Vas: score at which a pilot's curve is fitted; none: the scale's midpoint
+  double timeout_s = 5;  ///< Reaction: time until the page closes by itself, s
 
   bool operator==(const Question&) const = default;
 };
@@ -46,21 +50,26 @@ struct Question {
 /// switch over all kinds.
 struct AnswerKindTraits {
   AnswerKind kind{};
-  const char* word = "";     ///< name of the kind in protocols, databases and exports
+  const char* word = "";     ///< name of the kind in protocols
   const char* meaning = "";  ///< explanation of `word` in the reference of protocols
   bool scored = true;        ///< the answer is a whole number, stored as a score; otherwise words
   bool listed = false;       ///< the participant chooses one of scores_of()
   bool labelled = false;     ///< every score has words (Question::anchors); such scores have no mean
-  bool required = true;      ///< default of Question::required
-  double answering_s = 5;    ///< expected time for answering one question
+  bool line = false;         ///< listed; the participant marks a point of a line, without seeing scores
+  bool yes_no = false;       ///< listed and labelled, with the scores 0 and 1; see letter_of()
+  bool timed = false;    ///< scored, not listed; a press or a timeout ends the page, which asks nothing else
+  bool required = true;  ///< default of Question::required
+  double answering_s = 5;        ///< expected time for answering one question
+  const char* stored = nullptr;  ///< name of the kind in databases and exports; null: `word`
 
   /// A rating: scores with equal distances, which have means.
   bool rated() const { return listed && !labelled; }
   /// A whole number that the participant types.
-  bool typed() const { return scored && !listed; }
+  bool typed() const { return scored && !listed && !timed; }
+  const char* stored_word() const { return stored ? stored : word; }
 };
 /// One entry for each AnswerKind, in the order of the enum.
-const std::array<AnswerKindTraits, 4>& answer_kinds();
+const std::array<AnswerKindTraits, 7>& answer_kinds();
 const AnswerKindTraits& traits_of(AnswerKind kind);
 /// "scale, choice or number": the words of the kinds for which `is` returns true; `last`, such as " or ",
 /// precedes the last word.
@@ -70,6 +79,10 @@ std::string kind_words(bool (*is)(const AnswerKindTraits&), const char* last);
 std::vector<int> scores_of(const Question& question);
 /// True if the score is a possible answer.
 bool can_be_given(const Question& question, int score);
+
+/// The key that chooses a score of a YesNo: the first letter of its words, a to z. Empty for another letter,
+/// for words that begin alike, and for other kinds.
+std::string letter_of(const Question& question, int score);
 
 /// Score of a scale at which a pilot's curve is fitted: Question::level, else the scale's midpoint.
 double fitted_level(const Question& question);

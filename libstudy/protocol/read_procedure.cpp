@@ -198,11 +198,12 @@ void check_procedure_question(const base::TomlTable& table, const Design& design
     if (found == block.questions.end() || !asked)
       table.fail("question", "= " + base::toml_quoted(procedure.question) + " is not asked in the trials",
                  "ask it in the steps of block " + base::toml_quoted(block.id));
-    const bool rated = traits_of(found->kind).rated();
-    if (procedure.kind == ProcedureKind::Ptpe ? !rated : traits_of(found->kind).typed() || rated)
+    const auto fits = procedure.kind == ProcedureKind::Ptpe
+                          ? [](const AnswerKindTraits& one) { return one.rated(); }
+                          : [](const AnswerKindTraits& one) { return one.labelled; };
+    if (!fits(traits_of(found->kind)))
       table.fail("question", "= " + base::toml_quoted(procedure.question) + " has answers of another kind",
-                 procedure.kind == ProcedureKind::Ptpe ? "name a question of kind scale"
-                                                       : "name a question of kind choice");
+                 "name a question of kind " + kind_words(fits, " or "));
     const auto scores = scores_of(*found);
     if (procedure.kind == ProcedureKind::Ptpe) continue;
     if (scores.size() != 2)

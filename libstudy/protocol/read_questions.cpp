@@ -43,22 +43,60 @@ std::pair<int, int> read_span(const base::TomlTable& table, std::string_view key
   return {low, high};
 }
 
+/// "no" and "yes" in the question's language; none if the program does not know them.
+std::vector<std::pair<int, std::string>> words_of_no_and_yes(const std::string& language) {
+  if (language.starts_with("en")) return {{0, "no"}, {1, "yes"}};
+  if (language.starts_with("de")) return {{0, "nein"}, {1, "ja"}};
+  return {};
+}
+
+void read_labels(const base::TomlTable& table, Question& question) {
+  const bool yes_no = traits_of(question.kind).yes_no;
+  question.anchors = read_anchors(table, 0, yes_no ? 1 : 100);
+  if (yes_no && !table.has("anchors")) {
+    question.anchors = words_of_no_and_yes(question.language);
+    if (question.anchors.empty())
+      table.fail("anchors", "is missing: the words for no and yes are known in English and German only",
+                 "write the words of 0 and 1 in language \"" + question.language + "\"");
+  }
+  if (question.anchors.size() < 2)
+    table.fail("anchors", "offer fewer than two answers", "write anchors = {0 = \"no\", 1 = \"yes\"}");
+  question.scale_min = question.anchors.front().first;
+  question.scale_max = question.anchors.back().first;
+}
+
+void read_reaction(const base::TomlTable& table, Question& question) {
+  question.timeout_s = table.number_or("timeout_s", question.timeout_s, {0.1, 60});
+  question.scale_min = 0;
+  question.scale_max = 1;
+  question.anchors = {{0, "too late"}, {1, "pressed"}};  // not shown: for exports
+  if (question.personal)
+    table.fail("personal", "= true keeps no response time", "remove it, or use another kind");
+}
+
+/// Checks the ends and the words of a line, on which a participant sees nothing else.
+void check_line(const base::TomlTable& table, const Question& question) {
+  if (question.scale_max > 1000) table.fail("scale", "ends above 1000", "use [0, 1000] at most");
+  const auto& words = question.anchors;
+  if (words.size() == 2 && words[0].first == question.scale_min && words[1].first == question.scale_max)
+    return;
+  table.fail("anchors", "are not the words at the two ends of the line",
+             "write words for " + std::to_string(question.scale_min) + " and " +
+                 std::to_string(question.scale_max) + ", and for no other score");
+}
+
 void read_scores(const base::TomlTable& table, Question& question) {
   const AnswerKindTraits& traits = traits_of(question.kind);
-  if (traits.labelled) {
-    question.anchors = read_anchors(table, 0, 100);
-    if (question.anchors.size() < 2)
-      table.fail("anchors", "offer fewer than two answers", "write anchors = {0 = \"no\", 1 = \"yes\"}");
-    question.scale_min = question.anchors.front().first;
-    question.scale_max = question.anchors.back().first;
-    return;
-  }
-  std::tie(question.scale_min, question.scale_max) = read_span(table, "scale", {0, 10000});
+  if (traits.labelled) return read_labels(table, question);
+  if (traits.timed) return read_reaction(table, question);
+  std::tie(question.scale_min, question.scale_max) =
+      traits.line && !table.has("scale") ? std::pair{0, 100} : read_span(table, "scale", {0, 10000});
   if (question.scale_max <= question.scale_min)
     table.fail("scale", "does not ascend", "write the scale as [low, high]");
-  if (traits.rated() && question.scale_max - question.scale_min > 100)
-    table.fail("scale", "has more than 101 scores", "use kind = \"number\"");
+  if (traits.rated() && !traits.line && question.scale_max - question.scale_min > 100)
+    table.fail("scale", "has more than 101 scores", "use kind = \"number\" or \"vas\"");
   if (traits.rated()) question.anchors = read_anchors(table, question.scale_min, question.scale_max);
+  if (traits.line) check_line(table, question);
   if (traits.rated() && table.has("level")) {
     question.level = table.number("level");
     if (!(*question.level > question.scale_min && *question.level < question.scale_max)) {
@@ -152,7 +190,8 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
 std::string why_not_obeyed(BlockKind block, const Question& question) {
   if (block != BlockKind::Consent) return "is in a block of kind " + block_kind_name(block);
   // The views of permissions in the database read only choices of 0 and 1.
-  if (question.kind != AnswerKind::Choice) return "is not of kind choice";
+  if (!traits_of(question.kind).labelled)
+    return "is not of kind " + kind_words([](const AnswerKindTraits& one) { return one.labelled; }, " or ");
   if (question.anchors.size() != 2 || question.scale_min != 0 || question.scale_max != 1)
     return "has other answers than 0 and 1";
   return question.personal ? "is personal" : "";
@@ -182,9 +221,9 @@ std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kin
   return out;
 }
 
-const std::array<AnswerKindTraits, 4>& answer_kinds() {
+const std::array<AnswerKindTraits, 7>& answer_kinds() {
   using enum AnswerKind;
-  static constexpr std::array<AnswerKindTraits, 4> all{{
+  static constexpr std::array<AnswerKindTraits, 7> all{{
       {.kind = Scale, .word = "scale", .meaning = "a row of scores", .listed = true},
       {.kind = Choice, .word = "choice", .meaning = "one of `anchors`", .listed = true, .labelled = true},
       {.kind = Number, .word = "number", .meaning = "typed", .answering_s = 10},
@@ -194,6 +233,23 @@ const std::array<AnswerKindTraits, 4>& answer_kinds() {
        .scored = false,
        .required = false,
        .answering_s = 30},
+      {.kind = Vas,
+       .word = "vas",
+       .meaning = "a point of a line without numbers",
+       .listed = true,
+       .line = true},
+      {.kind = YesNo,
+       .word = "yes_no",
+       .meaning = "a choice of 0 and 1, stored and analysed as one",
+       .listed = true,
+       .labelled = true,
+       .yes_no = true,
+       .stored = "choice"},
+      {.kind = Reaction,
+       .word = "reaction",
+       .meaning = "a press as soon as the page appears, alone on its page; 1, or 0 if it came too late",
+       .timed = true,
+       .answering_s = 2},
   }};
   return all;
 }
@@ -224,6 +280,18 @@ std::vector<int> scores_of(const Question& question) {
 bool can_be_given(const Question& question, int score) {
   const auto scores = scores_of(question);
   return std::binary_search(scores.begin(), scores.end(), score);
+}
+
+std::string letter_of(const Question& question, int score) {
+  if (!traits_of(question.kind).yes_no || question.anchors.size() != 2) return "";
+  const auto first = [](const std::string& words) {
+    const char letter = words.empty() ? ' ' : words.front();
+    const char lower = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+    return lower >= 'a' && lower <= 'z' ? std::string(1, lower) : "";
+  };
+  const std::string no = first(question.anchors[0].second), yes = first(question.anchors[1].second);
+  if (no == yes) return "";
+  return score == question.anchors[0].first ? no : yes;
 }
 
 double fitted_level(const Question& question) {

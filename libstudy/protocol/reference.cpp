@@ -12,6 +12,7 @@ namespace {
 using base::where_needed;
 
 bool is_rated(const AnswerKindTraits& one) { return one.rated(); }
+bool has_scale(const AnswerKindTraits& one) { return one.scored && !one.labelled && !one.timed; }
 
 std::string in_quotes(std::vector<std::string> words) {
   for (std::string& word : words) word = "\"" + word + "\"";
@@ -115,7 +116,8 @@ const std::vector<KeyReference>& protocol_reference() {
       {"procedure", "axis", "text", in_quotes(axis_keys()), where_needed,
        "key of the timing of each level; its values rise from level to level"},
       {"procedure", "question", "text", "", "",
-       "id of a question that the trials ask: of kind choice with two answers, for ptpe of kind scale"},
+       "id of a question that the trials ask: of kind choice with two answers or yes_no, for ptpe of kind " +
+           kind_words(is_rated, " or ")},
       {"procedure", "positive", "whole number or text", "[0, 100] or \"comparison\", \"standard\"",
        where_needed,
        "the answer that a stronger stimulus makes more frequent: a score, or in pairs the interval that is "
@@ -295,15 +297,20 @@ const std::vector<KeyReference>& protocol_reference() {
       {"block.question", "kind", "text", kinds_in_quotes(), "", kind_meanings()},
       {"block.question", "scale", "list of numbers", "[0, 10000]", where_needed,
        "needed by " +
-           kind_words([](const AnswerKindTraits& one) { return one.scored && !one.labelled; }, " and ") +
-           ": [lowest, highest], whole; a " + kind_words(is_rated, " or a ") + " has 101 scores at most"},
+           kind_words([](const AnswerKindTraits& one) { return has_scale(one) && !one.line; }, " and ") +
+           ": [lowest, highest], whole; a scale has 101 scores at most. vas: [0, 100] if it is missing, at "
+           "most [0, 1000]"},
       {"block.question", "anchors", "table", "", "none",
        "words by score, ascending; needed by " +
-           kind_words([](const AnswerKindTraits& one) { return one.labelled; }, " and ") + ", from 0 to 100"},
+           kind_words([](const AnswerKindTraits& one) { return one.labelled && !one.yes_no; }, " and ") +
+           ", from 0 to 100, and by vas: for both ends and no other score. yes_no: for 0 and 1; not needed "
+           "in English and German; their first letters are keys"},
       {"block.question", "level", "number", "within the scale", "the scale's middle",
        kind_words(is_rated, " and ") + ": the score at which the curve of a pilot's frame rates is fitted: "
                                        "by fit-ptpe, report and power, and "
                                        "named in the preregistered plan; refused for other kinds"},
+      {"block.question", "timeout_s", "number", "[0.1, 60]", "5",
+       "reaction: without a press the page closes after this time, s"},
       {"block.question", "personal", "true or false", "", "false",
        "the answer goes to the file of personal data alone; only on pages"},
       {"block.question", "required", "true or false", "",

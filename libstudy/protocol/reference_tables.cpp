@@ -92,7 +92,7 @@ Exports and report hold the scores of the SSQ, and the mean and the peak of the 
 of its block. Blocks of kind screening, consent, demographics, stimulus, question and catch have at least one.
 
 Two ids are reserved for questions whose answers the program acts on. They belong in a block of kind consent,
-with `kind = "choice"`, the answers 0 (no) and 1 (yes) and not personal:
+with `kind = "yes_no"`, or a choice of 0 (no) and 1 (yes), and not personal:
 
 - `gaze_kept`: may gaze and head movement be recorded. No row of gaze is written unless it
   was answered with 1; a protocol that does not ask records none.
@@ -101,15 +101,27 @@ with `kind = "choice"`, the answers 0 (no) and 1 (yes) and not personal:
 
 `vip-study consent` changes both later.
 
+A `vas` shows no number, no tick and no mark until the participant sets one: by mouse, ray or gaze, or by
+arrow keys, 1 % of the line at a time (up, down, page up, page down, and left and right with shift: 10 %). The
+first key sets it at an end.
+
+A `reaction` is alone on its page. The page is the cue, and any key, mouse button, button of a gamepad or
+trigger ends it. Its response time counts from when the page's first frame was handed to the display; an
+answer 0 has `timeout_s`. A page that was out of sight, or under the question whether to stop, begins anew.
+The time also holds the delay of the display, a frame or more, and that of the device: the program knows
+neither. In a window a key or mouse button is taken when its event comes, and a gamepad is read every 2 ms; a
+headset gives its input once a frame. None of this was measured. So compare conditions at one station, and
+measure its delay if the times themselves matter.
+
 `vip-stats` finds what it analyses by these questions of the stimulus block. Other questions are exported and
 may stand beside them.
 
 | study | needs | and uses |
 |---|---|---|
-| pilot: one method at several frame rates | a question of kind scale; `vip-stats fit-ptpe --question ID` takes one of several | |
-| Task 1: methods shown one by one | `realism`, of kind scale; for H1 to H3 also `disorientation`, `unrealism`, `dizziness` and `confusion`, on one scale | |
-| Task 2: pairs | a question of kind choice with two anchors, the lower one for the first interval | |
-| all | | questions of kind number, choice and scale in blocks of kind demographics, screening and question, such as `age` and `gender`, unless a trial asks them too: the report gives the answers in summary |)"},
+| pilot: one method at several frame rates | a question of kind scale or vas; `vip-stats fit-ptpe --question ID` takes one of several | |
+| Task 1: methods shown one by one | `realism`, of kind scale or vas; for H1 to H3 also `disorientation`, `unrealism`, `dizziness` and `confusion`, on one scale | |
+| Task 2: pairs | a question of kind choice with two anchors or yes_no, the lower one for the first interval | |
+| all | | questions of kind number, choice, yes_no, scale and vas in blocks of kind demographics, screening and question, such as `age` and `gender`, unless a trial asks them too: the report gives the answers in summary |)"},
       {"block.question.anchors", "anchors",
        R"(Words by score, as in `anchors = {1 = "poor", 7 = "good"}`.)"}};
   return tables;

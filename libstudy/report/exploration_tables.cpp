@@ -67,7 +67,8 @@ std::string pilot_ratings(const Field& pilot) {
     names.push_back(svg::number(entry["fps_mean"].number(), 0) + ", SD " +
                     svg::number(entry["fps_sd"].number(), 0));
   return figure(rating_bars(entries, names, "ratings-pilot", "Ratings of each setting"),
-                "How often each score was given, by setting (mean and standard deviation of the frame rate, "
+                "How often each score was given (of a line: the scores of each tenth), by setting (mean and "
+                "standard deviation of the frame rate, "
                 "frames/s).");
 }
 
@@ -84,7 +85,8 @@ std::string score_ratings(const Field& task1, const Field& score) {
     }
     if (entries.empty()) continue;
     out += figure(rating_bars(entries, names, "ratings-" + question, "Answers about " + question),
-                  "How often each score of " + words(item) + " was given, by " + n_star_sign +
+                  "How often each score of " + words(item) +
+                      " was given (of a line: the scores of each tenth), by " + n_star_sign +
                       " and method; single answers, not averaged.");
   }
   return out;

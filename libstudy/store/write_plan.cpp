@@ -97,7 +97,7 @@ void add_questions(sqlite::Connection& database, std::int64_t protocol_id, const
     if (!written.insert(question->id).second) continue;
     insert
         .bind_all(protocol_id, question->id, question->text, question->language,
-                  traits_of(question->kind).word, question->scale_min, question->scale_max,
+                  traits_of(question->kind).stored_word(), question->scale_min, question->scale_max,
                   anchors_text(*question), question->personal ? 1 : 0)
         .run();
   }

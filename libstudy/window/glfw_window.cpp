@@ -103,6 +103,7 @@ GlfwWindow::GlfwWindow(const WindowChoice& choice) : monitor_(choice.monitor), l
     auto* self = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
     self->note_input();
     if (action == GLFW_PRESS) self->keys_.push_back(key);
+    if (action == GLFW_REPEAT) self->repeats_.push_back(key);
   });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int, int, int) {
     static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->note_input();

@@ -57,6 +57,8 @@ class GlfwWindow {
   /// GLFW codes of the keys pressed since the last call, also of short presses during a slow frame. A key
   /// held down counts once.
   std::vector<int> take_keys() { return std::exchange(keys_, {}); }
+  /// GLFW codes that the keyboard repeated since the last call, for keys held down.
+  std::vector<int> take_repeats() { return std::exchange(repeats_, {}); }
   /// Seconds since the last key, button or movement of the mouse, or since the window was opened. Any thread
   /// may call it.
   double idle_s() const;
@@ -75,7 +77,7 @@ class GlfwWindow {
 
   GLFWwindow* window_ = nullptr;
   int monitor_ = 0;
-  std::vector<int> keys_;
+  std::vector<int> keys_, repeats_;
   std::function<void(const Place&)> mouse_moved_;
   bool was_minimised_ = false;
   std::atomic<std::int64_t> last_input_ns_;  ///< steady clock

@@ -109,6 +109,44 @@ TEST_F(HeadsetPersonE2e, ThePilotIsAnsweredByTheEyesAlone) {
   EXPECT_THAT(column("SELECT DISTINCT input FROM response"), ::testing::ElementsAre("dwell"));
 }
 
+/// The pilot with a reaction before each rating, and the rating on a line.
+std::string with_line_and_reaction(std::string text) {
+  text = test::replaced(text, "\"ask satisfaction\"", "\"ask fast\", \"ask satisfaction\"");
+  text = test::replaced(text, "kind = \"scale\"", "kind = \"vas\"");
+  text = test::replaced(text, "scale = [1, 7]", "");
+  text = test::replaced(
+      text, "{1 = \"very dissatisfied\", 4 = \"neutral\", 7 =", "{0 = \"very dissatisfied\", 100 =");
+  const std::string reaction =
+      "[[block.question]]\nid = \"fast\"\nkind = \"reaction\"\ntext = \"Now!\"\ntimeout_s = 1.5\n";
+  return test::with_before(text, "[[block.question]]\nid = \"satisfaction\"", reaction);
+}
+
+TEST_F(HeadsetPersonE2e, ALineAndAReactionAreAnsweredByHandAndALineByTheEyes) {
+  const std::string protocol = folder_ / "kinds.toml";
+  base::write_file_atomically(protocol, with_line_and_reaction(test::short_protocol_at("[10]")));
+  const std::string targets = "targets=0.5:0.503,0.3:0.39,0.5:0.9;";
+  const std::string scores = "SELECT score FROM response ORDER BY response_id";
+  const auto by_hand = session("point=page;hold=0.4;" + targets + script_of(""), protocol);
+  ASSERT_EQ(by_hand.exit_code, 0) << by_hand.err;
+  const auto hand = column(scores);
+  EXPECT_EQ(column("SELECT r.response_time_s BETWEEN 0.01 AND 1.4 FROM response r JOIN question q USING "
+                   "(question_id) WHERE q.code = 'fast'")
+                .at(0),
+            "1");
+  database_ = folder_ / "eyes.db";
+  const auto by_eyes =
+      session("look=page;hold=1.2;blink_every=0.8;blink_length=0.1;" + targets + script_of(""), protocol,
+              {"--answer", "dwell"});
+  ASSERT_EQ(by_eyes.exit_code, 0) << by_eyes.err;
+  const auto eyes = column(scores);
+  ASSERT_EQ(hand.size(), 3u);
+  ASSERT_EQ(eyes.size(), 3u);
+  EXPECT_EQ(hand[1], "1");
+  EXPECT_EQ(eyes[1], "0") << "eyes press nothing";
+  EXPECT_NEAR(std::stod(hand[2]), 26, 3) << "0.3 of the page lies there on the line";
+  EXPECT_NEAR(std::stod(eyes[2]), std::stod(hand[2]), 2);
+}
+
 TEST_F(HeadsetPersonE2e, AStickChoosesAndSelectIsEnter) {
   // Left moves to the last choice, select takes it, and select goes on.
   std::string script;

@@ -47,6 +47,12 @@ Question words(bool required) {
   return question;
 }
 
+Question of_kind(AnswerKind kind, int low, int high) {
+  Question question = scale(low, high);
+  question.kind = kind;
+  return question;
+}
+
 study::PageState page(const std::vector<Question>& questions, double least_s = 0) {
   return {questions, least_s, shown};
 }
@@ -106,6 +112,91 @@ TEST(PageState, AnAnswerTellsWhatItsLastChangeCameFrom) {
   EXPECT_EQ(answers[1].input, AnswerInput::Ray);
   EXPECT_EQ(answers[2].input, AnswerInput::Keyboard);
   EXPECT_EQ(answers[3].input, AnswerInput::Stick);
+}
+
+TEST(PageState, ALineHasNoMarkUntilAKeyOrAClickSetsOne) {
+  using study::PageKey;
+  study::PageState state = page({of_kind(AnswerKind::Vas, 0, 1000), of_kind(AnswerKind::Vas, 0, 8)});
+  state.digit(5, at(900));
+  EXPECT_FALSE(state.item(0).chosen || state.item(0).cursor);
+  state.press(PageKey::Right, at(1000));
+  EXPECT_EQ(state.item(0).chosen, 0) << "the first key sets it at an end";
+  for (const PageKey key : {PageKey::Left, PageKey::Right, PageKey::Up, PageKey::FarRight, PageKey::Right})
+    state.press(key, at(1100));
+  EXPECT_EQ(state.item(0).chosen, 220) << "1 %, 10 %, 10 %, 1 %";
+  state.press(PageKey::Down, at(1200));
+  state.press(PageKey::FarLeft, at(1200));
+  EXPECT_EQ(state.item(0).chosen, 20);
+  state.click(0, 777, at(1300));
+  EXPECT_EQ(state.item(0).chosen, 777);
+  state.press(PageKey::Enter, at(1400));
+  EXPECT_EQ(state.focus(), 1u) << "a mark needs no Enter to count";
+  state.press(PageKey::Down, at(1500));
+  EXPECT_EQ(state.item(1).chosen, 8) << "from the right";
+  state.press(PageKey::Left, at(1500));
+  EXPECT_EQ(state.item(1).chosen, 7) << "at least one score";
+  state.click_confirm(at(1600));
+  EXPECT_EQ(state.answers()[0].answer.score, 777);
+  EXPECT_DOUBLE_EQ(state.answers()[0].response_time_s, 1.3);
+}
+
+TEST(PageState, YesOrNoIsChosenByItsLetters) {
+  Question question = list({{0, "no"}, {1, "yes"}});
+  question.kind = AnswerKind::YesNo;
+  study::PageState state = page({question, list({{0, "no"}, {1, "yes"}})});
+  state.letter("x", at(1000));
+  EXPECT_FALSE(state.answered(0));
+  state.letter("y", at(1000));
+  EXPECT_EQ(state.item(0).chosen, 1);
+  state.letter("n", at(1100));
+  EXPECT_EQ(state.item(0).chosen, 0);
+  state.press(study::PageKey::Enter, at(1200));
+  state.letter("y", at(1300));
+  EXPECT_FALSE(state.answered(1)) << "a choice has no letters";
+}
+
+TEST(PageState, AReactionIsTheFirstPressAndEndsThePage) {
+  study::PageState state = page({of_kind(AnswerKind::Reaction, 0, 1)});
+  state.press(study::PageKey::Enter, at(100));
+  state.click_confirm(at(100));
+  state.tick(at(200));
+  EXPECT_FALSE(state.confirmed());
+  state.use(study::AnswerInput::Gamepad);
+  state.react(at(234));
+  state.react(at(400));
+  ASSERT_TRUE(state.confirmed());
+  EXPECT_EQ(state.answers()[0].answer.score, 1);
+  EXPECT_DOUBLE_EQ(state.answers()[0].response_time_s, 0.234);
+  EXPECT_EQ(state.answers()[0].input, study::AnswerInput::Gamepad);
+  study::PageState other = page({scale(1, 7)});
+  other.react(at(1000));
+  other.tick(at(60'000));
+  EXPECT_FALSE(other.confirmed());
+}
+
+TEST(PageState, AReactionThatComesTooLateIsNone) {
+  for (const bool pressed : {false, true}) {
+    study::PageState state = page({of_kind(AnswerKind::Reaction, 0, 1)});
+    state.tick(at(4999));
+    EXPECT_FALSE(state.confirmed());
+    if (pressed)
+      state.react(at(5020));
+    else
+      state.tick(at(5010));
+    ASSERT_TRUE(state.confirmed());
+    EXPECT_EQ(state.answers()[0].answer.score, 0);
+    EXPECT_DOUBLE_EQ(state.answers()[0].response_time_s, 5);
+    EXPECT_FALSE(state.answers()[0].input);
+  }
+}
+
+TEST(PageState, AReactionBeginsAnewAfterAnInterruption) {
+  study::PageState state = page({of_kind(AnswerKind::Reaction, 0, 1)});
+  state.leave_out(at(100), at(9000));
+  state.react(at(9100));
+  EXPECT_FALSE(state.confirmed()) << "the key that closed the dialog";
+  state.react(at(9400));
+  EXPECT_DOUBLE_EQ(state.answers()[0].response_time_s, 0.4);
 }
 
 TEST(PageState, TheSameAnswerAgainIsNoChange) {

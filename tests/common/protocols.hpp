@@ -17,6 +17,9 @@ inline std::string protocol_text(const std::string& name) {
   return base::read_file(base::resource("tests/protocols/" + name + ".toml"), 1 << 20);
 }
 
+/// A protocol with questions of every kind.
+inline std::string answers_text() { return protocol_text("../fuzz/corpus/protocol/answers"); }
+
 /// The text of protocols/NAME.toml.
 inline std::string shipped_text(const std::string& name) {
   return base::read_file(base::resource("protocols/" + name + ".toml"), 1 << 20);

@@ -36,8 +36,10 @@ std::string error_of(const std::string& text) {
   return "(no error)";
 }
 
+constexpr const char* answers = "answers";  // the protocol of answers_text()
+
 struct Malformed {
-  const char* protocol;  // name of a shipped protocol
+  const char* protocol;  // name of a shipped protocol, or `answers`
   const char* from;
   const char* to;
   const char* place;    // part of the changed text, with '|' where the error must point
@@ -49,7 +51,8 @@ class MalformedProtocol : public testing::TestWithParam<Malformed> {};
 
 TEST_P(MalformedProtocol, IsRefusedWithPlaceAndMend) {
   const auto& param = GetParam();
-  const std::string whole = shipped_text(param.protocol);
+  const std::string whole =
+      param.protocol == std::string(answers) ? test::answers_text() : shipped_text(param.protocol);
   ASSERT_EQ(error_of(whole), "(no error)");
   const std::string text = replaced(whole, param.from, param.to);
   const std::string error = error_of(text);
@@ -288,7 +291,24 @@ const Malformed questions[] = {
     {demo, "expect = 2", "expect = 2\nrequired = false", "required = |false", "would let participants skip",
      "remove"},
     {demo, "id = \"attention_check\"\nkind = \"scale\"", "id = \"attention_check\"\nkind = \"text\"",
-     "kind = |\"text\"\ntext = \"Please", "no score to expect", "scale, choice or number"}};
+     "kind = |\"text\"\ntext = \"Please", "no score to expect", "scale, choice, number, vas"},
+    {answers, "level = 60", "scale = [0, 1001]", "scale = |[0, 1001]", "ends above 1000", "at most"},
+    {answers, "100 = \"entirely\"", "50 = \"half\", 100 = \"entirely\"", "anchors = |{0 = \"not at all\"",
+     "two ends of the line", "for 0 and 100"},
+    {answers, "anchors = {0 = \"not at all\", 100 = \"entirely\"}", "",
+     "|[[block.question]]\nid = \"satisfaction\"", "two ends of the line", "for 0 and 100"},
+    {answers, "text = \"Did the motion stall?\"", "text = \"Halte?\"\nlanguage = \"fr\"",
+     "|[[block.question]]\nid = \"stalled\"", "known in English and German only", "language \"fr\""},
+    {answers, "text = \"Did the motion stall?\"", "text = \"Did it?\"\nanchors = {1 = \"yes\", 2 = \"no\"}",
+     "2 = |\"no\"", "not a score", "0 to 1"},
+    {answers, "timeout_s = 2", "timeout_s = 0", "timeout_s = |0", "out of range", "[0.1, 60]"},
+    {answers, "kind = \"yes_no\"\ntext = \"Did", "kind = \"yes_no\"\ntimeout_s = 2\ntext = \"Did",
+     "timeout_s = |2\ntext", "is not a known key", ""},
+    {answers, "\"ask fast\", \"ask satisfaction", "\"ask fast satisfaction", "|\"ask fast satisfaction",
+     "a reaction, together with others", "page of its own"},
+    {answers, "kind = \"number\"\ntext = \"How old are you?\"\nscale = [10, 110]",
+     "kind = \"reaction\"\ntext = \"Now!\"", "|[[block.question]]\nid = \"age\"", "shares its page",
+     "page of its own"}};
 INSTANTIATE_TEST_SUITE_P(Questions, MalformedProtocol, testing::ValuesIn(questions));
 
 TEST(Protocol, BrokenSyntaxNamesThePlace) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -243,6 +244,34 @@ TEST(Observers, TakePartAndAnswerWithinTheRules) {
     }
   }
   EXPECT_EQ(clock.now_ns(), 0);
+}
+
+TEST(Observers, AnswerLinesAndReactions) {
+  Question line = seven_points(), reaction;
+  line.kind = AnswerKind::Vas;
+  line.scale_min = 0;
+  line.scale_max = 600;
+  reaction.id = "fast";
+  reaction.kind = AnswerKind::Reaction;
+  reaction.scale_min = 0;
+  reaction.scale_max = 1;
+  EXPECT_FALSE(asks_symptom(line)) << "it may ask for anything, and begins at 0";
+  EXPECT_EQ(rated_score(line, 1), 400) << "a point of seven is a sixth of the line";
+  EXPECT_EQ(rated_score(seven_points(), 1), 5);
+  VirtualClock clock;
+  for (const char* kind : {"random", "constant:1", "frames", "ptpe:a=31,b=0.035"}) {
+    int pressed = 0;
+    for (int person = 0; person < 50; ++person) {
+      const auto answers =
+          observer_of(kind)->ask({}, std::array{reaction, line}, shown(30, 0, person, 1), clock, {});
+      pressed += *answers[0].answer.score;
+      EXPECT_GE(answers[0].response_time_s, 0.2);
+      EXPECT_EQ(answers[0].response_time_s < 5, answers[0].answer.score == 1);
+      EXPECT_TRUE(can_be_given(line, *answers[1].answer.score));
+      EXPECT_EQ(answers[1].response_time_s, 0);
+    }
+    EXPECT_EQ(pressed == 50, std::string(kind) != "random") << kind;
+  }
 }
 
 TEST(Observers, OnlyWhoFeelsTriggersAStopRule) {

@@ -228,14 +228,45 @@ TEST(Protocol, EveryKindOfAnswerHasItsRow) {
     question.scale_max = 3;
     question.anchors = {{1, "no"}, {3, "yes"}};
     EXPECT_FALSE(study::can_be_given(question, 0));
-    EXPECT_EQ(study::can_be_given(question, 2),
-              kind == study::AnswerKind::Scale || kind == study::AnswerKind::Number);
+    EXPECT_EQ(study::can_be_given(question, 2), kind == study::AnswerKind::Scale ||
+                                                    kind == study::AnswerKind::Number ||
+                                                    kind == study::AnswerKind::Vas);
     return study::scores_of(question);
   };
   EXPECT_EQ(scores(study::AnswerKind::Scale), (std::vector{1, 2, 3}));
   EXPECT_EQ(scores(study::AnswerKind::Choice), (std::vector{1, 3}));
   EXPECT_EQ(scores(study::AnswerKind::Number), (std::vector{1, 2, 3}));
   EXPECT_TRUE(scores(study::AnswerKind::Text).empty());
+  EXPECT_EQ(scores(study::AnswerKind::Vas), (std::vector{1, 2, 3}));
+  EXPECT_EQ(scores(study::AnswerKind::YesNo), (std::vector{1, 3}));
+}
+
+study::Question question_of(const std::string& protocol, const std::string& id) {
+  const auto parsed = study::parse_protocol(protocol, "p.toml");
+  for (const auto& [block, question] : study::all_questions(parsed))
+    if (question->id == id) return *question;
+  throw std::runtime_error("no question " + id);
+}
+
+TEST(Protocol, YesOrNoHasTheWordsOfItsLanguageAndTheirLetters) {
+  const std::string text = test::answers_text();
+  const auto english = question_of(text, "stalled"),
+             german = question_of(test::replaced(text, "language = \"en\"", "language = \"de\""), "stalled");
+  EXPECT_EQ(english.anchors, (std::vector<std::pair<int, std::string>>{{0, "no"}, {1, "yes"}}));
+  EXPECT_EQ(german.anchors[1].second, "ja");
+  EXPECT_EQ(study::letter_of(english, 1) + study::letter_of(english, 0), "yn");
+  EXPECT_EQ(study::letter_of(german, 1) + study::letter_of(german, 0), "jn");
+  auto alike = english;
+  alike.anchors = {{0, "absent"}, {1, "a stall"}};
+  EXPECT_EQ(study::letter_of(alike, 0), "");
+}
+
+TEST(Protocol, ALineGoesFrom0To100UnlessTheFileSaysOtherwise) {
+  const auto line = question_of(test::answers_text(), "satisfaction");
+  EXPECT_EQ(study::scores_of(line).size(), 101u);
+  EXPECT_EQ(study::fitted_level(line), 60);
+  EXPECT_EQ(question_of(test::answers_text(), "mood").scale_max, 1000);
+  EXPECT_EQ(question_of(test::answers_text(), "fast").timeout_s, 2);
 }
 
 TEST(Protocol, SsqHasTheSixteenSymptoms) {

@@ -21,13 +21,28 @@ namespace {
 using Scores = std::vector<double>;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// Adds "n", the number of scores, and "counts", the number of times each score of the question's scale was
-/// given.
+/// The lowest score of each tenth of a line, or every score of another scale.
+std::vector<int> counted_scores(const Question& question) {
+  const int range = question.scale_max - question.scale_min;
+  if (!traits_of(question.kind).line || range <= 10) return scores_of(question);
+  std::vector<int> out;
+  for (int tenth = 0; tenth < 10; ++tenth) out.push_back(question.scale_min + (tenth * range + 9) / 10);
+  return out;
+}
+
+/// Adds "n", the number of scores, and "counts", the number of scores from each of counted_scores() to before
+/// the next.
 void add_counts(Json& json, const Question& question, const Scores& scores) {
   json["n"] = scores.size();
   json["counts"] = Json::array();
-  for (int score = question.scale_min; score <= question.scale_max; ++score)
-    json["counts"].push_back({{"score", score}, {"n", std::count(scores.begin(), scores.end(), score)}});
+  const std::vector<int> lowest = counted_scores(question);
+  for (std::size_t i = 0; i < lowest.size(); ++i) {
+    const auto counted = [&](double score) {
+      return score >= lowest[i] && (i + 1 == lowest.size() || score < lowest[i + 1]);
+    };
+    json["counts"].push_back(
+        {{"score", lowest[i]}, {"n", std::count_if(scores.begin(), scores.end(), counted)}});
+  }
 }
 
 Json pilot_distributions(const TaskData& data) {

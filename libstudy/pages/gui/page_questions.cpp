@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "libstudy/console/console_text.hpp"
 #include "libstudy/pages/gui/page_view.hpp"
@@ -12,9 +13,17 @@ namespace study {
 using study::AnswerKind;
 using study::Question;
 
+namespace {
+
+/// Part of a line's length by which the gaze may stray while it sets a mark by dwelling.
+constexpr float dwell_reach = 0.04F;
+
+}  // namespace
+
 void PageView::draw_question(PageState& state, std::size_t i, std::int64_t now_ns) {
   const Question& question = state.question(i);
   const float size = gui_.size_px(), top = ImGui::GetCursorScreenPos().y;
+  if (question.kind == AnswerKind::Reaction) return draw_cue(question);
   draw_wrapped(question.text, colour::text);
   if (!question.required) draw_wrapped("(" + words_.optional + ")", colour::faint);
   ImGui::Dummy({1, 0.35F * size});
@@ -30,6 +39,14 @@ void PageView::draw_question(PageState& state, std::size_t i, std::int64_t now_n
       break;
     case AnswerKind::Text:
       draw_words(state, i, now_ns);
+      break;
+    case AnswerKind::Vas:
+      draw_line(state, i, now_ns);
+      break;
+    case AnswerKind::YesNo:
+      draw_yes_no(state, i, now_ns);
+      break;
+    case AnswerKind::Reaction:
       break;
   }
   follow_focus(state, i, top);
@@ -98,6 +115,72 @@ void PageView::draw_anchors(const Question& question, float left, float cell) {
   }
   ImGui::SetCursorScreenPos({x, bottom});
   ImGui::Dummy({1, 1});
+}
+
+/// Draws a line with words below its ends, and a mark once the participant set one.
+void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
+  const Question& question = state.question(i);
+  const auto range = static_cast<float>(question.scale_max - question.scale_min);
+  const float size = gui_.size_px(), edge = 0.6F * size, length = column_ - 2 * edge, height = 2 * size;
+  const ImVec2 begun = ImGui::GetCursorScreenPos();
+  const float left = begun.x + edge, right = left + length, y = begun.y + height / 2;
+  const float at = std::clamp((ImGui::GetMousePos().x - left) / length, 0.0F, 1.0F);
+  ImGui::PushID(static_cast<int>(i));
+  ImGui::InvisibleButton("line", {column_, height});
+  if (ImGui::IsItemHovered()) {
+    // Another target wherever the gaze moves on, so that looking on at one place sets the mark.
+    if (std::abs(at - looked_at_) > dwell_reach) looked_at_ = at;
+    gui_.point_at(ImGui::GetID(std::to_string(looked_at_).c_str()));
+  }
+  if (ImGui::IsItemActive() && armed_)
+    state.click(i, question.scale_min + static_cast<int>(std::lround(at * range)), now_ns);
+  ImGui::PopID();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddLine({left, y}, {right, y}, state.focus() == i ? colour::text : colour::dim, 0.09F * size);
+  if (const auto score = state.item(i).chosen) {
+    const float x = left + static_cast<float>(*score - question.scale_min) / range * length;
+    list.AddRectFilled({x - 0.15F * size, y - 0.65F * size}, {x + 0.15F * size, y + 0.65F * size},
+                       colour::chosen);
+    list.AddRect({x - 0.15F * size, y - 0.65F * size}, {x + 0.15F * size, y + 0.65F * size}, colour::text);
+  }
+  const float below = begun.y + height + 0.1F * size, wrap = 0.46F * column_;
+  float bottom = below;
+  for (const auto& [score, words] : question.anchors) {
+    const ImVec2 extent = ImGui::CalcTextSize(words.c_str(), nullptr, false, wrap);
+    const float x = score == question.scale_min ? begun.x : begun.x + column_ - extent.x;
+    list.AddText(nullptr, 0, {x, below}, colour::dim, words.c_str(), nullptr, wrap);
+    bottom = std::max(bottom, below + extent.y);
+  }
+  ImGui::SetCursorScreenPos({begun.x, bottom});
+  ImGui::Dummy({1, 1});
+}
+
+/// Draws the text of a Reaction large and centred, with what to do below it.
+void PageView::draw_cue(const Question& question) {
+  const ImVec2 begun = ImGui::GetCursorScreenPos();
+  const float middle = begun.x + column_ / 2;
+  ImGui::PushFont(gui_.title());
+  const float below = draw_centred(question.text, {middle, begun.y}, column_, colour::text);
+  ImGui::PopFont();
+  const std::string& how = gui_.by_hand() ? words_.react_by_hand : words_.react;
+  const float bottom = draw_centred(how, {middle, below + 0.6F * gui_.size_px()}, column_, colour::dim);
+  ImGui::SetCursorScreenPos({begun.x, bottom});
+  ImGui::Dummy({1, 1});
+}
+
+/// Draws two buttons side by side, or a list if their words are long.
+void PageView::draw_yes_no(PageState& state, std::size_t i, std::int64_t now_ns) {
+  const Question& question = state.question(i);
+  const float size = gui_.size_px(), width = 8 * size, gap = 0.4F * size;
+  const ImVec2 begun = ImGui::GetCursorScreenPos();
+  for (const auto& [score, words] : question.anchors)
+    if (ImGui::CalcTextSize(words.c_str()).x > width - 1.2F * size) return draw_list(state, i, now_ns);
+  float x = begun.x + column_ / 2 - width - gap / 2;
+  for (const auto& [score, words] : question.anchors) {
+    ImGui::SetCursorScreenPos({x, begun.y});
+    if (score_button(state, i, score, words, width, 2.1F * size, false)) state.click(i, score, now_ns);
+    x += width + gap;
+  }
 }
 
 void PageView::draw_list(PageState& state, std::size_t i, std::int64_t now_ns) {

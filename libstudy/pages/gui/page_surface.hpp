@@ -20,12 +20,13 @@ struct PageEvent {
   int digit = -1;
   bool minus = false;
   bool stop = false;       ///< true: opens the stop dialog
+  bool pressed = false;    ///< true: a key, button or trigger went down; it answers a Reaction
   float lines = 0;         ///< number of lines to scroll down
   bool text_only = false;  ///< true: `lines` applies only to pages without questions
   /// Input device. A keyboard event is ignored while a field has the keyboard focus, unless its key leaves
   /// the field.
   AnswerInput input = AnswerInput::Keyboard;
-  std::string letters{};  ///< typed letters, from surfaces without Dear ImGui's keyboard
+  std::string letters{};  ///< typed letters, lower case from a window; Dear ImGui also gets those of a window
 };
 
 /// A surface that shows pages and reads input. All calls come from the session's thread.

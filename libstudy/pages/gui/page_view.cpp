@@ -33,6 +33,14 @@ std::size_t end_of_table(const PageState& state, std::size_t first) {
   return end - first >= fewest_rows ? end : first + 1;
 }
 
+/// The letters that choose the answers of a YesNo, as capitals: yes first. Empty if there are none.
+std::pair<std::string, std::string> keys_of(const Question& question) {
+  auto keys = std::pair{letter_of(question, 1), letter_of(question, 0)};
+  for (std::string* key : {&keys.first, &keys.second})
+    for (char& letter : *key) letter = static_cast<char>(letter - 'a' + 'A');
+  return keys.first.empty() || keys.second.empty() ? decltype(keys)() : keys;
+}
+
 }  // namespace
 
 bool PageView::fills_words(const PageState& state) {
@@ -159,6 +167,10 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float size = gui_.size_px(), width = 9 * size, height = 2 * size;
   const ImVec2 from{(screen.x - width) / 2, screen.y - 3.7F * size}, to{from.x + width, from.y + height};
+  if (state.timed()) {  // no buttons; a headset's menu button still stops
+    if (!gui_.by_hand()) draw_corner(gui_, text_.corner);
+    return;
+  }
   ImGui::SetCursorPos(from);
   const bool clicked = ImGui::InvisibleButton("on", {width, height});
   if (clicked && armed_) state.click_confirm(now_ns);
@@ -186,6 +198,9 @@ void PageView::draw_footer(PageState& state, std::int64_t now_ns) {
     const Question& question = state.question(state.focus());
     const AnswerKindTraits& traits = traits_of(question.kind);
     if (traits.listed) how = one_digit_does(question) ? words_.digits : words_.arrows;
+    if (traits.line) how = words_.line;
+    if (const auto keys = keys_of(question); !keys.first.empty())
+      how = fmt::format(fmt::runtime(words_.letters), keys.first, keys.second);
     if (!traits.scored) how = words_.tab;
   }
   draw_centred(how, {screen.x / 2, to.y + 0.35F * size}, column_, colour::faint);

@@ -46,6 +46,9 @@ class PageView {
   void draw_scale(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_anchors(const Question& question, float left, float cell);
   void pin_anchors(const Question& question, float left, float cell);
+  void draw_line(PageState& state, std::size_t i, std::int64_t now_ns);
+  void draw_cue(const Question& question);
+  void draw_yes_no(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_list(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_number(PageState& state, std::size_t i, std::int64_t now_ns);
   void draw_words(PageState& state, std::size_t i, std::int64_t now_ns);
@@ -85,6 +88,7 @@ class PageView {
   bool armed_ = false;                    ///< the mouse button was up while input was accepted
   bool pointed_ = false;                  ///< the mouse moved since the page appeared
   float mouse_x_ = -1, mouse_y_ = -1;     ///< mouse position when the page appeared
+  float looked_at_ = -1;                  ///< place on a line near which the pointer stays, 0 to 1
   std::size_t seen_focus_ = 0;            ///< question to which the page has scrolled
   std::size_t editing_ = ~std::size_t{};  ///< index of the Text question in whose edit field one types
   std::string edited_;                    ///< content of this edit field, padded to PageState::most_bytes

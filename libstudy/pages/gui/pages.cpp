@@ -9,6 +9,8 @@ namespace {
 
 // s; less than 50 ms, the interval in which the session's check must run.
 constexpr double poll_s = 0.03;
+// s; for a Reaction, because a gamepad is read once in this time.
+constexpr double reaction_poll_s = 0.002;
 
 /// Exception that closes the stop dialog when the session ends for another reason.
 struct Overruled {
@@ -61,13 +63,16 @@ bool Pages::handle_events(PageState& state, PageView& view) {
     state.use(event.input);
     stop = stop || event.stop;
     if (by_keyboard && view.typing(state) && !leaves_field(event)) continue;
-    if (state.size() == 0 || !event.text_only) view.scroll(event.lines);
+    if (event.pressed) state.react(now_ns);
+    const bool moves_mark = event.key && state.on_line();
+    if (state.size() == 0 || (!event.text_only && !moves_mark)) view.scroll(event.lines);
     if (!event.letters.empty() && view.fills_words(state)) {
       state.type(event.letters, now_ns);
       continue;
     }
     if (event.digit >= 0) state.digit(event.digit, now_ns);
     if (event.minus) state.minus(now_ns);
+    state.letter(event.letters, now_ns);
     if (event.key && by_keyboard) state.press(*event.key, now_ns);
     if (event.key && !by_keyboard) view.press(state, *event.key, now_ns);
   }
@@ -88,17 +93,23 @@ std::vector<TimedAnswer> Pages::run_page(PageText text, std::span<const Question
   surface_.forget_input();
   PageState state(questions, least_s, now_ns());
   while (!state.confirmed()) {
-    surface_.poll(poll_s);
+    surface_.poll(state.timed() ? reaction_poll_s : poll_s);
     check();
     if (const auto away = surface_.take_away()) state.leave_out(away->first, away->second);
     const std::int64_t begun_ns = now_ns();
     if (handle_events(state, view) && !over_) {
       stop_requested_ = ask_to_stop(check);
       check();
+      draw(view, state);
+      surface_.show();
       state.leave_out(begun_ns, now_ns());
       surface_.take_away();
       continue;
     }
+    if (state.timed() && surface_.unseen()) state.leave_out(now_ns(), now_ns());
+    state.tick(now_ns());
+    // Drawing would wait for the screen's refresh, and the page of a Reaction does not change.
+    if (state.timed() && !surface_.gui().by_hand()) continue;
     draw(view, state);
     surface_.show();
   }

@@ -191,6 +191,8 @@ void HeadsetSurface::take_hands(const HeadsetHands& hands, std::int64_t now_ns) 
   events_.insert(events_.end(), keys.begin(), keys.end());
   const bool stick = std::any_of(keys.begin(), keys.end(), [](const auto& one) { return one.key; });
   if (hands.select || hands.menu || stick) note_use();
+  if (hands.select_began)
+    events_.push_back({.pressed = true, .input = ways_.ray ? AnswerInput::Ray : AnswerInput::Stick});
   const Place place = ways_.ray ? hand_place(hands) : Place();
   if (stick) stick_from_ = place.value_or(std::pair{-FLT_MAX, -FLT_MAX});
   const bool put_away = stick_from_ && (!place || distance(*place, *stick_from_) < moved_px);

@@ -17,8 +17,10 @@ const std::pair<const char*, PageEvent> sequences[] = {
     {"[C", {.key = PageKey::Right}},
     {"[D", {.key = PageKey::Left}},
     {"[Z", {.key = PageKey::Previous}},
-    {"[5~", {.lines = -1}},
-    {"[6~", {.lines = 1}},
+    {"[5~", {.key = PageKey::FarRight, .lines = -1}},
+    {"[6~", {.key = PageKey::FarLeft, .lines = 1}},
+    {"[1;2C", {.key = PageKey::FarRight}},
+    {"[1;2D", {.key = PageKey::FarLeft}},
 };
 
 /// Length of the escape sequence at `at`, without the leading Esc; 0 if Esc was pressed alone.
@@ -59,6 +61,7 @@ std::vector<PageEvent> page_events(const std::string& typed) {
     } else {
       event = event_of(typed[at]);
     }
+    event.pressed = !event.stop;
     events.push_back(event);
   }
   return events;

@@ -28,9 +28,13 @@ int digit_of(int key) {
 std::optional<PageKey> page_key(int key, bool shift) {
   switch (key) {
     case GLFW_KEY_LEFT:
-      return PageKey::Left;
+      return shift ? PageKey::FarLeft : PageKey::Left;
     case GLFW_KEY_RIGHT:
-      return PageKey::Right;
+      return shift ? PageKey::FarRight : PageKey::Right;
+    case GLFW_KEY_PAGE_DOWN:
+      return PageKey::FarLeft;
+    case GLFW_KEY_PAGE_UP:
+      return PageKey::FarRight;
     case GLFW_KEY_UP:
       return PageKey::Up;
     case GLFW_KEY_DOWN:
@@ -55,13 +59,21 @@ float lines_of(int key) {
   return 0;
 }
 
+/// The letter of a key in the keyboard's layout, lower case; "" for any other key.
+std::string letter_of(int key) {
+  const char* name = glfwGetKeyName(key, 0);
+  return name && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0' ? name : "";
+}
+
 /// The event of a pressed key.
 PageEvent event_of(int key, bool shift) {
   PageEvent event;
+  event.letters = letter_of(key);
   event.key = page_key(key, shift);
   event.digit = digit_of(key);
   event.minus = key == GLFW_KEY_MINUS || key == GLFW_KEY_KP_SUBTRACT;
   event.stop = key == GLFW_KEY_ESCAPE;
+  event.pressed = !event.stop;
   event.lines = lines_of(key);
   event.text_only = key != GLFW_KEY_PAGE_DOWN && key != GLFW_KEY_PAGE_UP;
   return event;
@@ -70,6 +82,11 @@ PageEvent event_of(int key, bool shift) {
 WindowChoice as_window(const ParticipantWindowOptions& options) {
   return {"vip-study", options.width_px, options.height_px, options.monitor,
           "use --display headless or none on a machine without a screen"};
+}
+
+bool moves(std::optional<PageKey> key) {
+  return key == PageKey::Left || key == PageKey::Right || key == PageKey::Up || key == PageKey::Down ||
+         key == PageKey::FarLeft || key == PageKey::FarRight;
 }
 
 std::optional<PageKey> key_of(int button) {
@@ -130,9 +147,8 @@ void ParticipantWindow::show_cursor(bool shown) {
 
 void ParticipantWindow::forget_input() {
   glfwPollEvents();
-  window_.take_keys();
+  take_events();
   window_.take_minimised();
-  gamepad_.forget();
 }
 
 void ParticipantWindow::show_black() {
@@ -162,7 +178,15 @@ std::vector<PageEvent> ParticipantWindow::take_events() {
   const bool shift = glfwGetKey(window_.get(), GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
                      glfwGetKey(window_.get(), GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
   for (const int key : window_.take_keys()) events.push_back(event_of(key, shift));
-  for (const PageKey key : gamepad_.take()) events.push_back({.key = key, .input = AnswerInput::Gamepad});
+  for (const int key : window_.take_repeats())
+    if (const auto moved = page_key(key, shift); moves(moved))
+      events.push_back({.key = moved, .lines = lines_of(key), .text_only = lines_of(key) != 0});
+  unsigned down = 0;
+  for (int button = 0; button <= GLFW_MOUSE_BUTTON_LAST; ++button)
+    if (glfwGetMouseButton(window_.get(), button) == GLFW_PRESS) down |= 1U << static_cast<unsigned>(button);
+  if (down & ~std::exchange(buttons_, down)) events.push_back({.pressed = true, .input = AnswerInput::Mouse});
+  const auto by_gamepad = gamepad_.take();
+  events.insert(events.end(), by_gamepad.begin(), by_gamepad.end());
   return events;
 }
 
@@ -172,21 +196,27 @@ std::optional<std::pair<double, double>> ParticipantWindow::mouse() const {
   return std::pair{x, y};
 }
 
-std::vector<PageKey> Gamepad::take() {
-  std::vector<PageKey> pressed;
+std::vector<PageEvent> Gamepad::take() {
+  constexpr std::int64_t hold_ns = 400'000'000, again_ns = 60'000'000;
+  const auto now_ns = static_cast<std::int64_t>(1e9 * glfwGetTime());
+  std::vector<PageEvent> events;
   for (int joystick = GLFW_JOYSTICK_1; joystick <= GLFW_JOYSTICK_LAST; ++joystick) {
     GLFWgamepadstate state{};
     auto& down = down_[static_cast<std::size_t>(joystick)];
     const bool there = glfwGetGamepadState(joystick, &state) == GLFW_TRUE;
-    for (int button = 0; button <= GLFW_GAMEPAD_BUTTON_LAST; ++button) {
-      const bool now = there && state.buttons[button] == GLFW_PRESS;
-      bool& before = down[static_cast<std::size_t>(button)];
-      const auto key = key_of(button);
-      if (now && !before && key) pressed.push_back(*key);
-      before = now;
+    for (std::size_t button = 0; button < buttons; ++button) {
+      const std::size_t trigger = button - (GLFW_GAMEPAD_BUTTON_LAST + 1);
+      const bool is_button = button <= GLFW_GAMEPAD_BUTTON_LAST;
+      const bool now = there && (is_button ? state.buttons[button] == GLFW_PRESS
+                                           : state.axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER + trigger] > 0.5F);
+      const auto key = key_of(static_cast<int>(button));
+      const bool began = !std::exchange(down[button], now) && now;
+      const bool repeats = now && !began && moves(key) && now_ns >= repeat_ns_;
+      if (began || repeats) repeat_ns_ = now_ns + (began ? hold_ns : again_ns);
+      if (began || repeats) events.push_back({.key = key, .pressed = began, .input = AnswerInput::Gamepad});
     }
   }
-  return pressed;
+  return events;
 }
 
 }  // namespace study

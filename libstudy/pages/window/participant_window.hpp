@@ -15,17 +15,20 @@
 
 namespace study {
 
-/// Converts newly pressed buttons of any gamepad to keys of a page.
+/// Converts newly pressed buttons of any gamepad to events of a page.
 class Gamepad {
  public:
-  /// Keys pressed since the last call. The direction pad gives arrow keys and A gives Enter. B and the left
-  /// shoulder button go to the previous question, the right shoulder button to the next.
-  std::vector<PageKey> take();
+  /// Presses since the last call, of buttons and of the two triggers. The direction pad gives arrow keys,
+  /// which repeat while it is held, and A gives Enter. B and the left shoulder button go to the previous
+  /// question, the right shoulder button to the next. Other buttons have no key.
+  std::vector<PageEvent> take();
   /// Ignores buttons that are held down now.
   void forget() { take(); }
 
  private:
-  std::array<std::array<bool, 16>, 16> down_{};  ///< [joystick][button]
+  static constexpr std::size_t buttons = 17;          ///< those of GLFW, then the left and the right trigger
+  std::array<std::array<bool, buttons>, 16> down_{};  ///< [joystick][button]
+  std::int64_t repeat_ns_ = 0;  ///< when a held direction pad repeats its key; steady clock
 };
 
 struct ParticipantWindowOptions {
@@ -83,7 +86,8 @@ class ParticipantWindow final : public PageSurface {
   Gui gui_;
   Backend backend_;
   Gamepad gamepad_;
-  bool over_ = false;  ///< see set_over()
+  unsigned buttons_ = 0;  ///< a bit for each mouse button that was down at the last call of take_events()
+  bool over_ = false;     ///< see set_over()
   std::unique_ptr<MirrorWindow> mirror_;
   bool mirror_reveals_ = false;
 };

@@ -102,10 +102,10 @@ void add_fms(const SicknessTable& summary, const LabelledSession& session, Quest
   }
 }
 
-/// True if answers to questions of this kind (AnswerKindTraits::word) are scores.
+/// True if answers to questions of this kind (AnswerKindTraits::stored_word) are scores.
 bool scored(const std::string& word) {
   return std::any_of(answer_kinds().begin(), answer_kinds().end(),
-                     [&](const AnswerKindTraits& one) { return one.word == word && one.scored; });
+                     [&](const AnswerKindTraits& one) { return one.stored_word() == word && one.scored; });
 }
 
 }  // namespace

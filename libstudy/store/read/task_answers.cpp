@@ -121,7 +121,7 @@ constexpr const char* showing_sql =
 std::string answers_sql() {
   std::string scored;
   for (const AnswerKindTraits& traits : answer_kinds())
-    if (traits.scored) scored += (scored.empty() ? "'" : ", '") + std::string(traits.word) + "'";
+    if (traits.scored) scored += (scored.empty() ? "'" : ", '") + std::string(traits.stored_word()) + "'";
   return "SELECT q.code, r.score, r.response_time_s FROM judgement j JOIN question q USING (question_id) "
          "LEFT JOIN response r USING (response_id) "
          "WHERE j.unit_id = ? AND q.kind IN (" +

@@ -27,7 +27,7 @@ CREATE TABLE "question" (
   code TEXT NOT NULL, -- id in the protocol file
   wording TEXT NOT NULL, -- exact wording
   language TEXT NOT NULL, -- language of the wording
-  kind TEXT NOT NULL, -- kind of answer, as in the protocol file, such as scale
+  kind TEXT NOT NULL, -- kind of answer, as in the protocol file, such as scale; yes_no is stored as choice
   scale_min INTEGER NOT NULL, -- lowest score; of no meaning for text
   scale_max INTEGER NOT NULL CHECK (scale_max >= scale_min), -- highest score
   anchors TEXT NOT NULL, -- one line "score = words" for each labelled score
