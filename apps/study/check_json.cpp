@@ -17,6 +17,7 @@ base::Json setting_json(const study::CheckedSetting& checked, const study::Refre
                   {"frames", verdict.frames},
                   {"status", study::feasibility_name(verdict.feasibility)},
                   {"reason", verdict.reason}};
+  if (checked.setting.profile) json["timing"] = study::setting_name(checked.setting);
   if (verdict.holds.empty()) return json;
   json["best_mean_fps"] = verdict.mean;
   json["best_sd_fps"] = verdict.sd;
@@ -101,12 +102,54 @@ void add_measured(base::Json& json, const study::MeasuredReport& measured) {
 /// report.
 base::Json analyses_json(const study::Protocol& protocol) {
   auto tested = base::Json::array(), fitted = tested, not_tested = tested;
+  if (!protocol.design.factors.empty())
+    return {{"tested", tested},
+            {"fitted", fitted},
+            {"not_tested", not_tested},
+            {"by_cell", questions_by_cell(protocol)}};
   const auto shown = study::hypotheses_of(protocol, {});
   for (const auto& one : shown.claims) tested.push_back(one.id);
   for (const auto& question : study::curve_questions(protocol))
     fitted.push_back({{"question", question.id}, {"level", study::fitted_level(question)}});
   for (const auto& [id, reason] : shown.left_out) not_tested.push_back({{"id", id}, {"reason", reason}});
   return {{"tested", tested}, {"fitted", fitted}, {"not_tested", not_tested}};
+}
+
+/// Factors, cells and procedure of a protocol that has factors.
+void add_factors(base::Json& json, const study::Design& design) {
+  for (const study::DesignFactor& factor : design.factors)
+    json["factors"].push_back(
+        {{"name", factor.name}, {"vary", factor.between ? "between" : "within"}, {"levels", factor.levels}});
+  for (const study::Cell& cell : design.cells) {
+    base::Json levels = base::Json::object();
+    for (std::size_t f = 0; f < design.factors.size(); ++f)
+      levels[design.factors[f].name] = study::level_name(design, cell, f);
+    json["cells"].push_back({{"levels", levels},
+                             {"scene", cell.stimulus.scene},
+                             {"method", cell.stimulus.method},
+                             {"effects", effects_json(cell.stimulus)},
+                             {"n_star", cell.stimulus.n_star},
+                             {"timing", study::setting_name(cell.setting)},
+                             {"mean_fps", cell.setting.mean},
+                             {"sd_fps", cell.setting.sd}});
+  }
+  if (!design.procedure) return;
+  const study::Procedure& procedure = *design.procedure;
+  auto levels = base::Json::array(), values = levels, deviation = levels;
+  for (const std::size_t i : candidate_levels(design)) {
+    levels.push_back(design.factors[procedure.factor].levels[i]);
+    values.push_back(procedure.values[i]);
+    if (!procedure.deviation.empty()) deviation.push_back(procedure.deviation[i]);
+  }
+  json["procedure"] = {{"kind", study::procedure_word(procedure.kind)},
+                       {"factor", design.factors[procedure.factor].name},
+                       {"question", procedure.question},
+                       {"tracks", tracks_of(design)},
+                       {"trials", procedure.trials},
+                       {"axis", procedure.axis.empty() ? base::Json() : base::Json(procedure.axis)},
+                       {"levels", levels},
+                       {"values", values},
+                       {"sd_fps", deviation}};
 }
 
 }  // namespace
@@ -133,6 +176,7 @@ base::Json report_json(const CheckReport& report) {
                               {"trials", one.trials},
                               {"seconds", {one.seconds.least, one.seconds.most}}});
   }
+  if (!protocol.design.factors.empty()) add_factors(json, protocol.design);
   json["analyses"] = analyses_json(protocol);
   const study::PlannedBalance& balance = report.balance;
   json["balance"] = {{"participants", balance.planned},

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <string>
 
 #include "libsim/scene/scene.hpp"
 #include "libstudy/analysis/claims.hpp"
 #include "libstudy/stimulus/bakes/bake_plan.hpp"
 #include "stats/base/file.hpp"
+#include "stats/base/text.hpp"
 
 namespace apps {
 
@@ -32,9 +34,14 @@ double longest_ms(const study::RefreshCheck& check, std::size_t setting) {
   return 1000 * check.verdicts[setting].longest_hold / check.refresh_hz;
 }
 
-/// Prints the tests and fits that vip-stats will report for this protocol. The answers by cell are not
-/// printed, because vip-stats reports them for every protocol.
+/// Prints the tests and fits that vip-stats will report for this protocol. The answers by cell are printed
+/// only for a protocol with factors, which has no such tests. vip-stats reports them for every protocol.
 void print_analyses(const study::Protocol& protocol) {
+  if (!protocol.design.factors.empty()) {
+    const std::string ids = base::joined(questions_by_cell(protocol));
+    std::printf("reported by cell: %s\n", ids.empty() ? "nothing, as the trials ask nothing" : ids.c_str());
+    return;
+  }
   const auto shown = study::hypotheses_of(protocol, {});
   std::string ids;
   for (const auto& one : shown.claims) ids += (ids.empty() ? "" : ", ") + one.id;
@@ -44,6 +51,58 @@ void print_analyses(const study::Protocol& protocol) {
                 study::fitted_level(question), question.scale_min, question.scale_max);
   for (const auto& [id, reason] : shown.left_out)
     std::printf("not tested: %s, as %s\n", id.c_str(), reason.c_str());
+}
+
+/// Prints a table: the factors of each cell, what it shows and its timing.
+void print_cells_of(const study::Design& design) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const study::DesignFactor& factor : design.factors)
+    rows[0].push_back(factor.name + (factor.between ? " (between)" : ""));
+  rows[0].insert(rows[0].end(), {"stimulus", "timing"});
+  for (const study::Cell& cell : design.cells) {
+    rows.emplace_back();
+    for (std::size_t f = 0; f < design.factors.size(); ++f)
+      rows.back().push_back(study::level_name(design, cell, f));
+    rows.back().push_back(study::stimulus_name(cell.stimulus));
+    rows.back().push_back(study::setting_name(cell.setting));
+  }
+  std::printf("\n%zu cells of %zu factor%s:\n", design.cells.size(), design.factors.size(),
+              design.factors.size() == 1 ? "" : "s");
+  std::vector<std::size_t> widths(rows[0].size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) line += fmt::format("  {:{}}", row[i], widths[i]);
+    std::printf("%s  %s\n", line.c_str(), row.back().c_str());
+  }
+}
+
+/// Prints what an adaptive procedure chooses, from which levels and by which answers.
+void print_procedure(const study::Design& design) {
+  const study::Procedure& procedure = *design.procedure;
+  const study::DesignFactor& factor = design.factors[procedure.factor];
+  std::string levels;
+  for (const std::size_t i : candidate_levels(design)) {
+    levels += (levels.empty() ? "" : ", ") + factor.levels[i] + fmt::format(" ({:g}", procedure.values[i]);
+    if (i < procedure.deviation.size()) levels += fmt::format(", {:g}", procedure.deviation[i]);
+    levels += ')';
+  }
+  const int tracks = tracks_of(design);
+  std::printf(
+      "procedure: %s chooses the level of %s by the answers to %s; %d track%s of %d trials in a "
+      "session\n",
+      study::procedure_word(procedure.kind), factor.name.c_str(), procedure.question.c_str(), tracks,
+      tracks == 1 ? "" : "s", procedure.trials);
+  std::printf("candidate levels (%s): %s\n",
+              procedure.axis.empty() ? "mean, SD of frames/s" : procedure.axis.c_str(), levels.c_str());
+  if (procedure.kind == study::ProcedureKind::Staircase) {
+    const auto share = stats::target_share(procedure.rules);
+    std::printf("staircase: starts at %s, down after %d, up after %d%s\n",
+                factor.levels[static_cast<std::size_t>(procedure.rules.start)].c_str(),
+                procedure.rules.down_after, procedure.rules.up_after,
+                share ? fmt::format("; leads to {:.1f} % positive answers", 100 * *share).c_str() : "");
+  }
 }
 
 /// Explains why the longer of the two expected durations is longer: slow reading and longer breaks. Empty if
@@ -83,6 +142,7 @@ void print_session(const CheckReport& report) {
   std::printf("a showing is cut, and fails, when it goes on for %g s past its %g s\n", overrun_s(protocol),
               protocol.design.cells.front().setting.duration_s);
   std::printf("balance: %s\n", study::describe_balance(protocol, report.balance).c_str());
+  if (protocol.design.procedure) print_procedure(protocol.design);
   print_analyses(protocol);
 }
 
@@ -92,12 +152,15 @@ void print_settings(const CheckReport& report, const study::RefreshCheck& check)
         "\n%g Hz counts as %g Hz, as in run: holds are whole periods of it, and each showing is %.2f %% %s\n",
         check.asked_hz, check.refresh_hz, 100 * std::abs(check.refresh_hz / check.asked_hz - 1),
         check.asked_hz < check.refresh_hz ? "slower" : "faster");
-  std::printf("\non %g Hz, %s mean, timing = %s\n%-16s %6s  %-11s %9s %8s %11s  %s\n", check.refresh_hz,
-              mean_name(report.protocol), timing_name(report.protocol.design), "setting", "frames", "status",
-              "mean", "sd", "longest ms", "what misses, and why");
+  int width = 16;
+  for (const auto& one : report.settings)
+    width = std::max(width, static_cast<int>(study::setting_name(one.setting).size()));
+  std::printf("\non %g Hz, %s mean, timing = %s\n%-*s %6s  %-11s %9s %8s %11s  %s\n", check.refresh_hz,
+              mean_name(report.protocol), timing_name(report.protocol.design), width, "setting", "frames",
+              "status", "mean", "sd", "longest ms", "what misses, and why");
   for (std::size_t i = 0; i < report.settings.size(); ++i) {
     const auto& verdict = check.verdicts[i];
-    std::printf("%-16s %6lld  %-11s", study::setting_name(report.settings[i].setting).c_str(),
+    std::printf("%-*s %6lld  %-11s", width, study::setting_name(report.settings[i].setting).c_str(),
                 static_cast<long long>(verdict.frames), study::feasibility_name(verdict.feasibility).c_str());
     if (verdict.holds.empty())
       std::printf(" %9s %8s %11s", "-", "-", "-");
@@ -166,9 +229,11 @@ void print_stimuli(const CheckReport& report) {
         "run; to use: run --stimulus FOLDER\n");
   }
   const bool native = report.protocol.design.timing == TimingSource::Native;
-  std::printf("gaze: %s\n", report.protocol.needs_gaze
-                                ? "needed; without tracked gaze H1 and H5 are labelled not testable"
-                                : "not needed");
+  const bool hypotheses = report.protocol.design.factors.empty();
+  std::printf("gaze: %s%s\n", report.protocol.needs_gaze ? "needed" : "not needed",
+              report.protocol.needs_gaze && hypotheses
+                  ? "; without tracked gaze H1 and H5 are labelled not testable"
+                  : "");
   if (!report.measured) {
     std::printf("live methods: not measured; --measure says whether this machine shows them in time%s\n",
                 native ? ", and whether they differ at all under timing = \"native\"" : "");
@@ -210,6 +275,35 @@ const char* timing_name(const study::Design& design) {
   }
 }
 
+std::vector<std::string> questions_by_cell(const study::Protocol& protocol) {
+  std::vector<std::string> out;
+  for (const study::Block& block : protocol.blocks) {
+    if (block.kind != study::BlockKind::Stimulus) continue;
+    for (const study::TrialStep& step : block.steps) {
+      for (const std::string& id : step.asks) {
+        const bool counted =
+            std::any_of(block.questions.begin(), block.questions.end(), [&](const study::Question& question) {
+              return question.id == id && question.kind != study::AnswerKind::Text && !question.personal;
+            });
+        if (counted && std::find(out.begin(), out.end(), id) == out.end()) out.push_back(id);
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<std::size_t> candidate_levels(const study::Design& design) {
+  std::set<std::size_t> out;
+  for (const study::Cell& cell : design.cells)
+    if (!design.standard || !study::is_standard(design, cell))
+      out.insert(static_cast<std::size_t>(cell.levels[design.procedure->factor]));
+  return {out.begin(), out.end()};
+}
+
+int tracks_of(const study::Design& design) {
+  return study::trials_of_group(design) / design.procedure->trials;
+}
+
 double overrun_s(const study::Protocol& protocol) {
   const double duration_s = protocol.design.cells.front().setting.duration_s;
   return static_cast<double>(study::showing_bounds(protocol.timing, duration_s).overrun_ns) / 1e9;
@@ -226,6 +320,7 @@ study::Span play_speeds(const CheckReport& report) {
 
 void print_report(const CheckReport& report) {
   print_session(report);
+  if (!report.protocol.design.factors.empty()) print_cells_of(report.protocol.design);
   if (report.refresh && !report.settings.empty()) print_settings(report, *report.refresh);
   if (!report.common.empty())
     print_common(report.common);

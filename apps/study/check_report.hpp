@@ -2,6 +2,7 @@
 /// The result of `vip-study check`, as text and as JSON.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "libstudy/check/measured_check.hpp"
@@ -26,6 +27,14 @@ struct CheckReport {
 /// Words of protocol files for the kind of mean and for the source of the timing.
 const char* mean_name(const study::Protocol& protocol);
 const char* timing_name(const study::Design& design);
+/// Ids of the questions whose answers vip-stats reports by cell: those that the trials ask, without free
+/// text.
+std::vector<std::string> questions_by_cell(const study::Protocol& protocol);
+/// Levels that an adaptive procedure may choose, as indices into the levels of its factor: those of any cell
+/// but the standard.
+std::vector<std::size_t> candidate_levels(const study::Design& design);
+/// Number of tracks of an adaptive procedure in a session.
+int tracks_of(const study::Design& design);
 /// Time past its planned end after which any showing is cut, s. All showings of a protocol have the same
 /// duration.
 double overrun_s(const study::Protocol& protocol);

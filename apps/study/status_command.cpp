@@ -1,11 +1,14 @@
 /// vip-study status: summarises a database.
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string>
 
 #include "apps/common/options.hpp"
 #include "apps/study/clean_up.hpp"
 #include "apps/study/commands.hpp"
+#include "libstudy/console/certificate.hpp"
+#include "libstudy/protocol/protocol.hpp"
 #include "libstudy/store/read/status.hpp"
 #include "libstudy/store/withdraw.hpp"
 #include "stats/base/text.hpp"
@@ -39,6 +42,39 @@ void print_session_row(const study::SessionRow& session) {
       session.test_data ? ", test data" : "", permissions_of(session).c_str());
 }
 
+/// One line for each factor with the trials of each level, such as "hitch: h33 20 of 40, h50 20 of 40". An
+/// adaptive procedure chooses levels during the session, so that only answered trials are counted.
+void print_levels(const study::ProtocolRow& protocol, bool adaptive) {
+  for (std::size_t f = 0; f < protocol.cells.front().levels.size(); ++f) {
+    std::map<std::string, study::CellCount> counts;
+    std::vector<std::string> order;
+    for (const study::CellCount& cell : protocol.cells) {
+      if (f >= cell.levels.size()) continue;
+      const std::string& level = cell.levels[f].second;
+      if (!counts.contains(level)) order.push_back(level);
+      counts[level].trials += cell.trials;
+      counts[level].answered += cell.answered;
+    }
+    std::string line;
+    for (const std::string& level : order)
+      line += (line.empty() ? "" : ", ") + base::shortened(level) + ' ' +
+              std::to_string(counts[level].answered) +
+              (adaptive ? "" : " of " + std::to_string(counts[level].trials));
+    std::printf("  %s: %s trials answered\n", base::shortened(protocol.cells.front().levels[f].first).c_str(),
+                line.c_str());
+  }
+}
+
+/// Trials by level and timing by cell, of a protocol with factors.
+void print_cells(const study::StudyFile& file, const study::ProtocolRow& row) {
+  if (row.cells.empty() || row.cells.front().levels.empty()) return;
+  const auto protocol = study::parse_protocol(row.text, row.name, study::ProtocolUse::Stored);
+  print_levels(row, protocol.design.procedure.has_value());
+  const study::FpsMean mean = protocol.pacing.mean;
+  const auto shown = study::read_certificate_of_protocol(file, row.id, mean);
+  if (!shown.empty()) std::printf("%s", study::format_certificate(shown, mean, false).c_str());
+}
+
 void status(const std::string& database, bool incomplete) {
   const study::StudyStatus found = study::read_status({database, incomplete});
   print_lacking(database, found.lacking);
@@ -52,6 +88,7 @@ void status(const std::string& database, bool incomplete) {
     for (const study::SessionRow& session : found.sessions) {
       if (session.protocol_id == protocol.id) print_session_row(session);
     }
+    print_cells({database, incomplete}, protocol);
   }
   for (const std::string& code : found.withdrawn) std::printf("%s withdrew\n", code.c_str());
   for (const std::string& code : study::requested_withdrawals({database, incomplete}))

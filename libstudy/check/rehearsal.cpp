@@ -77,8 +77,18 @@ std::vector<std::int64_t> equal_intervals(const FpsSetting& setting) {
 }  // namespace
 
 std::int64_t content_steps(const Protocol& protocol, const FpsSetting& setting, double refresh_hz) {
-  if (protocol.content.real_time)
-    return static_cast<std::int64_t>(std::ceil(setting.duration_s / protocol.content.content_step_s));
+  if (protocol.content.real_time) {
+    const double ahead_s = setting.profile ? 1e-3 * setting.profile->animation_error_ms : 0;
+    return static_cast<std::int64_t>(
+        std::ceil((setting.duration_s + ahead_s) / protocol.content.content_step_s));
+  }
+  if (has_pattern(setting)) {
+    const TimingProfile& profile = *setting.profile;
+    const auto frames = static_cast<std::int64_t>(pattern_intervals(profile, setting.duration_s, 0).size());
+    // Jitter may move the last hitch past the end: the frames that it replaced are then shown.
+    const bool jitters = profile.kind == ProfileKind::Hitches && profile.jitter > 0;
+    return frames + (jitters ? std::llround(std::ceil(1e-3 * profile.hitch_ms * profile.mean_fps)) : 0);
+  }
   if (setting.mean > 0) return frame_count(setting);
   return std::max<std::int64_t>(1, std::llround((refresh_hz > 0 ? refresh_hz : 60) * setting.duration_s));
 }

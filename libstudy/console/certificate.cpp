@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <set>
 
@@ -14,6 +13,12 @@ namespace {
 constexpr const char* red = "\033[31m";
 constexpr const char* yellow = "\033[33m";
 constexpr const char* plain = "\033[0m";
+
+constexpr const char* profile_head = "   p99 ms  longest  hitches anim err";
+constexpr const char* profile_meaning =
+    "p99, longest: intervals, ms; hitches: intervals beyond 1.5 medians; anim err: animation error, ms; all "
+    "are "
+    "means over the trials, but for the longest of all\n";
 
 using Rows = std::vector<CertificateRow>;
 
@@ -27,8 +32,39 @@ std::string scene_of(const CertificateRow& row, const Rows& rows) {
   return shared ? row.what.scene : stem(row.what.scene);
 }
 
+/// A column of names, with one name per row.
+struct NameColumn {
+  std::string title;
+  std::vector<std::string> names;
+
+  bool differs() const { return std::set<std::string>(names.begin(), names.end()).size() > 1; }
+};
+
+/// The columns of all rows: scene, n_*, method and effects. For a protocol with factors, the factors and the
+/// profile that was asked.
+std::vector<NameColumn> columns_of(const Rows& rows) {
+  std::vector<NameColumn> out;
+  if (!rows.front().levels.empty()) {
+    for (const auto& [factor, level] : rows.front().levels) out.push_back({factor, {}});
+    out.push_back({"asked", {}});
+  } else {
+    for (const char* title : {"scene", "n*", "method", "effects"}) out.push_back({title, {}});
+  }
+  for (const CertificateRow& row : rows) {
+    std::vector<std::string> names{scene_of(row, rows), row.what.n_star, row.what.method, row.what.effects};
+    if (!rows.front().levels.empty()) {
+      names.clear();
+      for (const auto& [factor, level] : row.levels) names.push_back(level);
+      names.resize(out.size() - 1);
+      names.push_back(row.timing);
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].names.push_back(names[i]);
+  }
+  return out;
+}
+
 /// Names of the stimuli: as table columns where the rows differ, as words of the heading where all rows
-/// agree.
+/// agree. The columns of a protocol with factors are always table columns.
 struct Shown {
   std::string head, shared;
   std::vector<std::string> lines;  ///< text of the columns, one string per row
@@ -37,21 +73,17 @@ struct Shown {
 Shown shown_in(const Rows& rows) {
   Shown out;
   out.lines.resize(rows.size());
-  constexpr std::array titles{"scene", "n*", "method", "effects"};
-  for (std::size_t column = 0; column < titles.size(); ++column) {
-    std::vector<std::string> cells;
-    std::size_t width = std::string(titles[column]).size();
-    for (const auto& row : rows) {
-      const std::array names{scene_of(row, rows), row.what.n_star, row.what.method, row.what.effects};
-      cells.push_back(names[column]);
-      width = std::max(width, cells.back().size());
-    }
-    if (const std::set<std::string> different(cells.begin(), cells.end()); different.size() < 2) {
-      if (!cells.empty() && !cells[0].empty()) out.shared += (out.shared.empty() ? "" : ", ") + cells[0];
+  if (rows.empty()) return out;
+  for (const NameColumn& column : columns_of(rows)) {
+    if (rows.front().levels.empty() && !column.differs()) {
+      if (!column.names[0].empty()) out.shared += (out.shared.empty() ? "" : ", ") + column.names[0];
       continue;
     }
-    out.head += fmt::format("{:{}}  ", titles[column], width);
-    for (std::size_t i = 0; i < rows.size(); ++i) out.lines[i] += fmt::format("{:{}}  ", cells[i], width);
+    std::size_t width = column.title.size();
+    for (const std::string& name : column.names) width = std::max(width, name.size());
+    out.head += fmt::format("{:{}}  ", column.title, width);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      out.lines[i] += fmt::format("{:{}}  ", column.names[i], width);
   }
   return out;
 }
@@ -62,10 +94,17 @@ std::string format_row(const CertificateRow& row) {
   const auto nominal = [&](double value, const char* form) {
     return scheduled ? fmt::format(fmt::runtime(form), value) : std::string("-");
   };
-  return fmt::format("{:>6} {:>6} {:7} {:8.3f} {:>7} {:8.3f} {:>7} {:7} {:>8} {:5} {:9} {:5} {:<5}",
+  std::string profile;  // what the columns of profile_head show
+  if (!row.levels.empty()) {
+    const auto& error_ms = row.animation_error_ms;
+    profile = fmt::format(" {:8.3f} {:8.3f} {:8.2f} {:>8}", row.p99_ms, row.longest_ms, row.hitches,
+                          error_ms ? fmt::format("{:.3f}", *error_ms) : "-");
+  }
+  return fmt::format("{:>6} {:>6} {:7} {:8.3f} {:>7} {:8.3f} {:>7}{} {:7} {:>8} {:5} {:9} {:5} {:<5}",
                      nominal(row.nominal.mean, "{:g}"), nominal(row.nominal.sd, "{:g}"), row.trials, row.mean,
-                     nominal(row.mean_worst, "{:.3f}"), row.sd, nominal(row.sd_worst, "{:.3f}"), row.late,
-                     nominal(row.worst_late_ms, "{:.3f}"), row.pass, row.degraded, row.fail, row.grades);
+                     nominal(row.mean_worst, "{:.3f}"), row.sd, nominal(row.sd_worst, "{:.3f}"), profile,
+                     row.late, nominal(row.worst_late_ms, "{:.3f}"), row.pass, row.degraded, row.fail,
+                     row.grades);
 }
 
 std::string marked(const std::string& line, const char* word, const char* colour, bool coloured) {
@@ -76,11 +115,13 @@ std::string marked(const std::string& line, const char* word, const char* colour
 
 std::string format_certificate(const Rows& rows, FpsMean mean, bool coloured) {
   const Shown shown = shown_in(rows);
+  const bool profiles = !rows.empty() && !rows.front().levels.empty();
   std::string text = "Timing certificate" + (shown.shared.empty() ? "" : " of " + shown.shared) + " (" +
                      (mean == FpsMean::Harmonic ? "harmonic" : "arithmetic") +
-                     " mean, frames/s; worst = largest distance of one trial)\n" + shown.head +
-                     "    mu  delta  trials  mu real   worst   d real   worst    late worst ms  pass  "
-                     "degraded  fail grade\n";
+                     " mean, frames/s; worst = largest distance of one trial)\n" +
+                     (profiles ? profile_meaning : "") + shown.head +
+                     "    mu  delta  trials  mu real   worst   d real   worst" +
+                     (profiles ? profile_head : "") + "    late worst ms  pass  degraded  fail grade\n";
   std::int64_t pass = 0, fail = 0, all = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& row = rows[i];

@@ -15,6 +15,9 @@ namespace study {
 /// rows differ in them, else words of the heading. A row with a failed trial ends in FAIL, a row with a
 /// degraded trial in DEGRADED. `coloured` (for a terminal): a FAIL row is red, a DEGRADED row yellow. `mean`:
 /// the kind of mean in the rows.
+///
+/// Rows of a protocol with factors are named by their levels instead, have the timing profile that was asked,
+/// and 99th percentile, longest interval, hitches and animation error as they were shown.
 std::string format_certificate(const std::vector<CertificateRow>& rows, FpsMean mean, bool coloured);
 
 }  // namespace study

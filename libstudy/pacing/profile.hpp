@@ -1,6 +1,7 @@
 #pragma once
 /// Timing profiles: how long each frame of a stimulus stays on, beyond a mean and a standard deviation.
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@ enum class ProfileKind {
   Floor,    ///< one frame in 20 lasts 1/low_fps; the others share the rest of the time evenly
   Trace     ///< recorded frame times, in their order, repeated or cut to the length of the stimulus
 };
+
+/// Bounds of the frame times of a trace, ms, and of their number.
+inline constexpr double shortest_trace_ms = 0.1, longest_trace_ms = 10000;
+inline constexpr std::size_t most_trace_frames = 100000;
 
 struct TimingProfile {
   ProfileKind kind = ProfileKind::Moments;

@@ -14,8 +14,7 @@ namespace {
 
 constexpr std::size_t most_factors = 10;
 constexpr std::size_t most_factor_levels = 100;
-constexpr base::Range trace_ms_range{0.1, 10000};
-constexpr std::size_t most_trace_frames = 100000;
+constexpr base::Range trace_ms_range{shortest_trace_ms, longest_trace_ms};
 
 /// The keys that [stimulus] or a level of a factor sets.
 struct StimulusKeys {

@@ -1,7 +1,10 @@
 #pragma once
-/// Names of verdicts, grades and some events in the database, the certificate and the exports.
+/// Names of verdicts, grades, levels and some events in the database, the certificate and the exports.
 
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "libstudy/pacing/pacer.hpp"
 
@@ -27,6 +30,18 @@ inline TimingGrade grade_of(const std::string& name) {
     if (name == grade_name(grade)) return grade;
   }
   return TimingGrade::CpuSubmit;
+}
+
+/// Factors and their levels from the column cell.levels, which has one line "factor = level" for each. A line
+/// of another form is left out.
+inline std::vector<std::pair<std::string, std::string>> factor_levels(const std::string& text) {
+  std::vector<std::pair<std::string, std::string>> out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (const auto at = line.find(" = "); at != std::string::npos)
+      out.emplace_back(line.substr(0, at), line.substr(at + 3));
+  }
+  return out;
 }
 
 }  // namespace study

@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "libstudy/check/rehearsal.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -67,6 +68,35 @@ TEST(BakePlan, OneBakeServesAllSettingsUnlessTauFollowsFromThem) {
   EXPECT_EQ(plan.size(), 1u + 21);
   EXPECT_EQ(files(plan).size(), plan.size());
   EXPECT_EQ(plan.front().cells.size(), 21u);
+}
+
+TEST(BakePlan, OneBakeServesAllTimingProfilesOfAStimulus) {
+  const std::string text = test::shipped_text("hitches");
+  const auto plan = plan_of(text);
+  EXPECT_THAT(files(plan), ElementsAre("droplet_8k_HiRes.bake", "single_dam_8k_HiRes.bake"));
+  for (const auto& one : plan) {
+    EXPECT_EQ(one.cells.size(), 6u);
+    EXPECT_EQ(one.frames, 240);
+  }
+  // With an animation error the last frames look further ahead than the end of the trial.
+  const auto uneven = plan_of(test::shipped_text("trace_smoothed"));
+  ASSERT_THAT(uneven, ::testing::SizeIs(1));
+  EXPECT_EQ(uneven.front().frames, std::ceil(4.008 / 0.004166666666666667));
+}
+
+TEST(BakePlan, ABakePlayedFrameByFrameHoldsTheFramesOfEverySeed) {
+  auto protocol = study::parse_protocol(
+      test::replaced(test::shipped_text("hitches"), "mode = \"real_time\"", "mode = \"per_frame\""), "test");
+  for (const double duration_s : {4.6, 4.8, 5.0, 5.2}) {
+    study::override_trial_seconds(protocol, duration_s);
+    for (const study::Cell& cell : protocol.design.cells) {
+      const std::int64_t steps = study::content_steps(protocol, cell.setting, 0);
+      for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        const auto shown = study::compile_schedule(cell.setting, protocol.pacing, seed).intervals_s.size();
+        EXPECT_LE(static_cast<std::int64_t>(shown), steps) << study::setting_name(cell.setting);
+      }
+    }
+  }
 }
 
 TEST(BakePlan, WhatRunsAsFastAsItGoesIsNotBaked) {

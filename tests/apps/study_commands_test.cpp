@@ -57,6 +57,28 @@ TEST_F(StudyCommandsE2e, RunPrintsTheCertificateAndStatusTheCounts) {
   EXPECT_THAT(written.out, HasSubstr("frames.csv: 4200 rows"));
 }
 
+TEST_F(StudyCommandsE2e, StatusCountsTrialsByLevelAndHasTheCertificate) {
+  const std::vector<std::string> run{vip_study,
+                                     "run",
+                                     "hitch_quest",
+                                     "--db",
+                                     database_,
+                                     "--participants",
+                                     "1",
+                                     "--observer",
+                                     "detect:hitch_ms,threshold=80",
+                                     "--trial-seconds",
+                                     "2"};
+  const Ended ended = run_program(run);
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("\nhitch  asked "));
+  const Ended status = run_program({vip_study, "status", "--db", database_});
+  EXPECT_EQ(status.exit_code, 0) << status.err;
+  EXPECT_THAT(status.out, HasSubstr("\n  hitch: h17 ")) << "levels are chosen later: no planned numbers";
+  EXPECT_THAT(status.out,
+              AllOf(HasSubstr(", h50 "), HasSubstr("\nhitch  asked "), HasSubstr(" hitch of 50 ms")));
+}
+
 TEST_F(StudyCommandsE2e, ARunInRealTimeSaysHowLongBeforeItStarts) {
   Process process(run_arguments(folder_ / "short.toml", database_,
                                 {"--participants", "40", "--clock", "real", "--display", "none"}));

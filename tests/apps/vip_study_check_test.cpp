@@ -99,6 +99,60 @@ TEST(VipStudyCheckE2e, ReportsBlocksBalanceAndStimuliOfTask1) {
   EXPECT_FALSE(json.contains("settings"));  // no refresh was given
 }
 
+TEST(VipStudyCheckE2e, ListsCellsOfFactorsAndWhatTheDisplayMakesOfTheirProfiles) {
+  const study::test::TemporaryFolder folder;
+  const auto json_path = folder / "check.json";
+  const auto outcome = vip_study("check hitches --refresh 60 --json " + json_path.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out,
+              testing::HasSubstr("  h50    drop               HiRes droplet 8k     60 frames/s, a "
+                                 "hitch of 50 ms every 2 s, jitter 0.5\n"));
+  EXPECT_THAT(outcome.out,
+              testing::ContainsRegex("a hitch of 50 ms every 2 s, jitter 0.5 +236  exact +59.0000"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("reported by cell: stall\n"));
+  EXPECT_THAT(outcome.out, testing::Not(testing::HasSubstr("not tested")));
+  const auto json = base::Json::parse(base::read_file(json_path, 1 << 20));
+  EXPECT_EQ(json.at("cells").size(), 12u);
+  EXPECT_EQ(json.at("cells").at(8).at("levels").at("content"), "drop");
+  EXPECT_EQ(json.at("factors").at(1).at("vary"), "between");
+  EXPECT_EQ(json.at("settings").at(2).at("timing"), "60 frames/s, a hitch of 50 ms every 2 s, jitter 0.5");
+  EXPECT_EQ(json.at("analyses").at("by_cell").at(0), "stall");
+  EXPECT_TRUE(json.at("analyses").at("not_tested").empty());
+}
+
+TEST(VipStudyCheckE2e, SaysWhatAnAdaptiveProcedureChoosesFrom) {
+  const study::test::TemporaryFolder folder;
+  const auto json_path = folder / "check.json";
+  const auto outcome = vip_study("check hitch_quest --json " + json_path.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out,
+              testing::HasSubstr("quest_plus chooses the level of hitch by the answers to stall; 1 "
+                                 "track of 40 trials in a session\n"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("candidate levels (hitch_ms): h17 (16.667), h33 (33.333), "));
+  const auto procedure = base::Json::parse(base::read_file(json_path, 1 << 20)).at("procedure");
+  EXPECT_EQ(procedure.at("tracks"), 1);
+  EXPECT_EQ(procedure.at("values").size(), 12u);
+  // The standard is no candidate.
+  const auto staircase = vip_study("check " VIP_TEST_DIR "/fuzz/corpus/protocol/staircase.toml");
+  EXPECT_THAT(staircase.out,
+              testing::HasSubstr("candidate levels (latency_ms): l40 (40), l80 (80), l120 (120)\n"));
+  EXPECT_THAT(staircase.out, testing::HasSubstr("starts at l120, down after 2, up after 1; leads to 70.7 %"));
+}
+
+TEST(VipStudyTraceE2e, PrintsTheTimingOfALevelAndRefusesJunk) {
+  const study::test::TemporaryFolder folder;
+  const auto file = folder / "game.csv";
+  std::ofstream(file) << "MsBetweenPresents\n10\n20\n30\n";
+  const auto outcome = vip_study("trace " + file.string());
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, testing::EndsWith("\ntiming = {profile = \"trace\", frame_ms = [10, 20, 30]}\n"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("MsBetweenPresents: 3 frames in 0.060 s, mean 50.00"));
+  std::ofstream(file, std::ios::app) << "x\n";
+  const auto refused = vip_study("trace " + file.string());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.out, testing::HasSubstr("game.csv:5: \"x\" is no frame time"));
+}
+
 TEST(VipStudyCheckE2e, MeasuringNeedsTheRefresh) {
   const auto outcome = vip_study("check protocols/demo.toml --measure");
   EXPECT_EQ(outcome.exit_code, 1);

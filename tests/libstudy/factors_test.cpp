@@ -1,4 +1,5 @@
-/// Protocols of format 3: factors, their combinations, and how participants are dealt to groups.
+/// Protocols of format 3: factors, their combinations, how participants are dealt to groups, and their data
+/// in certificates, exports, merges and salvages.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,11 +8,21 @@
 #include <set>
 #include <string>
 
+#include "libstudy/console/certificate.hpp"
 #include "libstudy/design/plan.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/protocol/reference.hpp"
+#include "libstudy/store/export/export_bids.hpp"
+#include "libstudy/store/export/export_csv.hpp"
+#include "libstudy/store/export/export_psych_ds.hpp"
+#include "libstudy/store/merge/merge.hpp"
+#include "libstudy/store/salvage/salvage.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
+#include "tests/common/bids_rules.hpp"
+#include "tests/common/psych_ds_rules.hpp"
+#include "tests/common/tables.hpp"
+#include "tests/libstudy/session_fixture.hpp"
 
 using namespace study;
 using testing::ElementsAre;
@@ -188,4 +199,156 @@ TEST(Factors, ShorterTrialsKeepTheProfile) {
   override_trial_seconds(protocol, 2);
   EXPECT_EQ(protocol.design.cells[2].setting.duration_s, 2);
   EXPECT_NEAR(protocol.design.cells[2].setting.mean, 118.0 / 2, 1e-9);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The hitches protocol with one trial for each cell, and with other names of factors.
+std::string small_text(const std::string& hitch, const std::string& content) {
+  std::string text = changed(hitches_text, "repetitions = 10", "repetitions = 1");
+  text = changed(text, "name = \"hitch\"", "name = \"" + hitch + "\"");
+  return changed(text, "name = \"content\"", "name = \"" + content + "\"");
+}
+
+/// Two participants of the first between-subject group in `path`, who answer every trial.
+fs::path played(const fs::path& path, const std::string& text, const std::string& station = "north") {
+  const Protocol protocol = read(text);
+  Store store(path, sqlite::Open::Create);
+  RunPlan plan = study::test::run_plan(protocol, {"P01", "P02"});
+  for (SessionPlan& session : plan.sessions) session.station = station;
+  store.add_run(plan);
+  study::test::Desk desk(protocol);
+  study::test::Scripted person;
+  for (const OpenRun& run : store.open_runs())
+    for (const OpenSession& session : run.sessions)
+      run_session(protocol, session, desk.parts(person, store), {});
+  return path;
+}
+
+std::string first_line(const fs::path& path) {
+  const std::string text = base::read_file(path, 1 << 24);
+  return text.substr(0, text.find_first_of("\r\n"));
+}
+
+}  // namespace
+
+TEST(FactorData, TheCertificateHasARowForEachCellWithWhatWasAskedAndShown) {
+  const study::test::TemporaryFolder folder;
+  const fs::path path = played(folder / "study.db", small_text("hitch", "content"));
+  const auto rows = read_certificate(path, 1, FpsMean::Harmonic);
+  ASSERT_EQ(rows.size(), 6u);
+  const CertificateRow& row = rows[2];
+  const std::string content = row.levels.at(1).second;  // of the group to which the hash deals slot 0
+  EXPECT_THAT(row.levels, ElementsAre(testing::Pair("hitch", "h50"),
+                                      testing::Pair("content", testing::AnyOf("dam", "drop"))));
+  EXPECT_EQ(row.timing, "60 frames/s, a hitch of 50 ms every 2 s, jitter 0.5");
+  EXPECT_NEAR(row.longest_ms, 50, 1e-3);
+  EXPECT_NEAR(row.p99_ms, 1000.0 / 60, 1e-3);
+  EXPECT_EQ(row.hitches, 2);
+  EXPECT_TRUE(row.animation_error_ms);
+  const std::string text = format_certificate(rows, FpsMean::Harmonic, false);
+  EXPECT_THAT(text, HasSubstr("\nhitch  content  asked "));
+  EXPECT_THAT(text, HasSubstr("p99 ms  longest  hitches anim err"));
+  EXPECT_THAT(text,
+              testing::ContainsRegex("\nh50    d[amrop]+ +60 frames/s, a hitch of 50 ms.* 50.000     2.00 "));
+  const auto of_protocol = read_certificate_of_protocol(path, 1, FpsMean::Harmonic);
+  EXPECT_EQ(format_certificate(of_protocol, FpsMean::Harmonic, false), text);
+  const StudyStatus status = read_status(path);
+  const auto& cells = status.protocols.at(0).cells;
+  ASSERT_EQ(cells.size(), 12u);
+  for (const CellCount& cell : cells) {
+    EXPECT_EQ(cell.trials, cell.levels.at(1).second == content ? 2 : 0) << "practice does not count";
+    EXPECT_EQ(cell.answered, cell.trials);
+  }
+}
+
+TEST(FactorData, ExportsHaveAColumnForEachFactorAndTheMomentsOfProfiles) {
+  const study::test::TemporaryFolder folder;
+  // "frames" is the name of a column of its own, "select" a word of SQL.
+  const fs::path path = played(folder / "study.db", small_text("frames", "select"));
+  export_csv(path, folder / "csv");
+  const auto rows = ::test::read_csv(folder / "csv/ratings.csv");
+  ASSERT_EQ(rows.size(), 2u * (6 + 4));
+  for (const auto& row : rows) {
+    EXPECT_THAT(row.at("first_select"), testing::AnyOf("dam", "drop"));
+    EXPECT_EQ(row.at("second_select"), "");
+    const bool steady = row.at("first_frames_level") == "none";
+    EXPECT_EQ(row.at("first_timing") == "mean 60, SD 0 frames/s", steady);
+    EXPECT_EQ(row.at("first_hitches"), steady ? "0" : "2");
+    EXPECT_NEAR(std::stod(row.at("first_p99_ms")), 1000.0 / 60, 1e-3);
+    EXPECT_LT(std::stod(row.at("first_animation_error_ms")), 0.1);
+    EXPECT_NEAR(std::stod(row.at("first_frames")), 232, 8) << "the number of frames shown";
+  }
+  int described = 0;
+  for (const auto& line : ::test::read_csv(folder / "csv/dictionary.csv")) {
+    if (line.at("file") != "ratings.csv") continue;
+    EXPECT_FALSE(line.at("meaning").empty()) << line.at("column");
+    described += line.at("column") == "first_frames_level" || line.at("column") == "second_timing";
+  }
+  EXPECT_EQ(described, 2);
+
+  export_bids(path, folder / "bids");
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), testing::IsEmpty());
+  const fs::path stem = folder / "bids/sub-P01/ses-hitchesv1/beh/sub-P01_ses-hitchesv1_task-hitches_events";
+  for (const auto& row : ::test::read_tsv(stem.string() + ".tsv")) {
+    EXPECT_EQ(row.at("select"), rows[0].at("first_select"));
+    EXPECT_EQ(row.at("hitches"), row.at("frames_level") == "none" ? "0" : "2");
+    EXPECT_THAT(row.at("timing"), HasSubstr(" frames/s"));
+    EXPECT_NEAR(std::stod(row.at("p99_ms")), 1000.0 / 60, 1e-3);
+  }
+  const auto json = ::test::json_at(stem.string() + ".json");
+  for (const char* name : {"select", "frames_level", "timing", "p99_ms", "hitches", "animation_error_ms"})
+    EXPECT_TRUE(json.at(name).contains("Description")) << name;
+
+  export_psych_ds(path, folder / "psych");
+  EXPECT_THAT(::test::psych_ds_broken_by(folder / "psych"), testing::IsEmpty());
+  EXPECT_THAT(base::read_file(folder / "psych/dataset_description.json", 1 << 24),
+              HasSubstr("level of the factor frames"));
+}
+
+TEST(FactorData, ExportsWithoutFactorsKeepTheirColumns) {
+  const study::test::TemporaryFolder folder;
+  {
+    Store store(folder / "study.db", sqlite::Open::Create);
+    store.add_run(study::test::run_plan(study::test::pilot(), {"P01"}));
+  }
+  export_csv(folder / "study.db", folder / "csv");
+  EXPECT_THAT(first_line(folder / "csv/ratings.csv"), testing::EndsWith(",second_tau_fps"));
+  EXPECT_TRUE(read_status(folder / "study.db").protocols.at(0).cells.empty());
+}
+
+TEST(FactorData, FactorNamesOfAForeignDatabaseBecomeSafeNames) {
+  const study::test::TemporaryFolder folder;
+  const fs::path path = played(folder / "study.db", small_text("hitch", "content"));
+  sqlite::Connection(path, sqlite::Open::Write)
+      .execute(
+          "UPDATE cell SET levels = 'it''s, \"x\") FROM cell --' || char(9) || ' = =1+1' || char(10) || "
+          "'its_xFROMcell = b'");
+  export_csv(path, folder / "csv");
+  const auto rows = ::test::read_csv(folder / "csv/ratings.csv");
+  ASSERT_FALSE(rows.empty());
+  EXPECT_EQ(rows[0].at("first_itsxFROMcell"), "'=1+1") << "guarded against spreadsheets";
+  EXPECT_EQ(rows[0].at("first_its_xFROMcell"), "b");
+  export_bids(path, folder / "bids");
+  EXPECT_THAT(::test::BidsRules::broken_by(folder / "bids"), testing::IsEmpty());
+}
+
+TEST(FactorData, SurvivesAMergeAndASalvage) {
+  const study::test::TemporaryFolder folder;
+  const fs::path south = played(folder / "south.db", small_text("hitch", "content"), "south");
+  const fs::path north = played(folder / "north.db", small_text("hitch", "content"), "north");
+  merge({south, north}, folder / "all.db");
+  salvage(folder / "all.db", folder / "new.db");
+  for (const char* name : {"all.db", "new.db"}) {
+    const auto rows = read_certificate_of_protocol(folder / name, 1, FpsMean::Harmonic);
+    ASSERT_EQ(rows.size(), 6u) << name;
+    EXPECT_EQ(rows[4].levels.at(0).second, "h100") << name;
+    EXPECT_EQ(rows[4].hitches, 2) << name;
+    EXPECT_NEAR(rows[4].longest_ms, 100, 1e-3) << name;
+    std::int64_t answered = 0;
+    for (const CellCount& cell : read_status(folder / name).protocols.at(0).cells) answered += cell.answered;
+    EXPECT_EQ(answered, 4 * 6) << name;
+  }
 }

@@ -9,9 +9,14 @@
 #include <numeric>
 
 #include "libstudy/display/null.hpp"
+#include "libstudy/pacing/capture.hpp"
 #include "libstudy/pacing/pacer.hpp"
+#include "libstudy/protocol/readers.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/file.hpp"
+#include "stats/base/toml.hpp"
 #include "stats/quantiles.hpp"
+#include "tests/common/temporary_folder.hpp"
 
 using namespace study;
 using testing::HasSubstr;
@@ -143,4 +148,70 @@ TEST(Profile, TheVerdictCountsHitches) {
   EXPECT_EQ(verdict.hitches, 5);
   EXPECT_NEAR(verdict.longest_ms, 100, 1e-6);
   EXPECT_NEAR(verdict.p95_ms, 1000.0 / 60, 1e-3);
+}
+
+namespace {
+
+/// Reads a capture with this text.
+FrameCapture captured(const std::string& text, const std::string& column = "",
+                      std::optional<double> seconds = {}) {
+  const ::test::TemporaryFolder folder;
+  base::write_file_atomically(folder / "game.csv", text);
+  return read_capture(folder / "game.csv", column, seconds);
+}
+
+const std::string presentmon =
+    "//GameName=Some Game\r\n"
+    "Application,ProcessID,MsBetweenPresents,msBetweenDisplayChange\r\n"
+    "\"A, B.exe\",12,0,16.6\r\n\"A, B.exe\",12,16.66671,16.7\r\n\"A, B.exe\",12,17.25,0\r\n"
+    "\"A, B.exe\",12,33.4,33.3\r\n";
+
+}  // namespace
+
+TEST(Capture, ReadsColumnsOfPresentMonAndOneColumnOfNumbers) {
+  using testing::ElementsAre;
+  const FrameCapture presents = captured(presentmon);
+  EXPECT_EQ(presents.column, "MsBetweenPresents");
+  EXPECT_THAT(presents.frame_ms, ElementsAre(16.667, 17.25, 33.4)) << "the first row has no frame before it";
+  EXPECT_EQ(presents.left_out, 1);
+  const FrameCapture displayed = captured(presentmon, "MSBETWEENDISPLAYCHANGE");
+  EXPECT_THAT(displayed.frame_ms, ElementsAre(16.6, 16.7, 33.3)) << "0: never shown";
+  EXPECT_THAT(captured("16.7\n\n17\n").frame_ms, ElementsAre(16.7, 17));
+  EXPECT_THAT(captured("\xEF\xBB\xBFt;frame ms\n1;16,7\n2;17,5\n", "frame ms").frame_ms,
+              ElementsAre(16.7, 17.5));
+  EXPECT_THAT(captured("10\n20\n30\n40\n", "", 0.03).frame_ms, ElementsAre(10, 20));
+}
+
+TEST(Capture, ItsLineIsTheTimingOfALevel) {
+  const FrameCapture capture = captured("10\n20\n30\n");
+  const auto root = base::parse_toml(timing_line(capture), "level.toml");
+  EXPECT_EQ(read_profile(root.table("timing")), trace);
+  EXPECT_EQ(describe_capture(capture), "3 frames in 0.060 s, mean 50.00, SD 28.33, 5 % low 33.33 frames/s");
+}
+
+TEST(Capture, RefusesJunkWithItsLine) {
+  const auto error_of = [](const std::string& text, const std::string& column = "", double seconds = 0) {
+    try {
+      captured(text, column, seconds > 0 ? std::optional(seconds) : std::nullopt);
+    } catch (const base::Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("mend: "));
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(error_of("16.7\n17\nfast\n"), HasSubstr("game.csv:3: \"fast\" is no frame time"));
+  EXPECT_THAT(error_of("16.7\n0\n"), HasSubstr("game.csv:2: \"0\""));
+  EXPECT_THAT(error_of("16.7\nnan\n"), HasSubstr("game.csv:2: \"nan\""));
+  EXPECT_THAT(error_of("16.7\n1e9\n"), HasSubstr("game.csv:2: \"1e9\""));
+  EXPECT_THAT(error_of(presentmon + "C,12,16\n"), HasSubstr("game.csv:7: has 3 fields where 4 belong"));
+  EXPECT_THAT(error_of(presentmon + "C,13,16,16\n"), HasSubstr("game.csv:7: is of ProcessID 13"));
+  EXPECT_THAT(error_of(presentmon, "ms"), HasSubstr("game.csv:2: has no column ms"));
+  EXPECT_THAT(error_of("time,frame\n1,16\n"), HasSubstr("game.csv:1: has no column MsBetweenPresents"));
+  EXPECT_THAT(error_of("1,16\n2,17\n"), HasSubstr("game.csv:1: holds numbers where"));
+  EXPECT_THAT(error_of("\x7F"
+                       "ELF\n1\n"),
+              HasSubstr("game.csv:1: is no text"));
+  EXPECT_THAT(error_of(""), HasSubstr("is empty"));
+  EXPECT_THAT(error_of("16.7\n"), HasSubstr("holds 1 frames"));
+  EXPECT_THAT(error_of("16.7\n17\n", "", 5), HasSubstr("lasts 0.034 s"));
 }

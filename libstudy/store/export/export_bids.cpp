@@ -33,8 +33,10 @@ constexpr const char* events_sql =
     "p.late_frames, p.verdict, p.grade, t.excluded IS NOT NULL, w.counts, w.why_not, "
     "(SELECT active_fraction FROM solving v WHERE v.presentation_id = p.presentation_id), "
     "(SELECT tau_fps FROM solving v WHERE v.presentation_id = p.presentation_id), p.gaze_source, u.unit_id, "
-    "t.second_cell IS NOT NULL, c.effects "
-    "FROM presentation p JOIN trial t USING (trial_id) JOIN unit u USING (trial_id) "
+    "t.second_cell IS NOT NULL, c.effects";
+constexpr int event_values = 29;  // that events_sql selects
+constexpr const char* event_tables_sql =
+    " FROM presentation p JOIN trial t USING (trial_id) JOIN unit u USING (trial_id) "
     "JOIN showing w USING (presentation_id) JOIN session s ON s.session_id = t.session_id "
     "JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
     "WHERE s.session_id = ? ORDER BY p.presentation_id";
@@ -78,11 +80,39 @@ Json event_columns() {
                             "protocol; n/a: the design does not vary them")}};
 }
 
+/// A column of a session whose protocol has factors.
+struct FactorEvent {
+  std::string name, sql;
+  Json meaning;
+};
+
+/// The levels, the timing profile and the moments that such profiles need; none without factors.
+std::vector<FactorEvent> factor_events(Connection& database, const LabelledSession& session,
+                                       const Json& columns) {
+  std::set<std::string> taken{"timing", "p99_ms", "hitches", "animation_error_ms"};
+  for (const auto& [name, meaning] : columns.items()) taken.insert(name);
+  std::vector<FactorEvent> out;
+  for (const FactorColumn& one :
+       factor_columns(database, "session.session_id = " + std::to_string(session.id), taken))
+    out.push_back({one.name, one.level_sql("c"), described("level of the factor " + one.factor)});
+  if (out.empty()) return out;
+  out.push_back({"timing", "c.timing", described("requested timing profile in words")});
+  out.push_back({"p99_ms", "p.p99_ms", described("99th percentile of the intervals between frames", "ms")});
+  out.push_back({"hitches", "p.hitches", described("intervals longer than 1.5 times the median interval")});
+  out.push_back({"animation_error_ms", "p.animation_error_ms",
+                 described("mean absolute difference between the step of the simulated time and the interval "
+                           "of a frame; n/a: content followed frames instead of time",
+                           "ms")});
+  return out;
+}
+
 Table event_rows(Connection& database, std::int64_t session, const std::vector<Item>& asked,
-                 const Json& columns) {
+                 const std::vector<FactorEvent>& factors, const Json& columns) {
   Table rows(1);
   for (const auto& [name, meaning] : columns.items()) rows[0].push_back(name);
-  Statement row(database, events_sql);
+  std::string more;
+  for (const FactorEvent& one : factors) more += ", " + one.sql;
+  Statement row(database, events_sql + more + event_tables_sql);
   row.bind_all(session);
   bids::SessionTime time;
   while (row.step()) {
@@ -92,7 +122,8 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
     std::vector<std::string> line{bids::seconds(onset_ns),
                                   end_ns ? bids::seconds(time.end_ns() - onset_ns) : "n/a"};
     for (int i = 2; i <= 25; ++i) line.push_back(field(row, i));
-    line.push_back(field(row, 28));
+    line.push_back(field(row, event_values - 1));
+    for (int i = 0; i < static_cast<int>(factors.size()); ++i) line.push_back(field(row, event_values + i));
     const bool judged = row.integer(5) == row.integer(27);
     for (const Item& item : asked) {
       auto [score, seconds] = judged ? answer_of(database, row.integer(26), item.id, row.integer(4))
@@ -108,13 +139,15 @@ Table event_rows(Connection& database, std::int64_t session, const std::vector<I
 void write_events(Connection& database, const LabelledSession& session, Writer& writer) {
   auto asked = bids::items(database, session.id, "u.trial_id IS NOT NULL");
   Json columns = event_columns();
+  const auto factors = factor_events(database, session, columns);
+  for (const FactorEvent& one : factors) columns[one.name] = one.meaning;
   for (Item& item : asked) {
     while (columns.contains(item.code)) item.code = "answer_" + item.code;  // a column has this name
     columns[item.code] = bids::question_column(item);
     columns[item.code + "_response_time"] = described("from question to answer", "s");
   }
   const std::string stem = bids::stem_of(session) + "_events";
-  writer.table(stem + ".tsv", event_rows(database, session.id, asked, columns));
+  writer.table(stem + ".tsv", event_rows(database, session.id, asked, factors, columns));
   Statement screen(
       database,
       "SELECT refresh_hz, screen_width_mm, viewing_distance_mm, machine, program_version, display "

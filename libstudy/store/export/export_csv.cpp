@@ -176,7 +176,8 @@ std::int64_t write_dictionary(Connection& database, const ExportDraft& draft, co
       if (is_of(column, table)) write(table.file, {table.name, column.name, column.type, column.meaning});
     }
   }
-  for (const RatingColumn& column : rating_columns()) write(ratings_file, meaning_of(database, column));
+  for (const RatingColumn& column : rating_columns(database))
+    write(ratings_file, meaning_of(database, column));
   for (const SicknessTable& table : sickness_tables({})) {
     for (const SicknessColumn& column : table.columns)
       write((table.name + ".csv").c_str(), {"", column.name, column.type, column.meaning});
@@ -207,10 +208,10 @@ std::string with_added_last(const std::string& create_sql) {
 }  // namespace
 
 ColumnMeaning meaning_of(Connection& database, const RatingColumn& column) {
-  for (const ColumnMeaning& found : columns_of(database, {column.table, "", ""})) {
+  for (const ColumnMeaning& found : columns_of(database, {column.table.c_str(), "", ""})) {
     if (found.column != column.column) continue;
-    const std::string meaning = column.meaning ? column.meaning : found.meaning;
-    return {column.table, column.name, column.expression ? column.type : found.type,
+    const std::string& meaning = column.meaning.empty() ? found.meaning : column.meaning;
+    return {column.table, column.name, column.expression.empty() ? found.type : column.type,
             rating_subject(column) + meaning};
   }
   return {column.table, column.name, "", ""};
@@ -248,7 +249,7 @@ std::vector<ExportedFile> export_csv(const StudyFile& study, const fs::path& fol
     if (!is_written(table, choice)) continue;
     files.push_back({table.file, write_csv(*database, select_sql(*database, table), draft, table.file)});
   }
-  files.push_back({ratings_file, write_csv(*database, rating_table_sql(), draft, ratings_file)});
+  files.push_back({ratings_file, write_csv(*database, rating_table_sql(*database), draft, ratings_file)});
   for (const SicknessTable& table : sickness_tables(read_sickness(*database)))
     files.push_back({table.name + ".csv", write_sickness(table, draft, table.name + ".csv")});
   files.push_back({dictionary_file, write_dictionary(*database, draft, choice)});

@@ -23,7 +23,7 @@ using sqlite::Connection;
 
 namespace {
 
-constexpr std::array page_columns{
+const std::array page_columns{
     RatingColumn{"participant", "session", "session", "participant"},
     RatingColumn{"visit", "session", "session", "visit"},
     RatingColumn{"test_data", "session", "session", "test_data"},
@@ -39,8 +39,7 @@ constexpr std::array page_columns{
 std::string pages_sql(std::int64_t session) {
   std::string list;
   for (const RatingColumn& column : page_columns)
-    list +=
-        (list.empty() ? "" : ", ") + std::string(column.from) + '.' + column.column + " AS " + column.name;
+    list += (list.empty() ? "" : ", ") + column.from + '.' + column.column + " AS " + column.name;
   return "SELECT " + list +
          " FROM response JOIN unit USING (unit_id) JOIN session USING (session_id) "
          "JOIN question USING (question_id) WHERE unit.trial_id IS NULL AND session.session_id = " +
@@ -64,11 +63,23 @@ bool is_psych_ds_name(const std::string& name) {
 
 constexpr ExportKind psych_ds_kind{"psych-ds", is_psych_ds_export, is_psych_ds_name};
 
+std::string condition_of(const LabelledSession& session) {
+  return "session.session_id = " + std::to_string(session.id);
+}
+
 /// Metadata of the columns of all files; a column that several files have is listed once. scored: the
 /// exported sessions with sickness data.
-Json variables(Connection& database, std::span<const SicknessSession> scored) {
+Json variables(Connection& database, const std::vector<LabelledSession>& sessions,
+               std::span<const SicknessSession> scored) {
   std::map<std::string, std::string> meanings;
-  for (const RatingColumn& column : rating_columns())
+  std::vector<RatingColumn> columns = rating_columns(database, "0");
+  std::set<std::string> protocols;  // whose sessions have the same columns
+  for (const LabelledSession& session : sessions) {
+    if (!protocols.insert(session.protocol).second) continue;
+    const auto more = rating_columns(database, condition_of(session));
+    columns.insert(columns.end(), more.begin(), more.end());
+  }
+  for (const RatingColumn& column : columns)
     meanings.emplace(column.name, meaning_of(database, column).meaning);
   for (const RatingColumn& column : page_columns)
     meanings.emplace(column.name, meaning_of(database, column).meaning);
@@ -93,8 +104,9 @@ void write_scores(const SicknessSession& session, const std::string& stem, const
   }
 }
 
-void write_description(Connection& database, std::span<const SicknessSession> scored,
-                       const AboutDataSet& about, const ExportDraft& draft) {
+void write_description(Connection& database, const std::vector<LabelledSession>& sessions,
+                       std::span<const SicknessSession> scored, const ExportDraft& draft) {
+  const AboutDataSet about = about_data_set(database, sessions);
   const std::string simulated = about.simulated.empty() ? "" : ". " + about.simulated;
   const Json json{{"@context", "https://schema.org/"},
                   {"@type", "Dataset"},
@@ -102,7 +114,7 @@ void write_description(Connection& database, std::span<const SicknessSession> sc
                   {"description", "Ratings of real-time fluid at controlled frame rates" + simulated},
                   {"creator", "vip-study"},
                   {"version", base::version()},
-                  {"variableMeasured", variables(database, scored)}};
+                  {"variableMeasured", variables(database, sessions, scored)}};
   write_file(draft, description_file, json.dump(2) + "\n");
   write_file(
       draft, "README.md",
@@ -131,8 +143,8 @@ PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
     const std::string stem =
         "data/study-" + session.protocol + "_subject-" + session.subject + "_session-" + session.session;
     const std::string ratings = stem + "_data.csv", pages = stem + "_description-pages_data.csv";
-    const std::string condition = "session.session_id = " + std::to_string(session.id);
-    files.push_back({ratings, write_csv(*database, rating_table_sql(condition), draft, ratings)});
+    const std::string sql = rating_table_sql(*database, condition_of(session));
+    files.push_back({ratings, write_csv(*database, sql, draft, ratings)});
     files.push_back({pages, write_csv(*database, pages_sql(session.id), draft, pages)});
     for (const RunSetting& setting : run_settings(*database, session.id)) {
       // Psych-DS tools ignore files in materials/.
@@ -145,7 +157,7 @@ PublicExport export_psych_ds(const StudyFile& study, const fs::path& folder) {
       scored.push_back(one);
     }
   }
-  write_description(*database, scored, about_data_set(*database, sessions), draft);
+  write_description(*database, sessions, scored, draft);
   database->execute("COMMIT");
   draft.put_in_place();
   return {std::move(files), people};

@@ -1,14 +1,18 @@
 #include "libstudy/store/export/rating_table.hpp"
 
-#include <array>
+#include <algorithm>
 
+#include "libstudy/store/names.hpp"
 #include "libstudy/store/read/run_settings.hpp"
 
 namespace study {
 
+using sqlite::Connection;
+using sqlite::Statement;
+
 namespace {
 
-constexpr std::array columns{
+const std::vector<RatingColumn> fixed_columns{
     RatingColumn{"trial_id", "trial", "trial", "trial_id"},
     RatingColumn{"protocol", "protocol", "protocol", "name"},
     RatingColumn{"protocol_version", "protocol", "protocol", "version"},
@@ -106,21 +110,89 @@ constexpr const char* joined_tables =
     "LEFT JOIN presentation AS shown_2 ON shown_2.trial_id = trial.trial_id "
     "AND shown_2.attempt = judgement.attempt AND shown_2.interval = 1";
 
-}  // namespace
-
-std::span<const RatingColumn> rating_columns() { return columns; }
-
-std::string rating_subject(const RatingColumn& column) {
-  const std::string from = column.from;
-  if (from.ends_with("_1")) return "first or only stimulus: ";
-  return from.ends_with("_2") ? "second stimulus of a pair: " : "";
+/// A text as a literal of SQL.
+std::string sql_text(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? "''" : std::string(1, c);
+  return out + "'";
 }
 
-std::string rating_table_sql(const std::string& condition) {
+/// A name of letters, digits and '_' that is not in `taken`, and adds it there.
+std::string column_name(const std::string& factor, std::set<std::string>& taken) {
+  std::string name;
+  for (const char c : factor) {
+    if ((c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_') name += c;
+  }
+  if (name.empty()) name = "factor";
+  while (!taken.insert(name).second) name += "_level";
+  return name;
+}
+
+/// The columns that protocols with factors need, of the first or the second stimulus of a trial.
+void add_factor_columns(const std::vector<FactorColumn>& factors, const std::string& prefix,
+                        const std::string& cell, const std::string& shown, std::vector<RatingColumn>& out) {
+  for (const FactorColumn& one : factors)
+    out.push_back({prefix + one.name, cell, "cell", "levels", one.level_sql(cell), one.meaning, "TEXT"});
+  out.push_back({prefix + "timing", cell, "cell", "timing"});
+  for (const char* name : {"p99_ms", "hitches", "animation_error_ms"})
+    out.push_back({prefix + name, shown, "presentation", name});
+}
+
+}  // namespace
+
+std::string FactorColumn::level_sql(const std::string& cell) const {
+  // The column has one line "factor = level" for each factor. A line begins at the text's start or after a
+  // line end (char(10)).
+  const std::string lines = "(char(10) || " + cell + ".levels || char(10))";
+  const std::string key = "(char(10) || " + sql_text(factor + " = ") + ")";
+  const std::string rest = "substr(" + lines + ", instr(" + lines + ", " + key + ") + length(" + key + "))";
+  return "(CASE WHEN instr(" + lines + ", " + key + ") > 0 THEN substr(" + rest + ", 1, instr(" + rest +
+         ", char(10)) - 1) END)";
+}
+
+std::vector<FactorColumn> factor_columns(Connection& database, const std::string& condition,
+                                         std::set<std::string> taken) {
+  std::vector<FactorColumn> out;
+  // The first cell names all factors of its protocol.
+  Statement row(database,
+                "SELECT levels FROM cell WHERE cell = 0 AND levels IS NOT NULL AND protocol_id IN "
+                "(SELECT session.protocol_id FROM session WHERE " +
+                    condition + ") ORDER BY protocol_id");
+  while (row.step()) {
+    for (const auto& one : factor_levels(row.text(0))) {
+      const std::string& factor = one.first;
+      const auto known = std::find_if(out.begin(), out.end(),
+                                      [&](const FactorColumn& column) { return column.factor == factor; });
+      if (known == out.end())
+        out.push_back({column_name(factor, taken), factor,
+                       "level of the factor " + factor + "; empty: the protocol has no such factor"});
+    }
+  }
+  return out;
+}
+
+std::vector<RatingColumn> rating_columns(Connection& database, const std::string& condition) {
+  std::vector<RatingColumn> out = fixed_columns;
+  std::set<std::string> taken{"timing", "p99_ms", "hitches", "animation_error_ms"};
+  for (const RatingColumn& column : fixed_columns)
+    if (column.name.starts_with("first_")) taken.insert(column.name.substr(6));
+  const auto factors = factor_columns(database, condition, taken);
+  if (factors.empty()) return out;
+  add_factor_columns(factors, "first_", "cell_1", "shown_1", out);
+  add_factor_columns(factors, "second_", "cell_2", "shown_2", out);
+  return out;
+}
+
+std::string rating_subject(const RatingColumn& column) {
+  if (column.from.ends_with("_1")) return "first or only stimulus: ";
+  return column.from.ends_with("_2") ? "second stimulus of a pair: " : "";
+}
+
+std::string rating_table_sql(Connection& database, const std::string& condition) {
   std::string list;
-  for (const RatingColumn& column : columns) {
+  for (const RatingColumn& column : rating_columns(database, condition)) {
     const std::string value =
-        column.expression ? column.expression : std::string(column.from) + '.' + column.column;
+        column.expression.empty() ? column.from + '.' + column.column : column.expression;
     list += (list.empty() ? "" : ", ") + value + " AS " + column.name;
   }
   return "SELECT " + list + joined_tables + " WHERE " + condition +

@@ -2,23 +2,45 @@
 /// The table of ratings: one line per planned trial and question, joined with all columns that an analysis
 /// needs.
 
-#include <span>
+#include <set>
 #include <string>
+#include <vector>
+
+#include "libstudy/store/file/sqlite.hpp"
 
 namespace study {
 
 /// A column of the table of ratings, and the schema's column from which it comes.
 struct RatingColumn {
-  const char* name;
-  const char* from;  ///< alias of the table in the SQL: cell and presentation are joined twice, as _1 and _2
-  const char* table;
-  const char* column;
-  const char* expression = nullptr;  ///< SQL that replaces <from>.<column>; nullptr: none
-  const char* meaning = nullptr;     ///< text that replaces the schema's comment; nullptr: none
-  const char* type = "INTEGER";      ///< SQL type of the expression
+  std::string name;
+  std::string from;  ///< alias of the table in the SQL: cell and presentation are joined twice, as _1 and _2
+  std::string table;
+  std::string column;
+  std::string expression = {};   ///< SQL that replaces <from>.<column>; empty: none
+  std::string meaning = {};      ///< text that replaces the schema's comment; empty: none
+  std::string type = "INTEGER";  ///< SQL type of the expression
 };
 
-std::span<const RatingColumn> rating_columns();
+/// A factor of a protocol of format 3, as a column of an export.
+struct FactorColumn {
+  /// The factor's name with letters, digits and '_' alone; with "_level" behind it if another column has this
+  /// name.
+  std::string name;
+  std::string factor;  ///< name in the database
+  std::string meaning;
+
+  /// SQL for the name of the level of a cell; `cell`: alias of the table cell.
+  std::string level_sql(const std::string& cell) const;
+};
+
+/// The factors of the protocols of all sessions that `condition` selects, in the order of their protocols;
+/// empty: no protocol has factors. taken: names that no column may have.
+std::vector<FactorColumn> factor_columns(sqlite::Connection& database, const std::string& condition,
+                                         std::set<std::string> taken);
+
+/// The columns for the sessions that `condition` selects. Only if a protocol of these has factors: columns of
+/// levels, timing profiles and of the moments that such profiles need.
+std::vector<RatingColumn> rating_columns(sqlite::Connection& database, const std::string& condition = "1");
 
 /// Meanings of a showing's columns `counts` and `why_not`, as every export describes them.
 inline constexpr const char* showing_counts_meaning =
@@ -40,7 +62,7 @@ inline constexpr const char* showing_tau_meaning =
 std::string rating_subject(const RatingColumn& column);
 
 /// SQL that selects rating_columns() in order, one row per trial and question. The schema's view `judgement`
-/// selects the answer and the showing. condition: SQL that selects rows, e.g. "session.session_id = 3".
-std::string rating_table_sql(const std::string& condition = "1");
+/// selects the answer and the showing. condition: SQL that selects sessions, e.g. "session.session_id = 3".
+std::string rating_table_sql(sqlite::Connection& database, const std::string& condition = "1");
 
 }  // namespace study

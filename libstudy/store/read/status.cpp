@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "libstudy/store/names.hpp"
 #include "libstudy/store/open_study.hpp"
 
 namespace study {
@@ -27,7 +28,19 @@ constexpr const char* status_sessions_sql =
     "FROM session s LEFT JOIN unit u USING (session_id) LEFT JOIN trial t USING (trial_id) "
     "GROUP BY s.session_id ORDER BY s.protocol_id, s.session_id";
 
-std::string certificate_sql(FpsMean mean) {
+constexpr const char* cell_counts_sql =
+    "WITH shown AS (SELECT t.first_cell, t.second_cell, t.state = 'answered' AS answered FROM trial t "
+    "JOIN session s USING (session_id) JOIN unit u USING (trial_id) "
+    "WHERE s.protocol_id = ?1 AND u.kind = 'stimulus'), "
+    "counted AS (SELECT cell, count(*) AS trials, sum(answered) AS answered FROM "
+    "(SELECT first_cell AS cell, answered FROM shown UNION ALL SELECT second_cell, answered FROM shown) "
+    "GROUP BY cell) "
+    "SELECT c.levels, coalesce(n.trials, 0), coalesce(n.answered, 0) FROM cell c "
+    "LEFT JOIN counted n ON n.cell = c.cell WHERE c.protocol_id = ?1 AND c.levels IS NOT NULL ORDER BY "
+    "c.cell";
+
+/// `of`: the column that selects sessions, s.run_id or s.protocol_id.
+std::string certificate_sql(FpsMean mean, const std::string& of) {
   const std::string realised = mean == FpsMean::Harmonic ? "p.mean_fps" : "p.mean_arithmetic_fps";
   return "SELECT c.scene, c.method, c.n_star, c.mean_fps, c.sd_fps, c.duration_s, count(*), avg(" + realised +
          "), max(abs(" + realised +
@@ -35,10 +48,13 @@ std::string certificate_sql(FpsMean mean) {
          "sum(p.frames), sum(p.late_frames), max(p.worst_late_ms), "
          "count(*) FILTER (WHERE p.verdict = 'pass'), count(*) FILTER (WHERE p.verdict = 'degraded'), "
          "count(*) FILTER (WHERE p.verdict = 'fail'), group_concat(DISTINCT p.grade), coalesce(c.effects, "
-         "'') "
+         "''), coalesce(c.levels, ''), coalesce(c.timing, ''), coalesce(avg(p.p99_ms), 0), "
+         "max(p.longest_ms), coalesce(avg(p.hitches), 0), avg(p.animation_error_ms) "
          "FROM presentation p JOIN trial t USING (trial_id) "
          "JOIN session s USING (session_id) JOIN cell c ON c.protocol_id = s.protocol_id AND c.cell = p.cell "
-         "JOIN showing w USING (presentation_id) WHERE s.run_id = ? AND w.judged "
+         "JOIN showing w USING (presentation_id) WHERE " +
+         of +
+         " = ? AND w.judged "
          "GROUP BY c.protocol_id, c.cell ORDER BY c.protocol_id, c.cell";
 }
 
@@ -50,6 +66,38 @@ std::string sorted_grades(std::string grades) {
     if (grade != ',') out += (out.empty() ? "" : ",") + std::string(1, grade);
   }
   return out;
+}
+
+std::vector<CertificateRow> certificate_rows(sqlite::Connection& database, FpsMean mean,
+                                             const std::string& of, std::int64_t id) {
+  Statement row(database, certificate_sql(mean, of));
+  row.bind_all(id);
+  std::vector<CertificateRow> rows;
+  while (row.step()) {
+    CertificateRow line;
+    line.what = {row.text(0), row.text(1), row.text(2), row.text(18)};
+    line.nominal = {row.real(3), row.real(4), row.real(5)};
+    line.trials = row.integer(6);
+    line.mean = row.real(7);
+    line.mean_worst = row.real(8);
+    line.sd = row.real(9);
+    line.sd_worst = row.real(10);
+    line.frames = row.integer(11);
+    line.late = row.integer(12);
+    line.worst_late_ms = row.real(13);
+    line.pass = row.integer(14);
+    line.degraded = row.integer(15);
+    line.fail = row.integer(16);
+    line.grades = sorted_grades(row.text(17));
+    line.levels = factor_levels(row.text(19));
+    line.timing = row.text(20);
+    line.p99_ms = row.real(21);
+    line.longest_ms = row.real(22);
+    line.hitches = row.real(23);
+    if (!row.is_null(24)) line.animation_error_ms = row.real(24);
+    rows.push_back(std::move(line));
+  }
+  return rows;
 }
 
 std::optional<bool> flag(const Statement& row, int column) {
@@ -75,6 +123,9 @@ StudyStatus read_status(const StudyFile& study) {
                          .trials = row.integer(8),
                          .answered = row.integer(9)};
     if (!row.is_null(5)) protocol.trial_seconds = row.real(5);
+    Statement cell(*database, cell_counts_sql);
+    for (cell.bind_all(protocol.id); cell.step();)
+      protocol.cells.push_back({factor_levels(cell.text(0)), cell.integer(1), cell.integer(2)});
     status.protocols.push_back(std::move(protocol));
   }
   for (Statement row(*database, status_sessions_sql); row.step();) {
@@ -104,29 +155,12 @@ StudyStatus read_status(const StudyFile& study) {
 
 std::vector<CertificateRow> read_certificate(const std::filesystem::path& path, std::int64_t run_id,
                                              FpsMean mean) {
-  const auto database = open_study(path).database;
-  Statement row(*database, certificate_sql(mean));
-  row.bind_all(run_id);
-  std::vector<CertificateRow> rows;
-  while (row.step()) {
-    CertificateRow line;
-    line.what = {row.text(0), row.text(1), row.text(2), row.text(18)};
-    line.nominal = {row.real(3), row.real(4), row.real(5)};
-    line.trials = row.integer(6);
-    line.mean = row.real(7);
-    line.mean_worst = row.real(8);
-    line.sd = row.real(9);
-    line.sd_worst = row.real(10);
-    line.frames = row.integer(11);
-    line.late = row.integer(12);
-    line.worst_late_ms = row.real(13);
-    line.pass = row.integer(14);
-    line.degraded = row.integer(15);
-    line.fail = row.integer(16);
-    line.grades = sorted_grades(row.text(17));
-    rows.push_back(std::move(line));
-  }
-  return rows;
+  return certificate_rows(*open_study(path).database, mean, "s.run_id", run_id);
+}
+
+std::vector<CertificateRow> read_certificate_of_protocol(const StudyFile& study, std::int64_t protocol_id,
+                                                         FpsMean mean) {
+  return certificate_rows(*open_study(study).database, mean, "s.protocol_id", protocol_id);
 }
 
 }  // namespace study

@@ -1,11 +1,12 @@
 #pragma once
-/// Reads the protocols and sessions of a database with their counts, and the timing certificate of a run.
+/// Reads the protocols and sessions of a database with their counts, and timing certificates.
 /// Does not change the database. base::Error as read_tasks().
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libstudy/pacing/schedule.hpp"
@@ -13,6 +14,12 @@
 #include "libstudy/store/study_file.hpp"
 
 namespace study {
+
+/// Trials of the stimulus blocks that show a cell of a protocol with factors, by their plan or after it.
+struct CellCount {
+  std::vector<std::pair<std::string, std::string>> levels;  ///< factor and level
+  std::int64_t trials = 0, answered = 0;
+};
 
 /// A protocol, with the counts of its dataset: the data of all sessions under the same protocol hash.
 struct ProtocolRow {
@@ -22,6 +29,7 @@ struct ProtocolRow {
   std::optional<double> trial_seconds;
   bool test_data = false;
   std::int64_t sessions = 0, trials = 0, answered = 0;
+  std::vector<CellCount> cells = {};  ///< by cell; empty: the protocol has no factors
 };
 
 struct SessionRow {
@@ -64,11 +72,22 @@ struct CertificateRow {
   double worst_late_ms = 0;
   std::int64_t pass = 0, degraded = 0, fail = 0;
   std::string grades;  ///< the distinct timing grades of the presentations, best first: "A,D"
+  /// Only of a protocol with factors: factor and level, and the timing profile in words.
+  std::vector<std::pair<std::string, std::string>> levels;
+  std::string timing;
+  double p99_ms = 0;      ///< mean over the presentations
+  double longest_ms = 0;  ///< largest interval of all presentations
+  double hitches = 0;     ///< mean over the presentations
+  /// Mean over the presentations; none: content followed frames instead of time.
+  std::optional<double> animation_error_ms;
 };
 
 /// Certificate rows of all sessions of run `run_id`. mean: the kind of mean frame rate that the protocol's
 /// settings use.
 std::vector<CertificateRow> read_certificate(const std::filesystem::path& database, std::int64_t run_id,
                                              FpsMean mean);
+/// Certificate rows of all sessions under protocol `protocol_id`.
+std::vector<CertificateRow> read_certificate_of_protocol(const StudyFile& study, std::int64_t protocol_id,
+                                                         FpsMean mean);
 
 }  // namespace study

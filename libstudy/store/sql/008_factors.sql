@@ -3,7 +3,7 @@
 ALTER TABLE cell ADD COLUMN levels TEXT /* levels of the protocol's own factors, as "factor = level", one on a line; empty: a protocol of format 2 */;
 ALTER TABLE cell ADD COLUMN timing TEXT /* timing profile in words; mean_fps and sd_fps are those of its intervals; empty: mean_fps and sd_fps alone */;
 ALTER TABLE presentation ADD COLUMN p99_ms REAL /* 99th percentile of the intervals, ms; empty: an earlier version, which did not write it */;
-ALTER TABLE presentation ADD COLUMN hitches INTEGER /* intervals longer than 1.5 times the median interval; empty: likewise */;
+ALTER TABLE presentation ADD COLUMN hitches INTEGER /* intervals longer than 1.5 times the median interval; empty: an earlier version, which did not write it */;
 ALTER TABLE presentation ADD COLUMN animation_error_ms REAL /* mean absolute difference between the step of the simulated time and the interval of a frame, ms; empty: content followed frames instead of time, or an earlier version */;
 
 -- The program lists the kinds of answers; the table no longer does.

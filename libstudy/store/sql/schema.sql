@@ -219,7 +219,7 @@ CREATE TABLE "presentation" (
   late_frames INTEGER, -- frames beyond the protocol's bound
   worst_late_ms REAL, -- largest lateness, ms
   framing_id INTEGER REFERENCES framing, -- how the display framed what was shown; empty: nothing was drawn, or an earlier version, which did not write it
-  gaze_source TEXT CHECK (gaze_source IN ('tracked', 'head', 'mouse', 'fixed', 'fixation', 'none')), p99_ms REAL /* 99th percentile of the intervals, ms; empty: an earlier version, which did not write it */, hitches INTEGER /* intervals longer than 1.5 times the median interval; empty: likewise */, animation_error_ms REAL /* mean absolute difference between the step of the simulated time and the interval of a frame, ms; empty: content followed frames instead of time, or an earlier version */, -- what the fluid followed, as in session: head instead of tracked where recording gaze was not allowed; empty: an earlier version, which did not write it
+  gaze_source TEXT CHECK (gaze_source IN ('tracked', 'head', 'mouse', 'fixed', 'fixation', 'none')), p99_ms REAL /* 99th percentile of the intervals, ms; empty: an earlier version, which did not write it */, hitches INTEGER /* intervals longer than 1.5 times the median interval; empty: an earlier version, which did not write it */, animation_error_ms REAL /* mean absolute difference between the step of the simulated time and the interval of a frame, ms; empty: content followed frames instead of time, or an earlier version */, -- what the fluid followed, as in session: head instead of tracked where recording gaze was not allowed; empty: an earlier version, which did not write it
   UNIQUE (trial_id, attempt, interval)
 ) STRICT;
 

@@ -1,0 +1,37 @@
+#pragma once
+/// Frame times from the capture of a running program, for timing profiles of kind Trace.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace study {
+
+struct FrameCapture {
+  std::string column;            ///< name of the column that was read; empty: the file has no names
+  std::vector<double> frame_ms;  ///< in their order, rounded to microseconds; at least two
+  std::int64_t left_out = 0;     ///< rows of frames that were never shown, or before which no frame was
+};
+
+/// Reads a CSV file: of PresentMon or CapFrameX, or any table with a column of frame times in ms, or one
+/// column of numbers without a name. Fields are separated by commas, semicolons or tabs. Leading lines that
+/// begin with "//" or "#" are comments.
+///
+/// column: the name of the column, in upper or lower case; empty: the only one, or MsBetweenPresents,
+/// FrameTime or MsBetweenDisplayChange, whichever comes first in this list. seconds: reads the first frames
+/// that fill this time; none: all frames.
+///
+/// Zeros and "NA" are left out in the first row and in columns of displayed times, where they mark frames
+/// that were never shown. base::Error at file:line for any other value out of range, for rows of a second
+/// process or swap chain, and for a capture of fewer than two frames or of more than a protocol may hold.
+FrameCapture read_capture(const std::filesystem::path& file, const std::string& column,
+                          std::optional<double> seconds);
+
+/// The timing line of a level that shows these frames, as TOML.
+std::string timing_line(const FrameCapture& capture);
+/// Duration, mean, standard deviation and 5 % low, in words. 5 % low: the frame rate of the longest twentieth
+/// of the frames.
+std::string describe_capture(const FrameCapture& capture);
+
+}  // namespace study
