@@ -1,4 +1,6 @@
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "libsim/bake/bake_file.hpp"
 #include "libsim/bake/layout.hpp"
@@ -64,12 +66,17 @@ void put_tolerance(ByteWriter& out, const std::optional<BakedTolerance>& toleran
 
 std::optional<BakedTolerance> get_tolerance(ByteReader& in) {
   const auto there = in.get<std::uint8_t>();
-  if (there > 1) in.fail("has a header with an unknown tolerance");
+  if (there > 1)
+    in.fail("has a header whose flag for a tolerance is " + std::to_string(there) + ", not 0 or 1");
   if (!there) return {};
   BakedTolerance out;
-  for (double* value : {&out.rate.mean, &out.rate.sd, &out.model.a, &out.model.b}) {
+  const std::pair<double*, const char*> values[] = {{&out.rate.mean, "mean frame rate"},
+                                                    {&out.rate.sd, "standard deviation of the frame rate"},
+                                                    {&out.model.a, "a of the PTPE model"},
+                                                    {&out.model.b, "b of the PTPE model"}};
+  for (const auto& [value, name] : values) {
     *value = in.get<double>();
-    if (!std::isfinite(*value)) in.fail("has a header whose tolerance is not finite");
+    if (!std::isfinite(*value)) in.fail(std::string("has a header whose ") + name + " is not finite");
   }
   out.seed = in.get<std::uint32_t>();
   return out;
@@ -169,7 +176,9 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
   header.frame_dt_s = in.get<double>();
   for (double& side : header.tank_size_m) side = in.get<double>();
   const auto levels = in.get<std::uint32_t>();
-  if (levels == 0 || levels > max_bake_levels) in.fail("states " + std::to_string(levels) + " levels");
+  if (levels == 0 || levels > max_bake_levels)
+    in.fail("states " + std::to_string(levels) + " levels; 1 to " + std::to_string(max_bake_levels) +
+            " are allowed");
   for (std::uint32_t i = 0; i < levels; ++i) header.radius_by_level_m.push_back(in.get<float>());
   header.picture_width_px = in.get<std::int32_t>();
   header.picture_height_px = in.get<std::int32_t>();
@@ -179,7 +188,8 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
   }
   if (format >= 4) {
     const auto there = in.get<std::uint8_t>();
-    if (there > 1) in.fail("has a header with unknown effects");
+    if (there > 1)
+      in.fail("has a header whose flag for effects is " + std::to_string(there) + ", not 0 or 1");
     if (there) header.effects = in.string(max_effects_text);
     header.max_foam = in.get<std::int64_t>();
   }
@@ -187,10 +197,13 @@ BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::st
     if (const auto kelvin = in.get<double>(); kelvin != 0) header.reference_k = kelvin;
     header.overlay = in.string(max_text);
     const auto there = in.get<std::uint8_t>();
-    if (there > 1) in.fail("has a header with unknown effects of the picture");
+    if (there > 1)
+      in.fail("has a header whose flag for effects of the picture is " + std::to_string(there) +
+              ", not 0 or 1");
     if (there) header.picture_effects = in.string(max_effects_text);
   }
-  if (!in.rest().empty()) in.fail("has a header of the wrong length");
+  if (!in.rest().empty())
+    in.fail("has a header that is " + std::to_string(in.rest().size()) + " bytes too long");
   check(header, in);
   return header;
 }

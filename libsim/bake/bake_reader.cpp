@@ -52,7 +52,9 @@ class Source {
       const ssize_t n = ::pread(fd_, out.data() + done, size - done, static_cast<off_t>(offset + done));
       if (n < 0 && errno == EINTR) continue;
       if (n <= 0) {
-        throw base::Error(name_, n == 0 ? "became shorter while it was read" : std::strerror(errno),
+        throw base::Error(name_,
+                          n == 0 ? "became shorter while it was read"
+                                 : std::string("cannot be read: ") + std::strerror(errno),
                           "check the disk, and bake it again");
       }
       done += static_cast<std::size_t>(n);

@@ -112,7 +112,11 @@ void BakeWriter::add_frame(double time_s, const std::vector<RenderParticle>& par
   if (s.frames == s.header.frame_count || !s.complete())
     throw std::logic_error("BakeWriter: a frame too many, or the last frame's foam or picture is missing");
   if (particles.size() > static_cast<std::size_t>(s.header.max_particles)) {
-    throw base::Error(place, "has more particles than max_particles of the header", "raise max_particles");
+    throw base::Error(place,
+                      "has " + std::to_string(particles.size()) +
+                          " particles, more than max_particles of the header, " +
+                          std::to_string(s.header.max_particles),
+                      "make max_particles of the header larger");
   }
   const bool warm = s.header.reference_k.has_value();
   if (temperature_k.size() != (warm ? particles.size() : 0))
@@ -133,7 +137,11 @@ void BakeWriter::add_foam(const std::vector<RenderParticle>& foam) {
     throw std::logic_error("BakeWriter: foam without its frame, or that the header does not state");
   const std::string place = bake::frame_place(s.path.string(), "foam", s.foams);
   if (foam.size() > static_cast<std::size_t>(s.header.max_foam))
-    throw base::Error(place, "has more foam than max_foam of the header", "raise max_foam");
+    throw base::Error(place,
+                      "has " + std::to_string(foam.size()) +
+                          " particles of foam, more foam than max_foam of the header, " +
+                          std::to_string(s.header.max_foam),
+                      "make max_foam of the header larger");
   encode_foam(foam, particle_zstd_level, place, s.chunk);
   s.write_chunk(bake::ChunkKind::Foam);
   s.sizes.foam_bytes += s.chunk.size();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 
 namespace sim {
 
@@ -25,23 +26,27 @@ void each_guard(Guards& guards, Visit visit) {
   visit(guards.gaze_lost);
 }
 
-double finite(ByteReader& in) {
+double finite(ByteReader& in, const char* name) {
   const auto value = in.get<double>();
-  if (!std::isfinite(value)) in.fail("has a tolerance that is not finite");
+  if (!std::isfinite(value))
+    in.fail(std::string("states ") + name + " = " + std::to_string(value) + ", which is not finite");
   return value;
 }
 
 TemporalReport get_temporal(ByteReader& in, std::uint8_t bits, std::int64_t particles) {
   TemporalReport out;
-  if (bits & has_tau) out.tau = finite(in);
+  if (bits & has_tau) out.tau = finite(in, "the tolerance tau");
   if (bits & has_rate) {
-    const double mean = finite(in);
-    out.rate = FrameRate{mean, finite(in)};
+    const double mean = finite(in, "the mean frame rate");
+    out.rate = FrameRate{mean, finite(in, "the standard deviation of the frame rate")};
   }
-  out.beta = finite(in);
+  out.beta = finite(in, "the probability beta");
   out.active = in.get<std::int64_t>();
-  if (out.beta < 0 || out.beta > 1) in.fail("states a probability outside 0 to 1");
-  if (out.active < 0 || out.active > particles) in.fail("states more particles solved than there are");
+  if (out.beta < 0 || out.beta > 1)
+    in.fail("states the probability beta = " + std::to_string(out.beta) + ", outside 0 to 1");
+  if (out.active < 0 || out.active > particles)
+    in.fail("states that " + std::to_string(out.active) + " of its " + std::to_string(particles) +
+            " particles were solved");
   return out;
 }
 
@@ -75,19 +80,21 @@ BakeFacts get_facts(ByteReader& in, std::uint32_t format, std::size_t levels) {
     account.particles_by_level.push_back(in.get<std::int64_t>());
     const std::int64_t count = account.particles_by_level.back();
     if (count < 0 || count > max_bake_particles) {
-      in.fail("states " + std::to_string(count) + " particles in level " + std::to_string(i));
+      in.fail("states " + std::to_string(count) + " particles in level " + std::to_string(i) + "; 0 to " +
+              std::to_string(max_bake_particles) + " are allowed");
     }
   }
   if (format < 2) return facts;
   const auto bits = in.get<std::uint8_t>();
   if (bits > all_bits || (!(bits & has_temporal) && bits & (has_tau | has_rate)))
-    in.fail("has facts of an unknown kind");
+    in.fail("has flags " + std::to_string(bits) +
+            " for the facts of the frame, which this format does not allow");
   if (bits & has_temporal) account.temporal = get_temporal(in, bits, account.particles());
   if (bits & has_guards) {
     each_guard(account.guards.emplace(), [&](std::uint64_t& count) {
       count = in.get<std::uint64_t>();
       if (count > static_cast<std::uint64_t>(INT64_MAX))
-        in.fail("states an impossible number of guard cases");
+        in.fail("states " + std::to_string(count) + ", an impossible number of guard cases");
     });
   }
   return facts;
@@ -133,18 +140,21 @@ void unpack(ByteReader& in, std::size_t size, Bytes& out) {
   const auto kind = in.get<std::uint8_t>();
   const ByteSpan data = in.take(in.rest().size());
   if (kind == packed_raw) {
-    if (data.size() != size) in.fail("holds another number of bytes than its counts say");
+    if (data.size() != size)
+      in.fail("holds " + std::to_string(data.size()) + " bytes of data, but its counts need " +
+              std::to_string(size));
     out.assign(data.begin(), data.end());
     return;
   }
-  if (kind != packed_zstd) in.fail("is packed in an unknown way");
+  if (kind != packed_zstd) in.fail("is packed with the unknown method " + std::to_string(kind));
   if (size / max_ratio > data.size()) in.fail("states more data than its bytes can hold");
   if (ZSTD_getFrameContentSize(data.data(), data.size()) != size) {
-    in.fail("holds another number of bytes than its counts say");
+    in.fail("holds packed data of another size than the " + std::to_string(size) +
+            " bytes that its counts need");
   }
   out.resize(size);
   const std::size_t got = ZSTD_decompressDCtx(&decompressor(), out.data(), size, data.data(), data.size());
-  if (ZSTD_isError(got) != 0 || got != size) in.fail("does not decompress");
+  if (ZSTD_isError(got) != 0 || got != size) in.fail("holds packed data that cannot be decompressed");
 }
 
 }  // namespace sim

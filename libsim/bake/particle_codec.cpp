@@ -77,7 +77,7 @@ std::array<Axis, count> get_axes(ByteReader& in) {
     axis.max = in.get<float>();
     if (!std::isfinite(axis.min) || !std::isfinite(axis.max) || axis.max < axis.min ||
         !std::isfinite(axis.max - axis.min)) {
-      in.fail("has a range of values that is not valid");
+      in.fail(fmt::format("states values from {:g} to {:g}, which is not a valid range", axis.min, axis.max));
     }
   }
   return axes;
@@ -130,8 +130,10 @@ std::vector<std::uint32_t> order_by_level(const std::vector<RenderParticle>& par
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto found = std::find(radii.begin(), radii.end(), particles[i].radius_m);
     if (found == radii.end()) {
-      throw base::Error(place, "a particle's radius is not among the header's radii",
-                        "list every radius in radius_by_level_m");
+      throw base::Error(
+          place,
+          fmt::format("a particle's radius of {:g} m is not among the header's radii", particles[i].radius_m),
+          "list every radius in radius_by_level_m of the header");
     }
     level[i] = static_cast<std::uint8_t>(found - radii.begin());
     ++counts[level[i]];
@@ -172,7 +174,9 @@ void encode_particles(double time_s, const FrameAccount& account,
                       const std::vector<float>& radius_by_level_m, const std::vector<float>* temperature_k,
                       int zstd_level, const std::string& place, Bytes& out) {
   if (particles.size() > static_cast<std::size_t>(max_bake_particles)) {
-    throw base::Error(place, "has more particles than a bake can store",
+    throw base::Error(place,
+                      "has " + std::to_string(particles.size()) + " particles; a bake stores at most " +
+                          std::to_string(max_bake_particles),
                       "use a smaller n_* (--n-star, or n_star in a protocol)");
   }
   BakeFacts facts{time_s, account};
@@ -248,7 +252,7 @@ std::array<Axis, fields> ranges_of(const std::vector<RenderParticle>& foam, cons
     const Fields values = fields_of(foam[i]);
     for (std::size_t k = 0; k < fields; ++k) {
       if (!std::isfinite(values[k]) || (k == 3 && values[k] <= 0))
-        throw base::Error(place, "a foam particle has no finite position or no radius above 0",
+        throw base::Error(place, "a foam particle's position is not finite, or its radius is not above 0",
                           "the simulation has failed; raise time.min_substeps in the scene file");
       out[k].min = i == 0 ? values[k] : std::min(out[k].min, values[k]);
       out[k].max = i == 0 ? values[k] : std::max(out[k].max, values[k]);
@@ -283,7 +287,8 @@ void decode_foam(ByteSpan payload, std::int64_t max_foam, const std::string& pla
     in.fail("states " + std::to_string(n) + " particles of foam; its header allows " +
             std::to_string(max_foam));
   const auto ranges = get_axes<fields>(in);
-  if (n > 0 && !(ranges[3].min > 0)) in.fail("holds foam without a radius");
+  if (n > 0 && !(ranges[3].min > 0))
+    in.fail(fmt::format("states a foam radius of {:g} m; a radius is above 0", ranges[3].min));
   unpack(in, 2 * fields * n, scratch);
   out.resize(n);
   RenderParticle* foam = out.data();

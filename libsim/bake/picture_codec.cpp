@@ -120,7 +120,8 @@ void decode_picture(ByteSpan payload, std::uint32_t format, std::size_t levels, 
   for (std::size_t y = 0; y < rows; ++y) {
     const std::uint8_t predictor = scratch[y];
     if (predictor >= predictors || (predictor == Previous && previous.empty())) {
-      in.fail("has a row with an unknown predictor");
+      in.fail("states predictor " + std::to_string(predictor) + " for row " + std::to_string(y) +
+              ", which is unknown or needs an earlier picture");
     }
     Row row = planes + y * width;
     restore_row(static_cast<Predictor>(predictor), row,

@@ -110,7 +110,9 @@ CellScores read_cells(const std::filesystem::path& path) {
     CellValues values{};
     const std::string place = path.string() + ":" + std::to_string(number);
     if (!reads_row(base::split(line), key, values))
-      throw base::Error(place, "is no row of a picture", "write the file again with --cells");
+      throw base::Error(place,
+                        "is not a row of scores as --cells writes it: \"" + base::shortened(line) + "\"",
+                        "write the file again with --cells");
     if (!out.emplace(key, values).second)
       throw base::Error(place, "names a picture a second time: " + in_words(key),
                         "write the file again with --cells");

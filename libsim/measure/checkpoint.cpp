@@ -41,7 +41,8 @@ std::vector<sim::Vec3d> gaze_points(const sim::Scene& scene, int frame, int coun
   }
   if (out.size() < static_cast<std::size_t>(count)) {
     throw base::Error("--gazes " + std::to_string(count),
-                      scene.name + " names " + std::to_string(out.size()) + " gaze points", "use fewer");
+                      scene.name + " names " + std::to_string(out.size()) + " gaze points",
+                      "use at most " + std::to_string(out.size()));
   }
   out.resize(static_cast<std::size_t>(count));
   return out;

@@ -116,7 +116,7 @@ std::vector<PeerRow> read_peers(const std::filesystem::path& path) {
   for (; std::getline(lines, line); ++number)
     out.push_back(row_of(Cells(path.string() + ":" + std::to_string(number), line)));
   if (out.empty())
-    throw base::Error(path.string() + ":" + std::to_string(number), "no peer is there",
+    throw base::Error(path.string() + ":" + std::to_string(number), "the first row of a peer is missing",
                       std::string("write a row of ") + head);
   return out;
 }

@@ -37,7 +37,7 @@ std::array<double, 2> interval(const base::TomlTable& table, const char* key, co
   const auto ends = table.numbers(key, 2);
   if (ends[0] > ends[1]) table.fail(key, "has its low end above its high end", "write [low, high]");
   if (estimate < ends[0] || estimate > ends[1])
-    table.fail(of, std::string("lies outside its own interval, ") + key,
+    table.fail(of, "= " + base::shortest(estimate) + " lies outside its own interval, " + key,
                "fit again: one of the two was changed");
   return {ends[0], ends[1]};
 }
@@ -113,7 +113,10 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
   file.n_participants = static_cast<int>(table.integer("n_participants", {1, 1e6}));
   file.n_simulated = static_cast<int>(table.integer_or("n_simulated", 0, {0, 1e6}));
   if (file.n_simulated > file.n_participants) {
-    table.fail("n_simulated", "is more than n_participants", "count each participant once");
+    table.fail("n_simulated",
+               "= " + std::to_string(file.n_simulated) +
+                   " is more than n_participants = " + std::to_string(file.n_participants),
+               "count each participant once");
   }
   file.test_data = table.boolean_or("test_data", false);
   if (table.choice("fps_mean", {"harmonic", "arithmetic"}) == "arithmetic")

@@ -28,8 +28,10 @@ void ParticleBuffer::reserve(std::int64_t capacity) {
 
 void ParticleBuffer::set_count(std::int64_t count) {
   if (count < 0 || count > capacity_) {
-    throw base::Error("particle buffer", "a count beyond the buffer's capacity",
-                      "reserve() before set_count()");
+    throw base::Error(
+        "particle buffer",
+        "has room for " + std::to_string(capacity_) + " particles, not for " + std::to_string(count),
+        "call reserve() before set_count()");
   }
   count_ = count;
 }
@@ -63,9 +65,9 @@ void check_view(const View& view) {
   };
   if (view.viewport.width < 1 || view.viewport.height < 1 || !finite(view.view) || !finite(view.projection) ||
       view.projection[0] == 0 || view.projection[5] == 0 || !(view.near_m > 0)) {
-    throw base::Error("view",
-                      "an empty viewport, a matrix that is not finite, or a near plane at or behind the eye",
-                      "give each view a viewport of at least 1 x 1 px and a perspective projection");
+    throw base::Error(
+        "view", "has an empty viewport, a matrix that is not finite, or a near plane at or behind the eye",
+        "give each view a viewport of at least 1 x 1 px and a perspective projection");
   }
 }
 
@@ -111,7 +113,8 @@ void FluidRenderer::place_obstacles(const std::vector<BodyMotion>& motions) {
 void FluidRenderer::draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
                          const ParticleBuffer* foam) {
   if (views.empty() || views.size() > most_views) {
-    throw base::Error("renderer", std::to_string(views.size()) + " views", "draw one view or two");
+    throw base::Error("renderer", "was given " + std::to_string(views.size()) + " views",
+                      "draw one view or two");
   }
   for (const View& view : views) check_view(view);
   State& s = *state_;

@@ -108,7 +108,7 @@ void SaliencyInput::OneEye::take(const GlPicture& shared) {
 
 bool SaliencyInput::look(const Looks& looks, bool pictures) {
   if (looks.eyes.empty() || looks.eyes.size() > Eyes::most) {
-    throw base::Error("look", std::to_string(looks.eyes.size()) + " eyes", "give one eye or two");
+    throw base::Error("look", "has " + std::to_string(looks.eyes.size()) + " eyes", "give one eye or two");
   }
   for (const auto& look : looks.eyes) check(look);
   for (std::size_t k = 0; k < looks.eyes.size() && pictures; ++k) {

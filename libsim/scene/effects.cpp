@@ -58,11 +58,12 @@ bool stands(const std::vector<Effect>& effects, const Effect& effect) {
 }
 
 std::string needs_text(const Effect& effect) {
-  return std::string("needs ") + traits_of(traits_of(effect.kind).needs).word + ", which is missing";
+  return std::string("needs ") + traits_of(traits_of(effect.kind).needs).word +
+         ", which is missing or has the coefficient 0";
 }
 std::string needs_mend(const Effect& effect) {
-  return std::string("list ") + traits_of(traits_of(effect.kind).needs).word + " too, or leave out " +
-         traits_of(effect.kind).word;
+  return std::string("list ") + traits_of(traits_of(effect.kind).needs).word +
+         " too with a coefficient above 0, or leave out " + traits_of(effect.kind).word;
 }
 
 double natural_time(const Effect& effect, double d) {

@@ -117,7 +117,9 @@ std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range 
                  "choose a scale so that all sides are within " + base::range_text(size_m) + " m");
   }
   if (2 * out->spacing_m() > shortest)
-    table.fail("spacing_m", "is more than half of the mesh's shortest side",
+    table.fail("spacing_m",
+               "= " + base::shortest(out->spacing_m()) + " is more than half of the mesh's shortest side, " +
+                   base::shortest(shortest) + " m",
                "use at most " + base::shortest(shortest / 2) + " m");
   if (out->grid_nodes() > static_cast<double>(most_grid_nodes))
     table.fail("spacing_m", "gives the mesh a grid of " + base::shortest(out->grid_nodes()) + " nodes",

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
 namespace sim {
@@ -54,11 +55,12 @@ std::vector<PictureEffect> read_picture_effects(const std::vector<base::TomlTabl
 
 void check_picture_effects(const std::vector<PictureEffect>& effects) {
   for (const PictureEffect& effect : effects) {
-    const auto fail = [&](const char* problem, const char* mend) {
+    const auto fail = [&](const std::string& problem, const char* mend) {
       throw base::Error(std::string("effect ") + traits_of(effect.kind).word, problem, mend);
     };
     if (find(effects, effect.kind) != &effect) fail("is listed twice", "keep one of the two");
-    if (!(effect.strength >= 0 && effect.strength <= 1)) fail("strength is out of range", "use 0 to 1");
+    if (!(effect.strength >= 0 && effect.strength <= 1))
+      fail("strength = " + base::shortest(effect.strength) + " is out of range", "use 0 to 1");
   }
 }
 

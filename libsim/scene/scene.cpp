@@ -134,8 +134,9 @@ WaterBlock read_block(const base::TomlTable& table, const Scene& scene) {
     if (!(out.max_m[k] - out.min_m[k] >= 1e-3)) {
       table.fail("max_m", "leaves no room for water", "make each entry at least 1 mm larger than in min_m");
     }
-    if (out.min_m[k] < -1e-9 || out.max_m[k] > room[k] + 1e-9) {
-      table.fail("max_m", "reaches outside the tank", "keep the block within tank.size_m from tank.origin_m");
+    if (const bool low = out.min_m[k] < -1e-9; low || out.max_m[k] > room[k] + 1e-9) {
+      table.fail(low ? "min_m" : "max_m", "reaches outside the tank",
+                 "keep the block within tank.size_m from tank.origin_m");
     }
   }
   return out;
@@ -205,7 +206,8 @@ void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene
                  "keep the centre at least half a diameter away from obstacles");
   }
   if (nozzle.position_m[1] <= 0 || nozzle.position_m[1] > scene.tank_size_m[1])
-    table.fail("position_m", "lies below the floor or above the tank", "choose a height within tank.size_m");
+    table.fail("position_m", "lies at or below the floor, or above the tank",
+               "choose a height within tank.size_m");
   if (const double beyond = beyond_lid_m(scene, nozzle, scene.frame_dt_s); beyond > 0)
     table.fail("position_m", nozzle_at_lid,
                "lower it by " + base::shortest(std::ceil(1e4 * beyond) / 1e4) + " m");
@@ -341,9 +343,9 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
   read_water(root.table("water"), scene);
 
   if (format < 2 && root.has("effect"))
-    root.fail("format", "has no effects: [[effect]] came with format 2", "write format = 2");
+    root.fail("format", "= 1 does not allow [[effect]], which came with format 2", "write format = 2");
   if (format < 2 && root.has("obstacle"))
-    root.fail("format", "has no obstacles: [[obstacle]] came with format 2", "write format = 2");
+    root.fail("format", "= 1 does not allow [[obstacle]], which came with format 2", "write format = 2");
   const auto effects = root.tables("effect");
   scene.effects = read_effects(effects);
   scene.picture_effects = read_picture_effects(effects);
@@ -361,7 +363,10 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
         {static_cast<int>(key.integer("frame", {0, 1e6})), place(key, "point_m", scene.origin_m)});
     const auto n = scene.gaze.size();
     if (n > 1 && scene.gaze[n - 1].frame <= scene.gaze[n - 2].frame) {
-      key.fail("frame", "does not come after the key before it", "order the gaze keys by frame");
+      key.fail("frame",
+               "= " + std::to_string(scene.gaze[n - 1].frame) + " is not above frame " +
+                   std::to_string(scene.gaze[n - 2].frame) + " of the gaze key before it",
+               "order the gaze keys by frame");
     }
   }
   root.finish();

@@ -22,7 +22,7 @@ std::vector<CellScene> scenes_of(const std::string& word) {
     if (word == "all" || word == name) out.push_back({name, read_scene(file)});
   }
   if (out.empty()) {
-    throw base::Error("--scene " + word, "is not a scene of the tables",
+    throw base::Error("--scene " + word, "is not a scene of the paper's tables",
                       "use all, SingleDam, JetImpact or Faucet");
   }
   return out;

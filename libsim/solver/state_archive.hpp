@@ -72,7 +72,8 @@ class StateReader {
     if (!left_.empty()) fail("contains more data than the state of this run");
   }
   [[noreturn]] static void fail(const std::string& problem) {
-    throw base::Error("saved state", problem, "resume with the program that saved it");
+    throw base::Error("saved state", problem,
+                      "resume with the program, the scene and the options with which it was saved");
   }
 
  private:

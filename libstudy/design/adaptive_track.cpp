@@ -109,6 +109,15 @@ stats::QuestPlus quest_of(const std::vector<stats::PsychometricCurve>& curves,
           }};
 }
 
+/// `fixed` indices from 0 to count - 1, evenly spread and ascending; they start over after `count` of them.
+std::vector<int> spread_evenly(int fixed, int count) {
+  std::vector<int> out;
+  const int round = std::min(fixed, count);
+  for (int i = 0; i < fixed; ++i)
+    out.push_back(round == 1 ? count / 2 : i % round * (count - 1) / (round - 1));
+  return out;
+}
+
 int next_by_staircase(const Procedure& procedure, const std::vector<TrackStep>& steps, int count) {
   const auto positive = std::make_unique<bool[]>(steps.size() + 1);
   for (std::size_t i = 0; i < steps.size(); ++i) positive[i] = steps[i].positive;
@@ -147,9 +156,10 @@ int next_by_placement(const Protocol& protocol, const std::vector<int>& cells,
     prior.highest = question->scale_max;
     prior.level = fitted_level(*question);
   }
-  stats::PlacementGuards guards;
-  guards.most_of_one = procedure.most_of_one;
-  stats::Placement placement(settings, prior, guards);
+  stats::PlacementRules rules;
+  rules.between = procedure.fixed;
+  rules.most_of_one = procedure.most_of_one;
+  stats::Placement placement(settings, prior, rules);
   for (const TrackStep& step : steps) placement.add(step.place, step.score);
   return placement.next();
 }
@@ -185,14 +195,14 @@ PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
   const Procedure& procedure = *design.procedure;
   const auto count = static_cast<int>(cells.size());
   int place = 0;
-  if (static_cast<int>(steps.size()) < procedure.fixed)
-    place = stats::spread_evenly(procedure.fixed, count)[steps.size()];
-  else if (procedure.kind == ProcedureKind::Staircase)
+  if (procedure.kind == ProcedureKind::Staircase)
     place = next_by_staircase(procedure, steps, count);
-  else if (procedure.kind == ProcedureKind::QuestPlus)
-    place = next_by_quest(procedure, values_of(design, cells), steps);
-  else
+  else if (procedure.kind == ProcedureKind::Ptpe)
     place = next_by_placement(protocol, cells, steps);
+  else if (static_cast<int>(steps.size()) < procedure.fixed)
+    place = spread_evenly(procedure.fixed, count)[steps.size()];
+  else
+    place = next_by_quest(procedure, values_of(design, cells), steps);
   PlannedTrial out = planned;
   (out.first == placeholder ? out.first : *out.second) = cells[static_cast<std::size_t>(place)];
   return out;

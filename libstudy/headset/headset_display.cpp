@@ -7,11 +7,13 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "libstudy/pacing/nominal_refresh.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
@@ -25,9 +27,10 @@ constexpr int most_slots = 3000;
 constexpr double same_rate = 0.02;
 bool near_rate(double a_hz, double b_hz) { return std::abs(a_hz - b_hz) <= same_rate * b_hz; }
 
-const char* rate_problem(const HeadsetRules& rules) {
-  return rules.refresh_hz ? "its refresh rate does not change to the protocol's refresh_hz"
-                          : "its predicted times show no steady rate";
+std::string rate_problem(const HeadsetRules& rules) {
+  return rules.refresh_hz ? "its refresh rate does not change to the protocol's refresh_hz = " +
+                                base::shortest(*rules.refresh_hz)
+                          : "the times that it predicts for its frames show no steady rate";
 }
 constexpr const char* rate_mend =
     "set a fixed refresh rate (refresh_hz, if the protocol has it) in its software";
@@ -99,7 +102,7 @@ void HeadsetDisplay::check_time_stands_still() {
                       "use --clock real");
 }
 
-void HeadsetDisplay::await(const std::function<bool()>& ready, const char* problem, const char* mend) {
+void HeadsetDisplay::await(const std::function<bool()>& ready, const std::string& problem, const char* mend) {
   const auto since = std::chrono::steady_clock::now();
   for (int slots = 0; !ready(); ++slots) {
     if (slots > most_slots || std::chrono::steady_clock::now() - since > most_idle_waiting)

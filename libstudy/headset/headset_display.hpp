@@ -88,7 +88,7 @@ class HeadsetDisplay final : public Display {
   void settle_new_session();
   void share_records();
   void check_time_stands_still();
-  void await(const std::function<bool()>& ready, const char* problem, const char* mend);
+  void await(const std::function<bool()>& ready, const std::string& problem, const char* mend);
   std::optional<HeldViews> draw(std::int64_t at_ns);
 
   HeadsetRules rules_;

@@ -88,7 +88,8 @@ std::vector<std::int64_t> whole_nanoseconds(const std::vector<double>& intervals
     error = descend(intervals_ns, sums, error, setting, mean);
   if (error > bound) {
     throw base::Error("setting " + setting_name(setting),
-                      "so few frames with whole-nanosecond intervals cannot meet its mean and sd to 1e-6",
+                      "its " + std::to_string(intervals_ns.size()) +
+                          " frames, with intervals of whole nanoseconds, cannot meet its mean and sd to 1e-6",
                       "lengthen the trial");
   }
   return intervals_ns;

@@ -50,8 +50,8 @@ double latent_variance(const char* option, double wanted, double rounding) {
   if (wanted >= rounding) return wanted - rounding;
   throw base::Error(
       option,
-      "is too small: rounding to whole scores and --person-by-method alone make a person's answers "
-      "scatter more",
+      "is too small: rounding to whole scores and --person-by-method alone give a person's answers a larger "
+      "standard deviation",
       "give a larger value, a smaller --person-by-method, or --answers continuous");
 }
 

@@ -129,7 +129,9 @@ class Draft {
     // create_directory() returns false for an existing folder or link. It is refused, so that files are
     // written only into a new folder.
     if (failed || !fs::create_directory(path_, failed))
-      throw base::Error(path_.string(), failed ? failed.message() : "exists already",
+      throw base::Error(out.string(),
+                        "its temporary folder " + path_.string() +
+                            (failed ? " cannot be created: " + failed.message() : " exists already"),
                         "choose another folder, in which you may create files");
   }
   ~Draft() {
@@ -143,7 +145,8 @@ class Draft {
   void keep() {
     base::sync_folders(path_);
     if (!base::rename_durably(path_, out_))
-      throw base::Error(out_.string(), std::strerror(errno), "choose a folder that does not exist yet");
+      throw base::Error(out_.string(), std::string("cannot be created: ") + std::strerror(errno),
+                        "choose a folder that does not exist yet");
   }
 
  private:

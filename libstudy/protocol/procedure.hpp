@@ -15,7 +15,7 @@ namespace study {
 enum class ProcedureKind {
   Staircase,  ///< transformed or weighted up-down rule (Levitt 1971, Kaernbach 1991)
   QuestPlus,  ///< QUEST+ (Watson 2017)
-  Ptpe        ///< the setting whose rating is expected to say most about a and b (stats/ptpe/placement.hpp)
+  Ptpe        ///< settings near the contour that the ratings so far suggest (stats/ptpe/placement.hpp)
 };
 
 /// A track is the sequence of trials whose cells differ only in the level of `factor`. Each combination of
@@ -43,8 +43,8 @@ struct Procedure {
   std::vector<double> lapses{0, 0.02, 0.04};
   /// QuestPlus, Ptpe: a level is chosen at most this often in a track.
   int most_of_one = 1000;
-  /// QuestPlus, Ptpe: the first trials of a track show levels spread evenly over the factor. They allow
-  /// checks of the model that do not depend on the answers.
+  /// QuestPlus: the first trials of a track show levels spread evenly over the factor. Ptpe: they show the
+  /// standard deviations between the smallest and the largest. They allow checks of the model.
   int fixed = 0;
 };
 

@@ -133,7 +133,8 @@ HeadsetRules read_headset(const base::TomlTable& table) {
   }
   rules.hold_margin_deg = table.number_or("hold_margin_deg", 0, {0, 30});
   if (rules.hold != Hold::Image && rules.hold_margin_deg > 0)
-    table.fail("hold_margin_deg", "is for hold = \"image\"", "remove it");
+    table.fail("hold_margin_deg", "has an effect with hold = \"image\" only",
+               "remove it, or write hold = \"image\"");
   rules.world_scale = table.number_or("world_scale", 1, {0.01, 100});
   if (table.has("refresh_hz")) rules.refresh_hz = table.number("refresh_hz", {10, 1000});
   return rules;

@@ -153,7 +153,9 @@ void read_page(const base::TomlTable& table, Block& block) {
 
 void read_block_questions(const base::TomlTable& table, Block& block, const std::string& language) {
   if (any_of(block.kind, {BlockKind::Ssq, BlockKind::Fms}) && !language.starts_with("en")) {
-    table.fail("kind", "is available in English only",
+    table.fail("kind",
+               "= \"" + block_kind_name(block.kind) +
+                   "\" is available in English only, and the language is \"" + language + "\"",
                "write the items in your language as [[block.question]] of a block of kind question");
   }
   if (block.kind == BlockKind::Ssq) block.questions = ssq_questions(language);
@@ -189,7 +191,7 @@ void read_trials(const base::TomlTable& table, const Design& design, Block& bloc
   block.on_interruption = read_interruption(table);
   if (block.between_groups_s > 0 && design.groups == 1) {
     table.fail("between_groups_s", "has no effect: a participant sees only one group",
-               "remove it, or raise design.groups");
+               "remove it, or raise design.groups (format 2)");
   }
 }
 

@@ -12,6 +12,9 @@ namespace study {
 
 namespace {
 
+std::string in_words(double value) { return shown(value); }
+std::string in_words(const std::string& value) { return base::toml_quoted(value); }
+
 template <class Value>
 void check_distinct(const base::TomlTable& table, std::string_view key, std::vector<Value> values) {
   if (values.empty()) table.fail(key, "is empty", "name at least one value");
@@ -20,8 +23,9 @@ void check_distinct(const base::TomlTable& table, std::string_view key, std::vec
                "name at most " + std::to_string(most_cells));
   }
   std::sort(values.begin(), values.end());
-  if (std::adjacent_find(values.begin(), values.end()) != values.end())
-    table.fail(key, "holds a value twice", "name each value once");
+  const auto twice = std::adjacent_find(values.begin(), values.end());
+  if (twice != values.end())
+    table.fail(key, "holds a value twice: " + in_words(*twice), "name each value once");
 }
 
 std::vector<double> distinct_numbers(const base::TomlTable& table, std::string_view key, base::Range range) {

@@ -76,8 +76,9 @@ std::vector<EffectSet> read_tables(const base::TomlTable& design, const std::vec
                  "use another name, or remove the table");
     }
     if (std::find(levels.begin(), levels.end(), name) == levels.end()) {
-      table.fail("name", "= " + base::toml_quoted(name) + " is no level",
-                 "use a word that design.effects lists, or remove this table");
+      table.fail(
+          "name", "= " + base::toml_quoted(name) + " is no level",
+          "use a word that design.effects lists (format 3: that a key effects names), or remove this table");
     }
     if (std::any_of(out.begin(), out.end(), [&](const EffectSet& one) { return one.name == name; }))
       table.fail("name", "= " + base::toml_quoted(name) + " has a table already", "keep one of the two");
@@ -114,7 +115,7 @@ namespace {
 std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
   if (!design.has("effects")) {
     if (design.has("effect_set"))
-      design.fail("effect_set", "has no effect without the key effects",
+      design.fail("effect_set", "is not used, because the key effects is missing",
                   "write effects = [...] with its name");
     return {};
   }
@@ -165,7 +166,9 @@ double sequences_at_most(const Design& design) {
 void check_groups(const base::TomlTable& table, const Design& design) {
   const auto scenes = distinct_levels(design, [](const StimulusSpec& what) { return what.scene; });
   if (static_cast<std::size_t>(design.groups) > scenes) {
-    table.fail("groups", "are more than the " + std::to_string(scenes) + " scenes",
+    table.fail("groups",
+               "= " + std::to_string(design.groups) + " groups are more than the " + std::to_string(scenes) +
+                   " scenes",
                "use at most one group for each scene");
   }
   const double sequences = sequences_at_most(design);
@@ -195,7 +198,10 @@ void check_places(const base::TomlTable& table, const Design& design) {
   const double places =
       sequences_at_most(design) * (rows ? 2 * trials_of_group(design) : 1) * (design.pairs ? 64 : 1);
   if (places > most_places) {
-    table.fail("order", "and the sequences of groups give up to " + shown(places) + " slots to balance",
+    table.fail("order",
+               "and the sequences of groups give up to " + shown(places) +
+                   " different sessions to balance over the participants; at most " + shown(most_places) +
+                   " are counted",
                "use order = \"shuffle\", or name fewer scenes, n_* or cells");
   }
 }

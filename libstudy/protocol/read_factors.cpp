@@ -95,7 +95,7 @@ ReadFactor read_factor(const base::TomlTable& table) {
 std::vector<ReadFactor> read_factors(const base::TomlTable& root) {
   const auto tables = root.tables("factor");
   if (tables.empty() || tables.size() > most_factors)
-    root.fail("factor", "stands " + std::to_string(tables.size()) + " times",
+    root.fail("factor", "appears " + std::to_string(tables.size()) + " times",
               "write 1 to " + std::to_string(most_factors) + " tables [[factor]]");
   std::vector<ReadFactor> out;
   std::map<std::string, std::string> setter;  // by key: factor that sets it
@@ -148,14 +148,14 @@ int level_index(const base::TomlTable& table, const DesignFactor& factor) {
 std::vector<std::vector<int>> listed(const base::TomlTable& root, const std::vector<ReadFactor>& factors) {
   const auto tables = root.tables("combination");
   if (tables.size() > most_cells)
-    root.fail("combination", "stands " + std::to_string(tables.size()) + " times",
-              "write at most " + std::to_string(most_cells));
+    root.fail("combination", "appears " + std::to_string(tables.size()) + " times",
+              "write at most " + std::to_string(most_cells) + " tables [[combination]]");
   std::vector<std::vector<int>> out;
   for (std::size_t i = 0; i < tables.size(); ++i) {
     std::vector<int> levels;
     for (const ReadFactor& factor : factors) levels.push_back(level_index(tables[i], factor.factor));
     if (std::find(out.begin(), out.end(), levels) != out.end())
-      root.fail_at("combination", i, "is there already", "list each combination once");
+      root.fail_at("combination", i, "repeats an earlier combination", "list each combination once");
     out.push_back(levels);
   }
   for (std::size_t f = 0; f < factors.size(); ++f) {

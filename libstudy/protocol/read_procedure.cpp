@@ -97,11 +97,15 @@ void read_staircase(const base::TomlTable& table, const Design& design, Procedur
 
 void read_guards(const base::TomlTable& table, std::size_t levels, Procedure& out) {
   out.fixed = static_cast<int>(table.integer_or("fixed", 0, {0, 500}));
-  if (out.fixed > out.trials) table.fail("fixed", "exceeds trials", "use at most trials");
+  if (out.fixed > out.trials)
+    table.fail("fixed", "= " + std::to_string(out.fixed) + " exceeds trials = " + std::to_string(out.trials),
+               "use at most " + std::to_string(out.trials));
   out.most_of_one = out.trials;
   if (table.has("most_of_one")) out.most_of_one = static_cast<int>(table.integer("most_of_one", {1, 500}));
   if (static_cast<std::size_t>(out.most_of_one) * levels < static_cast<std::size_t>(out.trials))
-    table.fail("most_of_one", "allows fewer than " + std::to_string(out.trials) + " trials",
+    table.fail("most_of_one",
+               "= " + std::to_string(out.most_of_one) + " for each of " + std::to_string(levels) +
+                   " levels allows fewer than " + std::to_string(out.trials) + " trials",
                "raise it, or lower trials");
 }
 
@@ -109,7 +113,9 @@ void read_quest(const base::TomlTable& table, Procedure& out) {
   const std::string form = table.choice_or("form", "weibull", {"normal", "logistic", "weibull"});
   out.form = *stats::psychometric_form(form);
   if (out.form == stats::PsychometricForm::Weibull && out.values.front() <= 0)
-    table.fail("form", "= \"weibull\" needs values above 0", "use form = \"normal\", or remove that level");
+    table.fail("form",
+               "= \"weibull\" needs values above 0, and the lowest level has " + shown(out.values.front()),
+               "use form = \"normal\", or remove that level");
   out.guess = table.number_or("guess", 0, {0, 0.9});
   if (table.has("lapse")) out.lapses = table.numbers("lapse", 0, {0, 0.2});
   if (out.lapses.empty()) table.fail("lapse", "is empty", "write at least one lapse rate, such as 0.02");
@@ -159,10 +165,13 @@ Procedure read_procedure(const base::TomlTable& table, const Design& design) {
              : kind == "quest_plus" ? ProcedureKind::QuestPlus
                                     : ProcedureKind::Ptpe;
   if (design.repetitions > 1)
-    table.fail("kind", "chooses the trials itself, and design.repetitions repeats cells",
+    table.fail("kind",
+               "= \"" + kind + "\" chooses the trials itself, so design.repetitions = " +
+                   std::to_string(design.repetitions) + " cannot repeat cells",
                "remove repetitions");
   if (design.order != TrialOrder::Shuffle)
-    table.fail("kind", "interleaves its tracks at random", "write order = \"shuffle\" in [design]");
+    table.fail("kind", "= \"" + kind + "\" interleaves its tracks at random, so it needs order = \"shuffle\"",
+               "write order = \"shuffle\" in [design]");
   out.factor = read_factor_index(table, design);
   out.question = id_of(table, "question");
   out.trials = static_cast<int>(table.integer("trials", track_range));
@@ -210,7 +219,7 @@ void check_procedure_question(const base::TomlTable& table, const Design& design
       table.fail(
           "question",
           "= " + base::toml_quoted(procedure.question) + " has " + std::to_string(scores.size()) + " answers",
-          "give it two");
+          "give it two answers");
     if (procedure.positive && !can_be_given(*found, *procedure.positive))
       table.fail("positive", "= " + std::to_string(*procedure.positive) + " is no answer of that question",
                  "use " + std::to_string(scores.front()) + " or " + std::to_string(scores.back()));

@@ -36,9 +36,9 @@ chosen is never stored as a state: it follows from the answers, so a resumed ses
 |---|---|---|
 | staircase | one step down after `down_after` positive answers in a row, up after `up_after` others (Levitt 1971); with up_ratio a weighted rule (Kaernbach 1991) | axis, positive, start, steps, down_after, up_after, up_ratio, fast_start |
 | quest_plus | the level whose answer is expected to say most about threshold, slope and lapse rate (Watson 2017) | axis, positive, form, guess, lapse, fixed, most_of_one |
-| ptpe | the frame rate whose rating is expected to say most about a and b of tau | fixed, most_of_one |
+| ptpe | a frame rate near the contour that the ratings so far suggest, above and below it in turn, at the smallest and the largest standard deviation in turn | fixed, most_of_one |
 
-`fixed` trials at levels spread evenly come first: they keep checks of the model possible. A session has no block
+`fixed` trials come first: they keep checks of the model possible. A session has no block
 of kind repeat then; catch pages are possible.)"},
       {"combination", "[[combination]]",
        "Format 3: one cell each, instead of all combinations. Every level occurs at least once."},

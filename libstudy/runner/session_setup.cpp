@@ -27,7 +27,8 @@ std::unique_ptr<Clock> make_clock(const std::string& word) {
 
 void check_together(const RunOptions& options, const Protocol& protocol) {
   if (!options.answer.empty() && (options.display != "openxr" || !options.observer.empty()))
-    throw base::Error("--answer", "is for a person in a headset", "leave it out, or use --display openxr");
+    throw base::Error("--answer", "is for a person in a headset",
+                      "leave it out, or use --display openxr without an --observer");
   if (options.gaze == "head" && options.display != "openxr")
     throw base::Error("--gaze head", "needs a headset", "use --gaze fixed, or --display openxr");
   if (options.gaze == "tracked" && options.display == "openxr" && !asks_gaze(protocol))

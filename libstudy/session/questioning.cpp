@@ -1,6 +1,7 @@
 #include "libstudy/session/questioning.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "stats/base/error.hpp"
 
@@ -20,9 +21,10 @@ void check_answers(std::span<const Question> questions, std::span<const TimedAns
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (is_valid(questions[i], answers[i].answer)) continue;
+    const auto& score = answers[i].answer.score;
     throw base::Error(
         "question '" + questions[i].id + "'",
-        "got an answer that is outside its scale, or none although one is required",
+        score ? "got score " + std::to_string(*score) + ", which it does not take" : "got no valid answer",
         "correct the observer model or the page that answered; the protocol has the question's scale");
   }
 }

@@ -164,7 +164,8 @@ BakedParticles::BakedParticles(std::unique_ptr<sim::BakeReader> bake, Viewing vi
       options_(options),
       painted_(painted(scene_, paint_temperature && bake_->header().reference_k)) {
   if (sim::any_free(scene_.obstacles))
-    throw base::Error(description(), "do not store the free obstacles of their scene",
+    throw base::Error(description(),
+                      "is a bake of particles, which does not store the free obstacles of its scene",
                       "show a bake of pictures, or the live fluid");
 }
 

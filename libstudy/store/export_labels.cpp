@@ -117,8 +117,9 @@ std::vector<LabelledSession> shared_sessions(Connection& database) {
                 "WHERE h.granted IS NOT 0 ORDER BY s.participant, s.session_id");
   while (row.step()) {
     if (row.is_null(4) || row.is_null(5)) {
-      throw base::Error(database.path().string(), "has no label for participant " + row.text(1),
-                        "export again: a session was planned meanwhile");
+      throw base::Error(database.path().string(),
+                        "has no export label for participant " + row.text(1) + " or for their protocol",
+                        "export again; if this repeats, report it");
     }
     const std::string protocol = row.text(5);
     sessions.push_back({.id = row.integer(0),

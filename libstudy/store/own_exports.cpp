@@ -92,12 +92,12 @@ void change(const std::function<void(std::vector<OwnExport>&)>& how) {
   const fs::path file = own_exports_file();
   if (file.empty()) {
     throw base::Error("the register of exports", "has no folder",
-                      "set XDG_STATE_HOME or HOME to a folder that you may write to");
+                      "set VIP_STATE_DIR to a folder that you may write to");
   }
   base::make_folder_of(file.parent_path());
   if (::mkdir(file.parent_path().c_str(), 0700) != 0 && !fs::is_directory(file.parent_path()))
-    throw base::Error(file.string(), "cannot be made",
-                      "set XDG_STATE_HOME to a folder that you may write to");
+    throw base::Error(file.parent_path().string(), "cannot be created as a folder",
+                      "set VIP_STATE_DIR to a folder that you may write to");
   const base::FileLock lock(file);
   std::vector<OwnExport> all = read_all(file);
   how(all);

@@ -86,7 +86,8 @@ void recognise(Connection& database, Open how) {
 
 /// The text does not offer to salvage the file, since a sweep can be computed again.
 [[noreturn]] void refuse_damaged(const std::filesystem::path& path) {
-  throw base::Error(path.string(), "is damaged or cut short", "name another file; its cells can be run anew");
+  throw base::Error(path.string(), "is damaged or cut short",
+                    "name another file, and run the cells of the sweep again into it");
 }
 
 StoredCell read_cell(const Statement& row) {

@@ -88,7 +88,8 @@ fs::path find_input(const fs::path& path) {
   const fs::path shipped = path.is_relative() ? resource(path.string()) : path;
   if (fs::exists(shipped, ignored)) return shipped;
   throw Error(path.string(), "does not exist",
-              "check the path (also looked for at " + shipped.string() + ")");
+              path.is_relative() ? "check the path (also looked for at " + shipped.string() + ")"
+                                 : std::string("check the path"));
 }
 
 std::string sha256_hex(std::string_view bytes) {

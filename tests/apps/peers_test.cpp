@@ -70,7 +70,7 @@ TEST_F(Peers, AMalformedFileIsNamedWithItsLine) {
   const std::string good = "A,PBF,32768,0.005,4,cpu,2,73,0.61,somewhere\n";
   EXPECT_THAT(error_of(""), HasSubstr(file + ":1"));
   EXPECT_THAT(error_of("program,ms\n"), HasSubstr(file + ":1"));
-  EXPECT_THAT(error_of(head), HasSubstr(file + ":2: no peer"));
+  EXPECT_THAT(error_of(head), HasSubstr(file + ":2: the first row of a peer"));
   EXPECT_THAT(error_of(head + good + "\n"), HasSubstr(file + ":3: has 1 cells"));
   for (const auto& [row, name] : std::initializer_list<std::pair<const char*, const char*>>{
            {"A,PBF,32768,0.005,4,cpu,2,73,0.61,some,where", "has 11 cells"},

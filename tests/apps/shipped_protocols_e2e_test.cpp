@@ -23,7 +23,7 @@ using report_walk::Json;
 using ::testing::IsEmpty;
 
 const std::filesystem::path protocols = std::filesystem::path(VIP_TEST_DIR).parent_path() / "protocols";
-constexpr int people = 3;
+constexpr int people = 4;  // two for each level of a between-subject factor
 
 struct Walk {
   std::string protocol, observer;
@@ -41,11 +41,35 @@ std::vector<Walk> walks() {
   std::vector<Walk> out{{"task2_lab", "random"}};
   for (const auto& entry : std::filesystem::directory_iterator(protocols)) {
     const std::string name = entry.path().stem();
-    if (entry.path().extension() == ".toml")
-      out.push_back({name, name.starts_with("task1") ? "frames" : "ptpe:a=24,b=0.02"});
+    if (entry.path().extension() != ".toml") continue;
+    const bool detects = name.starts_with("hitch") || name.starts_with("trace");
+    out.push_back({name, name.starts_with("task1")   ? "frames"
+                         : name.starts_with("trace") ? "detect:latency_ms,threshold=60"
+                         : detects                   ? "detect:hitch_ms,threshold=80,spread=0.2"
+                                                     : "ptpe:a=24,b=0.02"});
   }
   std::sort(out.begin() + 1, out.end(), [](const Walk& a, const Walk& b) { return a.protocol < b.protocol; });
   return out;
+}
+
+/// The results of a study with factors by its shipped plan: every declared test has its figures, and what the
+/// plan does not declare is called exploratory.
+void expect_study(const std::string& protocol, const std::string& database,
+                  const std::filesystem::path& folder) {
+  const auto plan = protocols / "plans" / (protocol + ".toml");
+  if (!std::filesystem::exists(plan)) return;
+  const Ended ended =
+      run_shell(VIP_BIN_DIR "/vip-stats study " + database + " --plan " + plan.string() + " --json " +
+                (folder / "study.json").string() + " --html " + (folder / "study.html").string());
+  ASSERT_EQ(ended.exit_code, 0) << ended.out;
+  const Json json = Json::parse(base::read_file(folder / "study.json", 1 << 24));
+  ASSERT_FALSE(json.at("hypotheses").empty());
+  for (const auto& one : json.at("hypotheses")) {
+    EXPECT_FALSE(one.at("estimate").is_null()) << one.dump();
+    EXPECT_TRUE(one.at("p_adjusted").is_number()) << one.dump();
+  }
+  EXPECT_FALSE(json.at("descriptives").empty());
+  EXPECT_EQ(json.at("participants").size(), static_cast<std::size_t>(people));
 }
 
 class ShippedProtocolsE2e : public ::testing::TestWithParam<Walk> {};
@@ -82,6 +106,7 @@ TEST_P(ShippedProtocolsE2e, GoFromCheckToReport) {
     }
   }
   EXPECT_FALSE(described.empty());
+  expect_study(GetParam().protocol, database, folder.path());
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, ShippedProtocolsE2e, ::testing::ValuesIn(walks()),

@@ -196,8 +196,8 @@ TEST_F(PairedCells, FilesThatHoldNoPicturesAreRefusedByLine) {
   };
   EXPECT_THAT(refused("scene,method\n"), HasSubstr("is no table of single pictures"));
   EXPECT_THAT(refused(csv + "Pond,1k,tuned,LoRes,x,abc,1,1,1,1,1,1,1\n"),
-              HasSubstr("then.csv:10: is no row"));
-  EXPECT_THAT(refused(csv + "Pond,1k\n"), HasSubstr("then.csv:10: is no row"));
+              HasSubstr("then.csv:10: is not a row"));
+  EXPECT_THAT(refused(csv + "Pond,1k\n"), HasSubstr("then.csv:10: is not a row"));
   EXPECT_THAT(refused(csv + csv.substr(csv.find('\n') + 1)),
               HasSubstr("then.csv:10: names a picture a second"));
 }

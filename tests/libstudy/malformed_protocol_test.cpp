@@ -157,7 +157,7 @@ const Malformed effects[] = {
     {foam, "keep = [\"foam\"] ", "effect = [{kind = \"foam\", emission_per_s = \"much\"}] ",
      "emission_per_s = |\"much", "number", "write"},
     {foam, "effects = [\"none\", \"foam\"]\n", "", "|[[design.effect_set]]",
-     "has no effect without the key effects", "effects = [...]"},
+     "is not used, because the key effects is missing", "effects = [...]"},
     {pilot, "order = \"shuffle\"", "order = \"constrained\"\nnever_adjacent = [\"effects\"]", "|\"effects\"]",
      "is no factor of this design", "effects = [...]"}};
 INSTANTIATE_TEST_SUITE_P(Effects, MalformedProtocol, testing::ValuesIn(effects));

@@ -200,7 +200,8 @@ void run_accuracy(const AccuracyOptions& options) {
                                  {"--html", options.html},
                                  {"--out", options.out}});
   if (!options.out.empty() && options.cell.empty() && options.budget.empty())
-    throw base::Error("--out", "belongs to --cell or --budget", "give one of them");
+    throw base::Error("--out " + options.out, "is written by --cell or --budget only, and neither is given",
+                      "add one of them, or leave --out out");
   const Job job = job_of(options);
   if (options.list) return print_list(job);
   if (!options.cell.empty()) return run_one(job, options);

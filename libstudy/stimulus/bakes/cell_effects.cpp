@@ -51,8 +51,9 @@ Listed kept(const base::TomlTable& set, std::size_t place, const std::vector<Lis
   if (!lists(listed, kind)) {
     set.fail_at(
         "keep", place,
-        std::string("= ") + base::toml_quoted(sim::traits_of(kind).word) + " is no effect of scene " + scene,
-        "list it in the scene's file, or write it as [[design.effect_set.effect]]");
+        std::string("= ") + base::toml_quoted(sim::traits_of(kind).word) + " is no effect of scene " + scene +
+            " (it is not listed there, or with the value 0)",
+        "list it in the scene's file with a value above 0, or write it as [[design.effect_set.effect]]");
   }
   return *std::find_if(listed.begin(), listed.end(), [&](const Listed& one) { return one.kind == kind; });
 }
@@ -110,9 +111,13 @@ void check_needs(const base::TomlTable& set, const std::vector<Effect>& kept,
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const EffectKind needs = sim::traits_of(kept[i].kind).needs;
     if (needs == sim::no_effect || lists(all, needs)) continue;
-    const std::string other = sim::traits_of(needs).word;
-    set.fail_at("keep", i, "needs " + other + ", which is missing",
-                "keep " + other + " too, or remove this effect");
+    const std::string word = sim::traits_of(kept[i].kind).word, other = sim::traits_of(needs).word;
+    const auto words = set.strings("keep");  // may also name effects of the picture, which `kept` lacks
+    const auto at = std::find(words.begin(), words.end(), word) - words.begin();
+    set.fail_at(
+        "keep", static_cast<std::size_t>(at),
+        "= " + base::toml_quoted(word) + " needs " + other + ", which is missing or has the coefficient 0",
+        "keep " + other + " too, or remove this effect");
   }
 }
 
@@ -164,11 +169,15 @@ void check_levels(const Protocol& protocol, const sim::Scene& scene) {
                                 sim::format_picture_effects(of.picture.value_or(scene.picture_effects));
     const auto same = std::find(held.begin(), held.end(), effects);
     if (same != held.end()) {
-      design_of(protocol).fail_at("effects", held.size(),
-                                  "= \"" + level.name + "\"" + same_as + "\"" +
-                                      levels[static_cast<std::size_t>(same - held.begin())].name +
-                                      "\" in scene " + scene.name,
-                                  "remove one of the two, or give them different effects");
+      const std::string twin = same_as + ("\"" + levels[static_cast<std::size_t>(same - held.begin())].name) +
+                               "\" in scene " + scene.name;
+      constexpr const char* mend = "remove one of the two, or give them different effects";
+      const base::TomlTable design = design_of(protocol);
+      if (design.has("effects"))
+        design.fail_at("effects", held.size(), "= \"" + level.name + "\"" + twin, mend);
+      // In format 3 the levels of factors name the effects.
+      base::parse_toml(protocol.text, protocol.place)
+          .fail("stimulus", "or a level names effects = \"" + level.name + "\", which" + twin, mend);
     }
     held.push_back(effects);
   }

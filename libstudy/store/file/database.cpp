@@ -43,7 +43,9 @@ class PrivateFolder {
  public:
   PrivateFolder() : path_((fs::temp_directory_path() / "vip-study-XXXXXX").string()) {
     if (!::mkdtemp(path_.data()))
-      throw base::Error(path_, "cannot be made a folder", "set TMPDIR to a folder that you may write to");
+      throw base::Error(path_,
+                        std::string("cannot be created as a temporary folder: ") + std::strerror(errno),
+                        "set TMPDIR to a folder that you may write to");
   }
   ~PrivateFolder() {
     std::error_code ignored;
@@ -77,8 +79,10 @@ void copy_parts(const fs::path& path, const fs::path& copy) {
     create_private(to);
     fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
     if (error)
-      throw base::Error(from.string(), "cannot be read: " + error.message(),
-                        "copy the database and the files beside it to a folder that you own");
+      throw base::Error(from.string(),
+                        "cannot be copied to the temporary file " + to.string() + ": " + error.message(),
+                        "copy the database and the files beside it to a folder that you own, or set TMPDIR "
+                        "to a folder with free space");
     make_private(to);
   }
 }
@@ -94,6 +98,7 @@ std::unique_ptr<Connection> snapshot(const fs::path& path) {
     copy_parts(path, copied);
     if (state_of(path) != before) continue;
     Connection whole(copied, sqlite::Open::Write);
+    whole.show_as(path);
     auto held = std::make_unique<Connection>(path, sqlite::Temporary{});
     held->copy_from(whole);
     return held;
@@ -145,7 +150,8 @@ void recognise(const fs::path& path, const Identity& found, Open how, std::size_
   }
   if (found.application != database_application_id) {
     throw base::Error(path.string(), "is not a database of vip-study",
-                      "name the file that vip-study run wrote, or a new file");
+                      std::string("name the file that vip-study run wrote") +
+                          (how == Open::Create ? ", or a new file" : ""));
   }
   if (found.version > static_cast<std::int64_t>(newest)) {
     throw base::Error(path.string(),

@@ -311,7 +311,7 @@ void Connection::abandon(const std::string& trouble) {
 }
 
 void Connection::save_as(const fs::path& path) {
-  if (!create_private(path)) throw base::Error(path.string(), "is there already", "");
+  if (!create_private(path)) throw base::Error(path.string(), "exists already", "move it to another folder");
   try {
     Connection copy(path, Open::Write);
     copy.copy_from(*this);

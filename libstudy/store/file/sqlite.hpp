@@ -64,6 +64,8 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  /// Lets errors name `path` instead of the file that was opened, for a temporary copy of the file at `path`.
+  void show_as(const std::filesystem::path& path) { path_ = path; }
 
   /// The first 100 bytes of the file, or fewer if the file is shorter. Called before any other function of
   /// the connection, it neither reads nor changes the file's log or journal.

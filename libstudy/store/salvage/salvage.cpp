@@ -260,20 +260,23 @@ void fill(Connection& target, Connection* sound, const Damaged& damaged, const J
   transaction.commit();
 }
 
-void check(Connection& made) {
-  const std::string found = made.text("PRAGMA integrity_check(1)");
+void check(Connection& made, const fs::path& database) {
+  std::string found = made.text("PRAGMA integrity_check(1)");
   Statement lost(made, "PRAGMA foreign_key_check");
   if (found == "ok" && !lost.step()) return;
-  throw base::Error(made.path().string(), "was rebuilt and is not sound: " + found,
-                    "report this with the damaged file");
+  if (found == "ok") found = "a row of " + lost.text(0) + " refers to a missing row of " + lost.text(2);
+  throw base::Error(
+      database.string(),
+      "cannot be rebuilt: the new file failed SQLite's check and was deleted (" + found + ")",
+      "restore a backup of the database, and report this with its file and its journal of answers");
 }
 
 /// Copies the log into the database file and removes the log, because only the file becomes the result.
 /// Closing the database would do the same, but would not report a failure.
-void leave_no_log(Connection& made) {
+void leave_no_log(Connection& made, const fs::path& into) {
   made.unwatch();
   if (made.text("PRAGMA journal_mode = DELETE") == "delete") return;
-  throw base::Error(made.path().string(), "its log cannot be copied back into it",
+  throw base::Error(into.string(), "cannot be written: the log of the rebuilt data cannot be copied into it",
                     "free space on the disk, and run the command again");
 }
 
@@ -310,8 +313,8 @@ Salvage salvage(const fs::path& database, const fs::path& into) {
                         "restore a backup of it or of " + journal_beside(database).string() +
                             ", from which a lost database can be rebuilt");
     }
-    check(*target);
-    leave_no_log(*target);
+    check(*target, database);
+    leave_no_log(*target, into);
   }
   put_in_place(made, into);
   const auto finished = open_database(into, Open::Write, read_schema_steps());

@@ -158,7 +158,7 @@ TEST(BakeFile, AccountsThatCannotBeAreRefused) {
   EXPECT_EQ(error_with([](Account&) {}), "");
   EXPECT_THAT(error_with([](Account& a) { a.temporal->tau = NAN; }), HasSubstr("not finite"));
   EXPECT_THAT(error_with([](Account& a) { a.temporal->beta = 1.5; }), HasSubstr("outside 0 to 1"));
-  EXPECT_THAT(error_with([](Account& a) { a.temporal->active = 11; }), HasSubstr("more particles solved"));
+  EXPECT_THAT(error_with([](Account& a) { a.temporal->active = 11; }), HasSubstr("particles were solved"));
   EXPECT_THAT(error_with([](Account& a) { a.guards->gaze_lost = UINT64_MAX; }),
               HasSubstr("impossible number of guard cases"));
 }

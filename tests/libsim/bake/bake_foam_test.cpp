@@ -89,8 +89,8 @@ TEST(BakeFoam, DamagedFoamIsRefused) {
   EXPECT_EQ(error_with([](Foam& foam) { foam.clear(); }), "");
   EXPECT_THAT(error_with([](Foam& foam) { foam.push_back(foam[0]); }),
               HasSubstr("states 25 particles of foam"));
-  EXPECT_THAT(error_with([](Foam& foam) { foam[3].y_m = NAN; }), HasSubstr("no radius above 0"));
-  EXPECT_THAT(error_with([](Foam& foam) { foam[3].radius_m = 0; }), HasSubstr("no radius above 0"));
+  EXPECT_THAT(error_with([](Foam& foam) { foam[3].y_m = NAN; }), HasSubstr("radius is not above 0"));
+  EXPECT_THAT(error_with([](Foam& foam) { foam[3].radius_m = 0; }), HasSubstr("radius is not above 0"));
 }
 
 TEST(BakeFoam, AFrameWithoutItsFoamIsNotWritten) {
