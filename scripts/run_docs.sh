@@ -18,7 +18,7 @@ export VIP_STATE_DIR=$out/state  # no export of theirs in the register of whoeve
 # (the command, but not in a quick run).
 table="
 README.md|./scripts/test.sh|skip|it is what runs this|.ci/run
-README.md|vip-study run|person||
+README.md|vip-study run protocols/ptpe_pilot.toml|person||
 docs/methods.md|vip-view --headless data/scenes/boat.toml|s/frames 61 --every 60/frames 3 --every 2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/crates.toml|s/frames 81 --every 80/frames 3 --every 2/; s/800x600/160x120/|it takes minutes on two cores|
 docs/methods.md|vip-view --headless data/scenes/hot_jet.toml|s/4k/64/|it takes minutes on two cores|

@@ -35,7 +35,7 @@ study::Protocol read_again(const study::OpenRun& run, const std::string& place) 
     throw base::Error(
         place, "cannot be resumed: " + reason.substr(0, reason.find('\n')),
         "finish the sessions with the version of vip-study that began them; if this version upgraded the "
-        "database, use its copy with the ending .bak; status, export and vip-stats still read it");
+        "database, use its copy with the ending .bak; it can still be read by status, export and vip-stats");
   }
 }
 

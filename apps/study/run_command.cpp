@@ -255,7 +255,8 @@ void add_run_command(CLI::App& app) {
   add_count(sub, "--visit", command->visit, 1, 1000, "Visit of these participants under this protocol");
   sub.add_option(
       "--observer", command->run.observer,
-      "Simulated observer: ptpe:a=31,b=0.035, frames, random, constant:4 or dropout:0.2; without: a person");
+      "Simulated observer: ptpe:a=31,b=0.035, detect:hitch_ms,threshold=80, frames, random, constant:4 or "
+      "dropout:0.2; without: a person");
   sub.add_option("--clock", command->run.clock,
                  "Play in real time (default of a person), or without waiting (default of an observer)")
       ->check(CLI::IsMember({"real", "virtual"}));

@@ -13,7 +13,7 @@ _vip_lab() {
   fi
   if [ -z "$words" ] && { [ "$before" = --protocol ] || grep -q '^  protocols\? ' <<<"$help"; } && [[ $word != */* ]]; then
     share=$(dirname "$(readlink -f "$(type -P "$program")")")/../share/vip-lab
-    words=$(find "$share/protocols" -name '*.toml' -printf '%f\n' 2>/dev/null | sed 's/\.toml$//')
+    words=$(find "$share/protocols" -maxdepth 1 -name '*.toml' -printf '%f\n' 2>/dev/null | sed 's/\.toml$//')
     compopt -o default 2>/dev/null
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word"; compgen -f -- "$word")
     return 0

@@ -30,7 +30,8 @@ void MeetingCells::lay(const Domain& domain, float edge, float finest_support) {
   const auto count = [&](float length) { return static_cast<int>(count_along(length, edge)); };
   const Vec3 size = domain.high - domain.low;
   grid = {{domain.low, edge}, {count(size.x), count(size.y), count(size.z)}};
-  // The 0.9999 prevents a cut by rounding errors of the length.
+  // Side of the last of n cells inside the tank, as a share of the edge. From 0.9999 on it counts as a whole
+  // cell: the missing part is only a rounding error of the length.
   const auto rest = [&](float length, int n) {
     const float left = length / edge - static_cast<float>(n - 1);
     return left > 0.9999f ? 1 : left;

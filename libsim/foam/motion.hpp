@@ -21,10 +21,10 @@ struct FoamRules {
   float dt = 0;  ///< duration of the frame, s
   Fall gravity{0};
   float rate = 0;  ///< volume of foam per second and volume of water at full potential, 1/s
-  /// Potential of trapped air, tau_ta, of a value in 1/s: the closing speed of two points in the water
-  /// divided by their distance.
+  /// Potential of trapped air, tau_ta. Its argument is the closing speed of two points in the water divided
+  /// by their distance, 1/s.
   Potential approach{};
-  /// Potential of wave crests, tau_wc, of a value in 1/m: the curvature of a moving crest.
+  /// Potential of wave crests, tau_wc. Its argument is the curvature of a moving crest, 1/m.
   Potential crest{};
   /// Weight of crests: the surface of a full crest emits as much as water of this depth whose potential of
   /// trapped air is 1, m.

@@ -34,8 +34,9 @@ struct Neighbours {
   const int* store;
   int capacity;
   SIM_FN int size(int i) const { return count[i]; }
-  /// Number of neighbours that fit in a list's own space. The last entry of this space is no neighbour:
-  /// neighbours that do not fit are written there and ignored.
+  /// Number of neighbours that fit in a list's own space. Its last entry is never read as a neighbour: on the
+  /// CPU the search writes all surplus neighbours there. A longer list is then searched again and written to
+  /// the store.
   SIM_FN int room() const { return capacity - 1; }
   SIM_FN std::size_t place(int i, int k) const {
     const int group = i / list_interleave;

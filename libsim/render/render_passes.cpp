@@ -101,7 +101,8 @@ FluidRenderer::State::State(const Scene& scene, const RenderOptions& chosen)
                                 (defines_of(scene) + (floor_light ? "#define LIT_FLOOR\n" : "")).c_str())),
       splat_foam_program(foam ? compute_program("foam_splat.comp", defines_of(scene).c_str()) : GlProgram()),
       obstacles(scene.obstacles) {
-  // On llvmpipe an invocation is a SIMD lane: work groups of one footprint only add overhead.
+  // llvmpipe runs invocations as SIMD lanes, so a whole work group for one small footprint is slower. There
+  // one invocation draws footprints of up to 64 px, else of up to 16 px.
   if (options.thread_px == 0) options.thread_px = std::min(gl_is_software() ? 64 : 16, options.group_px);
   counters.reserve(sizeof(RenderCounts));
   counters.fill(0);

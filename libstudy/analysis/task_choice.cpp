@@ -134,7 +134,19 @@ const char* task_title(TaskKind task) {
   return "Own design";
 }
 
+namespace {
+
+/// True for a protocol of format 3, which vip-stats study analyses. A placement for the PTPE is a pilot.
+bool has_own_factors(const TaskProtocol& protocol) {
+  if (!protocol.whole || protocol.whole->design.factors.empty()) return false;
+  const auto& procedure = protocol.whole->design.procedure;
+  return !procedure || procedure->kind != ProcedureKind::Ptpe;
+}
+
+}  // namespace
+
 TaskKind kind_of(const TaskProtocol& protocol) {
+  if (has_own_factors(protocol)) return TaskKind::Own;
   if (protocol.pairs) {
     const bool of_methods = protocol.methods.size() > 1 && asks(protocol, is_choice_of_two);
     return of_methods ? TaskKind::Task2 : TaskKind::Own;

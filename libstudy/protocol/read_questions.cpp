@@ -175,7 +175,9 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   question.required = table.boolean_or("required", traits_of(question.kind).required);
   if (!traits_of(question.kind).scored) {
     if (block == BlockKind::Catch)
-      table.fail("kind", std::string("= \"") + traits_of(question.kind).word + "\" gives no score to expect",
+      table.fail("kind",
+                 std::string("= \"") + traits_of(question.kind).word +
+                     "\" has no score, and a question in a block of kind catch needs one",
                  "use " + kind_words([](const AnswerKindTraits& one) { return one.scored; }, " or "));
     return question;
   }

@@ -94,7 +94,9 @@ const std::vector<KeyReference>& protocol_reference() {
       {"stimulus.timing", "smoothed", "true or false", "", "false",
        "true: as many frames in the same time, all equally long"},
       {"stimulus.timing", "latency_ms", "number", "[0, 10000]", "0",
-       "the content lags behind by this constant, ms"},
+       "the content lags behind by this constant: it stands still until the lag has passed, then elapses as "
+       "usual. "
+       "Without an event to compare it with, a viewer sees the still picture alone, ms"},
       {"stimulus.timing", "animation_error_ms", "number", "[0, 1000]", "0",
        "the step of the content differs from the step of the display by this much, alternately more and "
        "less, "
@@ -167,7 +169,7 @@ const std::vector<KeyReference>& protocol_reference() {
       {"design", "standard", "table", "", "all pairs",
        "format 3, with pairs: each trial shows this cell and another one, in an order dealt evenly"},
       {"design", "repetitions", "whole number", "[1, 200]", "1",
-       "format 3: trials of each cell, or pair, in a session"},
+       "format 3: trials of each cell, or pair, in a session; not with [procedure]"},
       {"design", "groups", "whole number", "[1, 100]", "1",
        "that a participant meets: different scenes, n_* spread as evenly as can be"},
       {"design", "order", "text", "\"shuffle\", \"latin\", \"williams\", \"constrained\"", "",
@@ -339,11 +341,11 @@ TOML. Units are in the keys: `_s` seconds, `_ms` milliseconds, `_fps` frames per
 wrong type, a value out of range and keys that contradict each other are errors at line and column. Every
 byte of a file enters the SHA-256 that is stored with the data.
 
-Format 3 describes a study of your own: factors with levels, timing profiles, adaptive procedures. Format 2 has
-fixed factors (scene, n_*, method, effects, frame rate), as the paper's studies do. To begin, copy a file from
-`protocols/` or the example below into a file of your own, change it, and run `vip-study check FILE` after each
-change; then `vip-study run FILE --participants 2 --db try.db --observer random --display none` plays it with
-simulated people.
+Format 3 describes a study of your own: factors with levels, timing profiles, adaptive procedures. Format
+2 has fixed factors (scene, n_*, method, effects, frame rate), as the paper's studies do. To begin, copy a
+file from `protocols/` or the example below into a file of your own, change it, and run `vip-study check
+FILE` after each change; then `vip-study run FILE --participants 2 --db try.db --observer random --display
+none` plays it with simulated people.
 
 ## An example
 

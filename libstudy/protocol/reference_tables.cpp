@@ -29,14 +29,20 @@ remains. latency_ms and animation_error_ms go with each profile and need `conten
 timing. All levels of a factor set the same keys, and no other factor sets them.)"},
       {"procedure", "[procedure]",
        R"(Format 3: adaptive trials. A track is a sequence of trials that differ only in the level of `factor`; each
-combination of the other within-subject levels has its own track, and tracks are interleaved at random. What was
-chosen is never stored as a state: it follows from the answers, so a resumed session continues exactly.
+combination of the other within-subject levels has its own track, and tracks are interleaved at random.
+What was chosen is never stored as a state: it follows from the answers, so a resumed session continues
+exactly.
 
 | kind | the next level | its keys |
 |---|---|---|
 | staircase | one step down after `down_after` positive answers in a row, up after `up_after` others (Levitt 1971); with up_ratio a weighted rule (Kaernbach 1991) | axis, positive, start, steps, down_after, up_after, up_ratio, fast_start |
 | quest_plus | the level whose answer is expected to say most about threshold, slope and lapse rate (Watson 2017) | axis, positive, form, guess, lapse, fixed, most_of_one |
 | ptpe | a frame rate near the contour that the ratings so far suggest, above and below it in turn, at the smallest and the largest standard deviation in turn | fixed, most_of_one |
+
+The threshold is a point of the psychometric function, which rises from guess to 1 - lapse: with form
+weibull the level at 63 % (1 - 1/e) of this rise, with normal and logistic the level at half of it. The
+shape is the exponent of the Weibull function, the standard deviation of the normal one, the scale of the
+logistic one.
 
 `fixed` trials come first: they keep checks of the model possible. A session has no block
 of kind repeat then; catch pages are possible.)"},

@@ -199,7 +199,8 @@ std::string descriptives_section(const Field& root) {
 std::string not_analysed_section(const Field& root) {
   std::vector<std::string> lines;
   for (const Field& one : root["not_analysed"].entries())
-    lines.push_back("<strong>" + words(one["what"]) + "</strong> of " + words(one["protocol"]) +
+    lines.push_back("<strong>" + words(one["what"]) + "</strong>" +
+                    (one["protocol"].words().empty() ? "" : " of " + words(one["protocol"])) +
                     " (not analysed): " + words(one["reason"]) + ".");
   if (lines.empty()) return "";
   return section("not-analysed", "Not analysed",

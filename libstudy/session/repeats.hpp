@@ -32,8 +32,9 @@ class Repeats {
   void pause(const Trouble& trouble);
 
   const Running& run_;
-  int cuts_ = 0;            ///< cuts of the trial since its start or the last pause
-  bool eyes_seen_ = false;  ///< valid gaze was measured since the session began or paused
+  int cuts_ = 0;  ///< cuts of the trial since its start or the last pause
+  bool eyes_seen_ =
+      false;  ///< no check of the eye tracker is due; reset by a pause and by a cut for lack of gaze
 };
 
 }  // namespace study

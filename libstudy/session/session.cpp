@@ -237,9 +237,13 @@ std::vector<std::int64_t> trial_intervals(const Protocol& protocol, const FpsSet
   const bool shown = found.feasibility == Feasibility::Exact ||
                      (found.feasibility == Feasibility::Approximate && protocol.accept_approximate);
   if (!shown) {
-    throw base::Error(protocol.name + " on " + display.description(),
-                      "setting " + setting_name(setting) + " cannot be shown: " + found.reason,
-                      "see vip-study check --refresh; use another display or accept_approximate = true");
+    const bool near = found.feasibility == Feasibility::Approximate;
+    throw base::Error(
+        protocol.name + " on " + display.description(),
+        "setting " + setting_name(setting) +
+            (near ? " can be shown only approximately: " : " cannot be shown: ") + found.reason,
+        near ? "use another display, or write accept_approximate = true in the protocol"
+             : "use another display or refresh; vip-study check --refresh HZ says what it can show");
   }
   return holds_ns(found.holds, display.measured_hz());
 }

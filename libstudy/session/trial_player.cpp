@@ -47,7 +47,9 @@ double animation_error_ms(const PlayedTrial& played, TimingGrade grade) {
   for (std::size_t i = 1; i < played.frames.size(); ++i) {
     const FrameRecord &a = played.frames[i - 1], &b = played.frames[i];
     const double simulated_s = b.facts.simulation_time_s - a.facts.simulation_time_s;
-    if (simulated_s < 0) continue;
+    // Content that lags stands still until the lag has passed.
+    const bool begun = b.facts.simulation_time_s > played.frames.front().facts.simulation_time_s;
+    if (simulated_s < 0 || !begun) continue;
     sum_s += std::abs(simulated_s -
                       1e-9 * static_cast<double>(placed_ns(b.times, grade) - placed_ns(a.times, grade)));
     ++count;

@@ -114,7 +114,8 @@ Objective deviance(MixedLikelihood& likelihood, const Rows& rows, double level) 
     MixedGradient slopes;
     const double value = likelihood.evaluate(scale.theta, location, p[Sd], slopes);
     std::fill(gradient.begin(), gradient.end(), 0.0);
-    // Derivatives for a shift of all thresholds, and of the thresholds above a gap.
+    // Derivatives of the log-likelihood with respect to a shift of all thresholds (shift) and of those above
+    // gap j (above). weight_above is minus the derivative of the expected rating with respect to the latter.
     double shift = 0, above = 0, weight_above = 0;
     for (const double g : slopes.thresholds) shift += g;
     for (std::size_t j = gaps; j-- > 0;) {

@@ -103,7 +103,7 @@ TEST_F(EffectsLevelsE2e, RefusesWhatHasNoLevels) {
   NEEDS_EFFECTS;
   const auto one = table("effects data/scenes/splash.toml --levels --n-star 64");
   EXPECT_EQ(one.exit_code, 1) << one.out;
-  EXPECT_THAT(one.out, HasSubstr("HiRes has one"));
+  EXPECT_THAT(one.out, HasSubstr("HiRes has only one"));
   const auto none = table("effects data/scenes/single_dam.toml --levels --method Ours --n-star 64");
   EXPECT_EQ(none.exit_code, 1) << none.out;
   EXPECT_THAT(none.out, HasSubstr("no effect that has a coarsest_level"));

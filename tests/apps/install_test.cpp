@@ -75,7 +75,7 @@ TEST_F(InstallE2e, BashCompletesCommandsOptionsChoicesAndProtocols) {
   EXPECT_THAT(offered_after(prefix, "vip-study run --part"), HasSubstr(" --participants --participant "));
   EXPECT_EQ(offered_after(prefix, "vip-study run x --clock ''"), " real virtual \n");
   EXPECT_EQ(offered_after(prefix, "vip-study run ptpe_pilot_"), " ptpe_pilot_lab \n");
-  EXPECT_EQ(offered_after(prefix, "vip-study bake --protocol foa"), " foam \n");
+  EXPECT_EQ(offered_after(prefix, "vip-study bake --protocol foam_"), " foam_worth \n");
   EXPECT_THAT(offered_after(prefix, "vip-view --head"), HasSubstr(" --headless "));
 }
 

@@ -113,7 +113,7 @@ TEST(SettingPrice, WhatMakesNoTableSaysWhy) {
   auto tables = study::sweep_tables(changed);
   EXPECT_TRUE(tables.tables.empty());
   EXPECT_THAT(tables.left_out, ElementsAre(HasSubstr("has changed since the sweep was run")));
-  EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), scene_sha256())), HasSubstr("another file"));
+  EXPECT_THAT(lines(study::prices_of(tables, hires_at(512), scene_sha256())), HasSubstr("has changed since the sweep was run"));
   auto begun = small_sweep();
   begun.erase(begun.begin());
   tables = study::sweep_tables(begun);

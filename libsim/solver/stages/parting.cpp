@@ -84,9 +84,9 @@ using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Colum
                                   columns(Column::Predicted, Column::PredictedNext, Column::Position,
                                           Column::VelocityNext, Column::Lambda, Column::Density)>;
 
-/// Separates the particles near fresh ones. Overlap that remains becomes speed in one substep, in proportion
-/// to d / dt. If gravity moves a particle by only a small share of its support in a substep, this speed is
-/// large compared with the water's speed. Then more particles move, in more projections.
+/// Separates the particles near fresh ones. An overlap of length d that remains becomes a speed of about d /
+/// dt in one substep. This speed is large compared with that of the water if gravity moves a particle by only
+/// a small share of its support in a substep. In that case more particles are moved, with more projections.
 template <class Selection>
 void launch(FluidState& state, PartingColumns p, Selection select) {
   auto& levels = state.levels;

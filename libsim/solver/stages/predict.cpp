@@ -52,9 +52,9 @@ struct Drive {
     velocity[i] = with_w(brake.limited(v, h, i), 0);
   }
 
-  /// Sets the velocity to zero. Moves the particle to the refuge if its position is not finite, or so far
-  /// outside that at limited speed the walls could not bring it back. The rest of the fluid never reads the
-  /// lost values.
+  /// Sets the velocity of a particle to zero if its velocity or its position is lost. A position is lost if
+  /// it is not finite, or so far outside that the walls could not bring it back at limited speed; then the
+  /// particle is moved to the refuge. The rest of the fluid never reads lost values.
   SIM_FN void quarantine(Vec3& x, Vec3& v, float h, int i) const {
     const bool far_outside = all_finite(x) && tank(walls).nearest(x) < -reach;
     const bool place_lost = far_outside || !all_finite(x);

@@ -42,8 +42,14 @@ std::string what_it_lacks(const TaskData& data) {
   return "protocol " + protocol.name + " " + lacks;
 }
 
+/// True if vip-stats study analyses the protocol. A table by scene and n_* would pool the levels of its
+/// factors.
+bool varies_own_factors(const TaskData& data) {
+  return data.task == TaskKind::Own && data.protocol.whole && !data.protocol.whole->design.factors.empty();
+}
+
 std::string why_not_analysed(const TaskData& data) {
-  if (data.protocol.whole && !data.protocol.whole->design.factors.empty())
+  if (varies_own_factors(data))
     return "protocol " + data.protocol.name + " has factors of its own: vip-stats study analyses it";
   return what_it_lacks(data) + ", so no shipped analysis covers it; its answers are described by cell";
 }
@@ -51,6 +57,7 @@ std::string why_not_analysed(const TaskData& data) {
 /// The analysis and the hypotheses that are left out for a design without a built-in analysis, with reasons.
 std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
   std::vector<stats::ShownClaims::LeftOut> out{{"own design", why_not_analysed(data)}};
+  if (varies_own_factors(data)) return out;
   const std::string lacks = what_it_lacks(data);
   if (data.protocol.methods.size() < 2) {
     out.push_back({"H1 to H6", lacks});
@@ -180,7 +187,8 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
     append(json["timing"], timing_json(part.data));
     append(json["response_times"], response_times_json(part.data));
     append(json["costs"], costs_json(part.data, request.sweep.get()));
-    append(json["descriptives"], descriptives_json(part.data, part.described));
+    if (!varies_own_factors(part.data))
+      append(json["descriptives"], descriptives_json(part.data, part.described));
     append(json["not_analysed"], not_analysed_json(part));
   }
   json["timing_totals"] = timing_totals_json(json["timing"]);

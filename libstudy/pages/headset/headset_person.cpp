@@ -84,11 +84,11 @@ class HeadsetSurface final : public PageSurface {
   int head_world_ = 0, page_world_ = 0;  ///< HeadsetRecord::world of head_ and of page_
   std::optional<HeadsetPage> page_;      ///< position of the shown page; none: no page
   Place pointer_;                        ///< pointer position, px of the page
-  Place stick_from_;                     ///< pointer position when the stick was pushed; hides the pointer
-  bool pressed_ = false;                 ///< true: the pointer's button is down
-  int clicks_ = 0;                       ///< calls of take_look() until a click by dwell is over
-  std::size_t hand_ = 1;                 ///< the hand that pointed last
-  std::int64_t used_ns_;                 ///< time of the last input, on the steady clock
+  Place stick_from_;      ///< pointer position when the stick was pushed; while set, no pointer is drawn
+  bool pressed_ = false;  ///< true: the pointer's button is down
+  int clicks_ = 0;        ///< calls of take_look() until a click by dwell is over
+  std::size_t hand_ = 1;  ///< the hand that pointed last
+  std::int64_t used_ns_;  ///< time of the last input, on the steady clock
 };
 
 constexpr double fade_s = 0.2;

@@ -135,7 +135,7 @@ TEST(BakeFile, HeadersThatCannotBeAreRefused) {
   EXPECT_THAT(error_with([](Header& h) { h.view.visual_angle_deg = NAN; }), HasSubstr("eye's view"));
   EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path[1].frame = -1; }), HasSubstr("gaze"));
   EXPECT_THAT(error_with([](Header& h) { h.view.gaze_path.resize(2000); }), HasSubstr("2000 gaze keys"));
-  EXPECT_THAT(error_with([](Header& h) { h.tolerance->model.b = NAN; }), HasSubstr("tolerance"));
+  EXPECT_THAT(error_with([](Header& h) { h.tolerance->model.b = NAN; }), HasSubstr("b of the PTPE model"));
   EXPECT_THAT(error_with([](Header& h) { h.max_foam = -1; }), HasSubstr("number of foam particles"));
   EXPECT_THAT(error_with([](Header& h) { h.effects = std::string(70000, ' '); }),
               HasSubstr("70000 characters"));

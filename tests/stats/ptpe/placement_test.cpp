@@ -32,7 +32,9 @@ TEST(Placement, BracketsTheContourOfARaterWithoutNoise) {
     const int index = placement.next();
     const PlacementSetting& one = fine[static_cast<std::size_t>(index)];
     const double contour = 24 * std::exp(0.02 * one.delta);
-    if (trial < 3) EXPECT_TRUE(one.delta > 0 && one.delta < 20) << trial;
+    if (trial < 3) {
+      EXPECT_TRUE(one.delta > 0 && one.delta < 20) << trial;
+    }
     if (trial > 12) {
       EXPECT_TRUE(one.delta == 0 || one.delta == 20) << trial;
       EXPECT_NEAR(std::abs(std::log(one.mu / contour)), std::log(1.35), 0.2) << trial;
