@@ -6,6 +6,7 @@
 
 #include "libstudy/protocol/names.hpp"
 #include "libstudy/protocol/readers.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/nearest.hpp"
 
 namespace study {
