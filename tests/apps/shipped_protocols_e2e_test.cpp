@@ -24,7 +24,11 @@ using report_walk::Json;
 using ::testing::IsEmpty;
 
 const std::filesystem::path protocols = std::filesystem::path(VIP_TEST_DIR).parent_path() / "protocols";
-constexpr int people = 3;
+
+/// Two people for each level of a between-subject factor of studies with a plan.
+int people_of(const std::string& protocol) {
+  return std::filesystem::exists(protocols / "plans" / (protocol + ".toml")) ? 4 : 3;
+}
 
 struct Walk {
   std::string protocol, observer;
@@ -71,12 +75,13 @@ void expect_study(const std::string& protocol, const std::string& database,
     EXPECT_TRUE(one.at("p_adjusted").is_number()) << one.dump();
   }
   EXPECT_FALSE(json.at("descriptives").empty());
-  EXPECT_EQ(json.at("participants").size(), static_cast<std::size_t>(people));
+  EXPECT_EQ(json.at("participants").size(), static_cast<std::size_t>(people_of(protocol)));
 }
 
 class ShippedProtocolsE2e : public ::testing::TestWithParam<Walk> {};
 
 TEST_P(ShippedProtocolsE2e, GoFromCheckToReport) {
+  const int people = people_of(GetParam().protocol);
   const ::test::TemporaryFolder folder;
   const std::string protocol = protocols / (GetParam().protocol + ".toml"), database = folder / "s.db";
   const auto typed = [](const std::string& line) {
