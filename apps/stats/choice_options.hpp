@@ -1,5 +1,6 @@
 #pragma once
-/// Options shared by all commands: the protocols and questions to analyse, and the level of a pilot's curve.
+/// Options and help shared by all commands: the protocols and questions to analyse, and the level of a
+/// pilot's curve.
 
 #include <CLI/CLI.hpp>
 
@@ -9,6 +10,12 @@
 #include "libstudy/analysis/task_choice.hpp"
 
 namespace apps {
+
+/// The end of the help of commands whose files a withdrawal deletes.
+inline constexpr const char* registered_files =
+    "Files hold values of single participants, so only their owner may read them (0600), and they are\n"
+    "registered in the database, which must be writable for that: when one of them withdraws, the files are\n"
+    "deleted, to be made again.";
 
 struct ChoiceOptions {
   std::string protocol;         ///< name with or without version, or first digits of the SHA-256; empty: all

@@ -115,7 +115,8 @@ void refuse_for_solver(const FitCommand& command, const study::PilotFit& fit) {
   }
   if (wide) {
     reasons += fmt::format(
-        "{}the interval is too wide for a calibration: mu(delta) is uncertain by up to +-{:.0f} %, the limit is "
+        "{}the interval is too wide for a calibration: mu(delta) is uncertain by up to +-{:.0f} %, the limit "
+        "is "
         "+-{:.0f} %",
         reasons.empty() ? "" : "; ", 100 * fit.relative_half_width(), 100 * command.max_width);
   }

@@ -149,12 +149,8 @@ void add_study_command(CLI::App& app) {
   sub->add_option("--since", command->since,
                   "Earlier --json of this study: marks the participants who are new since then");
   add_protocol_choice(*sub, command->choice);
-  sub->footer(
-      "A result that the plan does not declare is called exploratory.\n"
-      "Files hold values of single participants, so only their owner may read them (0600), and they are\n"
-      "registered in the database, which must be writable for that: when one of them withdraws, the files "
-      "are\n"
-      "deleted, to be made again.");
+  sub->footer(std::string("A result that the plan does not declare is called exploratory.\n") +
+              registered_files);
   sub->callback([command] {
     check_given(command->database);
     run_study(*command);

@@ -242,11 +242,7 @@ void add_command(CLI::App& app, study::TaskKind task, const char* what) {
   sub->add_option("--csv", command->csv, "Folder for the same numbers as tables")->check(output_folder());
   add_plan(*sub, command->plan);
   add_choice(*sub, command->choice);
-  sub->footer(
-      "Files hold values of single participants, so only their owner may read them (0600), and they are\n"
-      "registered in the database, which must be writable for that: when one of them withdraws, the files "
-      "are\n"
-      "deleted, to be made again.");
+  sub->footer(registered_files);
   sub->callback([command] {
     check_given(command->database);
     run(*command);

@@ -166,12 +166,18 @@ int next_by_placement(const Protocol& protocol, const std::vector<int>& cells,
 
 }  // namespace
 
+int first_of_track(const Design& design, int cell) {
+  const auto cells = track_cells(design, cell_at(design, cell));
+  return cells.empty() ? cell : cells.front();
+}
+
 std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
                                        RandomStream& random) {
   std::vector<PlannedTrial> out;
   for (const int cell : group) {
-    const auto cells = track_cells(design, cell_at(design, cell));
-    if (cells.empty() || cells.front() != cell) continue;  // one cell stands for its track
+    if ((design.standard && is_standard(design, cell_at(design, cell))) ||
+        first_of_track(design, cell) != cell)
+      continue;
     PlannedTrial trial;
     trial.first = cell;
     for (const auto& [comparison, standard] :

@@ -29,6 +29,10 @@ std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<i
 PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
                           std::span<const TrackAnswer> answers);
 
+/// The cell that stands for the track of `cell`: the one of the lowest level. `cell` itself if the track has
+/// only the standard. The design has a procedure.
+int first_of_track(const Design& design, int cell);
+
 /// A threshold estimated from the answers of one track, whatever procedure placed the trials.
 struct TrackEstimate {
   stats::GridEstimate threshold, shape;  ///< in the unit of Procedure::axis; 95 % credible intervals

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "stats/adaptive/quest_plus.hpp"
-#include "stats/ptpe/curve.hpp"
 
 namespace stats {
 

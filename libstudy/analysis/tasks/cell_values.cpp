@@ -59,20 +59,6 @@ ExactMean mean_of_cells(const Sums& sums, int participant, const std::vector<int
   return {sum, static_cast<int>(count)};
 }
 
-/// The first cell of the track of `cell`.
-int first_of_track(const Design& design, int cell) {
-  const Cell& own = cell_of_index(design, cell);
-  for (int i = 0; i < static_cast<int>(design.cells.size()); ++i) {
-    const Cell& other = cell_of_index(design, i);
-    if (design.standard && is_standard(design, other)) continue;
-    bool same = true;
-    for (std::size_t f = 0; f < design.factors.size(); ++f)
-      same = same && (f == design.procedure->factor || own.levels[f] == other.levels[f]);
-    if (same) return i;
-  }
-  return cell;
-}
-
 /// Cells of a condition. For thresholds, the first cells of its tracks.
 std::vector<int> condition_cells(const Design& design, const DeclaredHypothesis& hypothesis,
                                  std::size_t which) {
