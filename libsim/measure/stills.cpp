@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "libsim/levels/coarsen.hpp"
+#include "libsim/measure/cell_scores.hpp"
 #include "libsim/measure/checkpoint_file.hpp"
 #include "libsim/measure/masks.hpp"
 #include "libsim/measure/onlooker.hpp"
@@ -260,7 +261,8 @@ ScoreBlock empty_block(const sim::CellScene& scene, const CellSize& size, sim::P
   for (const auto& traits : sim::all_methods()) {
     MethodScores scores;
     scores.method = traits.kind;
-    for (auto& series : scores.series) series.repeats = static_cast<std::size_t>(options.repeats);
+    for (const Metric metric : still_metrics)
+      scores.of(metric).repeats = static_cast<std::size_t>(options.repeats);
     out.methods.push_back(scores);
   }
   return out;

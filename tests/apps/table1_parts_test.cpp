@@ -9,7 +9,7 @@
 #include "libsim/measure/checkpoint.hpp"
 #include "libsim/measure/contact_sheet.hpp"
 #include "libsim/measure/masks.hpp"
-#include "libsim/measure/scores.hpp"
+#include "libsim/measure/table1.hpp"
 #include "libsim/render/fluid_picture.hpp"
 #include "libsim/scene/gaze.hpp"
 #include "stats/base/error.hpp"
@@ -172,6 +172,16 @@ std::string verdict_of(const measure::ScoreBlock& block, const std::string& metr
     if (row[3] == metric && row[4] == difference) return row[9];
   }
   return "no row";
+}
+
+/// A film has a cell for each of its starts, and its starts are no repeats of a gaze point.
+TEST(Table1Scores, AFilmOfOneStartHasARowBesideRepeatedStills) {
+  measure::Table1Options options;
+  options.repeats = 5;
+  measure::ScoreBlock block =
+      measure::empty_block(sim::scenes_of("SingleDam").front(), {"1k", 1024}, sim::Preset::Tuned, options);
+  for (auto& scores : block.methods) scores.of(Metric::SsimCumul).cells.push_back({0.9, 5000});
+  EXPECT_EQ(measure::score_rows({block}).rows.size(), block.methods.size());
 }
 
 TEST(Table1Scores, AnOrderBreaksBeyondItsBound) {
