@@ -31,7 +31,7 @@ namespace sim {
 struct TargetRegion {
   Vec3d centre_m{};
   double radius_m = 0;
-  int inside = 0;  ///< level 0 .. 3, at most N - 1
+  int inside = 0;  ///< level 0 .. 3; levels above N - 1 act as N - 1
   int outside = 0;
 };
 
@@ -61,7 +61,8 @@ struct SimulationOptions : SolverNumbers {
   /// Store the parts of saliency for read_saliency; methods without saliency have none to store.
   bool saliency_parts = false;
   std::optional<TargetRegion> forced_targets;  ///< only for methods that split and merge
-  std::int64_t particle_capacity = 0;  ///< if particles split and merge: their maximum number; 0 = 8 n_*
+  /// if particles split and merge: their maximum number, at least the number at the start; 0 = 8 n_*
+  std::int64_t particle_capacity = 0;
   /// N, 1 .. 4: methods that split and merge use levels 0 .. N - 1. With N = 1 nothing merges, only particles
   /// of `start` that are coarser than level 0 split, and without such particles saliency is measured only for
   /// outputs and temporal acceleration.
@@ -94,15 +95,18 @@ struct SimulationOptions : SolverNumbers {
 /// Counts of guard interventions since the simulation was made: each count says how often one rule stepped
 /// in.
 struct GuardCounts {
-  std::uint64_t speed_limited = 0;  ///< particle-substeps whose speed was limited
+  /// times that the speed of a particle or a free body was limited; a particle counts up to twice per substep
+  std::uint64_t speed_limited = 0;
   /// neighbours at zero distance, counted in each projection; a pair counts twice
   std::uint64_t coincident_pairs = 0;
-  std::uint64_t not_finite = 0;  ///< particles quarantined: NaN, infinite or far outside the tank
+  /// particle-substeps in which a particle was quarantined: its position or velocity was NaN or infinite, or
+  /// it was far outside the tank
+  std::uint64_t not_finite = 0;
   /// neighbours left out of a list because the memory for lists was full
   std::uint64_t neighbours_dropped = 0;
   std::uint64_t wall_projected = 0;  ///< position corrections of particles by walls and obstacles
   /// layers that a nozzle did not pour, because the tank's corners, from which nozzles take water, had too
-  /// few particles
+  /// few particles, or because the particle capacity was reached
   std::uint64_t nozzle_waited = 0;
   std::uint64_t saliency_not_finite = 0;  ///< particle-turns whose saliency was NaN or infinite; s is then 0
   std::uint64_t gaze_lost = 0;            ///< eye-frames without a valid gaze (libsim/saliency/looks.hpp)
@@ -115,12 +119,16 @@ struct LevelEvents {
   std::uint64_t splits = 0;
   std::uint64_t born = 0;            ///< particles added by splits: 2^k - 1 per split
   std::uint64_t merges = 0;          ///< pairs merged into one particle
-  std::uint64_t split_deferred = 0;  ///< particle-turns in which the throttle delayed a split
-  std::uint64_t split_at_wall = 0;   ///< particle-turns in which the children did not fit between the walls
-  std::uint64_t split_no_room = 0;   ///< particle-turns in which a split exceeded the capacity
-  std::uint64_t merge_overlap = 0;   ///< particle-turns in which every merge would overlap a larger particle
-  std::uint64_t merge_step = 0;      ///< particle-turns in which a finer neighbour prevented a merge
-  double energy_lost_j = 0;          ///< kinetic energy lost in merges
+  std::uint64_t split_deferred = 0;  ///< particle-turns in which Readings::split_share delayed a split
+  /// particle-turns in which no children fitted between the walls and obstacles
+  std::uint64_t split_at_wall = 0;
+  std::uint64_t split_no_room = 0;  ///< particle-turns in which a split exceeded the capacity
+  /// particle-turns in which a particle found no partner, because the merged particle would overlap a coarser
+  /// one or an obstacle
+  std::uint64_t merge_overlap = 0;
+  /// particle-turns in which a neighbour of a finer level or target prevented a merge
+  std::uint64_t merge_step = 0;
+  double energy_lost_j = 0;  ///< kinetic energy lost in merges
 };
 
 /// Inputs and results of temporal acceleration in one frame.
@@ -134,7 +142,7 @@ struct TemporalReport {
 /// Particle counts of a frame and how the solver solved it. Costs almost no time.
 struct FrameAccount {
   std::vector<std::int64_t> particles_by_level;  ///< one count per radius of Simulation::radii_m
-  std::optional<TemporalReport> temporal;        ///< none = the method has no tau, or no frame yet
+  std::optional<TemporalReport> temporal;        ///< none = no temporal acceleration, or no frame yet
   std::optional<GuardCounts> guards;             ///< of this frame only; none = no frame yet
 
   std::int64_t particles() const {
@@ -158,9 +166,11 @@ struct PartTimes {
 
 /// A pass of the compiled schedule.
 struct StageTime {
-  std::string name, phase;        ///< names as printed by --explain
-  EffectKind effect = no_effect;  ///< the effect that alone requires the pass
-  double ms = 0;                  ///< all its runs in the last frame; 0 unless Simulation::time_passes is on
+  std::string name, phase;  ///< names as printed by --explain
+  /// The effect that requires the pass; no_effect if the pass is needed without effects. If two effects share
+  /// the pass: the first of them.
+  EffectKind effect = no_effect;
+  double ms = 0;  ///< all its runs in the last frame; 0 unless Simulation::time_passes is on
 };
 
 /// Result of SimulationOptions::start_projections.
@@ -238,11 +248,11 @@ class Simulation {
   /// end cannot read (EyeLook::shared, on a CPU or with a context of another device): then read the picture
   /// back and call again. Until the next copy_to_gl, the simulation owns the shared buffers of this call and
   /// of copy_to_gl: GL must not read or draw them. If the next frame does not update levels, only the gaze is
-  /// used, and the call returns true. base::Error: no eye or more than two, a camera that is not finite, an
-  /// incomplete G-buffer.
+  /// used, and the call returns true. base::Error: no eye or more than two, a camera that is not finite, a
+  /// visual scale that is not positive, a picture with incomplete arrays or without a perspective camera.
   virtual bool look(const Looks& looks) = 0;
-  /// True if the method computes target levels from the picture passed to look(); if false, the caller need
-  /// not read the picture back from the renderer.
+  /// True if this run computes saliency from the picture passed to look(); if false, the caller need not read
+  /// the picture back from the renderer.
   virtual bool follows_picture() const = 0;
   /// Frames since the gate opened.
   virtual int frame() const = 0;
@@ -283,7 +293,7 @@ class Simulation {
   /// Measures the present state (costs a pass and a read-back; not part of step_frame).
   virtual FrameReport report() = 0;
   virtual std::int64_t particle_count() const = 0;
-  /// Maximum number of particles; buffers of this size never grow.
+  /// Maximum number of particles in the whole run; a buffer for this many never needs to grow.
   virtual std::int64_t particle_capacity() const { return particle_count(); }
   /// Rest spacing d = 2 r of the finest particles that the method may have, m.
   virtual double spacing_m() const = 0;
@@ -292,12 +302,13 @@ class Simulation {
   /// Positions and radii in the solver's order, copied to the host.
   virtual void read_particles(std::vector<RenderParticle>& out) const = 0;
   /// Saliency from which the present target levels were computed, in the order of read_particles. Children
-  /// and merged particles inherit their parents' value. Only s and target without
-  /// SimulationOptions::saliency_parts. Empty for methods without saliency, and before the first frame.
+  /// and merged particles inherit their parents' value. Without
+  /// SimulationOptions::saliency_parts the fields other than s and target are 0. Empty at frame 0, and in
+  /// runs that compute neither saliency nor gaze targets.
   virtual void read_saliency(std::vector<ParticleSaliency>& out) const = 0;
   /// Saliency (Eq. 1-9) of the present state for the given eyes, for any method, as if this were the first
   /// frame. For masks and figures, not part of step_frame. Sorts the particles; `out` is in the order of a
-  /// later read_particles.
+  /// later read_particles. base::Error if a picture lies in GL buffers that this back end cannot read.
   virtual void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
   /// s and target by the gaze-only rule, in the order of read_particles; the other fields are 0.
   virtual void measure_gaze_targets(const Looks& looks, std::vector<ParticleSaliency>& out) = 0;
@@ -330,8 +341,8 @@ class Simulation {
   virtual std::vector<StageTime> passes() const { return {}; }
   /// Switches the timer of each pass on or off. While on, a frame waits for the device after each pass.
   virtual void time_passes(bool) {}
-  /// Switches timing of every launch of this back end on (discarding earlier measurements) or off. Costs a
-  /// few microseconds per launch.
+  /// Switches timing of every launch of this back end on or off, and discards earlier measurements. Costs a
+  /// few microseconds per launch while on.
   virtual void profile_launches(bool) {}
   /// Total time of the launches with each label since profile_launches(true), longest first.
   virtual std::vector<LaunchTime> launch_times() const { return {}; }
@@ -339,7 +350,8 @@ class Simulation {
   virtual void synchronize() = 0;
   /// Bytes of memory for particles, nozzles, outlets, saliency, temporal acceleration and foam.
   virtual std::size_t particle_bytes() const = 0;
-  /// The schedule as text: why each pass runs, and why each stage that is left out does not run.
+  /// The run as text: method, back end, substeps, particles and memory; obstacles and effects if there are
+  /// any; the schedule, with the reason for each pass and for each stage that is left out; the columns.
   virtual std::string explain() const = 0;
 };
 

@@ -31,7 +31,7 @@ void main() {
     if (all(greaterThanEqual(along, vec2(0.0))) && all(lessThan(along, vec2(1.0))))
       colour.rgb = vec3(floor(256.0 * along.x) / 255.0);
   }
-  for (int i = 2; i >= 0; --i) {  // the nearest disc is painted last
+  for (int i = 2; i >= 0; --i) {  // discs[0], the nearest, is painted last
     if (reach(ray, discs[i].z, at) && distance(at, discs[i].xy) < discs[i].w) colour.rgb = paints[i];
   }
 }

@@ -43,7 +43,8 @@ vec3 tiles(vec3 p, vec3 d, float width) {
   return mix(mix(vec3(0.50, 0.53, 0.54), vec3(0.80, 0.80, 0.77), c), vec3(0.30, 0.31, 0.32), joint);
 }
 
-// Distance of a point on a face of the tank to the nearest edge of that face that carries a frame.
+// Distance of a point on a face of the tank to the nearest edge of that face, m. `axis`: 0, 1, 2 = x, y, z, the axis
+// across the face.
 float edge_distance(vec3 p, int axis) {
   const vec3 to_side = min(p, tank.xyz - p);
   if (axis == 1) return min(to_side.x, to_side.z);

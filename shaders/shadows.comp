@@ -33,8 +33,8 @@ vec4 entry_of(vec2 place) {
 }
 
 #ifdef OBSTACLES
-// True if an obstacle blocks the ray within `length_m` m above `low`. The test ray points down from the far end, so
-// that it enters an obstacle on the floor from outside.
+// True if an obstacle blocks the ray from `low` along `up` within `length_m` m. The test ray points down from the far
+// end, so that it enters an obstacle on the floor from outside.
 bool meets(vec3 low, vec3 up, float length_m) {
   return meet_obstacles(low + length_m * up, -up).at < length_m;
 }

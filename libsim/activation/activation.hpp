@@ -27,8 +27,8 @@ struct ActivationRules {
         speed_floor(static_cast<float>(readings.speed_floor)) {}
 
   bool relative_level_change;
-  /// Normalise F_pim between its 1st and 99th percentile, smoothed by 0.1 per frame; false: between its
-  /// minimum and maximum.
+  /// Normalise F_pim between its 1st and 99th percentile, which follow each frame's percentiles by a tenth of
+  /// the difference; false: between the frame's minimum and maximum.
   bool robust_range;
   bool inherit_change;
   bool pressed;  ///< gravity and coarse pressure move unsolved particles too; only with inherit_change
@@ -36,8 +36,8 @@ struct ActivationRules {
   float damping;
   bool others_yield;
   /// Always solve: particles just made by a split or a merge, spray (less than a fifth of the neighbours of a
-  /// particle inside water), particles within h of a wall or an obstacle, and particles faster than h / 2 per
-  /// substep.
+  /// particle inside water), with the effect cohesion also the water's surface (rest_sparse), particles
+  /// within h of a wall or an obstacle, and particles faster than h / 2 per substep.
   bool keep_fragile_active;
   int longest_rest;
   int least_work;
@@ -60,8 +60,8 @@ constexpr float sparse_density = 0.194f + 0.2f * 0.806f;
 /// a cell does not contain the accelerations at the water's surface.
 constexpr float surface_density = 0.98f;
 
-/// Value of Column::Active: the particle is solved, but excluded from the cell means that unsolved particles
-/// inherit.
+/// Value of Column::Active: the particle is solved, but excluded from the sums over solved particles
+/// (Whose::Solved), and so from the cell means that unsolved particles inherit.
 constexpr std::uint8_t solved_apart = 2;
 
 using ActiveListView = ColumnView<columns(Column::Predicted), ColumnSet{}, columns(Column::Active),
@@ -78,13 +78,14 @@ constexpr int sum_of_resting = 1;
 constexpr int sum_of_grid = 2;
 constexpr int sum_of_near = 3;
 
-/// State of temporal acceleration. The mean velocities V, the energies E, the range and the frame counter
-/// persist; everything else is rebuilt each frame.
+/// State of temporal acceleration. The velocities and energies of both grids, the range, the slots of the
+/// last substep, and the flags columns_set and all_marked last from frame to frame. Rules, beta, seed and
+/// frame are inputs. The rest is rebuilt in each frame that needs it.
 struct Activation {
   ActivationRules rules;
   float beta = 1;  ///< lowest probability of being solved; 1 = all particles are solved, whatever F_pim
   std::uint32_t seed = 1;
-  std::uint32_t frame = 0;  ///< number of the next frame, part of the key of the random numbers
+  std::uint32_t frame = 0;  ///< frames before the present one; part of the key of the random numbers
 
   VelocityGrid grid;  ///< mean velocity V^n and kinetic energy E^n per cell
   /// Mean velocities on the cells from which unsolved particles inherit; finer than the cells of V and E.

@@ -40,7 +40,7 @@ struct VelocitySlopes {
   }
 
   /// Difference of V per level, between the nearest finer and the nearest coarser level with particles in the
-  /// cell.
+  /// cell; one-sided if only one of them exists.
   SIM_FN Vec3 by_level(int level, int cell) const {
     const int cells = block.size();
     Vec4 low{0, 0, 0, value_unknown};
@@ -127,8 +127,8 @@ struct Importance {
     counter.add(i, f);
   }
 
-  /// F_pim of particle i, Eq. 12. If the grid has no velocity at the particle: 0, and the flag rest_nowhere
-  /// is set.
+  /// F_pim of particle i, Eq. 12; 0 if it is not finite, or if the grid has no velocity at the particle. Sets
+  /// the flag rest_nowhere in the second case, and clears it otherwise.
   SIM_FN float of(int i) const {
     const CellCorners corners = grid.corners(xyz(position[i]));
     const int offset = level[i] * grid.cells();

@@ -1,5 +1,6 @@
 #pragma once
-/// The range of a positive quantity over all particles, found without sorting and smoothed over frames.
+/// The range of a quantity >= 0 over all particles: percentiles, found without sorting and smoothed over
+/// frames, or the minimum and maximum.
 
 #include <cmath>
 
@@ -12,7 +13,7 @@ namespace sim::SIM_BACKEND {
 struct ValueRange {
   float low, high;
 
-  /// Maps low to 0 and high to 1, linearly and clamped; every value to 1 if the range has zero width.
+  /// Maps low to 0 and high to 1, linearly and clamped; every value to 1 if high is not above low.
   SIM_FN float normalised(float value) const {
     if (!(high > low)) return 1;
     return at_most(at_least((value - low) / (high - low), 0.0f), 1.0f);
@@ -41,7 +42,8 @@ struct ValueCounter {
   SIM_FN static float value_at(float at) { return exp2f(at / bins_an_octave - octaves / 2); }
 };
 
-/// The range and the counts are stored on the device. Values below 2^-16 count as 2^-16, above 2^16 as 2^16.
+/// The range and the counts are stored on the device. The histogram counts values below 2^-16 as 2^-16, and
+/// values above 2^16 as 2^16.
 class PercentileRange {
  public:
   /// The counter for the pass that measures the values; follow_percentiles() then evaluates and resets the
@@ -51,7 +53,7 @@ class PercentileRange {
   /// sets them directly the first time. Percentiles are exact to an eighth of an octave (9 %). n = 0 changes
   /// nothing.
   void follow_percentiles(int n, float share);
-  /// Sets the bounds to the minimum and maximum value.
+  /// Sets the bounds to the minimum and maximum of the first n values. n = 0 changes nothing.
   void take_extremes(const Array<float>& values, int n);
 
   const ValueRange* range() const { return range_.data(); }

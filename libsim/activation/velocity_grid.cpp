@@ -6,8 +6,8 @@ namespace sim::SIM_BACKEND {
 
 namespace {
 
-/// Number of consecutive particles that a team sums before it writes to memory, because adjacent particles
-/// often share a cell.
+/// Number of consecutive particles that a team sums. Adjacent particles often share a cell, so that a team
+/// writes few sums to memory.
 constexpr int run_length = 16;
 SIM_FN int runs_of(int n) { return (n + run_length - 1) / run_length; }
 
@@ -65,7 +65,8 @@ struct PlaceSum {
   }
 };
 
-/// Adds one run of run_length particles to one of the sums; each index is one run and sum.
+/// Adds one run of run_length particles to one of the sums. Indices count the runs of the first sum, then
+/// those of the second sum, and so on.
 struct AddMomentum {
   struct To {
     MomentumOf of;

@@ -1,6 +1,7 @@
 #pragma once
-/// Mean velocity V of each level and kinetic energy E of all levels, on cells of edge 10 d_* (ViP-Fluid
-/// section 4.3: 1000 finest particles per cell). V and E persist from frame to frame.
+/// Grids of cells with the mean velocity V of each level and the kinetic energy E of all levels. They last
+/// from frame to frame. The cells of ViP-Fluid section 4.3 have an edge of 10 d_*: 1000 finest particles per
+/// cell.
 
 #include <cstdint>
 
@@ -27,7 +28,8 @@ SIM_FN Vec3 mean_velocity(const MomentumSum& sum) {
   return {part(sum.x), part(sum.y), part(sum.z)};
 }
 
-/// Origin of the velocity of a cell and level, stored in its w; value_unknown: there is no velocity.
+/// Values of w in the Vec4 of a cell and level, which say where its velocity comes from. value_unknown: there
+/// is no velocity.
 constexpr float value_unknown = 0;
 constexpr float value_borrowed = 1;  ///< from the previous frame, or from other levels
 constexpr float value_measured = 2;  ///< from particles of this level

@@ -100,8 +100,9 @@ struct BakeSizes {
 };
 
 /// Writes a bake file under a temporary name next to `path`; finish() renames it. A writer destroyed before
-/// that leaves no file. Errors (an existing file that may not be overwritten, no permission, a full disk,
-/// particles that cannot be quantised) are base::Error.
+/// that leaves no file. Errors from outside (an existing file that may not be overwritten, no permission, a
+/// full disk, a header or particles beyond the format's limits) are base::Error; calls in a wrong order are
+/// std::logic_error.
 class BakeWriter {
  public:
   BakeWriter(const std::filesystem::path& path, const BakeHeader& header, bool overwrite = false);
@@ -147,7 +148,7 @@ class BakeReader {
   std::string content_hash() const;
   std::uint64_t file_bytes() const;
 
-  /// Particles of frame `frame`, 0 <= frame < frame_count.
+  /// Particles, temperatures and foam of frame `frame`, 0 <= frame < frame_count.
   void read_frame(std::int64_t frame, BakeFrame& out) const;
 
  private:
@@ -180,7 +181,8 @@ Scene baked_scene(const BakeHeader& header);
 
 /// The header as bytes, in the format that format_of() gives.
 Bytes format_bake_header(const BakeHeader& header);
-/// Reads header bytes of this or an earlier format; base::Error at `place` for any value out of range.
+/// Reads header bytes of this or an earlier format; base::Error at `place` for a value out of range, and for
+/// too few or too many bytes.
 BakeHeader parse_bake_header(ByteSpan bytes, std::uint32_t format, const std::string& place);
 
 }  // namespace sim

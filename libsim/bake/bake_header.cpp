@@ -4,6 +4,7 @@
 
 #include "libsim/bake/bake_file.hpp"
 #include "libsim/bake/layout.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
 namespace sim {
@@ -17,6 +18,12 @@ constexpr std::uint32_t max_gaze_keys = 1000;
 bool is_size(int width, int height) {
   const auto side = [](int px) { return px > 0 && px <= max_picture_side; };
   return (width == 0 && height == 0) || (side(width) && side(height));
+}
+
+/// The size as text, with the sizes that is_size() allows.
+std::string size_words(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height) + " px; 0 x 0, or sides of 1 to " +
+         std::to_string(max_picture_side) + " px are allowed";
 }
 
 bool is_angle(double degrees) { return degrees > 0 && degrees < 180; }
@@ -84,34 +91,51 @@ std::optional<BakedTolerance> get_tolerance(ByteReader& in) {
 
 void check(const BakedView& view, const ByteReader& in) {
   const auto within = [&](bool good, const std::string& what) {
-    if (!good) in.fail("has a header whose " + what + " is out of range");
+    if (!good) in.fail("has a header whose " + what);
   };
-  within(is_size(view.width_px, view.height_px), "size of the drawn picture");
-  within(view.drawn() ? is_angle(view.camera_angle_deg) : view.camera_angle_deg == 0, "camera's angle");
-  within(!view.visual_angle_deg || is_angle(*view.visual_angle_deg), "angle of the eye's view");
+  within(is_size(view.width_px, view.height_px),
+         "size of the drawn picture is " + size_words(view.width_px, view.height_px));
+  within(view.drawn() ? is_angle(view.camera_angle_deg) : view.camera_angle_deg == 0,
+         "camera's angle is " + std::to_string(view.camera_angle_deg) +
+             " degrees; it must lie between 0 and 180 if a picture was drawn, and be 0 otherwise");
+  within(!view.visual_angle_deg || is_angle(*view.visual_angle_deg),
+         "angle of the eye's view is " + std::to_string(view.visual_angle_deg.value_or(0)) +
+             " degrees; it must lie between 0 and 180");
   for (const GazeKey& key : view.gaze_path) {
     const auto& p = key.point_m;
-    within(key.frame >= 0 && std::isfinite(p[0] + p[1] + p[2]), "gaze");
+    within(key.frame >= 0 && std::isfinite(p[0] + p[1] + p[2]),
+           "gaze key has frame " + std::to_string(key.frame) + " and point (" + std::to_string(p[0]) + ", " +
+               std::to_string(p[1]) + ", " + std::to_string(p[2]) +
+               ") m; the frame must be 0 or more, and the point finite");
   }
 }
 
 void check(const BakeHeader& header, const ByteReader& in) {
   const auto within = [&](bool good, const std::string& what) {
-    if (!good) in.fail("has a header whose " + what + " is out of range");
+    if (!good) in.fail("has a header whose " + what);
   };
-  within(header.n_star > 0 && header.n_star <= max_bake_particles, "n_*");
-  within(header.max_particles >= 0 && header.max_particles <= max_bake_particles, "particle count");
-  within(header.frame_count > 0 && header.frame_count <= bake::max_frames, "frame count");
-  within(std::isfinite(header.frame_dt_s) && header.frame_dt_s > 0, "time step");
-  for (const double side : header.tank_size_m) within(std::isfinite(side) && side > 0, "tank");
-  for (const float radius : header.radius_by_level_m) {
-    within(std::isfinite(radius) && radius > 0, "radius");
-  }
-  within(is_size(header.picture_width_px, header.picture_height_px), "picture size");
-  within(header.max_foam >= 0 && header.max_foam <= max_bake_foam, "number of foam particles");
-  within(!header.reference_k || (std::isfinite(*header.reference_k) && *header.reference_k > 0),
-         "reference temperature");
-  within(header.overlay.empty() || (header.overlay == "temperature" && header.reference_k), "overlay");
+  const auto count = [&](std::int64_t value, std::int64_t least, std::int64_t most, const std::string& what) {
+    within(value >= least && value <= most, what + " is " + std::to_string(value) + "; " +
+                                                std::to_string(least) + " to " + std::to_string(most) +
+                                                " are allowed");
+  };
+  const auto above_zero = [&](double value, const std::string& what) {
+    within(std::isfinite(value) && value > 0,
+           what + " is " + std::to_string(value) + "; it must be finite and above 0");
+  };
+  count(header.n_star, 1, max_bake_particles, "n_*");
+  count(header.max_particles, 0, max_bake_particles, "largest number of particles");
+  count(header.frame_count, 1, bake::max_frames, "number of frames");
+  above_zero(header.frame_dt_s, "time step in s");
+  for (const double side : header.tank_size_m) above_zero(side, "tank's side in m");
+  for (const float radius : header.radius_by_level_m) above_zero(static_cast<double>(radius), "radius in m");
+  within(is_size(header.picture_width_px, header.picture_height_px),
+         "picture size is " + size_words(header.picture_width_px, header.picture_height_px));
+  count(header.max_foam, 0, max_bake_foam, "number of foam particles");
+  if (header.reference_k) above_zero(*header.reference_k, "reference temperature in K");
+  within(header.overlay.empty() || (header.overlay == "temperature" && header.reference_k),
+         "overlay is \"" + base::shortened(header.overlay) +
+             "\"; it must be empty, or temperature in a bake that stores temperatures");
   check(header.view, in);
 }
 

@@ -118,7 +118,9 @@ struct BakeReader::State {
     format = version;
     const auto size = in.get<std::uint32_t>();
     const auto checksum = in.get<std::uint64_t>();
-    if (size > bake::max_header_bytes) fail(source.name(), "has a header of the wrong length");
+    if (size > bake::max_header_bytes)
+      fail(source.name(), "states a header of " + std::to_string(size) + " bytes; at most " +
+                              std::to_string(bake::max_header_bytes) + " are allowed");
     if (source.size() < bake::prologue_bytes + size + bake::footer_bytes) truncated();
     source.read(bake::prologue_bytes, size, bytes);
     if (XXH3_64bits(bytes.data(), bytes.size()) != checksum) fail(source.name(), "has a damaged header");
@@ -177,7 +179,11 @@ struct BakeReader::State {
     const auto frames = static_cast<std::size_t>(header.frame_count);
     if (next != end || particles.size() != frames || foam.size() != (header.max_foam > 0 ? frames : 0) ||
         pictures.size() != (header.has_pictures() ? frames : 0)) {
-      fail(source.name(), "has another number of frames than its header says");
+      fail(source.name(), "has chunks for " + std::to_string(particles.size()) + " frames, " +
+                              std::to_string(foam.size()) + " frames of foam and " +
+                              std::to_string(pictures.size()) + " pictures for the " +
+                              std::to_string(frames) +
+                              " frames of its header, or bytes between the last chunk and the index");
     }
   }
 

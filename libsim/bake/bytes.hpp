@@ -69,7 +69,9 @@ class ByteReader {
   ByteSpan rest() const { return data_; }
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw base::Error(place_, problem, "the file is damaged; bake it again");
+    throw base::Error(place_, problem,
+                      "if the file was read, it is damaged: make it again; if it was being written, change "
+                      "the scene or the options that give this value");
   }
 
  private:

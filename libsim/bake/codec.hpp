@@ -48,10 +48,11 @@ inline constexpr double max_temperature_error_k = 0.1;
 
 /// Quantises to 16 bit per axis over the frame's bounding box: an axis of extent e has an error of at most e
 /// / 131070 (+ float rounding). This error must stay below a twentieth of the finest radius. base::Error at
-/// `place`: a frame with a larger extent, a particle that is not finite, or a radius that is not in
-/// `radius_by_level_m`. The counts of `account` are recomputed from the particles. temperature_k: per
-/// particle, in their order, as 16 bit over this frame's range, with an error of at most 1 / 131070 of the
-/// range; nullptr stores none. base::Error if one is not finite, or max_temperature_error_k is exceeded.
+/// `place`: a frame with a larger extent, a particle that is not finite, a radius that is not in
+/// `radius_by_level_m`, or more than max_bake_particles. The counts of `account` are recomputed from the
+/// particles. temperature_k: per particle, in their order, as 16 bit over this frame's range, with an error
+/// of at most 1 / 131070 of the range; nullptr stores none. base::Error if one is not finite, or
+/// max_temperature_error_k is exceeded.
 void encode_particles(double time_s, const FrameAccount& account,
                       const std::vector<RenderParticle>& particles,
                       const std::vector<float>& radius_by_level_m, const std::vector<float>* temperature_k,
@@ -71,6 +72,7 @@ void decode_particles(ByteSpan payload, const ParticleLayout& layout, const std:
                       Bytes& scratch, BakeFrame& out);
 
 /// Encodes foam: position and radius of each particle, each value with 16 bit over its range in the frame.
+/// base::Error at `place` for a value that is not finite, or a radius that is not above 0.
 void encode_foam(const std::vector<RenderParticle>& foam, int zstd_level, const std::string& place,
                  Bytes& out);
 /// Decodes the bytes of encode_foam(). Refuses (base::Error at `place`) counts beyond `max_foam` before it

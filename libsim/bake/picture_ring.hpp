@@ -24,13 +24,13 @@ class PictureRing {
   PictureRing& operator=(const PictureRing&) = delete;
 
   /// Decodes from `frame` on; after the last picture it continues at `frame` again. Returns when the ring is
-  /// full.
+  /// full. Does nothing if `frame` is the next picture anyway and the ring already continues at it.
   void start(std::int64_t frame);
   /// The picture of `frame`; valid until the next call. Waits if it is not decoded yet. If `frame` is not
   /// among the next 2 x capacity pictures, decoding restarts at `frame`. A picture that cannot be read throws
   /// its error here, when its frame is taken.
   const BakePicture& take(std::int64_t frame);
-  /// Number of times that take() had to wait since start().
+  /// Number of times that take() had to wait since the last start() that restarted the decoding.
   std::int64_t waits() const { return waits_; }
 
  private:

@@ -11,7 +11,8 @@
 
 namespace sim::cases {
 
-/// Size of a case. Small: takes seconds on one core. Full: the size that the catalogue of cases specifies.
+/// Size of a case. Small: takes seconds on one core. Full: the size in the table of hard cases
+/// in docs/results.md.
 enum class Size { Small, Full };
 
 /// Parameters of a case. For times and counts, 0 = the case's own value.
@@ -35,8 +36,8 @@ struct Finding {
   double value = 0;
   Gate gate = Gate::Reported;
   double limit = 0;
-  /// The limit that the catalogue of cases requires; none = `limit`. Where `limit` is looser, docs/results.md
-  /// has the reason.
+  /// The limit that the case requires (column "asked" in docs/results.md); none = `limit`. Where `limit` is
+  /// looser, docs/results.md has the reason.
   std::optional<double> asked;
   std::string unit;  ///< empty = a ratio or a count
 
@@ -74,15 +75,16 @@ bool is_of_stability(const Finding& finding);
 Outcome of_stability(Outcome outcome);
 
 struct HardCase {
-  const char* id;     ///< such as "S2"; a second case of a row of the catalogue has a letter: "S8b"
+  const char* id;     ///< such as "S2"; a variant of a case has a letter: "S8b"
   const char* suite;  ///< name of its test suite, such as "S02TallColumn"
   const char* title;
   const char* asked;  ///< requirement in words
   std::vector<MethodKind> methods;
   /// The quantity that Setting::scale multiplies, such as "30 m/s of the jet"; empty = the case has none.
   const char* scaled;
-  double frame_dt_s;  ///< simulated time of a frame, if the setting has none, s
-  int iterations;     ///< projections per substep, if the setting has none
+  /// simulated time of a frame, if the setting has none, s; of S8 the shortest of its three
+  double frame_dt_s;
+  int iterations;  ///< projections per substep, if the setting has none
   /// base::Error for a missing back end; results of the simulation are never an error.
   Outcome (*run)(const Setting&);
 };

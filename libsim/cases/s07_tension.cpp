@@ -23,9 +23,9 @@ void stir(State& state, const Vec3d& centre, Flow flow) {
   }
 }
 
-/// Runs the square or the sphere (`what`) and appends its findings to `out`. Gates: no clumps and no energy
-/// gain. Voids open, because a unilateral constraint cannot sustain negative pressure; they are only
-/// reported. least: limit for the distance of close pairs, in spacings.
+/// Runs the square or the sphere (`what`) and appends its findings to `out`. Gates: no clumps, no energy gain
+/// and no particles outside. Voids open, because a unilateral constraint cannot sustain negative pressure;
+/// they are only reported. least: limit for the distance of close pairs, in spacings.
 void follow(Outcome& out, const std::string& what, const Setting& setting, Scene& scene, const State& start,
             double seconds, double least) {
   scene.gravity_m_s2 = 0;
@@ -68,7 +68,7 @@ Outcome run_s07(const Setting& setting) {
     follow(out, "square", setting, scene, start, 1 / spin, levels || setting.size == Size::Full ? 0.07 : 0.5);
   }
   {
-    // The sphere's thickness decreases to 0.67 of the initial value.
+    // A flow of constant strain would reduce the sphere's thickness to exp(-0.4) = 0.67 of the initial value.
     const double radius = 5 * size, room = 48 * size, middle = room / 2;
     Scene scene = tank({room, room, room}, {1, 1, 1});
     State cube = block(setting.method, {middle - radius, middle - radius, middle - radius},

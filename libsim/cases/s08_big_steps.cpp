@@ -1,4 +1,4 @@
-/// S8: large time steps in a tank; S8b: a dam with the largest steps that the solver's neighbour lists allow.
+/// S8: large time steps in a tank; S8b: the dam of the scene PeersDam, with a million particles in full size.
 
 #include <cmath>
 

@@ -28,7 +28,7 @@ bool Watch::step() {
       outside(state_, scene_.tank_size_m, std::isfinite(bounds_.outside_m) ? bounds_.outside_m : 1e9);
   out_ = std::max(out_, out);
   if (report_.guards.not_finite > 0) {
-    end(fmt::format("{} particles are not finite or far outside the tank", report_.guards.not_finite));
+    end(fmt::format("{} times a particle was not finite or far outside the tank", report_.guards.not_finite));
   }
   if (out > 0) end(fmt::format("{} particles are outside the tank", out));
   if (!(densest_ <= bounds_.density)) {

@@ -44,7 +44,7 @@ bool GlSharing::accept(const std::vector<GlBufferRef>& buffers) {
   for (const GlBufferRef& buffer : buffers) {
     cudaGraphicsResource_t resource = nullptr;
     if (cudaGraphicsGLRegisterBuffer(&resource, buffer.name, flags) != cudaSuccess) {
-      cudaGetLastError();  // reported by the return value; must not fail the next launch
+      cudaGetLastError();  // clears the error: the return value reports it, and the next launch must not
       forget();
       return false;
     }

@@ -117,7 +117,8 @@ class HistogramStore {
     }
     return {counts_.data(), bins};
   }
-  /// Calls f(block, BinCounts) once, with the counts since the last call, and resets the counters to zero.
+  /// Calls f(block, BinCounts) in one block of threads, with the counts since the last call, and resets the
+  /// counters to zero. On the GPU each thread of the block makes the call.
   template <class F>
   void take(const char* label, int bins, F f) {
     in_one_block(label, bins, BinCounts::bytes(bins), room_, TakeCounts<F>{view(bins), f});

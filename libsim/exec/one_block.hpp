@@ -131,9 +131,9 @@ __global__ void __launch_bounds__(OneBlock::most)
   f(OneBlock{}, Beside ? reinterpret_cast<unsigned char*>(beside) : spare);
 }
 
-/// Calls f(block, room) once, for a sequence of passes over so few cells that one launch per pass would take
-/// longer than the passes. `width`: largest number of indices of a pass. `room`: `bytes` of scratch memory,
-/// in shared memory if that is large enough, otherwise in `spare`.
+/// Each thread of one block calls f(block, room): for a sequence of passes over so few cells that one launch
+/// per pass would take longer than the passes. `width`: largest number of indices of a pass. `room`: `bytes`
+/// of scratch memory, in shared memory if that is large enough, otherwise in `spare`.
 template <class F>
 void in_one_block(const char* label, int width, std::size_t bytes, Array<unsigned char>& spare, F f) {
   static_assert(std::is_trivially_copyable_v<F>);

@@ -120,8 +120,9 @@ struct TakeFree {
   SIM_FN void operator()(int k) const { ids[k] = free_ids[k]; }
 };
 
-/// Initialises the new particles, except position and velocity. Their target is their level, and their
-/// history says that it was in the last four frames too. Their saliency is not measured yet and is set to 0.
+/// Initialises the new particles, except position, velocity and temperature. Their target is their level, and
+/// their history says that it was in the last four frames too. Their saliency is not measured yet and is set
+/// to 0.
 struct Make {
   const int* ids;
   Vec4* position;

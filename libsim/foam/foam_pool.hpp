@@ -20,14 +20,16 @@ struct FoamLedger {
 };
 
 /// Limits between the kinds of diffuse particles, as rho / rho_0 of the surrounding water, computed as if
-/// water continued behind the walls. A count of neighbours would depend on the particles' levels.
+/// water continued behind walls and in obstacles. A count of neighbours would depend on the particles'
+/// levels.
 struct FoamKinds {
   static constexpr float spray = 0.2f;    ///< below this: spray
   static constexpr float bubble = 0.75f;  ///< above this: bubble
 };
 
 /// Cells on which the closing speed of the water is measured, and this frame's results. The closing speed is
-/// the speed at which parts of the water approach each other. The scene gives the edge of the cells.
+/// the speed at which parts of the water approach each other. The edge of the cells is the effect's length_m,
+/// or follows from the volume of the water; it is at least 1.5 spacings of the coarsest particles.
 /// Differences between neighbouring particles depend on their sizes, their time steps and unsolved particles;
 /// differences between cell means do not.
 struct MeetingCells {
@@ -56,7 +58,7 @@ struct FoamPool {
   Array<FoamLedger> ledger;
   std::uint32_t frame = 0;  ///< counter for the random numbers
 
-  // Scratch memory of one frame; a member, so that its memory is reused.
+  // Scratch data of one frame, in members, so that each frame reuses their memory.
   MeetingCells cells;
   Array<float> approach;     ///< closing speed / distance per water particle, 1/s
   Array<int> births, sums;   ///< number that each water particle emits, and inclusive sums

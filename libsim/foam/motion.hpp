@@ -43,8 +43,8 @@ using FoamView = ColumnView<columns(Column::Position, Column::Velocity, Column::
 
 // Bounds: Walls, or Solids in scenes with obstacles.
 
-/// Fills the column Normal (outwards, dimensionless: about 1 at a surface; 0 for water that is too slow to
-/// foam), and FoamPool::approach from the cells that find_meeting() filled.
+/// Fills the column Normal (outwards, dimensionless: about 1 at a surface; 0 for water that is too slow or
+/// too coarse to foam), and FoamPool::approach from the cells that find_meeting() filled.
 template <class Bounds>
 void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const Bounds& bounds,
                        const FoamRules& rules);

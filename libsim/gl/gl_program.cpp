@@ -16,7 +16,8 @@ constexpr std::size_t max_shader_bytes = std::size_t{1} << 20;
 /// The text of a shader with its includes expanded.
 std::string expand(const std::string& file, int depth) {
   if (depth > 8)
-    throw base::Error("shaders/" + file, "includes itself", "restore the shader as it was installed");
+    throw base::Error("shaders/" + file, "includes itself, or is included more than 8 files deep",
+                      "restore the shaders as they were installed");
   const std::string text = base::read_file(base::resource("shaders/" + file), max_shader_bytes);
   std::string expanded = "#line 1\n";
   std::size_t start = 0;

@@ -98,7 +98,7 @@ std::shared_ptr<Display> open_display() {
     const char* name = std::getenv("DISPLAY");
     throw base::Error("OpenGL",
                       std::string("no X display") + (name && *name ? std::string(" at ") + name : ""),
-                      "start the program on a desktop, or set DISPLAY");
+                      "start the program on a desktop, or set DISPLAY to an X display that runs");
   }
   return {display, [&x](Display* one) { x.close(one); }};
 }

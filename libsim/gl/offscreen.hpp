@@ -9,7 +9,7 @@ namespace sim {
 /// it is destroyed.
 class Offscreen {
  public:
-  /// At least 1 x 1 px; base::Error for a size that the driver refuses.
+  /// base::Error for a side below 1 px or above the driver's limit.
   Offscreen(int width, int height);
   ~Offscreen();
   Offscreen(const Offscreen&) = delete;

@@ -19,7 +19,11 @@ std::string png_bytes(const Image& image, const std::string& place) {
   const std::size_t row_bytes = 4 * static_cast<std::size_t>(image.width);
   if (image.width < 1 || image.height < 1 ||
       image.rgba.size() != row_bytes * static_cast<std::size_t>(image.height)) {
-    throw base::Error(place, "the picture to write is empty or has too few bytes", "give 4 bytes per pixel");
+    throw base::Error(place,
+                      "the picture to write has " + std::to_string(image.width) + " x " +
+                          std::to_string(image.height) + " px and " + std::to_string(image.rgba.size()) +
+                          " bytes",
+                      "give at least 1 x 1 px, with 4 bytes per pixel");
   }
   png_image header;
   std::memset(&header, 0, sizeof header);
@@ -47,7 +51,10 @@ Image png_of(std::string_view bytes, const std::string& place) {
   }
   if (header.width > max_side_px || header.height > max_side_px) {
     png_image_free(&header);
-    throw base::Error(place, "larger than 16384 px a side", "use a smaller picture");
+    throw base::Error(place,
+                      "has " + std::to_string(header.width) + " x " + std::to_string(header.height) +
+                          " px; at most " + std::to_string(max_side_px) + " px a side are read",
+                      "use a smaller picture");
   }
   header.format = PNG_FORMAT_RGBA;
   Image image;

@@ -21,7 +21,7 @@ struct Image {
 /// The bytes of a PNG file. Errors (base::Error, at `place`): an empty picture, or an rgba array of the wrong
 /// size.
 std::string png_bytes(const Image& image, const std::string& place);
-/// Decodes a PNG of 8 or 16 bits, grey or colour, widened to RGBA; at most 16,384 px per side. Errors
+/// Decodes a PNG of any bit depth, grey or colour, to RGBA of 8 bits; at most 16,384 px per side. Errors
 /// (base::Error, at `place`): truncated, not a PNG, too large.
 Image png_of(std::string_view bytes, const std::string& place);
 

@@ -1,6 +1,7 @@
 #include "libsim/impulse/impulse_recorder.hpp"
 
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace sim::SIM_BACKEND {
 
@@ -48,7 +49,13 @@ struct Count {
 GaugeBox box_of(const Gauge& gauge, const Vec3d& room_m) {
   const std::string who = "gauge " + gauge.name;
   if (!(area_m2(gauge, room_m) > 0)) {
-    throw base::Error(who, "has no area on its wall", "give min_m < max_m along the wall, inside the tank");
+    const auto words = [](const Vec3d& v) {
+      return "(" + base::shortest(v[0]) + ", " + base::shortest(v[1]) + ", " + base::shortest(v[2]) + ")";
+    };
+    throw base::Error(
+        who, "has no area on its wall: min_m = " + words(gauge.min_m) + ", max_m = " + words(gauge.max_m),
+        "give min_m < max_m along the wall, inside the tank, which extends from (0, 0, 0) to " +
+            words(room_m) + " m");
   }
   constexpr double endless = 1e30;
   constexpr double edge = 1e-6;

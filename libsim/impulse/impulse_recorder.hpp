@@ -83,7 +83,8 @@ struct MomentumSums {
 
 class ImpulseRecorder {
  public:
-  /// Starts the recording of all later frames. room_m: Scene::room_m.
+  /// Starts the recording of all later frames. room_m: Scene::room_m. base::Error for a gauge without area on
+  /// its wall.
   void begin(const std::vector<Gauge>& gauges, const Vec3d& room_m, float finest_support);
   bool on() const { return on_; }
   /// True while changes of position by walls count as impulses; false during position corrections that do not

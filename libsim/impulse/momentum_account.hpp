@@ -1,6 +1,5 @@
 #pragma once
-/// Account of the water's momentum in a frame by cause (walls, forces, nozzles, levels, guards), and gauges
-/// on walls and obstacles.
+/// Account of the water's momentum in a frame by cause, and gauges on walls and obstacles.
 
 #include <array>
 #include <string>
@@ -34,7 +33,7 @@ struct ObstacleGauge {
 /// frictionless. Mean pressure in Pa = sum() / (frame's time x area); the solver pushes in discrete steps, so
 /// average over 5 ms or more.
 struct WallPush {
-  double missing_density = 0;  ///< by the density projections, in which walls stand in for missing water
+  double missing_density = 0;  ///< by the density projections, in which walls replace missing water
   double coarse_pressure = 0;  ///< by the coarse pressure q: rho_0 q A per cell face of area A at the wall
   double clamp = 0;            ///< by holding particles back in front of the wall, and moving them back to it
   double sum() const { return missing_density + coarse_pressure + clamp; }
@@ -59,15 +58,15 @@ struct MomentumAccount {
   Vec3d forces{};     ///< gravity and the central force
   Vec3d flow{};       ///< added minus taken by nozzles, minus the part that left through outlets
   Vec3d levels{};     ///< splits and merges
-  Vec3d braked{};     ///< by the speed limit, and by resetting particles that are not finite
+  Vec3d braked{};     ///< by the speed limit, and by stopping particles that are not finite or far outside
   Vec3d viscosity{};  ///< by the solver's own viscosity (XSPH): 0 except for rounding and for neighbours of
                       ///< unsolved particles
   /// By the scene's effects, without the obstacles' part: walls, air, buoyancy, swirl, the residual of the
   /// viscosity solver. Other effects give 0 except for rounding.
   Vec3d effects{};
   Vec3d inherited{};  ///< velocity changes that unsolved particles inherited (temporal acceleration)
-  /// Change by the projections minus the walls' pushes. Not 0, because the coarse pressure on cells is not a
-  /// pair force, unsolved particles do not react, and positions are rounded.
+  /// Change by the projections minus the pushes of walls and obstacles. Not 0, because the coarse pressure on
+  /// cells is not a pair force, unsolved particles do not react, and positions are rounded.
   Vec3d unattributed{};
 
   /// Sum of the walls' pushes as a vector, N s.

@@ -45,8 +45,8 @@ struct LevelRules {
 
   // Rules that the paper leaves open.
   /// looks_farther: frames without a merge partner after which a particle searches beyond merge_reach. lags:
-  /// frames without a partner after which a finer particle no longer prevents merges of its neighbours. When
-  /// most particles of a level have merged, the last few have no partner within merge_reach.
+  /// frames without a partner after which the level of a finer particle no longer prevents merges of its
+  /// neighbours. When most particles of a level have merged, the last few have no partner within merge_reach.
   int looks_farther = 6, lags = 32;
   /// Minimum number of listed neighbours of a particle that counts as inside the fluid; beside a wall the
   /// minimum is reduced. A particle has 40 in deep water, 29 at the surface and 26 in a sheet of two layers.
@@ -80,11 +80,15 @@ struct LevelCounts {
   std::uint64_t splits;          ///< particles that split
   std::uint64_t born;            ///< particles added by splits: 2^k - 1 per split
   std::uint64_t merges;          ///< pairs merged into one particle, each removing one
-  std::uint64_t split_deferred;  ///< particle-turns in which the throttle delayed a split
-  std::uint64_t split_at_wall;   ///< particle-turns in which the children did not fit between the walls
-  std::uint64_t split_no_room;   ///< particle-turns in which a split exceeded the capacity
-  std::uint64_t merge_overlap;   ///< particle-turns in which every merge would overlap a larger particle
-  std::uint64_t merge_step;      ///< particle-turns in which a finer neighbour prevented a merge
+  std::uint64_t split_deferred;  ///< particle-turns in which LevelRules::split_share delayed a split
+  /// particle-turns in which no children fitted between the walls and obstacles
+  std::uint64_t split_at_wall;
+  std::uint64_t split_no_room;  ///< particle-turns in which a split exceeded the capacity
+  /// particle-turns in which a particle found no partner, because the merged particle would overlap a coarser
+  /// one or an obstacle
+  std::uint64_t merge_overlap;
+  /// particle-turns in which a neighbour of a finer level or target prevented a merge
+  std::uint64_t merge_step;
   std::uint64_t energy_lost_uj;  ///< kinetic energy lost in merges, 1e-6 J
 };
 
@@ -103,7 +107,8 @@ struct LevelState {
   TargetSphere forced;
   std::uint32_t frame = 0;  ///< counter for the random numbers
   LevelTurns turns;         ///< the frames that update saliency, splits and merges
-  bool changed = false;     ///< a particle split or merged in this frame
+  /// a particle split or merged in this frame, or could have split but for the capacity
+  bool changed = false;
   Array<LevelCounts> counts;
   /// Initialises Target, History, Age and Waiting; called once when a run begins.
   void begin(NewLevelsView particles);
@@ -119,9 +124,12 @@ struct LevelState {
   Array<int> partner;                       ///< proposed merge partner
   /// number of particles that replace each particle: 1 if it does not change, 0 if it merged into another
   Array<int> births;
-  Array<int> places;        ///< first the mutual merge partners, later the inclusive sums of births
-  Array<int> order, child;  ///< source of each new particle, and its child index
-  /// flags of particles or ids, and prefix sums: of splits, then of free ids, then of new children
+  Array<int> places;  ///< first the mutual merge partners, later the inclusive sums of births
+  /// order: first the splits by priority, later the source of each new particle; child: index of the new
+  /// particle among the children of its source
+  Array<int> order, child;
+  /// flags or numbers, and their prefix sums: of splits, of the particles that each split adds, of free ids,
+  /// of new children
   Array<int> flags, sums;
   Array<std::uint64_t> keys;        ///< keys of splits for sorting by priority
   Array<int> free_ids;              ///< ids that no particle uses, ascending

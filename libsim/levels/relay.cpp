@@ -5,7 +5,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Value of a relay's bid for a stranded particle (see Stranded and Bid). A stranded particle accepts the
-/// largest bid. The value is random, new in each frame, and never 0.
+/// largest bid. The value is random, new in each turn (update of the levels), and never 0.
 SIM_FN std::uint64_t worth_of(int relay_id, std::uint32_t frame) {
   const auto id = static_cast<std::uint32_t>(relay_id);
   return ~(static_cast<std::uint64_t>(random_bits(id, frame, 0x3e1u)) << 32 | id);
@@ -52,8 +52,8 @@ struct Bid {
   SIM_FN bool stranded(int i) const {
     return wish[i] && !gone[i] && age[i] > 0 && waiting[i] >= rules.looks_farther;
   }
-  /// Particle j, as a relay, selects its nearest two stranded neighbours that have the same level and may
-  /// merge.
+  /// Particle j, as a relay, selects two of its stranded neighbours: first the one that nearest() returns,
+  /// then the one of the same level that second_beside() returns.
   template <class Team>
   SIM_FN void operator()(int j, Team team) const {
     int a = -1;
@@ -110,8 +110,9 @@ struct Bid {
   /// True if relay j has twice the mass of `member`, so that it gives each of the two members a half of
   /// itself.
   SIM_FN bool halves(int j, int member) const { return level[member] + 1 == level[j]; }
-  /// True if a particle merged at the midpoint of a and b would be outside obstacles and at least
-  /// stranded_overlap away from relay j and the coarser neighbours of j.
+  /// True if a particle merged at the midpoint of a and b would be outside obstacles, and its distances from
+  /// relay j and from the neighbours of j coarser than a and b would be at least stranded_overlap times the
+  /// sum of the radii.
   template <class Team>
   SIM_FN bool free_between(int j, int a, int b, Team team) const {
     const Vec3 centre = 0.5f * (xyz(position[a]) + xyz(position[b]));

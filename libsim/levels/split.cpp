@@ -12,7 +12,7 @@ namespace {
 enum Status : std::uint8_t { keeps, paused, wants, splits };
 
 /// Priority of a split: first by k, the number of levels down to the target, because particles with a large k
-/// are the most salient; then by a random number, drawn anew each frame.
+/// are the most salient; then by a random number, drawn anew in each turn (update of the levels).
 SIM_FN std::uint64_t priority(int k, int id, std::uint32_t frame) {
   const std::uint32_t chance = random_bits(static_cast<std::uint32_t>(id), frame, 0x5b1u);
   return static_cast<std::uint64_t>(k) << 62 | static_cast<std::uint64_t>(chance >> 2) << 32 |

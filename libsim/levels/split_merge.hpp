@@ -96,10 +96,11 @@ SIM_FN bool inside_fluid(const Boundary& walls, const Vec4* position, const Part
 SIM_FN bool free_of_bodies(const Walls&, Vec3) { return true; }
 SIM_FN bool free_of_bodies(const Solids& solids, Vec3 x) { return solids.nearest_body(x) > 0; }
 
-/// Fills split_code (0 = no split). Returns false if no particle splits.
+/// Fills split_code (0 = no split). Returns false if no particle can split; true even if the capacity then
+/// refuses every split.
 bool choose_splits(LevelState& levels, const LevelFluid& fluid);
-/// Updates ages and histories, then merges pairs in place: the particle with the lower id becomes the merged
-/// one, the other is marked in `gone`.
+/// Updates ages, histories and waiting times, then merges pairs in place: the particle with the lower id
+/// becomes the merged one, the other is marked in `gone`.
 void merge_pairs(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
 /// Merges particles that waited without a partner, through a coarser particle between two of them.
 void relay_stranded(LevelState& levels, const LevelFluid& fluid, const Descents& descents);
@@ -109,7 +110,7 @@ void compact(LevelState& levels, const LevelFluid& fluid, Particles& particles, 
 
 /// Increases the age of all particles, in a frame that does not update the levels.
 void grow_older(LevelState& levels, const LevelView& particles);
-/// All splits and merges of a frame; levels.changed is true if there were any.
+/// All splits and merges of a frame; sets levels.changed.
 void split_and_merge(LevelState& levels, const LevelFluid& fluid, Particles& particles);
 
 }  // namespace sim::SIM_BACKEND

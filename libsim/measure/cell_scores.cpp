@@ -136,7 +136,8 @@ void check_paired(const std::vector<ScoreBlock>& blocks, const CellScores& then,
                     more = told(left, "pictures in it are not in this run");
   throw base::Error(
       "--paired-with " + path, lacks + (lacks.empty() || more.empty() ? "" : "; ") + more,
-      "use the stored checkpoints, scenes, n_*, presets, gazes and repeats of the run that wrote it");
+      "give --checkpoints-from with the checkpoints of the run that wrote it, and that run's --scene, "
+      "--n-star, --preset, --checkpoints, --gazes and --repeats");
 }
 
 figures::TextTable change_rows(const std::vector<ScoreBlock>& now, const CellScores& then) {

@@ -25,7 +25,7 @@ double paper_tau(const std::string& scene, const std::string& n_star, sim::Metho
   throw base::Error(
       "--tau table2",
       "the paper's table holds no tau for " + scene + ", " + n_star + ", " + sim::method_name(method),
-      "use --tau fixed:-6, or n_* 16k or 32k");
+      "use --tau fixed:-6, or one of the paper's scenes with --n-star 16k or 32k");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct SheetColumn {
 sim::Image contact_sheet(const std::vector<SheetColumn>& columns);
 
 /// Writes PNG files on threads of its own, because compression takes longer than drawing. finish() must be
-/// called: it waits for the files and throws the errors of writing.
+/// called: it waits for the files and throws the first error of writing.
 class SheetWriter {
  public:
   void write(std::filesystem::path path, sim::Image image);

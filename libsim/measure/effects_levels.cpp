@@ -47,7 +47,8 @@ std::vector<LevelVariant> level_variants_of(const sim::Scene& scene) {
     add(words_of(all) + ", start moved", all, true);
   }
   if (out.empty())
-    throw base::Error("scene " + scene.name, "lists no effect that has a coarsest_level",
+    throw base::Error("scene " + scene.name,
+                      "lists no effect that has a coarsest_level and a coefficient above 0",
                       "give a scene with such an effect, for example data/scenes/sea_spray.toml");
   return out;
 }
@@ -114,7 +115,7 @@ Running start(const LevelVariant& variant, const std::vector<sim::ParticleState>
   return out;
 }
 
-/// Runs one frame. counts: adds it to the means; keep: stores its picture.
+/// Runs one frame. counts: its numbers enter the means and medians; keep: stores its picture.
 void step(Running& running, const sim::Scene& scene, const LevelRuns& runs, bool counts, bool keep) {
   sim::Simulation& fluid = *running.fluid;
   const double dt_s = runs.choice.frame_dt_s > 0 ? runs.choice.frame_dt_s : scene.frame_dt_s;

@@ -41,9 +41,8 @@ struct LevelRuns {
 };
 
 /// All variants start from one settled state (perturbed if LevelVariant::moved), with the gaze on the scene's
-/// gaze point. They step in turn,
-/// with each pass timed, and are drawn at four equally spaced frames up to the last one. base::Error for a
-/// method with one level.
+/// gaze point. In each frame they step one after the other, with each pass timed. Their pictures are compared
+/// at four equally spaced frames up to the last one. base::Error for a method with one level.
 std::vector<LevelCost> run_levels(const std::vector<LevelVariant>& variants, const LevelRuns& runs);
 
 /// One row per variant, grouped by effect. The added time is relative to the group's first row, without the

@@ -13,7 +13,7 @@ namespace measure {
 
 using Mask = std::vector<std::uint8_t>;
 
-/// Smallest mask, px, over which a metric is computed; metrics of smaller masks are left out of the table.
+/// Smallest mask, px, over which a metric is computed; over a smaller mask its value is NaN.
 inline constexpr std::size_t least_mask_pixels = 1000;
 
 std::size_t pixels_of(const Mask& mask);
@@ -23,7 +23,7 @@ Mask fovea_mask(const sim::View& view, const sim::Gaze& gaze, double half_angle_
 
 /// The most salient fifth of the fluid's pixels, without those of `without`. A pixel's value is the F of the
 /// particle in front, by_id[ids[front]], and not its s, because many particles have s = 1. Non-finite values
-/// are not salient; ties with the last pixel of the fifth are included.
+/// count as 0; ties with the last pixel of the fifth are included.
 Mask salient_mask(const sim::GBuffer& picture, std::span<const int> ids, std::span<const float> by_id,
                   const Mask& without);
 

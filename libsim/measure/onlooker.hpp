@@ -18,13 +18,14 @@ class Onlooker {
 
   const sim::View& view() const { return view_; }
   const sim::Camera& camera() const { return camera_; }
-  /// Forgets the last picture; call it before another run (see FluidPicture::begin).
+  /// Replaces the last picture by `seen` (nullptr: none); call it before another run (FluidPicture::begin).
   void begin(const sim::GBuffer* seen) { picture_.begin(seen); }
   /// Passes the gaze and the last picture to a method that uses them.
   void look(sim::Simulation& fluid, const sim::Vec3d& gaze_m) {
     picture_.look(fluid, view_, sim::gaze_at(camera_, gaze_m));
   }
-  /// Calls look(), advances by a frame, and draws if `wanted` or if the method uses pictures.
+  /// Calls look(), advances by a frame, and draws if `wanted` or if the run uses pictures. Passes the
+  /// measured duration to Simulation::frame_time.
   void step(sim::Simulation& fluid, const sim::Vec3d& gaze_m, bool wanted);
   void draw(sim::Simulation& fluid) { picture_.draw(fluid, view_, target_.framebuffer()); }
 

@@ -30,7 +30,7 @@ class Cells {
 
   std::string word(std::size_t column, const char* name) const {
     if (cells_[column].empty() || !base::is_plain_line(cells_[column]))
-      fail(std::string(name) + " is missing");
+      fail(std::string(name) + " is missing, or contains a control character or bytes that are not UTF-8");
     return cells_[column];
   }
   template <class Number>

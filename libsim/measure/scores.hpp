@@ -60,14 +60,15 @@ struct ScoreBlock {
 /// of a mask).
 figures::TextTable score_rows(const std::vector<ScoreBlock>& blocks);
 
-/// The paper's layout: one row per method, one column per metric, mean +- half the interval.
+/// The paper's layout: one row per method, one column per metric, mean +- half the interval's width.
 figures::TextTable score_table(const std::vector<ScoreBlock>& blocks);
 
-/// Paired differences with their intervals, and a check of the paper's order: it is broken if a mean is more
-/// than 0.1 dB (0.005 SSIM) on the wrong side; in the fovea Ours may be 0.75 dB below FovFluid.
+/// Paired differences with their intervals, and a check of the paper's order in PSNR@salient, PSNR@overall
+/// and SSIM-static: it is broken if a mean is more than 0.1 dB (0.005 SSIM) on the wrong side. In the fovea
+/// only Ours is checked: it may be 0.75 dB below FovFluid.
 figures::TextTable paired_rows(const std::vector<ScoreBlock>& blocks);
 
-/// SVG bars with intervals for one metric.
+/// SVG bars with intervals for one metric; empty if no method has values of it.
 std::string score_chart(const std::vector<ScoreBlock>& blocks, const MetricTraits& metric);
 
 }  // namespace measure

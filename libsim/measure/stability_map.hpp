@@ -29,9 +29,9 @@ struct Limit {
   int runs = 0;
 };
 
-/// The largest factor from 1 to `most` that passes: a factor at most `resolution` times as large fails. Tries
-/// `most` and the bisection's points only. Assumes, without trying, that the factor 1 passes, and all factors
-/// below a passing one. most > 1, resolution > 1.
+/// The largest factor from 1 to `most` that passes: a factor at most `resolution` times as large fails, or
+/// the factor is `most` itself. Tries `most` and the bisection's points only. Assumes, without trying, that
+/// the factor 1 passes, and all factors below a passing one. most > 1, resolution > 1.
 Limit<double> largest_factor(const Trial<double>& trial, double most, double resolution);
 
 /// The smallest whole number from 1 to `usual` that passes, by bisection. Assumes, without trying, that

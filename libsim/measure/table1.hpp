@@ -53,8 +53,8 @@ inline sim::SimulationOptions run_options(const Table1Options& options, const si
 /// Frames of the scene's checkpoints that the options select.
 std::vector<int> checkpoint_frames(const sim::CellScene& scene, const Table1Options& options);
 
-/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error if one is
-/// missing.
+/// Digests of the checkpoints in --checkpoints-from; empty without the option. base::Error as by
+/// read_checkpoint().
 std::vector<std::string> stored_digests(const sim::CellScene& scene, const CellSize& size,
                                         const Table1Options& options);
 
@@ -102,8 +102,8 @@ StillResult run_stills(const sim::CellScene& scene, const CellSize& size, const 
 /// Runs the methods in lockstep, with the gaze on the scene's keys, and adds Metric::SsimCumul (mean SSIM of
 /// frames 1 .. cumul_frames), Metric::Flicker and Metric::FlickerPeriphery (means over frames 2 ..
 /// cumul_frames) to the block's methods, one cell for each of film_starts. HiRes is compared with itself from
-/// a perturbed settled state; from the second start on, all methods start from perturbed states. Needs a
-/// current context.
+/// a perturbed settled state (with options.unperturbed from the same one); from the second start on, all
+/// methods start from perturbed states. Needs a current context.
 void run_film(const sim::CellScene& scene, const CellSize& size, const Table1Options& options,
               ScoreBlock& block);
 

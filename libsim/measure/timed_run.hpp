@@ -35,9 +35,9 @@ struct Accuracy {
   }
 };
 
-/// Number of frames between measurements: about ten per run. Water is denser in the frame in which levels
-/// change than before the next change, so the interval is chosen to sample all frames of that period nearly
-/// equally.
+/// Number of frames from one measurement to the next, for about ten measurements per run. Water is denser in
+/// the frame in which levels change than before the next change, so the interval is chosen to sample all
+/// frames of that period nearly equally.
 inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& readings) {
   const int turn = sim::traits_of(method).adaptive() ? std::max(1, readings.levels_period_frames) : 1;
   int out = std::max(1, frames / 10);
@@ -48,7 +48,7 @@ inline int tenth_of(int frames, sim::MethodKind method, const sim::Readings& rea
 /// Substeps over all frames.
 struct Substeps {
   int taken = 0, most = 0;
-  int bound = 0;  ///< frames whose fastest particle required more substeps than the limit
+  int bound = 0;  ///< frames that required more substeps than the limit
   void add(sim::SubstepCount count) {
     taken += count.taken;
     most = std::max(most, count.taken);

@@ -15,7 +15,7 @@ inline constexpr int most_levels = 4;
 
 /// Source of the level that a particle should have.
 enum class TargetSource {
-  None,     ///< all particles keep one level
+  None,     ///< no targets: particles keep their levels
   Gaze,     ///< finest in the fovea, coarsest in the periphery, other levels between (like FovFluid, [42] in
             ///< ViP-Fluid)
   Saliency  ///< Eq. 1-9
@@ -27,7 +27,7 @@ struct MethodTraits {
   const char* name = "";
   TargetSource target = TargetSource::None;
   bool temporal = false;  ///< temporal acceleration (Alg. 3)
-  int start_level = 0;    ///< level of all particles at frame 0
+  int start_level = 0;    ///< level of the particles that fill the scene before frame 0
 
   /// True if particles split and merge.
   bool adaptive() const { return target != TargetSource::None; }
@@ -45,11 +45,12 @@ std::string method_name(MethodKind method);
 std::string method_names();
 
 /// Parses n_*, the number of particles if all have the coarsest level: "16k" = 16,384; "4096" = 4,096.
-/// base::Error outside 64 .. 4M (4 x 2^20).
+/// base::Error outside 64 .. 4,194,304 (4096k), and for other texts.
 std::int64_t parse_n_star(std::string_view text);
 
-/// Number of particles at frame 0: 8 n_* for a method that starts at level 0, n_* for one that starts at
-/// level 3. LoRes and HiRes have this number in all frames.
+/// Number of particles at frame 0, with those that obstacles displace: 8 n_* for a method that starts at
+/// level 0, n_* for one that starts at level 3. LoRes and HiRes keep their number of particles in
+/// scenes without outlets.
 std::int64_t particle_count(MethodKind method, std::int64_t n_star);
 
 }  // namespace sim

@@ -23,8 +23,8 @@ enum class AcuityFalloff { Hyperbolic, Steep, Smoothstep };
 /// the result depends on water up to two supports away. TwoSupports: 2 h_i as printed, with eight times as
 /// many neighbours.
 enum class GradientReach { OneSupport, Smoothed, TwoSupports };
-/// Eq. 7: weight of a particle under water of thickness d in m. Min: min(e^(d/2), 5), which distinguishes
-/// thicknesses up to 3.2 m. Max: max(e^(d/2), 5), as printed.
+/// Eq. 7: gamma_t, by which the temporal feature of a particle under water of thickness d, in m, is divided.
+/// Min: min(e^(d/2), 5), which distinguishes thicknesses up to 3.2 m. Max: max(e^(d/2), 5), as printed.
 enum class ThicknessWeight { Min, Max };
 /// Eq. 9: the range of F that maps to s = 0 .. 1. Percentile: from the 1st to the 98th percentile by mass,
 /// averaged over recent frames. MinMax: from the minimum to the maximum.
@@ -42,7 +42,7 @@ struct Readings {
   double attenuation_per_m = 0.5;                    ///< the 1/2 of Eq. 7
   bool calm_out_of_view = true;                      ///< Eq. 6: f_T = 0 outside the picture
   int manifold_window_px = 32;                       ///< Eq. 5: largest half side of the window
-  bool hide_manifold_behind = false;                 ///< Eq. 5: f_m of occluded particles divided by gamma_t
+  bool hide_manifold_behind = false;                 ///< f_m of Eq. 5 is divided by gamma_t of Eq. 7
   GradientReach gradient = GradientReach::Smoothed;  ///< Eq. 6
   /// Eq. 6: weight of a frame's new value in the smoothed temporal feature; 1 = no smoothing. In still water,
   /// 0.3 causes two thirds of the splits that 1 causes; 0.1 causes less than half of the splits that 1
@@ -92,20 +92,22 @@ struct Readings {
   /// than the particles.
   bool merge_same_target = false;
   /// Maximum distance of each of two merging particles from the merged particle's centre, in radii of the
-  /// merged particle.
+  /// merged particle. Particles that long found no partner may exceed it (LevelRules::looks_farther, relays).
   double merge_reach = 1;
   /// Minimum distance of a merged particle from others of its level or coarser, as a share of the sum of
   /// radii.
   double merge_overlap = 0.8;
-  /// Refuse merges after which a neighbour would be two levels finer than the merged particle.
+  /// Refuse merges after which a neighbour's level or target would be two or more levels finer than the
+  /// merged particle. The level of a neighbour that has long waited to merge does not count
+  /// (LevelRules::lags).
   bool merge_keeps_steps = true;
   /// A particle becomes coarser only if N (1 - s) of Eq. 9 exceeds the next coarser level by this much, in
   /// levels. So a particle whose s varies about the border of two levels does not split and merge in turn.
   /// [0, 1)
   double merge_dead_band = 0.7;
-  /// Filter near particles that just split or merged, strongest in water at rest: removes this share of the
-  /// differences between neighbours' velocity changes per substep. Otherwise the overlap of the new particles
-  /// would become kinetic energy. [0, 1]; 0 = no filter.
+  /// Filter near particles that just split or merged, strongest in water at rest: in a substep it removes up
+  /// to this share of the differences between neighbours' velocity changes. Otherwise the overlap of the new
+  /// particles would become kinetic energy. [0, 1]; 0 = no filter.
   double kick_filter = 0.9;
   /// Additional viscosity of water at rest, as a multiple of the fluid's viscosity: damps the irregularities
   /// left by splits and merges. >= 0
@@ -132,14 +134,15 @@ struct Readings {
   bool inactive_pressed = true;
   /// Edge of the cells for inherited changes, in d_*; the paper's cells for V and E have an edge of 10 d_*.
   double inherit_cell_spacings = 5;
-  /// In each frame an inactive particle's velocity v becomes v + inactive_damping (1 - beta)^2 (V - v), with
-  /// V the mean velocity of its cell.
+  /// In each frame, after the inherited change, an inactive particle's velocity v becomes v +
+  /// inactive_damping (1 - beta)^2 (V - v), with V the mean velocity of its cell. Without effect if
+  /// inherit_change is false.
   double inactive_damping = 0.25;
   /// Inactive particles count in lambda's denominator as if they could move; false: as if their mass were
   /// infinite.
   bool inactive_yield = true;
-  /// Spray, fast particles, particles at walls and particles that just split or merged are solved in every
-  /// frame.
+  /// Spray, fast particles, particles near walls and obstacles, particles that just split or merged and, with
+  /// the effect cohesion, particles at the surface are solved in every frame.
   bool keep_fragile_active = true;
 };
 

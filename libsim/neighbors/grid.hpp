@@ -69,7 +69,7 @@ struct CellTable {
   /// The window that contains all particles within margin x (h + h_other) / 2.
   SIM_FN Window window(const LevelCells& grid, Vec4 self, float margin) const {
     const Vec3 at = xyz(self) - low;
-    // Larger than the rounding errors of positions, distances and cells.
+    // The factor and the last term exceed the rounding errors of positions, distances and cells.
     const float reach = 1.0001f * (0.5f * margin * (self.w + grid.support)) +
                         1e-6f * (fabsf(at.x) + fabsf(at.y) + fabsf(at.z));
     return {{at.x, grid.nominal(at.y, grid.ny), grid.nominal(at.z, grid.nz)},

@@ -63,8 +63,8 @@ enum class Descent {
 //   Age             frames since a split or a merge made the particle, at most 255
 //   Active          1 = solved in this frame, 2 = solved but not in means (activation/activation.hpp),
 //                   0 = moved by the velocity grid (ViP-Fluid, Algorithm 3)
-//   Rest            number of frames in which the particle was not solved, and flags (see
-//                   activation/activation.hpp)
+//   Rest            counter of the frames in which the particle was not solved and of the solved frames after
+//                   them, and flags (see activation/activation.hpp)
 //   StartCell       cell of the velocity grid in which the particle started the frame
 //   Temperature     kelvin above the reference of the effect heat
 //   TemperatureNext output of conduction, then swapped with Temperature

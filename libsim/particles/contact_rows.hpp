@@ -30,7 +30,8 @@ struct ContactRow {
   float left, step, along;
 };
 
-/// Data that one thread shares with the others: written after one barrier, read before the next.
+/// Data that one thread writes, and all threads read after the next barrier. One more barrier comes before
+/// the next write.
 struct ContactProgress {
   float swept;  ///< largest change of a speed in a sweep, m/s
 };

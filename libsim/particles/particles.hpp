@@ -22,7 +22,7 @@ struct Guards {
   std::uint64_t neighbours_dropped;
   std::uint64_t wall_projected;
   std::uint64_t saliency_not_finite;
-  Momentum braked;      ///< momentum removed by the speed limit and from particles that are not finite
+  Momentum braked;      ///< momentum removed by the speed limit, and from particles in quarantine
   std::uint64_t first;  ///< TroubleKey of the first trouble that Witness noted; 0 = none
 };
 

@@ -28,7 +28,7 @@ struct ActiveParticles {
   bool others_pressed;  ///< gravity and the coarse pressure also move the unsolved particles
   SIM_FN int slot(int k) const { return k; }
   SIM_FN int operator()(int slot) const { return slots[slot]; }
-  /// 1 for a solved particle, 0 for one moved only by the velocity grid.
+  /// 1 for a solved particle, otherwise 0.
   SIM_FN float moves(int i) const { return active[i] ? 1.0f : 0.0f; }
   /// 1 if gravity moves the particle, otherwise 0.
   SIM_FN float falls(int i) const { return others_pressed || active[i] ? 1.0f : 0.0f; }

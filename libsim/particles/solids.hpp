@@ -320,7 +320,8 @@ struct Solids {
 
   /// Like Walls::hold_back, for walls and bodies. The distance from a moving body before the move is measured
   /// as if the particle had moved with the body. Near a body that touches a wall, the corrections by wall and
-  /// body can contradict each other. A particle that would then end inside a body stays at its old position.
+  /// body can contradict each other. A particle that would then end inside a body stays at its old position,
+  /// if that is inside the walls and outside all bodies.
   template <class Record = NoRecord>
   SIM_FN bool hold_back(Vec3& x, Vec3 to, float gap, Record record = {}) const {
     const Vec3 from = x;
@@ -340,8 +341,9 @@ struct Solids {
     return true;
   }
 
-  /// Like Walls::project, for bodies and then walls. A particle that came from outside and would end inside a
-  /// body returns to `from`.
+  /// Like Walls::project, for bodies and then walls. If both a body and a wall moved the particle and it
+  /// would end inside a body, it returns to `from`, provided that `from` is inside the walls and outside all
+  /// bodies.
   template <class Record = NoRecord>
   SIM_FN bool project(Vec3& x, Vec3 from, float gap, Record record = {}) const {
     bool moved = false;

@@ -6,7 +6,7 @@
 
 namespace sim::SIM_BACKEND {
 
-/// Sums over the particles of a cell: volume, and volume times rho / rho_0 - 1. They are in fixed point, so
+/// Sums over the particles of a cell: volume, and volume times (rho / rho_0 - 1). They are in fixed point, so
 /// that they do not depend on the order of addition.
 struct CellSum {
   std::uint64_t volume, excess;
@@ -147,8 +147,9 @@ struct Waterline {
     }
     return {sides > 0 ? sum / static_cast<float>(sides) : 0, most};
   }
-  /// The first position in the direction `way` that is at least three quarters of a cell edge away from every
-  /// body. If a wall comes first, the last position in front of the wall.
+  /// Steps from `from` in the direction `way` to the first position that is at least three quarters of a cell
+  /// edge away from every body. If a wall comes first, the result is the last position found in front of the
+  /// wall; if most_steps steps do not suffice, the position after them.
   SIM_FN Vec3 outside(Vec3 from, Vec3 way) const {
     const float clear = 0.75f * fabsf(dot(side(), water.frame.edge));
     Vec3 x = from;

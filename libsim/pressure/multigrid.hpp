@@ -28,7 +28,8 @@ struct GridView {
     if (block.holds(x, y, z)) return kind[block.index(x, y, z)];
     return y >= block.ny ? top : CellKind::Solid;
   }
-  /// Length of a cell's edge in finest cells; the last cell of a row may extend beyond the block.
+  /// Length, in finest cells, of the part of a cell inside the finest block: the last cell of a row may
+  /// extend beyond it.
   SIM_FN float extent(int cell, int finest_cells) const {
     const int left = finest_cells - cell * scale;
     return static_cast<float>(left < scale ? left : scale);

@@ -99,7 +99,8 @@ PtpeFile parse_ptpe_file(std::string_view text, const std::string& name) {
   const auto format = root.integer("format");
   if (format < 1 || format > PtpeFile::format_version) {
     root.fail("format",
-              "is not a format this program reads (1 to " + std::to_string(PtpeFile::format_version) + ")",
+              "= " + std::to_string(format) + " is not a format this program reads (1 to " +
+                  std::to_string(PtpeFile::format_version) + ")",
               "use the program that wrote the file, or fit again with this one");
   }
   const auto table = root.table("ptpe");

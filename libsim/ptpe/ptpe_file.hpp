@@ -39,8 +39,9 @@ struct PtpeFile {
 /// also states if participants were simulated and if the answers are test data.
 std::string describe(const PtpeFile& file);
 
-/// Reads the text of a PTPE file. Errors (base::Error at file:line:column): unknown key, wrong type or range,
-/// a or b outside its own interval, a exp(b delta) outside its band, newer format.
+/// Reads the text of a PTPE file. base::Error at file:line:column for contents that describe no valid fit,
+/// such as an unknown key, a wrong type or range, a or b outside its own interval, a exp(b delta) outside its
+/// band, or a newer format.
 PtpeFile parse_ptpe_file(std::string_view text, const std::string& name);
 PtpeFile read_ptpe_file(const std::filesystem::path& path);
 /// Text of a PTPE file, from which parse_ptpe_file reads the same values; format 1 without a band.

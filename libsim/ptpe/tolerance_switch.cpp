@@ -16,8 +16,8 @@ std::optional<double> parse_tau(std::string_view text) {
     const auto value = base::parse_number<double>(text.substr(fixed.size()));
     if (value && std::isfinite(*value)) return value;
   }
-  throw base::Error("tau \"" + std::string(text) + "\"", "is neither live nor fixed:X",
-                    "write for example fixed:-6, in frames/s");
+  throw base::Error("tau \"" + std::string(text) + "\"", "is neither live nor fixed:X with a finite number X",
+                    "write live, or for example fixed:-6, in frames/s");
 }
 
 FrameRate parse_frame_rate(std::string_view text) {
@@ -27,7 +27,8 @@ FrameRate parse_frame_rate(std::string_view text) {
     if (mean && sd && std::isfinite(*mean) && std::isfinite(*sd) && *mean > 0 && *sd >= 0)
       return {*mean, *sd};
   }
-  throw base::Error("frame rate \"" + std::string(text) + "\"", "is not a mean and a standard deviation",
+  throw base::Error("frame rate \"" + std::string(text) + "\"",
+                    "is not a mean above 0 and a standard deviation from 0 on, with a comma between",
                     "write for example 16.9,3.2, in frames/s");
 }
 
@@ -35,12 +36,14 @@ ToleranceSwitch::ToleranceSwitch(const stats::PtpeModel& model, std::optional<do
                                  std::optional<FrameRate> fixed_rate)
     : model_(model), fixed_(fixed_tau || fixed_rate), rate_(fixed_rate) {
   if (fixed_tau && fixed_rate)
-    throw base::Error("tau", "is given together with the frame rate from which it is computed",
-                      "give one of them");
+    throw base::Error("tau", "is given together with a frame rate, from which it would be computed",
+                      "give only tau, or only the frame rate");
   if (fixed_rate) fixed_tau = stats::ptpe_tolerance(model, fixed_rate->mean, fixed_rate->sd);
   if (!fixed_tau) return;
   if (!std::isfinite(*fixed_tau))
-    throw base::Error("tau", "is not finite", "give a number, in frames per second");
+    throw base::Error("tau = " + std::to_string(*fixed_tau), "is not finite",
+                      fixed_rate ? "give a finite frame rate with a smaller standard deviation"
+                                 : "give a finite number of frames/s");
   set(*fixed_tau);
 }
 

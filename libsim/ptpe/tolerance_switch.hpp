@@ -13,7 +13,7 @@
 namespace sim {
 
 /// Reads an option's text: "live" gives none (tau from the measured frame times), "fixed:X" gives X in
-/// frames/s; others are a base::Error.
+/// frames/s, a finite number; others are a base::Error.
 std::optional<double> parse_tau(std::string_view text);
 
 /// Mean and standard deviation of a frame rate, frames/s.
@@ -22,7 +22,7 @@ struct FrameRate {
   bool operator==(const FrameRate&) const = default;
 };
 
-/// Reads "MEAN,SD" in frames/s, such as "16.9,3.2"; others are a base::Error.
+/// Reads "MEAN,SD" in frames/s, such as "16.9,3.2", with MEAN > 0 and SD >= 0; others are a base::Error.
 FrameRate parse_frame_rate(std::string_view text);
 
 /// Switches temporal acceleration by tau over the last 30 frames: on below 0, off above +1 frames/s. Two
@@ -33,7 +33,7 @@ class ToleranceSwitch {
   static constexpr std::size_t window_frames = 30;
   static constexpr double off_above = 1;  ///< frames/s
 
-  /// At most one of fixed_tau and fixed_rate may be given; base::Error otherwise, or if one is not finite.
+  /// At most one of fixed_tau and fixed_rate may be given; base::Error otherwise, or if tau is not finite.
   explicit ToleranceSwitch(const stats::PtpeModel& model = {}, std::optional<double> fixed_tau = {},
                            std::optional<FrameRate> fixed_rate = {});
 
@@ -47,8 +47,8 @@ class ToleranceSwitch {
   /// mu and delta from which tau was computed; none if tau was given, or is unknown.
   std::optional<FrameRate> rate() const { return rate_; }
   bool on() const { return on_; }
-  /// beta = exp(2 b tau) with tau clamped to at most 0 while on, otherwise 1: the lowest probability that a
-  /// particle is solved.
+  /// The lowest probability that a particle is solved: beta = exp(2 b tau) while on, with tau clamped to at
+  /// most 0; 1 while off, or if b < 0.
   double beta() const;
   /// True if beta is 1 in every frame, whatever the frame times.
   bool stays_off() const { return fixed_ && beta() >= 1; }
