@@ -28,7 +28,7 @@ namespace apps {
 namespace {
 
 /// The account of a frame, with the names of the database's columns. frame: number of frames since the gate
-/// opened. Values that were not measured are null.
+/// opened. Values that were not measured are null; without guard counts there is no "guards".
 base::Json account_json(std::int64_t frame, const study::FrameFacts& facts) {
   base::Json out{{"frame", frame}, {"particles", facts.particles_by_level}};
   const auto t = facts.tolerance.value_or(study::FrameTolerance{});

@@ -125,7 +125,7 @@ base::Json run_peers(FrameOptions options) {
   options.no_render = true;
   const sim::Scene scene = sim::read_scene(base::find_input(options.scene));
   base::Json result = run_frames(options);
-  // Unknown for a GPU, whose name the program cannot read.
+  // Empty on a GPU, because describe_machine() names only the processor.
   const std::string machine = result["backend"] == "cpu" ? base::describe_machine() : "";
   const measure::OurRow ours = measure::our_row(result, peers_dt_s, scene.solver_iterations, machine);
   print_frame(result);

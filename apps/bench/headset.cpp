@@ -59,7 +59,9 @@ class HeadsetBench {
     while (!session_.running()) {
       session_.poll();
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "the runtime does not begin a session", "put the headset on");
+        throw base::Error("headset",
+                          fmt::format("the runtime did not begin a session within {} s", most_idle.count()),
+                          "put the headset on and give the command again");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
@@ -67,7 +69,9 @@ class HeadsetBench {
   void run(int frames, Stages* stages) {
     for (int i = 0; i < frames; ++i) {
       session_.poll();
-      if (!session_.running()) throw base::Error("headset", "its session ended", "keep the headset on");
+      if (!session_.running())
+        throw base::Error("headset", "the runtime ended the session before all frames were timed",
+                          "keep the headset on until the command ends");
       one_frame(stages);
     }
   }

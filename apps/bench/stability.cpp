@@ -121,7 +121,7 @@ void turn(const Job& job, const StabilityOptions& options, measure::MapCell& cel
 /// Fills job.cells. Calls `step` after the run at the usual numbers and after each knob.
 void measure(Job& job, const StabilityOptions& options, const std::function<void()>& step) {
   const HardCase& one = *job.hard_case;
-  // This run is not caught: if the back end fails, its error ends the command.
+  // Errors of this run are not caught: if the back end fails, its error ends the command.
   const std::string at_its_own = failure(run(one, job.setting));
   step();
   for (const measure::Knob knob : measure::all_knobs) {

@@ -19,7 +19,7 @@ CLI::Option* add_database(CLI::App& command, std::string& database);
 
 /// Adds the database of vip-stats, as a positional argument or as --db; the command must call check_given().
 void add_database_argument(CLI::App& command, std::string& database);
-/// Adds --incomplete, an option of all commands that read a study (study::StudyFile).
+/// Adds --incomplete, an option of the commands that read a study (study::StudyFile).
 void add_incomplete(CLI::App& command, bool& incomplete);
 /// Throws CLI::RequiredError if add_database_argument() got no database.
 void check_given(const std::string& database);
@@ -69,8 +69,8 @@ void check_apart(const std::filesystem::path& database, const std::map<std::stri
 void check_arguments(int argc, const char* const* argv);
 
 /// Adds a check, before all others, to each numeric option of `app` and its commands: a whole number must be
-/// digits that fit in 64 bits, any other number must be finite. Without this check, CLI11 clamps to the
-/// nearest number and reads 010 as eight.
+/// digits, with or without a sign, that fit in 64 bits; any other number must be finite. Without this check,
+/// CLI11 clamps to the nearest number and reads 010 as eight.
 void check_numbers(CLI::App& app);
 
 }  // namespace apps

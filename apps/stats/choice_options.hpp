@@ -1,5 +1,5 @@
 #pragma once
-/// Options and help shared by all commands: the protocols and questions to analyse, and the level of a
+/// Options and help that several commands share: the protocols and questions to analyse, and the level of a
 /// pilot's curve.
 
 #include <CLI/CLI.hpp>

@@ -66,7 +66,8 @@ void check_kind(const study::PowerRequest& request, study::PowerKind kind, const
         "write more_than_one_trial = \"share\" into a plan and give it with --plan, or groups = 1 into the "
         "protocol");
   if (task2 && request.effect && !(*request.effect > 0 && *request.effect < 1))
-    refuse("--effect", "is a preference in Task 2, above 0 and below 1", "write --effect 0.7");
+    refuse(fmt::format("--effect {:g}", *request.effect),
+           "is a preference in Task 2, which lies above 0 and below 1", "write for example --effect 0.7");
 }
 
 void complete(PowerCommand& command, const CLI::App& options) {

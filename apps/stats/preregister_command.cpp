@@ -23,7 +23,7 @@ struct PreregisterCommand {
   std::optional<std::uint64_t> seed;
 };
 
-/// The plan. The hypotheses of the plan are about one protocol with factors, which they must fit.
+/// Reads the plan. If it declares hypotheses, they must fit the one given protocol, which has factors.
 stats::AnalysisPlan read_checked_plan(const PreregisterCommand& command) {
   auto plan = study::read_plan(command.plan).plan;
   if (plan.hypotheses.empty()) return plan;

@@ -45,7 +45,7 @@ void add_preregistration(study::Json& json, const study::report::Bundle& bundle,
     one["preregistration"] = study::report::compare_with_bundle(bundle, protocols, one);
 }
 
-/// Refuses a level at which no curve can be fitted, as fit-ptpe does.
+/// Refuses --level in a study without a pilot, and a level outside a question's scale, as fit-ptpe does.
 void check_level(const ReportCommand& command, const study::TaskStudy& study,
                  const stats::AnalysisPlan& plan) {
   const auto pilots = study::choose_tasks(study, command.choice.selection(study::TaskKind::Pilot, plan));

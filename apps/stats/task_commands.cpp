@@ -205,7 +205,7 @@ void run(const TaskCommand& command) {
   request.level = command.choice.level;
   request.incomplete = command.incomplete;
   if (!command.plan.empty()) request.plan = study::read_plan(command.plan);
-  // Opened before the data are read. Only output files are registered.
+  // The register of output files is opened before the data are read, and only if a file is to be written.
   std::optional<study::RegisteredFiles> files;
   if (!command.json.empty() || !command.csv.empty())
     files.emplace(study::StudyFile(command.database, command.incomplete));

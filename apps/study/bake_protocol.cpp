@@ -127,7 +127,7 @@ void check_room(const std::vector<Task>& tasks, const fs::path& folder) {
       fmt::format("take up to {:.1f} GB, and {:.1f} GB are free", 1e-9 * needed, 1e-9 * room);
   if (needed > room)
     throw base::Error(folder.string(), std::to_string(tasks.size()) + " bakes " + text,
-                      "name a folder on another disk, or make room");
+                      "name a folder on another disk with --out, or free space on this one");
   std::printf("%zu bakes to make %s\n", tasks.size(), text.c_str());
   std::fflush(stdout);
 }
@@ -186,7 +186,7 @@ void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& request
   print_live(plan);
   if (tasks.empty())
     throw base::Error(request.file, "holds no stimulus that can be baked: " + plan.front().live,
-                      "run it without bakes; vip-study check says what each stimulus needs");
+                      "run the protocol without bakes; vip-study check says what each stimulus needs");
   std::optional<sim::GlContext> context;
   for (Task& task : tasks) {
     if (!study::draws(task.header)) continue;

@@ -20,10 +20,10 @@ struct ProtocolBakes {
 std::uint64_t most_bytes(const sim::BakeHeader& header);
 
 /// Makes the bakes of plan_bakes() in `folder`, which is made if missing; prints on stdout which bakes it
-/// keeps, makes and leaves out. An existing bake is read completely and kept if it contains the wanted fluid
-/// and was made by this version and renderer. `stop` is called before each frame and may throw to stop
-/// baking; complete bakes remain. base::Error: nothing can be baked, too little disk space, errors of
-/// write_bake().
+/// keeps, makes and leaves out. An existing bake is read completely. It is kept if it is whole, contains the
+/// wanted fluid, view and pictures, and was made by this version and renderer. `stop` is called before each
+/// frame and may throw to stop baking; complete bakes remain. base::Error: nothing can be baked, too little
+/// disk space, errors of write_bake().
 void bake_protocol(const study::Protocol& protocol, const ProtocolBakes& request,
                    const std::function<void()>& stop);
 

@@ -27,8 +27,8 @@ struct CheckReport {
 /// Words of protocol files for the kind of mean and for the source of the timing.
 const char* mean_name(const study::Protocol& protocol);
 const char* timing_name(const study::Design& design);
-/// Ids of the questions whose answers vip-stats reports by cell: those that the trials ask, without free
-/// text.
+/// Ids of the questions whose answers vip-stats reports by cell: those that the trials ask, except free text
+/// and personal questions.
 std::vector<std::string> questions_by_cell(const study::Protocol& protocol);
 /// Levels that an adaptive procedure may choose, as indices into the levels of its factor: those of any cell
 /// but the standard.

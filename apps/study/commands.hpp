@@ -23,7 +23,7 @@ void add_merge_command(CLI::App& app);
 void add_salvage_command(CLI::App& app);
 void add_headset_command(CLI::App& app);
 
-/// Adds the options --db, --max-pages and --events of run and resume.
+/// Adds the options that run and resume share, such as --db and --console (PlayOptions).
 void add_play_options(CLI::App& command, PlayOptions& options);
 
 }  // namespace apps

@@ -1,4 +1,4 @@
-/// vip-study export: writes the database as text tables.
+/// vip-study export: writes the database as CSV tables, as a BIDS data set or as a Psych-DS data set.
 #include <cstdio>
 #include <memory>
 #include <string>

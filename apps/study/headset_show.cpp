@@ -133,7 +133,8 @@ class Show {
   Show(const Show&) = delete;
   Show& operator=(const Show&) = delete;
 
-  /// Shows the scene until the time is over or the runtime asks to exit. False if the session is lost.
+  /// Shows the scene until the time is over or the runtime asks to exit. False if the session is lost or the
+  /// runtime ends.
   bool run(double& seconds_left) {
     auto idle_since = std::chrono::steady_clock::now();
     while (true) {
@@ -147,7 +148,11 @@ class Show {
         continue;
       }
       if (std::chrono::steady_clock::now() - idle_since > most_idle) {
-        throw base::Error("headset", "the runtime does not begin a session", "put the headset on");
+        throw base::Error(
+            "headset",
+            fmt::format("the runtime did not {} the session within {:g} s", asked_to_exit_ ? "end" : "begin",
+                        most_idle.count()),
+            asked_to_exit_ ? "restart the runtime" : "put the headset on and give the command again");
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

@@ -44,7 +44,10 @@ study::Protocol rebuild_protocol(const study::OpenRun& run, const std::string& p
   study::Protocol protocol = read_again(run, place);
   if (run.trial_seconds) study::override_trial_seconds(protocol, *run.trial_seconds);
   if (protocol.sha256 != run.protocol_sha256) {
-    throw base::Error(place, "protocol '" + run.protocol_name + "' does not have the hash stored with it",
+    throw base::Error(place,
+                      "protocol '" + run.protocol_name + "' has the SHA-256 " +
+                          protocol.sha256.substr(0, 12) + ", and " + run.protocol_sha256.substr(0, 12) +
+                          " is stored with it",
                       "restore a backup of the database, or use the version of vip-study that wrote it");
   }
   return protocol;
@@ -69,7 +72,7 @@ void check_settings(const std::vector<std::string>& files, const study::RunOptio
 }
 
 /// Refuses stimuli that differ from the recorded stimuli, and a display on which a session would become test
-/// data. Another station or framing is not refused; both are stored with each session.
+/// data. Another machine, display or framing is not refused: this function stores each with each session.
 void check_unchanged(study::Store& store, const study::OpenRun& run, const study::SessionSetup& setup,
                      const std::string& place) {
   for (const study::OpenSession& session : run.sessions) {

@@ -82,8 +82,9 @@ study::sqlite::Waiting tell_of_locks(const std::filesystem::path& database) {
 void open_mirror(const PlayOptions& options, const study::SessionSetup& setup) {
   if (!options.mirror) return;
   if (!setup.open_mirror)
-    throw base::Error("--mirror", "there is no participant's window to mirror",
-                      "leave it out, or use --display window or openxr");
+    throw base::Error(
+        "--mirror", "there is no participant's window to mirror",
+        "leave it out: only sessions that vip-study run began with --display window or openxr have one");
   setup.open_mirror(options.mirror_reveal);
 }
 
@@ -180,7 +181,7 @@ class Steering {
   std::optional<study::ConsoleTerminal> terminal_;
 };
 
-/// Prints the expected duration of all sessions on stderr. For sessions in real time.
+/// Prints the expected duration of all sessions on stderr. Call it only for sessions in real time.
 void print_length(const study::OpenRun& run, const study::Protocol& protocol,
                   const study::SessionSetup& setup) {
   const bool person = !setup.participant->simulated();

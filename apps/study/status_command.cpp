@@ -42,8 +42,8 @@ void print_session_row(const study::SessionRow& session) {
       session.test_data ? ", test data" : "", permissions_of(session).c_str());
 }
 
-/// One line for each factor with the trials of each level, such as "hitch: h33 20 of 40, h50 20 of 40". An
-/// adaptive procedure chooses levels during the session, so that only answered trials are counted.
+/// Prints one line for each factor with the trials of each level, such as "hitch: h33 20 of 40, h50 20 of
+/// 40". An adaptive procedure chooses levels during the session, so that only answered trials are counted.
 void print_levels(const study::ProtocolRow& protocol, bool adaptive) {
   for (std::size_t f = 0; f < protocol.cells.front().levels.size(); ++f) {
     std::map<std::string, study::CellCount> counts;
@@ -65,7 +65,7 @@ void print_levels(const study::ProtocolRow& protocol, bool adaptive) {
   }
 }
 
-/// Trials by level and timing by cell, of a protocol with factors.
+/// Prints trials by level and timing by cell; nothing for a protocol without factors.
 void print_cells(const study::StudyFile& file, const study::ProtocolRow& row) {
   if (row.cells.empty() || row.cells.front().levels.empty()) return;
   const auto protocol = study::parse_protocol(row.text, row.name, study::ProtocolUse::Stored);

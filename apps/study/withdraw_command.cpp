@@ -33,7 +33,7 @@ void confirm(const WithdrawCommand& command) {
   }
   if (typed != command.participant) {
     throw base::Error("withdraw " + command.participant, "is not confirmed; nothing was deleted",
-                      "type the code when asked, or give --yes");
+                      "run it in a terminal and type the code when asked, or give --yes");
   }
 }
 

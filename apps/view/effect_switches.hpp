@@ -14,10 +14,11 @@ struct EffectSwitch {
   double most = 0;  ///< upper end of the coefficient's slider: four times the scene's value
   bool on = false;
 };
-/// One switch per effect of `listed`; on if the effect is in `running`, with its coefficient.
+/// One switch per effect of `listed`; on if the effect runs with a coefficient above 0. The coefficient is
+/// that in `running`, otherwise that in `listed`.
 std::vector<EffectSwitch> switches_of(const std::vector<sim::Effect>& listed,
                                       const std::vector<sim::Effect>& running);
-/// The effects that are on, without effects that need an effect that is off.
+/// The effects that are on with a coefficient above 0, without effects that need an effect that is off.
 std::vector<sim::Effect> turned_on(const std::vector<EffectSwitch>& switches);
 /// Turns off each effect with coefficient 0, and each effect that needs an effect that is off.
 void drop_what_cannot_run(std::vector<EffectSwitch>& switches);

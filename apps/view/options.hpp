@@ -72,8 +72,9 @@ PreparedFluid prepare_fluid(const ViewOptions& options, const std::function<void
 
 /// Runs the frames without a display, writes the pictures and prints times.
 void run_headless(const ViewOptions& options);
-/// Shows the scene in a headset through OpenXR until the person leaves. If there is no headset, prints the
-/// reason and opens a window. base::Error for later failures.
+/// Shows the scene in a headset through OpenXR until the person leaves, Ctrl-C is pressed or the frames of
+/// options.frames have run. If there is no headset, prints the reason and opens a window; on the virtual
+/// clock throws. base::Error for an overlay and for later failures.
 void run_in_headset(const ViewOptions& options);
 /// Shows the scene in a window until the window is closed. base::Error if this build or this machine has no
 /// windows.

@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-constexpr float height_steps = 16777216;  // 24 bits, for heights up to four times the tank's
+constexpr float height_steps = 16777216;  // fixed-point units (24 bits) in four tank heights
 // Largest shift of refracted light on the floor, along x or z, divided by the water's depth: towards the sun
 // and away from it. The shift is measured from where the ray would land without water. With the sun of
 // shaders/light.glsl, flat water shifts light by 0.14 along x and 0.18 along z towards the sun; the rest
@@ -33,7 +33,8 @@ FloorLight::FloorLight(const Scene& scene, const RenderOptions& options) {
   const float longest = std::max(tank(0), tank(2));
   const float edge = longest / static_cast<float>(options.floor_cells);
   const float surface_edge = edge * surface_cell_in_cells;
-  // Upper bound of the water's depth: pools are seldom deeper than wide, and higher particles are in the air.
+  // Assumed upper bound of the water's depth: the tank's height, or its longer side if this is less. Higher
+  // particles are in the air.
   const float deepest = std::min(tank(1), longest);
   const auto cells = [](float length, float of) { return static_cast<std::int32_t>(std::ceil(length / of)); };
   const int before = cells(aside_with_the_sun * deepest, surface_edge) + border_cells;

@@ -21,7 +21,8 @@ struct FloorWater {
   int obstacle_count = 0;
 };
 
-/// Created only if a scene lists a picture effect. Needs a current context at every call and when destroyed.
+/// Created only if a scene lists a picture effect with a strength above 0. Needs a current context at every
+/// call and when destroyed.
 class FloorLight {
  public:
   FloorLight(const Scene& scene, const RenderOptions& options);

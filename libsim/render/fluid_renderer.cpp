@@ -38,25 +38,37 @@ void ParticleBuffer::set_count(std::int64_t count) {
 
 namespace {
 
-void check(bool good, const char* what, const char* mend) {
+void check(bool good, const std::string& what, const char* mend) {
   if (!good) throw base::Error("render options", what, mend);
 }
 
 void check_options(const RenderOptions& o) {
   const auto positive = [](float value) { return std::isfinite(value) && value > 0; };
-  check(positive(o.radius_scale), "radius_scale must be positive", "use about 1.5");
+  const auto n = [](auto value) { return std::to_string(value); };
+  check(positive(o.radius_scale), "radius_scale = " + n(o.radius_scale) + " is not positive",
+        "use about 1.5");
   check(positive(o.filter_sigma_r) && positive(o.filter_delta_r) && positive(o.filter_mu_r),
-        "filter_sigma_r, filter_delta_r and filter_mu_r must be positive", "use about 1.1, 4 and 1");
+        "filter_sigma_r = " + n(o.filter_sigma_r) + ", filter_delta_r = " + n(o.filter_delta_r) +
+            " and filter_mu_r = " + n(o.filter_mu_r) + " are not all positive",
+        "use about 1.1, 4 and 1");
   check(o.filter_max_px >= 1 && o.filter_max_taps >= 1,
-        "filter_max_px and filter_max_taps must be at least 1", "use about 256 px and 12 samples");
-  check(o.filter_rounds >= 1 && o.filter_rounds <= 8, "filter_rounds must be 1 to 8", "use 2");
+        "filter_max_px = " + n(o.filter_max_px) + " and filter_max_taps = " + n(o.filter_max_taps) +
+            " are not both at least 1",
+        "use about 256 px and 12 samples");
+  check(o.filter_rounds >= 1 && o.filter_rounds <= 8,
+        "filter_rounds = " + n(o.filter_rounds) + " is not 1 to 8", "use 2");
   check(o.thickness_step == 1 || o.thickness_step == 2 || o.thickness_step == 4,
-        "thickness_step must be 1, 2 or 4", "use 2");
-  check(positive(o.thickness_unit_m) && positive(o.packing), "thickness_unit_m and packing must be positive",
+        "thickness_step = " + n(o.thickness_step) + " is not 1, 2 or 4", "use 2");
+  check(positive(o.thickness_unit_m) && positive(o.packing),
+        "thickness_unit_m = " + n(o.thickness_unit_m) + " and packing = " + n(o.packing) +
+            " are not both positive",
         "use 1/65536 m and pi/6");
   check(o.thread_px >= 0 && o.group_px >= std::max(o.thread_px, 1),
-        "footprint limits must be 0 <= thread_px <= group_px", "use 0 and 128");
-  check(o.floor_cells >= 64 && o.floor_cells <= 2048, "floor_cells must be 64 to 2048", "use 512");
+        "thread_px = " + n(o.thread_px) + " and group_px = " + n(o.group_px) +
+            " are not 0 <= thread_px <= group_px with group_px >= 1",
+        "use 0 and 128");
+  check(o.floor_cells >= 64 && o.floor_cells <= 2048,
+        "floor_cells = " + n(o.floor_cells) + " is not 64 to 2048", "use 512");
 }
 
 void check_view(const View& view) {
@@ -65,9 +77,14 @@ void check_view(const View& view) {
   };
   if (view.viewport.width < 1 || view.viewport.height < 1 || !finite(view.view) || !finite(view.projection) ||
       view.projection[0] == 0 || view.projection[5] == 0 || !(view.near_m > 0)) {
-    throw base::Error(
-        "view", "has an empty viewport, a matrix that is not finite, or a near plane at or behind the eye",
-        "give each view a viewport of at least 1 x 1 px and a perspective projection");
+    throw base::Error("view",
+                      "has an empty viewport (" + std::to_string(view.viewport.width) + " x " +
+                          std::to_string(view.viewport.height) +
+                          " px), a matrix that is not finite, a projection without a field of view, or a "
+                          "near plane at or behind the eye (near_m = " +
+                          std::to_string(view.near_m) + ")",
+                      "give each view a viewport of at least 1 x 1 px, finite matrices, a perspective "
+                      "projection and near_m > 0");
   }
 }
 
@@ -128,7 +145,10 @@ void FluidRenderer::paint(const Overlay& overlay, unsigned framebuffer) {
   State& s = *state_;
   if (s.views_drawn == 0) throw base::Error("overlay", "nothing was drawn", "draw the particles first");
   if (!(std::isfinite(overlay.low) && std::isfinite(overlay.high) && overlay.low < overlay.high)) {
-    throw base::Error("overlay", "the scale is empty or not finite", "give it low < high");
+    throw base::Error("overlay",
+                      "the scale from low = " + std::to_string(overlay.low) +
+                          " to high = " + std::to_string(overlay.high) + " is empty or not finite",
+                      "give it finite limits, low < high");
   }
   if (overlay.values.empty()) return;
   const auto bytes = static_cast<GLsizeiptr>(overlay.values.size_bytes());
@@ -186,7 +206,8 @@ std::vector<float> FluidRenderer::read_depth(std::size_t view) const {
 FloorMap FluidRenderer::read_floor() const {
   const State& s = *state_;
   if (!s.floor_light || s.views_drawn == 0)
-    throw base::Error("light on the floor", "nothing was drawn, or the scene lists no picture effect",
+    throw base::Error("light on the floor",
+                      "nothing was drawn, or the scene lists no picture effect with a strength above 0",
                       "list a picture effect and draw first");
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   return s.floor_light->read();

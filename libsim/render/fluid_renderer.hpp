@@ -1,7 +1,7 @@
 #pragma once
 /// Screen-space fluid rendering in compute shaders (van der Laan et al. 2009; narrow-range filter of Truong
-/// and Yuksel 2018, on nearness = 1 / depth and on pairs of samples). Input: particles in a GL buffer.
-/// Output: a picture in any framebuffer and a readable G-buffer.
+/// and Yuksel 2018, here applied to nearness = 1 / depth and to pairs of samples). Input: particles in a GL
+/// buffer. Output: a picture in any framebuffer and a readable G-buffer.
 
 #include <array>
 #include <cstdint>
@@ -54,14 +54,16 @@ struct RenderOptions {
   /// Standard deviation of one round of the depth filter in world space (Truong and Yuksel); n rounds smooth
   /// like one that is sqrt(n) times as wide.
   float filter_sigma_r = 1.1F;
-  /// Half-width of the narrow range. Truong and Yuksel use about 10; with r = half a spacing that is five
-  /// layers of water and smears droplets over the background, so the default is two layers. A surface seen
-  /// at a slant spans more depth; pairs of samples extend the range there (shaders/narrow_range.glsl).
+  /// Half-width of the narrow range: the depths around the filtered pixel's depth at which samples count in
+  /// full. Truong and Yuksel use about 10. With r = half a spacing, 10 r are five layers of water and smear
+  /// droplets over the background; the default is two layers. A surface seen at a slant spans more depth;
+  /// pairs of samples extend the range there (shaders/narrow_range.glsl).
   float filter_delta_r = 4;
   /// Samples behind the narrow range count as if they were this far behind the filtered pixel's surface.
   float filter_mu_r = 1;
-  /// Number of rounds, each along x and then y (Truong and Yuksel iterate too). One round leaves streaks,
-  /// because its last pass spreads the values at a crest along the column.
+  /// Number of rounds of the depth filter, each along x and then y (Truong and Yuksel iterate too). A further
+  /// round then smooths between strided samples. One round leaves streaks, because its last pass spreads the
+  /// values at a crest along the column.
   int filter_rounds = 2;
   /// The filter reaches 3 sigma, but at most this many px; pixels with a truncated filter are counted.
   int filter_max_px = 256;
@@ -111,7 +113,7 @@ struct Overlay {
 };
 
 /// Results of picture effects on the floor: a value per cell, x first, from the tank's low corner; an array
-/// is empty if its effect is not listed.
+/// is empty if its effect is not listed or has the strength 0.
 struct FloorMap {
   int width = 0, depth = 0;     ///< cells along x and z
   float cell_m = 0;             ///< a cell's edge
@@ -126,37 +128,39 @@ struct PassTime {
   double ms = 0;
 };
 
-/// The renderer's passes in order, and why each optional pass runs. Needs no context.
+/// The renderer's passes in order, and why each optional pass runs or does not run. Needs no context.
 std::string passes_in_words(const Scene& scene);
 
-/// Draws water. Needs a current OpenGL 4.5 context at every call and when destroyed. Leaves the GL state of a
-/// new context except for the viewport. The same particles, views and options give the same picture, bit for
-/// bit, on one driver, whatever the drawing order on the device; at equal depths the particle with the lower
-/// index is in front.
+/// Draws water. Needs a current OpenGL 4.5 context at every call and when destroyed. Leaves no program,
+/// vertex array or texture bound, and blending off. Buffer bindings change; paint() also changes the
+/// viewport, the draw framebuffer and the blend function. The same particles, views and options give the same
+/// picture, bit for bit, on one driver, in whatever order the device draws the particles; at equal depths the
+/// particle with the lower index is in front.
 class FluidRenderer {
  public:
-  /// The scene gives the tank, the obstacles and the effects. Errors (base::Error): an option out of range, a
-  /// shader that is missing or does not compile.
+  /// The scene gives the tank, the obstacles and the effects. Errors (base::Error): an option or a picture
+  /// effect out of range, a picture effect listed twice, a shader that is missing or does not compile.
   explicit FluidRenderer(const Scene& scene, const RenderOptions& options = {});
   ~FluidRenderer();
   FluidRenderer(const FluidRenderer&) = delete;
   FluidRenderer& operator=(const FluidRenderer&) = delete;
 
-  /// Places the scene's obstacles where they are `time_s` seconds after frame 0. Without a call they are
-  /// drawn at their start.
+  /// Places the scene's obstacles where they are `time_s` seconds after frame 0; free obstacles at their
+  /// start. Without a call they are drawn at their start.
   void place_obstacles(double time_s);
   /// Places the obstacles at these poses, in the scene's order (from Simulation::read_obstacles).
   void place_obstacles(const std::vector<BodyMotion>& motions);
 
   /// Draws one or two views into `framebuffer` (0 = the window). Writes every pixel of their viewports in
-  /// sRGB and nothing outside them. Returns without waiting for the device. `foam`: diffuse particles, if the
-  /// scene lists the effect; other scenes have no pass to draw them. Radius 0 marks an unused entry. The
-  /// water's G-buffer excludes foam.
+  /// sRGB and nothing outside them. Returns without waiting for the device, unless time_passes is set on
+  /// software GL. `foam`: diffuse particles, if the scene lists the effect foam; other scenes have no pass to
+  /// draw them. Radius 0 marks an unused entry. In the G-buffer foam changes only the normals. base::Error:
+  /// no view, more than two, or a view without size or perspective.
   void draw(const ParticleBuffer& particles, std::span<const View> views, unsigned framebuffer,
             const ParticleBuffer* foam = nullptr);
 
-  /// Paints values over the views of the last draw, in the same framebuffer. base::Error if nothing was drawn
-  /// or the range is empty.
+  /// Paints values over the views of the last draw, in the same framebuffer. Does nothing without values.
+  /// base::Error if nothing was drawn, or the limits of the scale are not finite or not low < high.
   void paint(const Overlay& overlay, unsigned framebuffer);
 
   /// Saliency's inputs from a view of the last draw, in GL buffers. base::Error if that view was not drawn.
@@ -169,7 +173,7 @@ class FluidRenderer {
   /// Only GBuffer::depth of a view of the last draw.
   std::vector<float> read_depth(std::size_t view = 0) const;
   /// The light on the floor of the last draw, over all its views; waits for the device. base::Error if the
-  /// scene lists no picture effect, or nothing was drawn.
+  /// scene lists no picture effect with a strength above 0, or nothing was drawn.
   FloorMap read_floor() const;
   /// Counts of the last draw; waits for the device.
   RenderCounts counts() const;

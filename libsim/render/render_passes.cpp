@@ -15,7 +15,7 @@ namespace sim {
 namespace {
 
 constexpr int block_px = 16;        // as in occlusion.glsl
-constexpr GLuint tile_groups = 64;  // per very large footprint; a multiple of 8
+constexpr GLuint tile_groups = 64;  // work groups per footprint wider than group_px; a multiple of 8
 
 /// std140 layout of the shaders' ViewBlock.
 struct ViewBlock {
@@ -186,8 +186,8 @@ void FluidRenderer::State::bind_splat(const ViewTargets& t) const {
                 t.wide_list.name(), t.touched.name(), t.blocks.name()});
 }
 
-/// Runs a program on the particles with large footprints that the last round listed; if all_items is 1, on
-/// those of both rounds.
+/// Runs a program on the particles with large footprints that the last round of splatting listed; if
+/// all_items is 1, on the particles that both rounds listed.
 void FluidRenderer::State::dispatch_wide(const GlProgram& program, int all_items) {
   wide_dispatch.use();
   glUniform1ui(wide_dispatch.uniform("tile_groups"), tile_groups);
@@ -352,8 +352,8 @@ void FluidRenderer::State::draw_views(const ParticleBuffer& from, std::span<cons
   particles_ = from.gl_name() ? from.gl_name() : no_particles.name();
   count_ = from.count();
   views_drawn = views.size();
-  // Shaders of the last draw wrote these buffers. The barrier orders those writes before the fills of
-  // resize(), which are no shader accesses.
+  // Shaders of the last draw wrote to the buffers of `targets`. The barrier orders their writes before
+  // resize(), which fills buffers without a shader.
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   for (std::size_t i = 0; i < views.size(); ++i) {
     targets[i].resize(views[i], options.thickness_step, foam);

@@ -30,7 +30,7 @@ struct ViewTargets {
   GlBuffer wet;                       ///< flags of tiles that contain water, see wet_tiles.glsl
   GlBuffer thickness;                 ///< fixed point
   GlBuffer thickness_a, thickness_b;  ///< the smoothed result is in thickness_a, in fixed-point units
-  GlBuffer foam;                      ///< two words per pixel, see foam.glsl; empty between pictures
+  GlBuffer foam;                      ///< two words per pixel, see foam.glsl; all 0 between pictures
 
   void resize(const View& new_view, int thickness_step, bool with_foam);
   /// Allocates the buffers with an entry per particle for `count` particles.

@@ -15,7 +15,7 @@ SIM_FN Vec4 quantities(const GradientFields& f, int i) { return with_w(xyz(f.vel
 /// density.
 SIM_FN float volume(float h, float density) { return 0.125f * h * h * h / at_least(density, 0.1f); }
 
-/// Gradients of velocity and density: (d/dx, d/dy, d/dz) of (vx, vy, vz, rho).
+/// Gradients of velocity and density: (d/dx, d/dy, d/dz) of (vx, vy, vz, rho / rho_0).
 struct Gradients {
   Vec4 axis[3]{};
 
@@ -173,7 +173,8 @@ struct WideKeys {
   }
 };
 
-/// The feature from all neighbours within 2 h_i. Loops over the rows of cells that this sphere touches.
+/// The temporal feature from all neighbours within 2 h_i. Loops over the rows of cells in the bounding box of
+/// the sphere with this radius.
 struct WithinTwoH {
   GradientFields fields;
   const std::uint64_t* keys;

@@ -23,30 +23,39 @@ std::size_t pixels_of(const Picture& picture) {
 void check(const EyeLook& look) {
   const View& v = look.view;
   if (!finite(v.view) || !finite(v.projection)) {
-    throw base::Error("look", "the camera of an eye is not finite",
+    throw base::Error("Simulation::look", "the camera of an eye is not finite",
                       "give each eye a rigid view and a perspective");
   }
   if (!(look.visual_scale > 0) || !std::isfinite(look.visual_scale))
-    throw base::Error("look", "the visual scale of an eye is not a positive number",
-                      "give a visual scale above 0");
+    throw base::Error(
+        "Simulation::look",
+        "the visual scale of an eye is " + std::to_string(look.visual_scale) + ", not a positive number",
+        "give a visual scale above 0");
   const auto check_camera = [](const View& view) {
     if (!finite(view.view) || view.projection[0] == 0 || view.projection[5] == 0)
-      throw base::Error("look", "the camera of the G-buffer is not a perspective",
+      throw base::Error("Simulation::look", "the camera of the G-buffer is not a perspective",
                         "draw the picture with a perspective");
   };
   if (look.shared) {
     const std::size_t pixels = pixels_of(*look.shared);
     if (pixels == 0 || look.shared->depth.bytes < 4 * pixels || look.shared->normal.bytes < 16 * pixels)
-      throw base::Error("look", "the GL buffers of a picture are smaller than its pixels",
-                        "give buffers of width x height px");
+      throw base::Error("Simulation::look",
+                        "the GL buffers of a picture of " + std::to_string(look.shared->width) + " x " +
+                            std::to_string(look.shared->height) + " px have " +
+                            std::to_string(look.shared->depth.bytes) + " bytes of depths and " +
+                            std::to_string(look.shared->normal.bytes) + " bytes of normals",
+                        "give at least 1 x 1 px, with 4 bytes of depth and 16 bytes of normal per px");
     check_camera(look.shared->view);
   }
   if (!look.seen || look.seen->width == 0) return;
   const GBuffer& g = *look.seen;
   const std::size_t pixels = pixels_of(g);
   if (g.depth.size() != pixels || g.normal.size() != 3 * pixels) {
-    throw base::Error("look", "the depth or normal array of the G-buffer does not fit its size in px",
-                      "fill both arrays for width x height px");
+    throw base::Error("Simulation::look",
+                      "the G-buffer of " + std::to_string(g.width) + " x " + std::to_string(g.height) +
+                          " px has " + std::to_string(g.depth.size()) + " depths and " +
+                          std::to_string(g.normal.size()) + " components of normals",
+                      "give one depth and three components of a normal per px");
   }
   check_camera(g.view);
 }
@@ -108,7 +117,8 @@ void SaliencyInput::OneEye::take(const GlPicture& shared) {
 
 bool SaliencyInput::look(const Looks& looks, bool pictures) {
   if (looks.eyes.empty() || looks.eyes.size() > Eyes::most) {
-    throw base::Error("look", "has " + std::to_string(looks.eyes.size()) + " eyes", "give one eye or two");
+    throw base::Error("Simulation::look", "has " + std::to_string(looks.eyes.size()) + " eyes",
+                      "give one eye or two");
   }
   for (const auto& look : looks.eyes) check(look);
   for (std::size_t k = 0; k < looks.eyes.size() && pictures; ++k) {

@@ -23,7 +23,7 @@ class SaliencyInput {
   /// Stores gazes and cameras and copies the pictures; without `pictures` the last ones remain. Returns
   /// false, and changes nothing, if a picture is in GL buffers that cannot be shared. base::Error: no eye or
   /// more than two, a camera that is not finite, a visual scale that is not positive, a G-buffer with
-  /// incomplete arrays or without a perspective camera.
+  /// incomplete arrays or without a perspective camera, GL buffers that are smaller than the picture.
   bool look(const Looks& looks, bool pictures = true);
   /// Degrees by which the gaze of `looks` (without an argument: of the last look()) has turned since
   /// mark_gazes(); the larger value of two eyes. A shift of the eye by s m adds atan(s). A gaze that was

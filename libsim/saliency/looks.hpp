@@ -51,7 +51,8 @@ struct Looks {
   std::vector<EyeLook> eyes;
 };
 
-/// Saliency of one particle at the last level update (paper 3.2).
+/// Saliency of one particle (paper 3.2): at the last level update (Simulation::read_saliency) or in the
+/// present state (Simulation::measure_saliency).
 struct ParticleSaliency {
   float acuity = 0;    ///< f_a, Eq. 3
   float manifold = 0;  ///< f_m, Eq. 5

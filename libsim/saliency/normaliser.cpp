@@ -25,8 +25,8 @@ SIM_FN float value_of(std::uint32_t bits) {
   return value;
 }
 
-/// For each of the two bounds, a histogram of the next 11 bits of all values whose higher bits are the
-/// bound's.
+/// For each of the two bounds, a histogram of the next 11 bits of all finite values whose higher bits are the
+/// bound's. A value counts 2^level times.
 struct CountBits {
   const float* values;
   const std::uint8_t* level;
@@ -86,7 +86,7 @@ struct FollowRange {
   }
 };
 
-/// Ends a round of the search; after the last round, moves the range to the bounds that were found.
+/// Ends a round of the search; after the last round, moves the range towards the bounds that were found.
 struct SelectBins {
   const Selection* selection;
   Selection* next;

@@ -13,7 +13,8 @@ namespace sim::SIM_BACKEND {
 struct SaliencyRange {
   float low, high;
   int known;   ///< 0 before the first usable frame
-  int usable;  ///< 0: this frame has fewer than two finite values, or all are the same
+  int usable;  ///< 0: this frame's finite values, each counted 2^level times, are fewer than two, or its
+               ///< bounds are equal
 };
 
 /// Finds exact percentiles of non-negative values by three rounds of histograms over their bits: no sort,

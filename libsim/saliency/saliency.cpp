@@ -20,7 +20,7 @@ struct Combine {
     SaliencyParts best{0, 0, 0, 0};
     for (int k = 0; k < eyes.count; ++k) {
       const SaliencyParts one = evaluate(numbers, eyes.eye[k], position[i], temporal[i]);
-      // A NaN takes precedence, so that it is detected.
+      // A NaN of the particle gives a NaN for each eye, so that it is detected.
       if (k == 0 || !(one.combined <= best.combined)) best = one;
     }
     combined[i] = best.combined;
@@ -97,7 +97,7 @@ void gaze_to_levels(const Acuity& acuity, const Eyes& eyes, const Vec4* position
 namespace {
 
 GradientFields gradient_fields(const Readings& p, const SaliencyFluid& fluid, float* out) {
-  // d_* = h_* / 2. The last term only prevents 0 / 0 in a fluid without gravity.
+  // d_* = h_* / 2. The last term only prevents 0 / 0 for a particle at rest if speed_floor is 0.
   const double scale =
       std::sqrt(static_cast<double>(fluid.gravity) * static_cast<double>(fluid.finest_support) / 2);
   const auto speed_epsilon = static_cast<float>(p.speed_floor * scale + 1e-12);

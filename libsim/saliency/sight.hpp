@@ -84,7 +84,7 @@ struct Acuity {
   /// Eq. 4: |x - p_v| / |ints_Pi - p_v| = z / z_Pi by similar triangles.
   SIM_FN float depth_factor(float z) const { return z / image_plane; }
 
-  /// f_a, Eq. 3; 0 behind the viewer.
+  /// f_a, Eq. 3, at most 1; 0 behind the viewer.
   SIM_FN float feature(const Eye& eye, Vec3 x, float z) const {
     if (z <= 0) return 0;
     const float quotient = falloff_at(eccentricity(eye, x)) / depth_factor(z);

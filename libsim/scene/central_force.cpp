@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libsim/scene/vector.hpp"
+#include "stats/base/text.hpp"
 #include "stats/base/toml.hpp"
 
 namespace sim {
@@ -19,7 +20,8 @@ std::optional<CentralForce> read_central_force(const base::TomlTable& scene,
   const auto axis = table.numbers("axis", 3, {-1e3, 1e3});
   const double length = std::hypot(axis[0], axis[1], axis[2]);
   if (!(length >= 1e-3)) {
-    table.fail("axis", "has no direction", "use a vector of some length, such as [0.0, 0.0, 1.0]");
+    table.fail("axis", "has no direction: its length is " + base::shortest(length) + ", less than 0.001",
+               "use a longer vector, such as [0.0, 0.0, 1.0]");
   }
   for (std::size_t k = 0; k < 3; ++k) {
     out.centre_m[k] = centre[k] - origin_m[k];

@@ -19,8 +19,8 @@ struct CentralForce {
   std::array<double, 3> axis{0, 0, 1};  ///< direction of the axis, a unit vector
 };
 
-/// The table [central_force] of a scene file; none if absent. Errors are base::Error: unknown key, out of
-/// range, an axis without direction. origin_m: Scene::origin_m, subtracted from the centre.
+/// The table [central_force] of a scene file; none if absent. base::Error, for example if a key is missing, a
+/// value is out of range or the axis has no direction. origin_m: Scene::origin_m, subtracted from the centre.
 std::optional<CentralForce> read_central_force(const base::TomlTable& scene,
                                                const std::array<double, 3>& origin_m);
 

@@ -174,7 +174,8 @@ std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
       if (option.of != kind) continue;
       effect.options[k] = table.number_or(option.key, option.usual, {option.least, option.most});
       if (is_whole(k) && effect.options[k] != std::floor(effect.options[k]))
-        table.fail(option.key, "is no whole number", "write for example " + base::shortest(option.usual));
+        table.fail(option.key, "= " + base::shortest(effect.options[k]) + " is no whole number",
+                   "write for example " + base::shortest(option.usual));
     }
     out.push_back(effect);
     read.push_back(table);

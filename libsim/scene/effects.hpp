@@ -158,8 +158,9 @@ bool is_idle(const Effect& effect, const std::vector<Effect>& among, int finest_
 std::vector<Effect> acting_effects(const std::vector<Effect>& effects, int finest_level);
 
 /// Reads the tables [[effect]] of a scene file of format 2, except picture effects (picture_effects.hpp).
-/// Errors are base::Error at file:line:column: unknown, listed twice, missing an effect that it needs, out of
-/// range, or a program built without effects. kept: effects already listed.
+/// Errors are base::Error at file:line:column, for example: unknown, listed twice, missing an effect that it
+/// needs, out of range, an option that must be whole and is not, or a program built without effects. kept:
+/// effects already listed; the result begins with them.
 std::vector<Effect> read_effects(const std::vector<base::TomlTable>& tables,
                                  const std::vector<Effect>& kept = {});
 /// The effect kind that a word of a scene file names; none for an unknown word.
@@ -168,7 +169,8 @@ std::optional<EffectKind> effect_named(const std::string& word);
 std::string format_effects(const std::vector<Effect>& effects);
 /// "foam emission_per_s = 0.3 lifetime_s = 4 ...; air_drag ...", for records and people; empty: no effects.
 std::string effects_in_words(const std::vector<Effect>& effects);
-/// The checks of read_effects() for a scene that was not read from a file; base::Error names the effect.
+/// The checks of read_effects() for a scene that was not read from a file, except that whole options are
+/// whole; base::Error names the effect.
 void check_effects(const std::vector<Effect>& effects);
 
 /// The longest substep for which every effect is stable, and the effect that limits it.
@@ -177,8 +179,9 @@ struct EffectStep {
   EffectKind of = no_effect;
 };
 EffectStep longest_step(const std::vector<Effect>& effects, double finest_spacing_m);
-/// Maximum speed that surface tension can give water, m/s: sqrt(12 sigma / (rho_0 d)), the full surface
-/// energy of a particle; 0 without tension.
+/// Maximum speed that surface tension can give water, m/s: sqrt(12 sigma / (rho_0 d)), at which the kinetic
+/// energy of a cube of side d equals its surface energy. sigma: sum of the coefficients in N/m; 0 without
+/// any.
 double capillary_speed(const std::vector<Effect>& effects, double finest_spacing_m);
 
 /// True if built with -DVIP_EFFECTS=ON.

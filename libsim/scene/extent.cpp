@@ -156,9 +156,10 @@ class Underside {
   std::vector<double> heights_;
 };
 
-/// The underside of an obstacle at its start; none if water can pass the obstacle. An obstacle closes the
-/// tank if the vertical lines through all points of Underside meet it. The points for a mesh are at most one
-/// spacing apart, and the mesh must be solid a quarter of its thickness above its underside.
+/// The underside of an obstacle at its start; none if water can pass the obstacle, or the tank is too narrow
+/// or too long for the check. An obstacle closes the tank if the vertical lines through all points of
+/// Underside meet it. The points for a mesh are at most one spacing apart, and the mesh must be solid a
+/// quarter of its thickness above its underside.
 std::optional<Underside> closing(const Obstacle& o, const Scene& scene, double spacing) {
   const auto [shortest, longest] = std::minmax(scene.tank_size_m[0], scene.tank_size_m[2]);
   if (shortest < 3 * spacing || longest > most_looks * spacing) return {};

@@ -12,8 +12,9 @@ namespace sim {
 /// base::Error that names an obstacle whose swing leaves too little space for the water below it. Such an
 /// obstacle closes the tank: all its gaps to the walls are narrower than the finest spacing, and a mesh has
 /// no hole. At the lowest point of its swing, the water that was below it at the start would be deeper than
-/// the space below it by more than that spacing. A scene with a nozzle is accepted, because nozzles take
-/// water from the floor. A scene with an outlet below the obstacle is accepted too.
+/// the space below it by more than that spacing. Not checked: scenes with a nozzle, because nozzles take
+/// water from the floor; scenes with an outlet below the obstacle; tanks narrower than 3 or longer than 1024
+/// finest spacings.
 void check_ways(const Scene& scene, std::int64_t n_star);
 
 /// Calls check_ways(). base::Error that names the key if a block of water is thinner than the finest spacing,

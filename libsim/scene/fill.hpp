@@ -1,5 +1,5 @@
 #pragma once
-/// Start positions of the particles: the fill rule of the scenes, exact at every n_*.
+/// Start positions of the particles, by one rule for all scenes and every n_*.
 
 #include <vector>
 
@@ -32,8 +32,8 @@ Scene acting_scene(Scene scene, MethodKind method);
 
 /// Exactly particle_count(method, n_star) points, minus those inside obstacles, block by block. Each block
 /// has its share of the points by volume, rounded by largest remainders. A block is filled in layers from its
-/// floor up, the last of them partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 / ((Lx /
-/// nx)(Lz / nz)).
+/// floor up, of which the last may be partial; nx = round(Lx / d), nz = round(Lz / d), vertical pitch d^3 /
+/// ((Lx / nx)(Lz / nz)).
 std::vector<Vec3d> fill_positions(const Scene& scene, MethodKind method, std::int64_t n_star);
 
 /// max(min_substeps, ceil(v_ref dt / (0.5 x 4 r_*))), the same for all methods of a scene and n_*.

@@ -92,8 +92,9 @@ Settled settled(const Triangles& mesh) {
 /// Computes Mesh::round_about() of a settled() surface. The integrals over a triangle are sums over the
 /// midpoints of its edges, which is exact because the integrands are quadratic.
 std::array<bool, 3> round_about(const Triangles& mesh) {
-  // Largest mean of (r x n)_k^2 of a round body, as a share of the mean squared distance from axis k. A long
-  // regular prism counts as round if it has at least 19 sides.
+  // Largest mean over the surface of (r x n)_k^2 of a round body, as a share of the mean squared distance
+  // from axis k; r is the position from the centre of mass, n the unit normal. A long regular prism counts as
+  // round if it has at least 19 sides.
   constexpr double most = 0.01;
   Vector turning{}, from_axis{};
   for (const auto& face : mesh.faces) {

@@ -45,7 +45,8 @@ class Mesh {
   /// Unit quaternion x, y, z, w from the body's axes to the file's.
   const std::array<double, 4>& turn() const { return turn_; }
   /// True for each of the body's axes k about which it is round, apart from facets: over the surface, the
-  /// mean of (r x n)_k^2 is at most 1 % of the mean squared distance from the axis.
+  /// mean of (r x n)_k^2 is at most 1 % of the mean squared distance from the axis, with the position r and
+  /// the unit normal n.
   const std::array<bool, 3>& round_about() const { return round_about_; }
   /// Bounding box along the body's axes.
   const std::array<double, 3>& low_m() const { return low_m_; }

@@ -123,7 +123,7 @@ std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range 
                "use at most " + base::shortest(shortest / 2) + " m");
   if (out->grid_nodes() > static_cast<double>(most_grid_nodes))
     table.fail("spacing_m", "gives the mesh a grid of " + base::shortest(out->grid_nodes()) + " nodes",
-               "use at most " + std::to_string(most_grid_nodes));
+               "use a larger spacing_m: a grid has at most " + std::to_string(most_grid_nodes) + " nodes");
   return out;
 }
 

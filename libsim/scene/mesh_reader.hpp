@@ -19,8 +19,9 @@ std::shared_ptr<const Mesh> read_mesh(const base::TomlTable& table, base::Range 
                                       const std::optional<std::filesystem::path>& beside);
 
 /// The scene's text with each mesh `file` replaced by its triangles as `obj`, so that the text is
-/// self-contained; unchanged if no obstacle has such a file. Errors are base::Error: at the mesh's file if
-/// the text would exceed most_scene_bytes, at the scene's for a `file` that is not on a line of its own.
+/// self-contained; unchanged if no obstacle has such a file. Errors are base::Error: at the mesh's file if it
+/// cannot be read or the text would exceed most_scene_bytes, at the scene's for a `file` that is not on a
+/// line of its own.
 std::string with_meshes(std::string_view text, const std::filesystem::path& scene_file);
 inline constexpr std::size_t most_scene_bytes = 1 << 20;
 

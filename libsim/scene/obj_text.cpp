@@ -67,7 +67,8 @@ class Reader {
               "write v x y z");
       at[k] = *number;
       if (!(std::abs(at[k]) <= farthest))
-        fail_(line_, "has a vertex that is not within 1e6 of the origin", "move the mesh, or scale it");
+        fail_(line_, "has the coordinate " + base::shortest(at[k]) + " of a vertex, which is not -1e6 to 1e6",
+              "use smaller numbers; the key scale multiplies them afterwards");
     }
     mesh_.places.push_back(at);
   }
@@ -99,7 +100,8 @@ class Reader {
       fail_(line_, "has a face, or a triangle of its fan, without area",
             "remove it, or cut the polygon into triangles of some area");
     if (mesh_.faces.size() == most_triangles)
-      fail_(line_, "is one triangle too many", "use at most " + std::to_string(most_triangles));
+      fail_(line_, "is one triangle too many",
+            "use at most " + std::to_string(most_triangles) + " triangles");
     mesh_.faces.push_back(face);
     lines_.push_back(line_);
   }

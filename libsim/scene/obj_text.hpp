@@ -25,9 +25,9 @@ using ObjFailure = std::function<void(int line, const std::string& problem, cons
 
 /// Reads lines `v x y z` and `f a b c ...`; f may name texture and normal after a slash, and count vertices
 /// back from the last one by negative numbers. Polygons become fans. Other lines are skipped, and vertices
-/// that no face uses are dropped. Failures: a malformed number, an unknown vertex, a face without area, no
-/// face, more than most_triangles, an edge that is not shared by two faces in opposite directions, a surface
-/// that faces inwards.
+/// that no face uses are dropped. Failures: a malformed or missing number, a coordinate beyond 1e6, an
+/// unknown vertex, a face without area or with fewer than three corners, no face, more than most_triangles,
+/// an edge that is not shared by two faces in opposite directions, a surface that faces inwards.
 Triangles read_obj(std::string_view text, const ObjFailure& fail);
 
 /// The same surface as compact text: only vertices and triangles, one per line.

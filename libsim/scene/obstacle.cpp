@@ -57,8 +57,10 @@ bool in_room(const Obstacle& o, const Pose& pose, const Vector& room_m) {
 Vector direction(const base::TomlTable& table, const char* key) {
   const auto v = table.numbers(key, 3, {-1e3, 1e3});
   const double size = std::hypot(v[0], v[1], v[2]);
-  if (!(size >= 1e-3))
-    table.fail(key, "has no direction", "use a vector of some length, such as [0.0, 1.0, 0.0]");
+  if (!(size >= 1e-3)) {
+    table.fail(key, "has no direction: its length is " + base::shortest(size) + ", less than 0.001",
+               "use a longer vector, such as [0.0, 1.0, 0.0]");
+  }
   return {v[0] / size, v[1] / size, v[2] / size};
 }
 
@@ -284,10 +286,11 @@ std::vector<Obstacle> read_obstacles(const base::TomlTable& scene, const Vector&
       table.fail("motion", "is free in a scene with a central force, which would not pull it",
                  "leave central_force out, or keep the obstacle fixed");
     check_apart(table, out);
-    if (top_speed(out.back()) > most_speed_m_s)
-      table.fail("motion", "is faster than time.v_ref_m_s, from which the substeps follow",
-                 "raise time.v_ref_m_s to at least " +
-                     base::shortest(std::ceil(1e3 * top_speed(out.back())) / 1e3) +
+    if (const double speed = top_speed(out.back()); speed > most_speed_m_s)
+      table.fail("motion",
+                 "with up to " + base::shortest(speed) + " m/s is faster than time.v_ref_m_s = " +
+                     base::shortest(most_speed_m_s) + ", from which the substeps follow",
+                 "raise time.v_ref_m_s to at least " + base::shortest(std::ceil(1e3 * speed) / 1e3) +
                      ", or slow the obstacle down");
   }
   return out;

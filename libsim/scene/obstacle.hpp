@@ -81,7 +81,7 @@ std::vector<BodyMotion> motions_at(const std::vector<Obstacle>& obstacles, doubl
 std::array<double, 3> in_world(const Pose& pose, const std::array<double, 3>& own_m);
 /// Distance of a point from the surface, negative inside, m.
 double signed_distance(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
-/// True if the point is inside. Cheaper than the distance.
+/// True if the point is inside. For a point far from a mesh, cheaper than the distance.
 bool holds(const Obstacle& obstacle, const Pose& pose, const std::array<double, 3>& point_m);
 /// Half sides of the shape's inner box, along its own axes: the shape is every point within radius_m of that
 /// box. A capsule's inner box is its axis, a sphere's its centre. A mesh merely lies in its inner box.

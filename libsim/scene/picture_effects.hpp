@@ -44,8 +44,8 @@ float strength_of(const std::vector<PictureEffect>& effects, PictureEffectKind k
 
 std::vector<std::string> picture_effect_words();
 
-/// Reads the picture effects among the tables [[effect]] of a scene file. Errors are base::Error at
-/// file:line:column: listed twice, out of range.
+/// Reads the picture effects among the tables [[effect]] of a scene file. base::Error at file:line:column,
+/// for example for an effect that is listed twice or a value out of range.
 std::vector<PictureEffect> read_picture_effects(const std::vector<base::TomlTable>& tables);
 /// The checks of read_picture_effects() for a scene that was not read from a file; base::Error names the
 /// effect.

@@ -46,7 +46,8 @@ Vec3d place(const base::TomlTable& table, const char* key, const Vec3d& origin_m
   for (std::size_t k = 0; k < 3; ++k) {
     out[k] -= origin_m[k];
     if (std::abs(out[k]) > farthest_m)
-      table.fail(key, "lies too far from the tank", "keep it within 10 km of tank.origin_m");
+      table.fail(key, "= " + base::shortest(out[k]) + " m from tank.origin_m is too far away",
+                 "keep each entry within 10000 m of it");
   }
   return out;
 }
@@ -88,14 +89,19 @@ Outlet read_outlet(const base::TomlTable& table, const Scene& scene) {
   auto min = table.numbers("min_m", 2);
   auto max = table.numbers("max_m", 2);
   const auto axes = axes_of(out.wall);
+  constexpr const char* inside = "keep the outlet within tank.size_m from tank.origin_m";
   for (std::size_t a = 0; a < 2; ++a) {
     min[a] -= scene.origin_m[axes[a]];
     max[a] -= scene.origin_m[axes[a]];
-    if (min[a] < -1e-9) table.fail("min_m", "reaches beyond the wall", "keep the outlet within the tank");
+    if (min[a] < -1e-9)
+      table.fail("min_m", "reaches beyond the wall by " + base::shortest(-min[a]) + " m", inside);
     if (!(max[a] - min[a] >= 1e-3))
-      table.fail("max_m", "leaves the outlet no area", "make each entry at least 1 mm larger than in min_m");
+      table.fail("max_m", "leaves the outlet no area: one side is " + base::shortest(max[a] - min[a]) + " m",
+                 "make each entry at least 1 mm larger than in min_m");
     if (max[a] > scene.tank_size_m[axes[a]] + 1e-9)
-      table.fail("max_m", "reaches beyond the wall", "keep the outlet within the tank");
+      table.fail("max_m",
+                 "reaches beyond the wall by " + base::shortest(max[a] - scene.tank_size_m[axes[a]]) + " m",
+                 inside);
     out.min_m[a] = min[a];
     out.max_m[a] = max[a];
   }
@@ -131,13 +137,14 @@ WaterBlock read_block(const base::TomlTable& table, const Scene& scene) {
   const Vec3d room = scene.room_m();
   WaterBlock out{place(table, "min_m", scene.origin_m), place(table, "max_m", scene.origin_m)};
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!(out.max_m[k] - out.min_m[k] >= 1e-3)) {
-      table.fail("max_m", "leaves no room for water", "make each entry at least 1 mm larger than in min_m");
-    }
-    if (const bool low = out.min_m[k] < -1e-9; low || out.max_m[k] > room[k] + 1e-9) {
-      table.fail(low ? "min_m" : "max_m", "reaches outside the tank",
+    if (const double side = out.max_m[k] - out.min_m[k]; !(side >= 1e-3))
+      table.fail("max_m", "leaves no room for water: one side is " + base::shortest(side) + " m",
+                 "make each entry at least 1 mm larger than in min_m");
+    if (const bool low = out.min_m[k] < -1e-9; low || out.max_m[k] > room[k] + 1e-9)
+      table.fail(low ? "min_m" : "max_m",
+                 "reaches outside the tank by " +
+                     base::shortest(low ? -out.min_m[k] : out.max_m[k] - room[k]) + " m",
                  "keep the block within tank.size_m from tank.origin_m");
-    }
   }
   return out;
 }
@@ -191,23 +198,24 @@ void read_water(const base::TomlTable& table, Scene& scene) {
 /// base::Error unless the nozzle's mouth is within the walls, above the floor, below the walls' top and any
 /// lid, and outside obstacles.
 void check_place(const base::TomlTable& table, const Nozzle& nozzle, const Scene& scene) {
+  const double radius = nozzle.diameter_m / 2;
   for (const std::size_t k : {0u, 2u}) {
     const double at = nozzle.position_m[k];
-    if (at < 0 || at > scene.tank_size_m[k])
-      table.fail("position_m", "lies outside the tank",
+    if (const double out = std::max(-at, at - scene.tank_size_m[k]); out > 0)
+      table.fail("position_m", "lies " + base::shortest(out) + " m outside the tank",
                  "keep the nozzle within tank.size_m from tank.origin_m");
-    if (std::min(at, scene.tank_size_m[k] - at) < nozzle.diameter_m / 2)
+    if (std::min(at, scene.tank_size_m[k] - at) < radius)
       table.fail("position_m", "puts a part of the mouth inside a wall",
-                 "keep the centre at least half a diameter away from the walls");
+                 "keep the centre at least " + base::shortest(radius) + " m away from the walls");
   }
   for (const Obstacle& obstacle : scene.obstacles) {
-    if (signed_distance(obstacle, obstacle.start, nozzle.position_m) < nozzle.diameter_m / 2)
+    if (signed_distance(obstacle, obstacle.start, nozzle.position_m) < radius)
       table.fail("position_m", "puts a part of the mouth inside an obstacle",
-                 "keep the centre at least half a diameter away from obstacles");
+                 "keep the centre at least " + base::shortest(radius) + " m away from obstacles");
   }
   if (nozzle.position_m[1] <= 0 || nozzle.position_m[1] > scene.tank_size_m[1])
     table.fail("position_m", "lies at or below the floor, or above the tank",
-               "choose a height within tank.size_m");
+               "choose a height above the floor by at most " + base::shortest(scene.tank_size_m[1]) + " m");
   if (const double beyond = beyond_lid_m(scene, nozzle, scene.frame_dt_s); beyond > 0)
     table.fail("position_m", nozzle_at_lid,
                "lower it by " + base::shortest(std::ceil(1e4 * beyond) / 1e4) + " m");
@@ -233,17 +241,20 @@ void read_nozzles(const base::TomlTable& root, Scene& scene) {
     if (table.has("temperature_k")) nozzle.temperature_k = temperature(table, scene);
     check_place(table, nozzle, scene);
     if (nozzle.speed_m_s > scene.v_ref_m_s)
-      table.fail("speed_m_s", "is faster than time.v_ref_m_s, from which the substeps follow",
-                 "raise time.v_ref_m_s to at least " + base::shortest(nozzle.speed_m_s) +
-                     ", or slow the nozzle down");
+      table.fail("speed_m_s",
+                 "= " + base::shortest(nozzle.speed_m_s) + " is faster than time.v_ref_m_s = " +
+                     base::shortest(scene.v_ref_m_s) + ", from which the substeps follow",
+                 "raise time.v_ref_m_s to that speed, or slow the nozzle down");
     scene.nozzles.push_back(nozzle);
   }
   if (scene.nozzles.empty()) return;
   const auto recirculation = root.table("recirculation");
   scene.recirculation_corner_m = recirculation.number("corner_m", {1e-2, farthest_m});
   if (2 * scene.recirculation_corner_m > std::min(scene.tank_size_m[0], scene.tank_size_m[2]))
-    recirculation.fail("corner_m", "makes the corner columns overlap",
-                       "use at most half of the tank's width");
+    recirculation.fail(
+        "corner_m", "= " + base::shortest(scene.recirculation_corner_m) + " makes the corner columns overlap",
+        "use at most half of the tank's shorter side, " +
+            base::shortest(std::min(scene.tank_size_m[0], scene.tank_size_m[2]) / 2) + " m");
 }
 
 /// Reads min_m and max_m of a table.
@@ -252,8 +263,9 @@ void read_box(const base::TomlTable& table, const Vec3d& origin_m, Box& box) {
   box.min_m = place(table, "min_m", origin_m);
   box.max_m = place(table, "max_m", origin_m);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!(box.max_m[k] - box.min_m[k] >= 1e-3))
-      table.fail("max_m", "leaves the box empty", "make each entry at least 1 mm larger than in min_m");
+    if (const double side = box.max_m[k] - box.min_m[k]; !(side >= 1e-3))
+      table.fail("max_m", "leaves the box empty: one side is " + base::shortest(side) + " m",
+                 "make each entry at least 1 mm larger than in min_m");
   }
 }
 
@@ -287,8 +299,8 @@ std::vector<VisibleBox> visible_boxes(const base::TomlTable& root, const Vec3d& 
   std::vector<VisibleBox> out;
   for (const auto& table : root.tables("visible")) {
     VisibleBox box{table.string("name"), {}, {}};
-    if (box.name.empty() || box.name.size() > 64)
-      table.fail("name", "is empty or too long", "use 1 to 64 characters");
+    if (const auto size = box.name.size(); size < 1 || size > 64)
+      table.fail("name", "is empty or too long: " + std::to_string(size) + " bytes", "use 1 to 64 bytes");
     read_box(table, origin_m, box);
     out.push_back(std::move(box));
   }
@@ -313,14 +325,13 @@ Scene parse_scene(std::string_view text, const std::string& name,
 
 Scene read_scene_table(const base::TomlTable& root, const std::optional<std::filesystem::path>& beside) {
   const std::int64_t format = root.integer("format");
-  if (format < 1 || format > newest_format) {
-    root.fail("format", "is not a format that this program reads (1 or 2)",
+  if (format < 1 || format > newest_format)
+    root.fail("format", "= " + std::to_string(format) + " is not a format that this program reads (1 or 2)",
               "use the version of ViP-Lab for which the file was written");
-  }
   Scene scene;
   scene.name = root.string("name");
-  if (scene.name.empty() || scene.name.size() > 64)
-    root.fail("name", "is empty or too long", "use 1 to 64 characters");
+  if (const auto size = scene.name.size(); size < 1 || size > 64)
+    root.fail("name", "is empty or too long: " + std::to_string(size) + " bytes", "use 1 to 64 bytes");
   scene.gravity_m_s2 = read_gravity(root);
   for (const double frame : root.numbers("checkpoints", 0, {0, 1e6}))
     scene.checkpoints.push_back(static_cast<int>(frame));
@@ -341,7 +352,6 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
   scene.solver_iterations = static_cast<int>(time.integer("iterations", {1, 64}));
   scene.courant = time.number_or("courant", scene.courant, {0.05, 4});
   read_water(root.table("water"), scene);
-
   if (format < 2 && root.has("effect"))
     root.fail("format", "= 1 does not allow [[effect]], which came with format 2", "write format = 2");
   if (format < 2 && root.has("obstacle"))
@@ -362,12 +372,11 @@ Scene read_scene_table(const base::TomlTable& root, const std::optional<std::fil
     scene.gaze.push_back(
         {static_cast<int>(key.integer("frame", {0, 1e6})), place(key, "point_m", scene.origin_m)});
     const auto n = scene.gaze.size();
-    if (n > 1 && scene.gaze[n - 1].frame <= scene.gaze[n - 2].frame) {
+    if (n > 1 && scene.gaze[n - 1].frame <= scene.gaze[n - 2].frame)
       key.fail("frame",
                "= " + std::to_string(scene.gaze[n - 1].frame) + " is not above frame " +
                    std::to_string(scene.gaze[n - 2].frame) + " of the gaze key before it",
                "order the gaze keys by frame");
-    }
   }
   root.finish();
   return scene;

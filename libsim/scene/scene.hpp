@@ -1,6 +1,6 @@
 #pragma once
-/// The contents of a scene file: tank, water, time step, views, gaze. SI units; y points up in pictures.
-/// docs/scenes.md lists every key of the file.
+/// The contents of a scene file, such as tank, water, time step, views and gaze. SI units; y points up in
+/// pictures. docs/scenes.md lists every key of the file.
 
 #include <array>
 #include <cmath>
@@ -87,8 +87,8 @@ struct Scene {
   /// and returns, are relative to that corner, so that floats are equally precise for a distant tank; world
   /// position = origin_m + position.
   Vec3d origin_m{};
-  /// Inner size of the tank; glass walls and floor. Without a lid it is open at the top, and y is only the
-  /// drawn height of the walls.
+  /// Inner size of the tank; glass walls and floor. Without a lid it is open at the top: y is then the drawn
+  /// height of the walls and the limit for nozzles and outlets, but the walls hold water at any height.
   Vec3d tank_size_m{};
   bool lid = false;
   std::vector<WaterBlock> water{WaterBlock{}};  ///< 1 to most_water_blocks that do not overlap
@@ -133,8 +133,9 @@ inline constexpr const char* nozzle_at_lid =
     "is so close to the lid that the water of a frame would begin above it";
 
 /// Reads a scene of format 1 or of format 2, which adds [[effect]] and [[obstacle]]. Errors are base::Error
-/// at file:line:column: unknown key, wrong type, out of range, water, nozzle or outlet outside the tank,
-/// effects that are incompatible. beside: the folder to which mesh files are relative, if the text has one.
+/// at file:line:column, for example an unknown key, a wrong type, a value out of range, water outside the
+/// tank, or an effect without the effect that it needs. beside: the folder to which mesh files are relative,
+/// if the text has one.
 Scene parse_scene(std::string_view text, const std::string& name,
                   const std::optional<std::filesystem::path>& beside = {});
 /// Reads a scene from a parsed file; Scene::sha256 stays empty.

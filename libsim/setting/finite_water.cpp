@@ -58,12 +58,14 @@ void check_finite(Simulation& fluid, const std::string& place) {
   const FrameReport report = fluid.report();
   const bool finite = std::isfinite(report.density_error_mean) && std::isfinite(report.speed_max_m_s);
   if (report.guards.not_finite == 0 && finite) return;
+  const std::string cause = report.guards.not_finite > 0
+                                ? std::to_string(report.guards.not_finite) +
+                                      " times a particle was not finite or far outside the tank"
+                                : "its mean density error or largest speed is not finite";
   throw base::Error(
-      place,
-      "the simulation failed: " + std::to_string(report.guards.not_finite) +
-          " times a particle was not finite or far outside the tank, so its results cannot be used" +
-          first_of(fluid),
-      "use another time step, more substeps, or numbers of the solver nearer to the defaults");
+      place, "the simulation failed: " + cause + ", so its results cannot be used" + first_of(fluid),
+      "use shorter frames (a higher frames_per_s in the scene), more substeps (min_substeps), or "
+      "numbers of the solver nearer to the defaults");
 }
 
 }  // namespace sim

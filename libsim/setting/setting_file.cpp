@@ -66,10 +66,12 @@ std::string other_scene(const SettingFile& file, const std::string& scene_sha256
 
 SettingFile parse_setting_file(std::string_view text, const std::string& name) {
   const auto root = base::parse_toml(text, name);
-  if (root.integer("format") != SettingFile::format_version) {
+  if (const auto format = root.integer("format"); format != SettingFile::format_version) {
     root.fail("format",
-              "is not the format this program reads (" + std::to_string(SettingFile::format_version) + ")",
-              "use the program that wrote the file, or choose again with this one");
+              "= " + std::to_string(format) + " is not the format this program reads (" +
+                  std::to_string(SettingFile::format_version) + ")",
+              "use the version of the program that wrote the file, or write a new one with vip-bench "
+              "accuracy --budget");
   }
   SettingFile out{setting_of(root.table("setting")), measured_of(root.table("measured"))};
   root.finish();

@@ -1,5 +1,6 @@
 #pragma once
-/// best.toml: the setting that `vip-bench accuracy --budget` chose, for the programs that run it.
+/// The file of a solver setting, such as best.toml, that `vip-bench accuracy --budget` chose and that
+/// programs take as --setting.
 
 #include <filesystem>
 #include <string>
@@ -20,7 +21,7 @@ struct SettingFile {
     double budget_ms = 0;  ///< limit that 95 % of the frames had to meet
     double ms_mean = 0;    ///< mean time of a whole frame, over fresh starts
     double ms_p95 = 0;     ///< 95th percentile of the time of a whole frame
-    std::string error;     ///< the error that was minimised: "centre_pct"
+    std::string error;     ///< name of the error that was minimised, such as "centre_pct"
     double error_pct = 0;  ///< value of `error` against the sweep's reference, mean over all starts
     double error_low_pct = 0, error_high_pct = 0;  ///< smallest and largest over the starts
     int seeds = 0;                                 ///< number of starts
@@ -37,7 +38,7 @@ std::string describe(const SettingFile& file);
 /// SHA-256.
 std::string other_scene(const SettingFile& file, const std::string& scene_sha256);
 
-/// Errors (base::Error at file:line:column): unknown key, wrong type or range, newer format.
+/// Errors (base::Error at file:line:column): a missing or unknown key, a wrong type or range, another format.
 SettingFile parse_setting_file(std::string_view text, const std::string& name);
 SettingFile read_setting_file(const std::filesystem::path& path);
 /// The text of a file that parse_setting_file reads back to the same values.

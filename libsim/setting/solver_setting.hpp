@@ -26,7 +26,8 @@ enum class SolverKnob {
 };
 inline constexpr std::size_t solver_knob_count = 10;
 
-/// Properties of a knob. A sweep tries the values of one knob at a time, with the others at their defaults.
+/// Properties of a knob. A sweep tries the values of each knob with the other knobs at their defaults, and
+/// combinations of some knobs (libstudy/sweep/matrix.cpp).
 struct SolverKnobTraits {
   SolverKnob knob{};
   const char* column = "";     ///< name in files, with its unit
@@ -42,7 +43,7 @@ const std::array<SolverKnobTraits, solver_knob_count>& solver_knobs();
 const SolverKnobTraits& traits_of(SolverKnob knob);
 
 struct SolverSetting {
-  std::string scene = "SingleDam";  ///< a name that scenes_of() knows
+  std::string scene = "SingleDam";  ///< Scene::name; in a sweep, a name that scenes_of() knows
   MethodKind method = MethodKind::Ours;
   std::array<double, solver_knob_count> values{};  ///< in the order of SolverKnob
 

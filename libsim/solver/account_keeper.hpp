@@ -13,8 +13,8 @@ namespace sim::SIM_BACKEND {
 struct Extremes {
   int fastest_bits;  ///< bit pattern of the largest speed as a float, m/s; patterns of floats >= 0 have the
                      ///< order of the floats
-  /// sum of mass times rho / rho_0 - 1, limited to 0 .. 1, over the solved particles in the last projection;
-  /// in excess_unit
+  /// sum over the solved particles of mass times (rho / rho_0 - 1), the bracket limited to 0 .. 1, with rho
+  /// of the last projection; in excess_unit, m_*
   std::uint64_t excess;
   std::uint64_t mass;  ///< mass of the solved particles, in m_*
   /// number of particles whose velocity is not finite, plus the number of solved particles that are too dense

@@ -277,8 +277,10 @@ void check_levels(int levels) {
 
 int capacity_for(std::size_t start, const SimulationOptions& options, bool splits) {
   // Particles and their cells are indexed with int.
-  if (start > static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::most_per_particle) {
-    throw base::Error(std::to_string(start) + " particles", "are more than the solver can number",
+  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<int>::max()) / Grid::most_per_particle;
+  if (start > most) {
+    throw base::Error(std::to_string(start) + " particles",
+                      "are more than the " + std::to_string(most) + " that the solver can number",
                       "use a smaller n_* (--n-star, or n_star in a protocol)");
   }
   const std::int64_t room = options.particle_capacity > 0 ? options.particle_capacity : 8 * options.n_star;

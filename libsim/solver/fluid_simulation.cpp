@@ -15,7 +15,7 @@ namespace sim::SIM_BACKEND {
 namespace {
 
 /// Maximum mean compression, max(rho / rho_0 - 1, 0), of water that needs no pre-stabilisation. Moving water
-/// has 0.1 to 0.3 %.
+/// has a mean compression of 0.1 to 0.3 %.
 constexpr double calm_compression = 0.005;
 
 class FluidSimulation final : public Simulation {
@@ -228,7 +228,7 @@ class FluidSimulation final : public Simulation {
   void measure_saliency(const Looks& looks, std::vector<ParticleSaliency>& out) override {
     SaliencyState observer = make_observer();
     if (!observer.input.look(looks)) {
-      throw base::Error("look", "a picture lies in GL buffers that this back end cannot read",
+      throw base::Error("measure_saliency", "a picture lies in GL buffers that this back end cannot read",
                         "copy the picture to the host, and give the copy");
     }
     Array<float> s;
@@ -290,7 +290,7 @@ class FluidSimulation final : public Simulation {
     return out;
   }
 
-  /// tau, mu, delta and beta of temporal acceleration in the frame that ends; none for other methods.
+  /// tau, mu, delta and beta of temporal acceleration in the frame that ends; none in a run without it.
   std::optional<TemporalReport> went_by() const {
     if (!traits_of(options_.method).temporal && !options_.temporal.always) return {};
     return TemporalReport{tolerance_.tau(), tolerance_.rate(), tolerance_.beta(), 0};
@@ -325,7 +325,7 @@ class FluidSimulation final : public Simulation {
     if (changes_levels_) state_.levels.begin(NewLevelsView(state_.particles));
   }
 
-  /// Allocates columns, and sets up walls and jets, for n particles of the possible levels.
+  /// Allocates columns for n particles; sets up the supports of levels, walls, obstacles, jets and foam.
   void lay_out(int n, int capacity) {
     state_.particles.allocate(schedule_.columns, n, capacity);
     state_.one_level = is_of_one_level();

@@ -70,12 +70,12 @@ Walls walls_of(const Scene& scene, bool settling);
 /// scene with a central force, or at time_s > 0.
 void begin_obstacles(FluidState& state, const Scene& scene, int coarsest_level, double time_s, bool recorded);
 /// Starts to record, for each gauge, the push on the water by the gauge's part of an obstacle. base::Error if
-/// a gauge covers no part of its obstacle's surface.
+/// a gauge names an obstacle that the scene lacks, or covers no part of its obstacle's bounding box.
 void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges);
 /// Adds the momentum that the obstacles gave the water in the last frame to `account`.
 void count_obstacles(const FluidState& state, MomentumAccount& account);
-/// Positions and velocities of the scene's obstacles at `time_s`, and the momentum that free obstacles
-/// received from walls and other obstacles in the last frame.
+/// The scene's obstacles at `time_s`: their poses and the impulses from other obstacles in the last frame;
+/// for free obstacles also velocities, the impulse not yet applied, and impulses from walls.
 std::vector<BodyMotion> motions_of(const FluidState& state, double time_s);
 
 /// Densities, neighbour counts and speeds at the present positions. They are measured on a copy of the
@@ -114,10 +114,12 @@ void check_foam(const FluidState& state, const EffectCoefficients& effects, cons
 /// Allocates the pool of the scene's foam, without particles.
 void begin_foam(FluidState& state, const Scene& scene);
 /// Updates effect state after the list of effects has changed: allocates `columns`, and memory only for the
-/// listed effects. Remaining effects keep their values.
+/// listed effects. Remaining effects keep their values, except that foam begins anew if its most_particles
+/// changed.
 void exchange_effects(FluidState& state, const Scene& scene, ColumnSet columns);
 /// Lets the water come to rest, at one level and behind the gate if there is one, in substeps of
-/// state.parameters; afterwards the walls are the tank's. base::Error if a particle became non-finite.
+/// state.parameters; afterwards the walls are the tank's. base::Error if a particle was not finite or far
+/// outside the tank.
 void settle(FluidState& state, const Scene& scene, const SimulationOptions& options);
 /// Position-only density projections, at most `most`, until the mass-weighted mean of max(rho / rho_0 - 1, 0)
 /// is below 0.2 %. Velocities do not change.

@@ -119,7 +119,12 @@ void begin_patches(FluidState& state, const std::vector<ObstacleGauge>& gauges) 
     for (std::size_t k = 0; k < 3; ++k) {
       const double end = half[k] + obstacle.radius_m, edge = 1e-6 * end;
       if (!(gauge.min_m[k] < gauge.max_m[k]) || gauge.min_m[k] > end || gauge.max_m[k] < -end)
-        throw base::Error(who, "covers no part of its obstacle",
+        throw base::Error(who,
+                          "covers no part of obstacle " + std::to_string(gauge.obstacle) +
+                              ": along the obstacle's " + std::string(1, "xyz"[k]) + " axis it goes from " +
+                              base::shortest(gauge.min_m[k]) + " to " + base::shortest(gauge.max_m[k]) +
+                              " m, and the obstacle from " + base::shortest(-end) + " to " +
+                              base::shortest(end) + " m",
                           "give min_m < max_m that enclose a part of its surface, in the obstacle's axes");
       low[k] = gauge.min_m[k] <= edge - end ? -endless : static_cast<float>(gauge.min_m[k]);
       high[k] = gauge.max_m[k] >= end - edge ? endless : static_cast<float>(gauge.max_m[k]);

@@ -19,8 +19,8 @@ std::filesystem::path default_cache_folder();
 /// so that a changed solver never reads an old state. Programs of one build share their states.
 std::string settled_key(const Scene& scene, const SimulationOptions& options);
 
-/// The state stored under `key`; none if it is missing or damaged (checksum, or values that are not finite),
-/// which is not an error.
+/// The state stored under `key`; none if it is missing or damaged (a wrong checksum, values that are not
+/// finite, ids or levels out of range), which is not an error.
 std::optional<std::vector<ParticleState>> read_settled(const std::filesystem::path& folder,
                                                        const std::string& key);
 /// Stores a state by rename, and deletes states that were not read for 30 days. An unwritable folder is not

@@ -216,7 +216,10 @@ void check_foam(const FluidState& state, const EffectCoefficients& e, const Scen
                       tank[1] * tank[2] / (0.52 * diameter * diameter * diameter);
   if (most > std::numeric_limits<int>::max()) {
     throw base::Error("effect foam",
-                      "its particles are too small: a frame may create more than can be counted",
+                      "its particles of diameter_m = " + base::shortest(diameter) +
+                          " are too small: a frame may create " + base::shortest(std::ceil(most)) +
+                          " of them, and at most " + std::to_string(std::numeric_limits<int>::max()) +
+                          " can be counted",
                       "raise diameter_m, or lower emission_per_s");
   }
 }
@@ -266,9 +269,11 @@ void settle(FluidState& state, const Scene& scene, const SimulationOptions& opti
   state.walls = walls_of(scene, false);
   state.lists_hold = false;
   if (const auto lost = state.guards.to_host()[0].not_finite; lost > 0) {
-    throw base::Error("scene " + scene.name + ", settling",
-                      std::to_string(lost) + " times a particle was not finite or far outside the tank",
-                      "use a shorter frame step or more substeps, or the solver's default numbers");
+    throw base::Error(
+        "scene " + scene.name + ", settling",
+        std::to_string(lost) + " times a particle was not finite or far outside the tank",
+        "use shorter frames (a higher frames_per_s in the scene), more substeps (min_substeps), or the "
+        "solver's default numbers");
   }
   // Other guard events while settling are not part of the run.
   state.guards.zero();

@@ -37,8 +37,8 @@ void add(std::ostream& text, const Readings& r) {
        << ' ' << r.calm_floor << ' ' << r.calm_viscosity << '\n';
 }
 
-/// Adds all values of a scene that influence a run, because a scene that was not read from a file has no
-/// hash.
+/// Adds the scene's hash, and its values that influence a run except recirculation_corner_m, because a scene
+/// that was not read from a file has no hash.
 void add(std::ostream& text, const Scene& s) {
   text << s.sha256 << ' ' << s.gravity_m_s2.size() << ' ' << s.frame_dt_s << ' ' << s.v_ref_m_s << ' '
        << s.solver_iterations << ' ' << s.min_substeps << ' ' << s.courant << ' ' << s.viscosity_m2_s;
@@ -100,7 +100,12 @@ std::string read_state_file(const std::filesystem::path& path, std::string_view 
   const std::string_view all = bytes;
   if (!all.starts_with(magic))
     fail(path, "is not a state of the solver", "give a file that --save-state wrote");
-  if (all.size() < head_size) fail(path, "is cut short", "save the state again");
+  if (all.size() < head_size) {
+    fail(path,
+         "is cut short: it has " + std::to_string(all.size()) + " bytes, fewer than the " +
+             std::to_string(head_size) + " bytes of a state's head",
+         "save the state again");
+  }
   std::int32_t format = 0;
   std::memcpy(&format, all.data() + magic.size(), sizeof format);
   if (format != state_file_format) {

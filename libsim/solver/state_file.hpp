@@ -21,8 +21,8 @@ std::string run_key(const Scene& scene, const SimulationOptions& options);
 /// Writes a temporary file and renames it. base::Error on failure.
 void write_state_file(const std::filesystem::path& path, std::string_view key, std::string_view body);
 
-/// The body of a state with this `key`. base::Error, with the path, if the file is missing, no state file, of
-/// another format or another run, damaged or truncated.
+/// The body of a state with this `key`. base::Error, with the path, if the file is missing, is not a state
+/// file, has another format, belongs to another run, or is damaged or truncated.
 std::string read_state_file(const std::filesystem::path& path, std::string_view key);
 
 }  // namespace sim

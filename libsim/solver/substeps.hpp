@@ -29,8 +29,8 @@ struct SubstepLimits {
   double support_m = 0;          ///< h of the finest particles that the method can hold
   double courant = 0.5;          ///< maximum distance of the fastest particle per substep, as a share of h
   double acceleration_m_s2 = 0;  ///< from gravity and the central force
-  /// Maximum distance that the acceleration moves a particle in a substep, a dt^2, as a share of h. In water
-  /// at rest the projections must push particles back by this distance (docs/decisions.md).
+  /// Maximum distance a dt^2 by which the acceleration a moves a particle in a substep, as a share of h. In
+  /// water at rest the projections must push particles back by this distance (docs/decisions.md).
   double push = 0.04;
   int least = 1;
   int most = 1;  ///< >= least

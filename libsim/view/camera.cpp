@@ -35,8 +35,14 @@ Mat4 look_at(const Vec3d& eye_m, const Vec3d& target_m) {
   const Vec3d forward = minus(target_m, eye_m);
   const Vec3d right = cross(forward, {0, 1, 0});
   if (!(dot(right, right) > 1e-12 * dot(forward, forward))) {
-    throw base::Error("camera", "eye and target coincide, or the view is straight up or down",
-                      "move the eye or the target of the camera");
+    const auto words = [](const Vec3d& at) {
+      return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) +
+             ") m";
+    };
+    throw base::Error("camera",
+                      "the eye " + words(eye_m) + " and the target " + words(target_m) +
+                          " coincide, or one lies straight above the other",
+                      "move the eye or the target sideways");
   }
   const Vec3d z = normalized({-forward[0], -forward[1], -forward[2]});
   const Vec3d x = normalized(right);
@@ -53,7 +59,10 @@ Mat4 look_at(const Vec3d& eye_m, const Vec3d& target_m) {
 
 Mat4 perspective(double vertical_fov_deg, double aspect, double near_m, double far_m) {
   if (!(vertical_fov_deg > 0 && vertical_fov_deg < 180 && aspect > 0 && near_m > 0 && far_m > near_m)) {
-    throw base::Error("camera", "no perspective: field of view, aspect or depth range is out of range",
+    throw base::Error("camera",
+                      "no perspective: vertical field of view " + std::to_string(vertical_fov_deg) +
+                          " degrees, aspect " + std::to_string(aspect) + ", near " + std::to_string(near_m) +
+                          " m, far " + std::to_string(far_m) + " m",
                       "use 0 < field of view < 180 degrees, aspect > 0 and 0 < near < far");
   }
   const double scale = 1 / std::tan(vertical_fov_deg * std::numbers::pi / 360);
@@ -107,7 +116,9 @@ Mat4 rigid_inverse(const Mat4& m) {
 
 View make_view(const Camera& camera, int width, int height) {
   if (width < 1 || height < 1)
-    throw base::Error("view", "a picture needs at least 1 x 1 px", "use a larger --size");
+    throw base::Error("picture of a camera",
+                      "has " + std::to_string(width) + " x " + std::to_string(height) + " px",
+                      "make it at least 1 x 1 px");
   View view;
   view.view = look_at(camera.eye_m, camera.target_m);
   view.projection =

@@ -48,8 +48,11 @@ std::string gbuffer_bytes(const GBuffer& g, const std::string& place) {
   for (const std::size_t size : {g.depth.size(), g.filtered_depth.size(), g.normal.size() / 3,
                                  g.thickness.size(), g.front.size(), g.radius.size()}) {
     if (size != pixels || pixels == 0)
-      throw base::Error(place, "an array of the G-buffer does not fit its size in px",
-                        "fill every array for width x height px");
+      throw base::Error(place,
+                        "an array of the G-buffer holds " + std::to_string(size) +
+                            " px, and width x height are " + std::to_string(g.width) + " x " +
+                            std::to_string(g.height) + " px",
+                        "fill every array for width x height px, at least 1 x 1");
   }
   const Viewport& v = g.view.viewport;
   const Header header{g.width,        g.height,    {v.x, v.y, v.width, v.height},
@@ -65,14 +68,19 @@ std::string gbuffer_bytes(const GBuffer& g, const std::string& place) {
 }
 
 GBuffer gbuffer_of(std::string_view bytes, const std::string& place) {
-  const std::string mend = "write it again with this version of the program";
-  if (!bytes.starts_with(magic)) throw base::Error(place, "not a G-buffer of version 1", mend);
+  const std::string mend = "write the file again with this version of the program";
+  if (!bytes.starts_with(magic)) throw base::Error(place, "holds no G-buffer of version 1", mend);
   Reader reader{bytes.substr(magic.size())};
-  if (reader.rest.size() < sizeof(Header)) throw base::Error(place, "truncated in its header", mend);
+  if (reader.rest.size() < sizeof(Header))
+    throw base::Error(place, "is cut short in the header of the G-buffer", mend);
   Header header;
   reader.take(&header, 1);
   if (header.width < 1 || header.height < 1 || header.width > max_side_px || header.height > max_side_px) {
-    throw base::Error(place, "its size in px is out of range", mend);
+    throw base::Error(place,
+                      "holds a G-buffer of " + std::to_string(header.width) + " x " +
+                          std::to_string(header.height) + " px, which is not 1 to " +
+                          std::to_string(max_side_px) + " px a side",
+                      mend);
   }
   const auto pixels = static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
   if (reader.rest.size() != pixels * bytes_per_pixel) {

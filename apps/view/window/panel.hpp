@@ -24,7 +24,7 @@ struct Figures {
   double frame_ms = 0;  ///< time of the last frame
   stats::FpsMoments fps;
   double tau = 0, beta = 1;  ///< tau: fixed, or computed from the rate of the shown frames; beta from tau
-  std::string model;         ///< source of the PTPE model's a and b
+  std::string model;         ///< "fixed" for a fixed tau; otherwise the source of the PTPE model's a and b
   FrameStrip strip;
   std::string legend;              ///< legend of the values painted over the water
   std::vector<std::string> price;  ///< lines with cost and errors of the setting; empty without a sweep

@@ -34,7 +34,7 @@ struct Cohesion {
     PairKernel<OneLevel> pair;
   };
 
-  /// Adds the velocity change by particle j, divided by 6 V_i; see SIM_LANES.
+  /// Adds the velocity change by particle j, divided by 6 V_i and by `strength`; see SIM_LANES.
   SIM_FN void add(int j, const Self& me, float& vx, float& vy, float& vz) const {
     const Vec4 other = position[j];
     const Kernel kernel = me.pair.with(other.w);

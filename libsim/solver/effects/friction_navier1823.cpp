@@ -59,8 +59,8 @@ SIM_FN Vec3 slowed_by(const BrakingBodies& bodies, Vec4 at, Vec3 v, float way) {
   return slowed_by(bodies.solids.walls, at, v, way);
 }
 
-/// Applies friction to all particles, solved or not. (The tuned readings solve all particles near a wall
-/// anyway.)
+/// Applies friction to all particles, solved or not, unless they are too coarse for the effect. (The tuned
+/// readings solve all particles near a wall anyway.)
 template <class Boundary>
 struct Slide {
   const Vec4* position;

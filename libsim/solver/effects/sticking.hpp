@@ -32,7 +32,7 @@ struct BodyRows {
     if (!moves(b)) return {push, moment};
     return {(1 / free[b].mass) * push, spin_of(free[b], bodies[b].turn, moment)};
   }
-  /// Inner product m a b of two rates of body b; 0 unless it is free.
+  /// Inner product of two rates of body b, weighted by its mass and its inertia; 0 unless it is free.
   SIM_FN float product(int b, BodyTurn a, BodyTurn other) const {
     if (!moves(b)) return 0;
     return free[b].mass * dot(a.along, other.along) +

@@ -40,10 +40,10 @@ struct Smooth {
 };
 
 /// dv / dt = c f N x omega with omega the particle's curl and N the normalised gradient of the smoothed
-/// |omega| (Smooth). c is a speed, so that the force on a volume does not depend on its particles. A
-/// Lamb-Oseen vortex gains c omega(r) around its axis. f limits the force to rotation rates between `from`
-/// and `most`, so that still water stays still and swirl stays bounded. The change of momentum is recorded as
-/// Change::Effects; angular momentum increases.
+/// |omega| (Smooth). c is a speed, so that the force on a volume does not depend on its particles. The flow
+/// around the axis of a Lamb-Oseen vortex gains speed at the rate c omega(r). f limits the force to rotation
+/// rates between `from` and `most`, so that still water stays still and swirl stays bounded. The change of
+/// momentum is recorded as Change::Effects; angular momentum increases.
 struct Confine {
   static constexpr int sums = 3;
   static constexpr bool of_all = false;

@@ -55,8 +55,8 @@ struct Choose {
   }
 
   /// Next value of the particle's counter. It counts inactive frames. When the particle is solved after them,
-  /// the counter continues from longest_rest until the particle has been solved least_work times. 0 = it may
-  /// be inactive.
+  /// the counter continues from longest_rest until the particle has been solved least_work times, and then
+  /// becomes 0. At longest_rest or more the particle must be solved; below, it may be inactive.
   SIM_FN int count_after(int count, bool on) const {
     if (!on) return count < rest_count_mask ? count + 1 : count;
     if (rules.longest_rest <= 0 || count == 0) return 0;

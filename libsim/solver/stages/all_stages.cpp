@@ -56,7 +56,7 @@ std::vector<Stage> all_stages() {
                          wall_cells_stage(), density_stage(), missing_density_stage(), displacement_stage(),
                          velocity_stage(), xsph_stage(), xsph_of_levels_stage()});
   add(false);
-  // These stages come after all stages that push bodies.
+  // The last stages come after all stages that push bodies.
   out.insert(out.end(), {bodies_pushed_stage(), velocity_grid_stage(), settling_stage(), outflow_stage()});
   return out;
 }

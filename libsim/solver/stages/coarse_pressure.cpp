@@ -10,8 +10,9 @@ constexpr float fixed_point = CellWater::fixed_point;
 /// separate, and not from compression.
 constexpr float most_excess = 0.5f;
 
-/// Adds each particle's volume and C V to its cell, in units of the smallest particle's volume. An unsolved
-/// particle adds a tiny amount: it marks its cell as fluid and hardly affects the mean.
+/// Adds to each particle's cell its volume V, and C V with the excess C = rho / rho_0 - 1, in units of the
+/// smallest particle's volume. An unsolved particle adds a tiny amount: it marks its cell as fluid and hardly
+/// affects the mean.
 template <class Selection>
 struct Gather {
   Selection select;
@@ -68,8 +69,8 @@ struct GatherVolume {
   }
 };
 
-/// Sets kind and source of each cell from its sums. The source is the mean C of the cell's particles times
-/// the cell's floor area (PressureFrame::floor_area).
+/// Sets kind and source of each cell from its sums. The source is the mean of rho / rho_0 - 1 over the cell's
+/// particles, by volume, times the cell's floor area (PressureFrame::floor_area).
 struct Classify {
   PressureFrame frame;
   GridView grid;

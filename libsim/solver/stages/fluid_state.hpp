@@ -46,7 +46,7 @@ struct SolverParameters {
 #define SIM_MEMBER(Type, member, name, usual, ...) Type member = usual;
   SIM_SOLVER_NUMBERS(SIM_MEMBER)
 #undef SIM_MEMBER
-  /// Kinematic viscosity nu, m2/s; 0 omits the pass.
+  /// Kinematic viscosity nu, m2/s; 0: the XSPH pass only calms water at rest.
   float viscosity = 0;
   EffectCoefficients effects;  ///< coefficients in SI units; 0 = no stage of the effect runs
   /// Speed limit, m/s (most_speed() in fluid_simulation.hpp): faster particles are slowed to it and counted.

@@ -117,7 +117,7 @@ Stage opening_targets_stage() {
 namespace {
 
 /// Replaces a target coarser than the present level by the present level, unless N (1 - s) exceeds the next
-/// coarser level by `dead_band`.
+/// coarser level by at least `dead_band`.
 struct Hold {
   const std::uint8_t* level;
   const float* saliency;

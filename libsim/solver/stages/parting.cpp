@@ -84,7 +84,7 @@ using PartingColumns = ColumnView<columns(Column::Predicted, Column::Ease, Colum
                                   columns(Column::Predicted, Column::PredictedNext, Column::Position,
                                           Column::VelocityNext, Column::Lambda, Column::Density)>;
 
-/// Separates the particles near fresh ones. An overlap of length d that remains becomes a speed of about d /
+/// Separates the particles near fresh ones. An overlap of length l that remains becomes a speed of about l /
 /// dt in one substep. This speed is large compared with that of the water if gravity moves a particle by only
 /// a small share of its support in a substep. In that case more particles are moved, with more projections.
 template <class Selection>

@@ -23,11 +23,11 @@ struct Demand {
   bool moving_obstacles = false;  ///< an obstacle moves along a given path
   bool free_obstacles = false;    ///< an obstacle is moved by the water
   bool obstacles_meet = false;    ///< a free obstacle may meet another, or has friction
-  bool settling = false;          ///< the gate is closed and the water comes to rest
+  bool settling = false;          ///< the water comes to rest before frame 0, behind the gate if there is one
   bool levels = false;            ///< particles split and merge
   bool forced_targets = false;    ///< a test gives the target levels
-  bool gaze_targets = false;      ///< targets follow the gaze alone
-  bool saliency = false;          ///< targets follow saliency
+  bool gaze_targets = false;      ///< saliency and targets are computed from the gaze alone
+  bool saliency = false;          ///< saliency and targets are computed by Eq. 1-9
   bool saliency_parts = false;    ///< an output needs the parts of saliency
   bool activation = false;        ///< temporal acceleration selects the solved particles
   bool wall_impulse = false;      ///< an output needs the walls' impulse on the water
@@ -56,8 +56,8 @@ struct Stage {
   /// function; with one it runs only if the function also requires it.
   std::string (*called_for)(const Demand&) = nullptr;
   Part part = Part::Solve;
-  /// Entry of the momentum account that records the stage's change of the water's momentum. Each stage that
-  /// writes velocities needs one.
+  /// Entry of the momentum account that records the stage's change of the water's momentum; None: it is
+  /// recorded with the next stage that has an entry.
   Change changes = Change::None;
   EffectKind effect = no_effect;  ///< the effect that alone requires the stage
   SharedTerm loop = SharedTerm::None;
@@ -106,7 +106,7 @@ inline std::string if_thick(const Demand& demand) {
   return acts(demand, EffectKind::Viscosity) ? "viscosity acts before the particles move" : "";
 }
 
-/// Takes the lowest water in the tank's four corners, and pours it from the nozzles.
+/// Takes water in the tank's four corners, the lowest first, and pours it from the nozzles.
 Stage nozzle_stage();
 /// Saliency and target levels from the eyes, the last picture and the fluid.
 Stage saliency_stage();
@@ -191,7 +191,7 @@ using DensityView =
     ColumnView<columns(Column::Predicted, Column::Neighbours), columns(Column::Lambda, Column::Density)>;
 /// Densities and multipliers at the predicted positions of the particles that the frame solves.
 void constrain_density(FluidState& state, DensityView particles);
-/// Densities and multipliers of all particles, for callers outside the schedule; lists are indexed by slots.
+/// Densities and multipliers of all particles, solved or not; needs lists that are indexed by slots.
 void constrain_density(FluidState& state, DensityView particles, EverySlot everyone);
 
 using DisplacementView =
@@ -210,8 +210,8 @@ void press(FluidState& state, CoarsePressureView particles);
 /// The forces that move free obstacles in the present substep.
 BodyDrive body_drive(FluidState& state);
 
-// For the momentum account of the walls. While it records, kernels skip the clamp at the walls; a separate
-// pass applies and records it.
+// For the momentum account of the walls: while it records, kernels skip the clamp at the walls, and
+// clamp_and_listen() applies and records the clamp.
 
 /// Minimum distance to a wall that kernels enforce, as a share of d; none while the account records.
 float gap_of_kernels(const FluidState& state);
