@@ -23,7 +23,7 @@ struct MeasuredCell {
   double mean_ms = 0;     ///< mean time to compute and draw a frame, without waiting
   double p95_ms = 0;      ///< 95th percentile of the time to compute and draw a frame, without waiting
   double tau_min = 0;     ///< smallest tau over windows of up to 30 frames, frames/s (Eq. 11)
-  double showing_s = 0;   ///< expected duration of a showing of the cell
+  double showing_s = 0;   ///< expected duration of a showing of the cell, s
   bool too_slow = false;  ///< the machine is too slow for the cell; see judge_measured()
   std::string words;      ///< why the cell is too slow, or a showing would be degraded; empty: neither
 };
@@ -42,10 +42,10 @@ using IntervalsOf = std::function<std::vector<std::int64_t>(const FpsSetting&)>;
 /// A cell with a requested frame rate is too slow if the machine's frame rate without waiting is below it.
 /// The cell is also too slow if its rehearsal fails the protocol's timing bounds; a cell without intervals
 /// skips this check. A cell without a requested rate (TimingSource::Native) is too slow if the machine's
-/// frame rate is below fps_min. Under Native on a display with a fixed refresh, MeasuredReport::collapse is
-/// set if all cells reach the refresh rate, unless the cells have one method and differ in effects.
-/// MeasuredReport::collapse is also set if the design has accelerated methods but tau never falls below zero
-/// in their cells: these methods then never accelerate.
+/// frame rate is below fps_min. A cell with a showing of one frame is not judged. Under Native on a display
+/// with a fixed refresh, MeasuredReport::collapse is set if all cells reach 98 % of the refresh rate, unless
+/// the cells have one method and differ in effects. MeasuredReport::collapse is also set if the design has
+/// accelerated methods but tau never falls below zero in their cells: these methods then never accelerate.
 MeasuredReport judge_measured(const Protocol& protocol, const std::vector<MeasuredStimulus>& measured,
                               double refresh_hz, const IntervalsOf& intervals_of);
 

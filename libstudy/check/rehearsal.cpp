@@ -85,7 +85,7 @@ std::int64_t content_steps(const Protocol& protocol, const FpsSetting& setting, 
   if (has_pattern(setting)) {
     const TimingProfile& profile = *setting.profile;
     const auto frames = static_cast<std::int64_t>(pattern_intervals(profile, setting.duration_s, 0).size());
-    // Jitter may move the last hitch past the end: the frames that it replaced are then shown.
+    // Jitter may move the last hitch past the end: more short frames are then shown in its place.
     const bool jitters = profile.kind == ProfileKind::Hitches && profile.jitter > 0;
     return frames + (jitters ? std::llround(std::ceil(1e-3 * profile.hitch_ms * profile.mean_fps)) : 0);
   }

@@ -21,8 +21,8 @@ struct MeasuredStimulus {
   StepTimes times;
 };
 
-/// Number of content steps in a showing. If frames have neither a schedule nor real-time content, it is the
-/// number of refreshes: at refresh_hz, or at 60 Hz if refresh_hz is 0.
+/// Largest number of content steps in a showing. If frames have neither a schedule nor real-time content, it
+/// is the number of refreshes: at refresh_hz, or at 60 Hz if refresh_hz is 0.
 std::int64_t content_steps(const Protocol& protocol, const FpsSetting& setting, double refresh_hz);
 
 struct Rehearsal {

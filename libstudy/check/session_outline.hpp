@@ -11,9 +11,9 @@ namespace study {
 
 /// Assumed pace of a participant; it affects only the printed durations.
 struct Pace {
-  double answer_s = 0;     ///< time to answer one question
-  double words_per_s = 0;  ///< reading speed; 0: a text takes only the block's minimum time
-  double break_s = 0;      ///< time spent in a break beyond the minimum time
+  double answer_s = 0;     ///< time to answer one question, s
+  double words_per_s = 0;  ///< reading speed, words/s; 0: a text takes only the block's minimum time
+  double break_s = 0;      ///< time spent in a break beyond the minimum time, s
 };
 inline constexpr Pace quick_pace{2, 0, 0}, slow_pace{6, 2, 60};
 
@@ -45,11 +45,11 @@ std::string describe_block(const Protocol& protocol, const BlockOutline& outline
 /// How evenly the assignment spreads the sequences of groups over the planned participants.
 struct PlannedBalance {
   int planned = 0;
-  int sequences = 1;            ///< number of group sequences; 1: nothing to balance
-  int least = 0, most = 0;      ///< fewest and most people per sequence
+  int sequences = 1;            ///< number of group sequences; 1: groups are not balanced
+  int least = 0, most = 0;      ///< fewest and most people per sequence; 0 under PaperRandom
   int interval_difference = 0;  ///< largest |people who see AB - people who see BA| of a pair in a sequence
   int even = 1;                 ///< any multiple of this number of people is balanced
-  int even_below = 0, even_above = 0;  ///< the multiples of `even` around `planned`; 0: none below
+  int even_below = 0, even_above = 0;  ///< multiples of `even` nearest to `planned`; 0: none below
 };
 PlannedBalance check_balance(const Protocol& protocol);
 

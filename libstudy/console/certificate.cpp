@@ -40,8 +40,8 @@ struct NameColumn {
   bool differs() const { return std::set<std::string>(names.begin(), names.end()).size() > 1; }
 };
 
-/// The columns of all rows: scene, n_*, method and effects. For a protocol with factors, the factors and the
-/// profile that was asked.
+/// The columns of all rows: scene, n_*, method and effects. For a protocol with factors: the level of each
+/// factor and the requested timing profile.
 std::vector<NameColumn> columns_of(const Rows& rows) {
   std::vector<NameColumn> out;
   if (!rows.front().levels.empty()) {
@@ -88,7 +88,8 @@ Shown shown_in(const Rows& rows) {
   return out;
 }
 
-/// The numbers of one row. A row without a schedule shows "-" for nominal moments, deviations and lateness.
+/// The numbers of one row. A row without a schedule shows "-" for nominal moments, deviations from them and
+/// the largest lateness.
 std::string format_row(const CertificateRow& row) {
   const bool scheduled = row.nominal.mean > 0;
   const auto nominal = [&](double value, const char* form) {

@@ -10,14 +10,15 @@ namespace study {
 
 /// One line per row: nominal and realised mean mu and standard deviation delta of the frame rate (frames/s),
 /// the number of trials, the largest deviation of a trial from each nominal value, late frames and the
-/// largest lateness (ms), counts of verdicts, grades. The last line counts the trials that pass. "-" as
-/// nominal: frames were shown as fast as the method ran. Scene, n_*, method and effects are columns if the
-/// rows differ in them, else words of the heading. A row with a failed trial ends in FAIL, a row with a
-/// degraded trial in DEGRADED. `coloured` (for a terminal): a FAIL row is red, a DEGRADED row yellow. `mean`:
-/// the kind of mean in the rows.
+/// largest lateness (ms), counts of verdicts, grades. The last line counts the trials that pass and those
+/// that fail. "-" as nominal: frames were shown as fast as the method ran. Scene, n_*, method and effects are
+/// columns if the rows differ in them, else words of the heading. A row with a failed trial ends in FAIL,
+/// another row with a degraded trial in DEGRADED. `coloured` (for a terminal): a FAIL row is red, a DEGRADED
+/// row yellow. `mean`: the kind of mean in the rows.
 ///
-/// Rows of a protocol with factors are named by their levels instead, have the timing profile that was asked,
-/// and 99th percentile, longest interval, hitches and animation error as they were shown.
+/// Rows of a protocol with factors have other columns: their levels and the requested timing profile instead
+/// of scene, n_*, method and effects; then the realised 99th percentile, longest interval, hitches and
+/// animation error.
 std::string format_certificate(const std::vector<CertificateRow>& rows, FpsMean mean, bool coloured);
 
 }  // namespace study

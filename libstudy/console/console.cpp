@@ -219,8 +219,7 @@ void Console::enter() {
   const Asking asked = std::exchange(asking_, Asking::Nothing);
   const std::string words = whole_letters(std::exchange(typed_, {}));
   if (!session_) return say("(nothing was done: the session is over)");
-  if (words.find_first_not_of(' ') == std::string::npos)
-    return say("(nothing was done: no reason was given)");
+  if (words.find_first_not_of(' ') == std::string::npos) return say("(nothing was done: nothing was typed)");
   if (!base::is_plain_line(words)) return say("(nothing was done: these words are not UTF-8)");
   if (asked == Asking::Note) return note(words);
   if (asked == Asking::Repeat) return repeat(words);
@@ -239,8 +238,8 @@ void Console::note(const std::string& words) {
       [=, this] { say("noted: " + words); });
 }
 
-/// Reopens the trial in the database at once, so that it is shown again even if this program ends before
-/// then.
+/// Reopens the trial in the database at once, so that it is shown again even if this program ends before that
+/// showing.
 void Console::repeat(const std::string& reason) {
   const std::int64_t session = session_->id;
   const OpenUnit trial = unit_ && unit_->trial && !unit_done_ ? *unit_ : *last_trial_;

@@ -126,7 +126,9 @@ std::vector<std::string> Console::alarms(std::int64_t now_ns, double disk_mb) co
   if (ending_) all.push_back(words_of(*ending_));
   if (trouble_) all.push_back(trouble_->what + "; " + trouble_->mend + "; then p goes on");
   if (disk_mb >= 0 && disk_mb < little_disk_mb)
-    all.push_back(fmt::format("disk: only {:.0f} MB are free; free space before the next trial", disk_mb));
+    all.push_back(
+        fmt::format("disk: only {:.0f} MB are free, less than {:.0f} MB; free space before the next trial",
+                    disk_mb, little_disk_mb));
   if (const char* failure = failure_of(verdicts_))
     all.push_back(fmt::format("trial {}: ", last_trial_->trial->position + 1) + failure +
                   "; r shows it again, else the timing rule excludes it");

@@ -186,13 +186,13 @@ std::vector<std::string> place_problems(const fs::path& database, const PlacePro
   if (const std::string network = network_name(folder, probe); !network.empty())
     out.push_back(database.string() + ": lies on a network file system (" + network +
                   "), where locks may not hold and a write may not be on a disk: two programs can then "
-                  "destroy the database\n  mend: record on a disk of this computer, and copy study.db* when "
-                  "no program runs");
+                  "destroy the database\n  mend: record on a disk of this computer, and copy " +
+                  database.filename().string() + "* when no program runs");
   if (const std::string service = sync_service(folder, probe); !service.empty())
     out.push_back(database.string() + ": lies in a folder that " + service +
                   " copies while it is written: copies can be torn, conflicting copies can take its place, "
-                  "and a withdrawal does not reach them\n  mend: record outside of that folder, and copy "
-                  "study.db* when no program runs");
+                  "and a withdrawal does not reach them\n  mend: record outside of that folder, and copy " +
+                  database.filename().string() + "* when no program runs");
   return out;
 }
 

@@ -88,7 +88,8 @@ PreflightLine judge_disk(const StationFacts& station, std::uint64_t needed_bytes
   // Requires ten times the estimate: the database's write-ahead log alone can grow as large as the database.
   const bool enough = *station.free_disk_bytes / 10 >= needed_bytes;
   return {enough ? Readiness::Ok : Readiness::Warn, "free disk",
-          fmt::format("{:.0f} MB, the session writes about {:.0f} MB", free_mb, needed_mb)};
+          fmt::format("{:.0f} MB, the session writes about {:.0f} MB{}", free_mb, needed_mb,
+                      enough ? "" : ": free ten times as much")};
 }
 
 PreflightLine judge_gpu(const StationFacts& station) {

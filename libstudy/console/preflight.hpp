@@ -35,7 +35,8 @@ struct PreflightLine {
 /// Reads the facts from the system; unknown ones stay empty.
 StationFacts read_station(const std::filesystem::path& database);
 
-/// One line for each check. needed_bytes: estimate of the bytes that the session will write. A pure function.
+/// One line for each check; none about graphics unless the CPU draws, and none about power if the supply is
+/// not known. needed_bytes: estimate of the bytes that the session will write. A pure function.
 std::vector<PreflightLine> judge_preflight(const std::optional<ScreenFacts>& screen,
                                            const StationFacts& station, std::uint64_t needed_bytes);
 

@@ -22,8 +22,8 @@ bool same_track(const Design& design, const Cell& a, const Cell& b) {
   return true;
 }
 
-/// Cells of the track of `cell`, by ascending level of the adaptive factor. With a standard, without that
-/// one.
+/// Cells of the track of `cell` as indices into Design::cells, by ascending level of the adaptive factor. The
+/// standard's cell is left out.
 std::vector<int> track_cells(const Design& design, const Cell& cell) {
   std::vector<int> out;
   for (int i = 0; i < static_cast<int>(design.cells.size()); ++i) {
@@ -34,7 +34,7 @@ std::vector<int> track_cells(const Design& design, const Cell& cell) {
   return out;
 }
 
-/// The cell of a trial that is not the standard.
+/// The cell that a trial compares with the standard; `first` if the trial shows a single stimulus.
 int comparison_of(const Design& design, int first, std::optional<int> second) {
   return second && is_standard(design, cell_at(design, first)) ? *second : first;
 }
@@ -51,7 +51,7 @@ bool is_positive(const Protocol& protocol, const TrackAnswer& answer) {
   return (chose_first != first_is_standard) == procedure.comparison;
 }
 
-/// Answers of one track: index into track_cells(), and the answer.
+/// One answer of a track. place: index into track_cells().
 struct TrackStep {
   int place = 0;
   bool positive = false;
@@ -80,8 +80,9 @@ std::vector<double> values_of(const Design& design, const std::vector<int>& cell
   return out;
 }
 
-/// Grid of psychometric functions. The threshold runs over the range of the values, the shape over slopes
-/// from shallow to steep on that range.
+/// Grid of psychometric functions: each combination of 41 thresholds over the range of `values`, 6 shapes and
+/// the procedure's lapse rates. The shape runs from shallow to steep: for a Weibull function the exponent
+/// from 1 to 12, else the spread from 1/2 to 1/50 of the range.
 std::vector<stats::PsychometricCurve> curves_of(const Procedure& procedure,
                                                 const std::vector<double>& values) {
   const double low = values.front(), high = values.back(), width = high - low;
@@ -109,7 +110,8 @@ stats::QuestPlus quest_of(const std::vector<stats::PsychometricCurve>& curves,
           }};
 }
 
-/// `fixed` indices from 0 to count - 1, evenly spread and ascending; they start over after `count` of them.
+/// Returns `fixed` indices from 0 to count - 1, evenly spread and ascending. They start over after `count` of
+/// them. A single index is the middle one.
 std::vector<int> spread_evenly(int fixed, int count) {
   std::vector<int> out;
   const int round = std::min(fixed, count);
@@ -122,7 +124,7 @@ int next_by_staircase(const Procedure& procedure, const std::vector<TrackStep>& 
   const auto positive = std::make_unique<bool[]>(steps.size() + 1);
   for (std::size_t i = 0; i < steps.size(); ++i) positive[i] = steps[i].positive;
   stats::StaircaseRules rules = procedure.rules;
-  rules.trials = 0;  // the plan ends the track
+  rules.trials = 0;  // 0: no limit here, as the plan sets the number of trials
   const double next = stats::replay_staircase(rules, {positive.get(), steps.size()}).stimuli.back();
   return std::clamp(static_cast<int>(std::lround(next)), 0, count - 1);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// Chooses the cells of an adaptive procedure from the answers so far. The state is never stored: it is
-/// rebuilt from the answers, so a resumed session continues with the same cells.
+/// Chooses the cells of an adaptive procedure from the answers so far. The procedure's state is never stored.
+/// It is rebuilt from the answers, so a resumed session continues with the same cells.
 
 #include <cstdint>
 #include <span>
@@ -11,15 +11,16 @@
 
 namespace study {
 
-/// An answered trial of a session, in the order of presentation.
+/// An answered trial of a session. Lists of answers are in the order of the trials' positions.
 struct TrackAnswer {
   int first = 0;              ///< cell shown first, index into Design::cells
   std::optional<int> second;  ///< cell shown second; none: not a pair
   int score = 0;              ///< answer to Procedure::question
 };
 
-/// The trials of one group: each track has its planned number of trials, interleaved at random. Until it is
-/// shown, a trial names the first cell of its track.
+/// The trials of one group of cells: each track has its planned number of trials, and the tracks are
+/// interleaved at random. Until it is shown, a trial names the first cell of its track. In a design with
+/// pairs it also names the standard, which half of a track's trials show first.
 std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<int>& group,
                                        RandomStream& random);
 
@@ -29,13 +30,13 @@ std::vector<PlannedTrial> track_trials(const Design& design, const std::vector<i
 PlannedTrial chosen_trial(const Protocol& protocol, const PlannedTrial& planned,
                           std::span<const TrackAnswer> answers);
 
-/// The cell that stands for the track of `cell`: the one of the lowest level. `cell` itself if the track has
-/// only the standard. The design has a procedure.
+/// The cell that identifies the track of `cell`: the track's cell with the lowest level of the adaptive
+/// factor, the standard aside. `cell` itself if the track has only the standard. The design has a procedure.
 int first_of_track(const Design& design, int cell);
 
-/// A threshold estimated from the answers of one track, whatever procedure placed the trials.
+/// A threshold estimated from the answers of one track of a staircase or of QUEST+.
 struct TrackEstimate {
-  stats::GridEstimate threshold, shape;  ///< in the unit of Procedure::axis; 95 % credible intervals
+  stats::GridEstimate threshold, shape;  ///< threshold in the unit of Procedure::axis; 95 % intervals
   int trials = 0;
   /// By level of the track, ascending: its value on the axis, its trials, and those with a positive answer.
   std::vector<double> values = {};

@@ -16,15 +16,16 @@ namespace {
 struct Deal {
   std::vector<int> groups;  ///< in order of presentation, as indices into cell_groups()
   int round = 0;            ///< number of complete passes through all sequences before this slot
-  /// Row of the square (Latin or Williams) for the first group; each later group takes the next row. Over all
-  /// slots, each sequence of groups begins with each row equally often. In a design with pairs, each row also
-  /// occurs equally often in each of the two interval orders.
+  /// Row of the square (Latin or Williams) for the first group; each later group takes the next row. Under
+  /// Assignment::Balanced, over all slots, each sequence of groups begins with each row equally often. In a
+  /// balanced design with pairs, each row also occurs equally often in each of the two interval orders.
   int row = 0;
 };
 
-/// In a balanced design with pairs, the number of rounds before the assignment starts over is a multiple of
-/// this number. Rounds come in couples: in the second round of a couple, each pair has the opposite interval
-/// order of the first round. 32 rounds are 16 couples with different random interval orders.
+/// A round is one pass through all sequences of groups. In a balanced design with pairs, the number of rounds
+/// before the assignment starts over is a multiple of this number. Rounds come in couples: in the second
+/// round of a couple, each pair has the opposite interval order of the first round. 32 rounds are 16 couples
+/// with different random interval orders.
 constexpr int rounds_of_intervals = 32;
 
 const StimulusSpec& stimulus_of(const Design& design, const std::vector<int>& group) {
@@ -114,7 +115,8 @@ Deal deal(const Protocol& protocol, int slot, std::uint64_t key) {
   RandomStream random(random_key(protocol.sha256 + "\nround " + std::to_string(round)));
   shuffle(order, random);
   const int sequence = order[static_cast<std::size_t>(slot % count)];
-  // With pairs, both rounds of a couple use the same rows, so each row occurs in both interval orders.
+  // With pairs, two successive rounds (a couple) use the same rows, so each row occurs in both interval
+  // orders.
   return {all[static_cast<std::size_t>(sequence)], round, sequence + (design.pairs ? round / 2 : round)};
 }
 
@@ -139,14 +141,14 @@ std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t ke
 
 namespace {
 
-// First random counters of schedule seeds, and of practice, repeats, catches and random interval orders. The
-// shuffles of trials start at counter 0. The ranges are separate, so that no two purposes share random
-// numbers.
+// Where the random counters begin: those of schedule seeds, and those of adaptive tracks, practice, repeats,
+// catches and random interval orders ("extra"). Shuffles of trials start at counter 0, a random draw of
+// groups at 2^33. The ranges are separate, so that no two purposes share random numbers.
 constexpr std::uint64_t first_schedule_counter = 1ull << 40;
 constexpr std::uint64_t first_extra_counter = 1ull << 41;
 constexpr std::uint64_t counters_per_block = 1ull << 32;
 constexpr std::uint64_t counters_per_group = 1ull << 20;
-constexpr std::uint64_t counters_per_repetition = 1ull << 22;  // of the schedules of a block
+constexpr std::uint64_t counters_per_repetition = 1ull << 22;  // between repetitions' seeds
 
 class Planner {
   using Pairs = std::vector<std::pair<int, int>>;
@@ -259,9 +261,9 @@ class Planner {
     return out;
   }
 
-  /// True if pair number `pair` of group g shows its second cell first. The choice is random but equal for
-  /// all participants of a round; the second round of a couple has the opposite choice. Under
-  /// Assignment::PaperRandom the choice is drawn for each participant.
+  /// True if trial number `pair` of group g, counted over all repetitions, shows the second cell of its pair
+  /// first. The choice is random but equal for all participants of a round; the second round of a couple has
+  /// the opposite choice. Under Assignment::PaperRandom the choice is drawn for each participant.
   bool mirrored(int g, int pair) const {
     const auto which = static_cast<std::uint64_t>(g) * counters_per_group + static_cast<std::uint64_t>(pair);
     if (design_.assignment == Assignment::PaperRandom)
@@ -284,7 +286,7 @@ class Planner {
       if (!out.empty()) return out;
       throw base::Error("protocol " + protocol_.name,
                         "no order of the trials was found that satisfies design.never_adjacent",
-                        "name fewer factors in never_adjacent, or use order = \"shuffle\"");
+                        "name fewer factors in never_adjacent, or remove it and use order = \"shuffle\"");
     }
     std::vector<int> out(trials.size());
     std::iota(out.begin(), out.end(), 0);

@@ -55,8 +55,9 @@ int next_slot(const Protocol& protocol, const std::vector<int>& taken);
 std::vector<int> groups_met(const Protocol& protocol, int slot, std::uint64_t key);
 
 /// Plans a whole session. A trial's schedule_seed depends on its cells, its block and the number of its
-/// repetition, not on its position. A trial of a repeat block has the schedule_seed of the trial that it
-/// repeats. slot >= 0. base::Error if no order of trials was found that satisfies never_adjacent.
+/// repetition, not on its position. For an adaptive procedure, the trial's number within its group replaces
+/// the repetition. A trial of a repeat block has the schedule_seed of the trial that it repeats. slot >= 0.
+/// base::Error if no order of trials was found that satisfies never_adjacent.
 Plan make_plan(const Protocol& protocol, const std::string& participant, std::uint64_t seed, int slot);
 
 }  // namespace study

@@ -1,6 +1,6 @@
 #pragma once
 /// Several stations that record one study. Each station gives out its own share of the slots and uses its own
-/// seed. Together the stations use the slots of the assignment as one station would.
+/// seed. If they record equally many people, the stations together use the slots as one station would.
 
 #include <cstdint>
 #include <optional>

@@ -24,12 +24,12 @@ struct GazeRay {
 };
 
 struct GazeSample {
-  std::int64_t sampled_ns = 0;            ///< arrival time, on the session's clock
-  std::optional<std::int64_t> device_ns;  ///< time stamp of the device; none: it reports none
-  bool valid = false;                     ///< false during a blink or with the pointer off the picture
-  std::optional<GazePoint> point;         ///< may be set without `valid`, e.g. beside the picture
+  std::int64_t sampled_ns = 0;            ///< time of the sample, on the session's clock
+  std::optional<std::int64_t> device_ns;  ///< time stamp of the device; none: not reported
+  bool valid = false;                     ///< false e.g. in a blink or with the pointer off the picture
+  std::optional<GazePoint> point;         ///< none: not known; may lie outside the picture
   std::optional<bool> tracked{};          ///< false: estimated by the source; none: not reported
-  std::optional<GazeRay> ray{};           ///< none: the source gives only points of the picture
+  std::optional<GazeRay> ray{};           ///< none: not valid, or the source has no rays
 };
 
 /// A source of gaze samples, which arrive at the rate of the device. Calls come from the session's thread; a

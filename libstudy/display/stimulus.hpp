@@ -23,7 +23,7 @@ struct FrameTolerance {
   std::optional<double> tau_fps;            ///< tau (Eq. 11), frames/s; none: no frame time was known yet
   double beta = 1;                          ///< lowest probability that a particle is solved, [0, 1]
   double active_fraction = 1;               ///< share of particles that were solved, [0, 1]
-  std::optional<double> mu_fps, delta_fps;  ///< mean and standard deviation for tau; empty: tau is fixed
+  std::optional<double> mu_fps, delta_fps;  ///< mean and sd for tau; empty: tau is fixed or not known
 };
 
 /// Facts about a frame from the stimulus that made it, stored in every frame record. Empty: not measured.
@@ -59,7 +59,8 @@ struct PresentTimes {
   std::int64_t actual_display_ns = -1;
 };
 
-/// Grade of the evidence for onset times. Compositor: the display time is a prediction of the compositor.
+/// Grade of the evidence for onset times, from best to worst. Compositor: the display time is a prediction of
+/// the compositor. CpuSubmit: only the time of submission is known.
 enum class TimingGrade : char { Photodiode = 'A', DisplayFeedback = 'B', Compositor = 'C', CpuSubmit = 'D' };
 
 /// The time that is compared with a frame's scheduled time. Under grade C this is the predicted display time,
@@ -82,9 +83,9 @@ class Display {
   /// The measured refresh rate, Hz: a screen of 60 Hz may run at 59.95 Hz. A hold of k periods lasts
   /// k / measured_hz() seconds.
   virtual double measured_hz() const { return refresh_hz(); }
-  /// The first instant from earliest_ns on at which a schedule may begin, on the session's clock. A screen
-  /// with a fixed refresh returns the middle between two refreshes, so that jitter moves no frame into
-  /// another period.
+  /// The first instant from earliest_ns on at which a schedule may begin, on the session's clock. A window on
+  /// a screen with a fixed refresh returns the middle between two refreshes, so that jitter moves no frame
+  /// into another period. A headset returns the display time of a slot.
   virtual std::int64_t first_onset(std::int64_t earliest_ns) const { return earliest_ns; }
   /// Draws the stimulus off-screen in advance, to keep present() short. A display may do nothing here.
   virtual void render(Stimulus& stimulus) = 0;

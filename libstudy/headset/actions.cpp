@@ -124,7 +124,7 @@ void Actions::suggest(bool eye_gaze) const {
   if (eye_gaze && !suggest_profile(session_, "/interaction_profiles/ext/eye_gaze_interaction",
                                    {{gaze_, "/user/eyes_ext/input/gaze_ext/pose"}})) {
     throw base::Error("headset", "the runtime offers eye tracking but rejects its input profile",
-                      "update the headset's software");
+                      "update the headset's software, or choose another --gaze than tracked");
   }
 }
 

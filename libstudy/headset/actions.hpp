@@ -10,8 +10,9 @@
 
 namespace study {
 
-/// OpenXR's actions of one session. The constructor makes them in the order that the specification requires:
-/// actions, suggested bindings, attachment to the session, spaces. read() synchronises them.
+/// OpenXR's actions of one session. The constructor sets them up in the order that the specification
+/// requires: actions, suggested bindings, attachment to the session, spaces. read() synchronises their
+/// states.
 class Actions {
  public:
   Actions(const SessionHandle& session, RuntimeClock& clock, bool eye_gaze);
@@ -19,7 +20,8 @@ class Actions {
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
 
-  /// Reads gaze and hands at `time`, with poses in `world`, into `out`. Call it while the session is focused.
+  /// Sets out.focused and, if it is true, reads gaze and hands at `time` into `out`, with poses in `world`.
+  /// Call it while the session is focused.
   void read(const Space& world, XrTime time, HeadsetInput& out);
 
  private:

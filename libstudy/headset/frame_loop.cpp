@@ -185,8 +185,8 @@ void FrameLoop::follow_world(std::int64_t predicted_ns) {
   black_out(CutCause::Recentred);
 }
 
-/// Removes picture and page, because their positions refer to the world's old origin. Notes the cause if a
-/// picture was shown or waiting.
+/// Removes picture and page, because their positions refer to the world's old origin or to a lost session.
+/// Notes the cause if a picture was shown or waiting.
 void FrameLoop::black_out(CutCause cause) {
   if (picture_turns_.shows() || picture_turns_.waits()) note_cut(unseen_, cause);
   picture_turns_.drop();
@@ -268,7 +268,8 @@ void FrameLoop::turn() {
     while (!turn_slot()) {
       if (!events_.empty()) return;  // an event may explain why no more slots come
       if (std::chrono::steady_clock::now() - since > most_idle)
-        throw base::Error("headset", "it is not worn", "put it on; vip-study resume continues a session");
+        throw base::Error("headset", "it has run no frame for 30 s: it is not worn, or its software hangs",
+                          "put it on, or restart its software; vip-study resume continues a session");
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return;

@@ -37,8 +37,8 @@ struct HeadsetRecord {
   HeadsetSlot slot;
   EyeViews views;  ///< predicted poses of the eyes at slot.predicted_ns
   HeadsetInput input;
-  int world = 0;                     ///< number of moves of the poses' origin so far
-  std::optional<HeldViews> shown{};  ///< eye views of the shown picture; none: black
+  int world = 0;  ///< number of moves of the poses' origin so far; a new session counts as one
+  std::optional<HeldViews> shown{};  ///< eye views of the shown picture; none: no picture
 };
 
 /// The session's state as of its last slot.
@@ -46,7 +46,7 @@ struct LoopFacts {
   HeadsetState state = HeadsetState::Unknown;
   HeadsetRate rate;
   bool trusted = false;  ///< times convert, ascend and are multiples of the period
-  int world = 0;         ///< number of moves of the world's origin
+  int world = 0;         ///< as HeadsetRecord::world
   HeadsetSlot last;
   EyeViews views;  ///< predicted poses of the eyes in the last slot
 };
@@ -89,7 +89,7 @@ class FrameLoop {
   /// Refresh period of the display, ns; 0 before any slot.
   std::int64_t period_ns() const;
   /// Predicted poses of the eyes at a time of the session's clock, in the world or (views_in_head) in the
-  /// head's frame. Not valid while there is no session.
+  /// head's frame. Not valid before the first slot, or while there is no session.
   EyeViews views_at(std::int64_t at_ns);
   EyeViews views_in_head(std::int64_t at_ns);
 

@@ -127,7 +127,7 @@ std::int64_t HeadsetDisplay::first_onset(std::int64_t earliest_ns) const {
   return next_ns + (ahead_ns + period_ns - 1) / period_ns * period_ns;
 }
 
-/// Time before its slot at which drawing a picture begins, ns.
+/// Time before its slot at which drawing a picture begins, ns; 0 with SlotDrive::Caller.
 std::int64_t HeadsetDisplay::lead_ns() const {
   return slots_by_thread_ ? draw_ns_ + draw_ns_ / 2 + loop_.period_ns() : 0;
 }

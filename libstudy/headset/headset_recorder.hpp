@@ -19,8 +19,8 @@ namespace study {
 /// stop(), the time for which the participant consents. Otherwise ray() gives the head's direction.
 ///
 /// Makes one sample for each sample time that the runtime reports, or one per slot if it reports no times. A
-/// sample of lost eyes has no reported time. Its time is the slot's time minus the largest lag reported so
-/// far, but not before the last sample.
+/// sample of lost eyes without a new reported time has no device time. Its time is the slot's time minus the
+/// largest lag reported so far, but not before the last sample.
 class HeadsetRecorder final : public GazeSource, public SlotSource {
  public:
   /// origin: Head, or Tracker for a display made with HeadsetChoice::eye_gaze.
@@ -61,7 +61,7 @@ class HeadsetRecorder final : public GazeSource, public SlotSource {
 /// a picture.
 GazeSample gaze_of(const HeadsetRecord& record, GazeOrigin origin);
 
-/// Distance between the eyes, mm; none if their poses are not valid.
+/// Distance between the eyes, mm; none if their poses are not valid or their positions are equal.
 std::optional<double> ipd_of(const EyeViews& views);
 
 }  // namespace study

@@ -105,7 +105,7 @@ XrFrameState HeadsetSession::Parts::wait_frame() {
     session.leave_behind();
     xr.leave_behind();
     throw base::Error("headset",
-                      fmt::format("the runtime has held a frame for {:g} s",
+                      fmt::format("the runtime has let no frame begin for {:g} s",
                                   std::chrono::duration<double>(patience).count()),
                       "restart the headset's software; vip-study resume continues a session");
   }

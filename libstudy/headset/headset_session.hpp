@@ -58,10 +58,10 @@ struct HeadsetGaze {
 /// Buttons and pointing of both hands. A button held on both hands counts once.
 struct HeadsetHands {
   bool select = false;           ///< is pressed
-  bool select_began = false;     ///< was pressed since the last input()
+  bool select_began = false;     ///< pressed since the last input(), and still pressed
   bool menu = false;             ///< is pressed
   std::array<float, 2> stick{};  ///< deflection right and up, [-1, 1]; 0 without a stick
-  /// pose of the left and the right hand, which points along direction_of()
+  /// pose of the left and the right hand, which points along direction_of(); none: not active
   std::array<std::optional<HeadsetPose>, 2> aim;
 };
 
@@ -75,10 +75,11 @@ struct HeadsetInput {
 
 struct HeadsetChoice {
   bool eye_gaze = false;                      ///< requests eye tracking; needs the participant's consent
-  double patience_s = 10;                     ///< longest wait for the runtime, s; then the session ends
+  double patience_s = 10;                     ///< longest wait for a frame, s; then base::Error
   int page_width_px = 0, page_height_px = 0;  ///< 0: no page
   std::optional<double> refresh_hz{};         ///< refresh rate to request; see request_rate()
-  /// If the runtime's times do not convert to the session's clock, the first time is not before earliest_ns.
+  /// If the runtime's times do not convert to the session's clock, the first guessed time is not before
+  /// earliest_ns.
   std::int64_t earliest_ns = 0;
 };
 
@@ -137,7 +138,7 @@ struct HeadsetRate {
 /// drawing, then end(). Call poll() between frames.
 class HeadsetSession {
  public:
-  /// Connects. Refuses headsets that show the real world through the picture.
+  /// Connects. base::Error for a headset that cannot hide the real world.
   explicit HeadsetSession(const sim::GlContext& gl, const HeadsetChoice& choice = {});
   ~HeadsetSession();
   HeadsetSession(const HeadsetSession&) = delete;
@@ -169,12 +170,13 @@ class HeadsetSession {
   base::PictureSize eye_size(std::size_t eye) const;
   /// Size of both eyes' pictures side by side.
   base::PictureSize picture_size() const;
-  /// Shows the layers; nothing if the slot should not render.
+  /// Shows the layers; nothing if the slot should not render. Omits a picture whose eye views are not valid.
   void end(const HeadsetSlot& slot, const HeadsetLayers& layers = {});
 
   HeadsetRate rate() const;
   const RateMeter& meter() const;
-  /// Requests one of the refresh rates that the runtime lists. rate() and an event show a change.
+  /// Requests one of the refresh rates that the runtime lists; base::Error for another rate. rate() and an
+  /// event show a change.
   void request_rate(double hz);
 
  private:

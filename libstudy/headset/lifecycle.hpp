@@ -15,7 +15,7 @@ class Lifecycle {
  public:
   Lifecycle(const SessionHandle& session, RuntimeClock& clock);
   HeadsetState state() const { return state_; }
-  /// True between READY and STOPPING: the program must run frames.
+  /// True from READY until STOPPING, LOSS_PENDING or EXITING: the program must run frames.
   bool running() const { return running_; }
   /// Processes all waiting events; unknown events are ignored. Do not call it between begin and end of a
   /// frame.

@@ -32,7 +32,7 @@ PFN_xrGetInstanceProcAddr open_loader() {
   const std::string library = other && *other ? other : "libopenxr_loader.so.1";
   void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
-    throw base::Error("OpenXR loader", "there is no " + library + " on this machine",
+    throw base::Error("OpenXR loader", "there is no " + library + " on this machine, or it cannot be loaded",
                       "install libopenxr-loader1, or name the loader in VIP_OPENXR_LOADER");
   }
   void* symbol = dlsym(handle, "xrGetInstanceProcAddr");

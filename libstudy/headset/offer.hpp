@@ -23,7 +23,8 @@ struct HeadsetOffer {
   bool position = false;                ///< the head's position is tracked, not only its direction
   bool eye_gaze = false;                ///< an eye tracker is available (XR_EXT_eye_gaze_interaction)
   bool time_converts = false;           ///< the runtime's times can be converted to the system's clock
-  /// Properties that only a session reports. None if no session could be made; `no_session` gives the reason.
+  /// Properties that only a session reports. None if no OpenGL context for a session could be made;
+  /// `no_session` gives the reason.
   struct InSession {
     std::vector<double> refresh_hz;     ///< ascending; empty: not reported
     std::optional<double> refresh_now;  ///< Hz; read only if several rates are listed

@@ -33,7 +33,7 @@ void RefreshControl::request(double hz) const {
       std::find_if(rates_.begin(), rates_.end(), [&](double rate) { return std::abs(rate - hz) < 0.01; });
   if (found == rates_.end()) {
     throw base::Error("headset", fmt::format("{:g} Hz is not one of its refresh rates", hz),
-                      "vip-study headset lists them");
+                      "use a rate that vip-study headset lists; if it lists none, request no rate");
   }
   session_.call<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB", session_.get(),
                                                    static_cast<float>(*found));

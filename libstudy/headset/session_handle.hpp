@@ -39,8 +39,8 @@ class KeptContext {
 /// An OpenXR session. The destructor destroys it; objects made from the session must be destroyed before.
 class SessionHandle {
  public:
-  /// base::Error if the runtime does not accept contexts of this kind, or not this context. `gl` must be
-  /// current on the calling thread and outlive the session.
+  /// base::Error if the runtime needs a newer OpenGL, does not accept contexts of this kind, or not this
+  /// context. `gl` must be current on the calling thread and outlive the session.
   SessionHandle(const XrConnection& xr, XrSystemId system, const sim::GlContext& gl);
   ~SessionHandle();
   SessionHandle(const SessionHandle&) = delete;

@@ -20,7 +20,10 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 std::unique_ptr<HeadsetSession> SessionMaker::make(std::int64_t earliest_ns) {
   choice_.earliest_ns = earliest_ns;
-  if (made_ == most_sessions) throw base::Error("headset", "its software keeps losing the session", mend);
+  if (made_ == most_sessions)
+    throw base::Error(
+        "headset",
+        "its software keeps losing the session: " + std::to_string(most_sessions) + " times so far", mend);
   return made_++ == 0 ? std::make_unique<HeadsetSession>(gl_, choice_) : make_anew();
 }
 

@@ -20,7 +20,7 @@ struct SessionFacts {
 SessionFacts facts_of(const HeadsetSession& session);
 
 /// Throws base::Error if the program cannot go on with the new session: its pictures have another size, or it
-/// lacks the eye tracker.
+/// lacks the eye tracker that the lost session had.
 void require_alike(const SessionFacts& before, const SessionFacts& after);
 
 class SessionMaker {

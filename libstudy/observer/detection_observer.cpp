@@ -38,7 +38,8 @@ DetectionParameters parse_detection_observer(std::string_view specification) {
   const std::size_t comma = std::min(specification.find(','), specification.size());
   out.axis = specification.substr(detection_kind.size(), comma - detection_kind.size());
   if (std::find(axis_keys().begin(), axis_keys().end(), out.axis) == axis_keys().end())
-    fail_observer(specification, detection_kind.size(), "'" + out.axis + "' is no number of a timing profile",
+    fail_observer(specification, detection_kind.size(),
+                  "'" + out.axis + "' is no key of a timing profile whose number can be detected",
                   base::use_one_of(out.axis, axis_keys()));
   if (comma == specification.size())
     fail_observer(specification, comma, "key 'threshold' is missing", detection_mend);

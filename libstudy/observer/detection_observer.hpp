@@ -14,8 +14,9 @@ namespace study {
 ///   F = (1 - lapse) (1 - exp(-(x / t)^shape)),   t = threshold exp(spread z)
 ///
 /// where z ~ N(0, 1) is drawn once for each person. Without that key in the profile x is 0. A single
-/// stimulus: the higher score if it is detected, else the lower one with probability 1 - guess. A pair: the
-/// interval with the smaller x if the larger one is detected, else either.
+/// stimulus: the question's highest score if it is detected; if not, the lowest score with probability 1 -
+/// guess, else the highest. A pair: the interval with the smaller x if the larger x is detected, else either
+/// interval at random.
 struct DetectionParameters {
   std::string axis;      ///< such as "hitch_ms"
   double threshold = 0;  ///< in the unit of the axis, > 0; must be given

@@ -15,11 +15,11 @@ namespace study {
 /// tau = mu - 23.68 exp(0.02 delta) (the paper's PTPE@4.0), with harmonic mean mu and standard deviation
 /// delta of the shown frame rate. The features granularity and flicker are those of PictureFeatures. x is 1
 /// for a level of effects other than "none", else 0. A rating is the score nearest to the scale's midpoint +
-/// q + participant + noise. A symptom, on a scale from 0 to 3, is the score nearest to 0.6 - sickness q +
-/// fatigue position + participant' + noise', scaled to longer scales in proportion; noise' has half the
-/// standard deviation of noise, and of two stimuli the smaller q counts. The second of two stimuli is
-/// preferred if q_2 - q_1 + bias + noise > 0. The weights are our choice: they order the methods plausibly
-/// and were not fitted to the paper's results.
+/// q + participant + noise; for a Vas see rated_score(). A symptom, on a scale from 0 to 3, is the score
+/// nearest to 0.6 - sickness q + fatigue position + participant' + noise', scaled to longer scales in
+/// proportion; noise' has half the standard deviation of noise, and of two stimuli the smaller q counts. The
+/// second of two stimuli is preferred if q_2 - q_1 + bias + noise > 0. The weights are our choice: they order
+/// the methods plausibly and were not fitted to the paper's results.
 struct FramesObserverParameters {
   double grain = 4;             ///< scores per octave of granularity, >= 0
   double flicker = 0.6;         ///< scores per octave of flicker, >= 0

@@ -28,7 +28,7 @@ class RandomObserver final : public Observer {
   }
 };
 
-/// "constant:4": always answers with the question's score that is nearest to 4.
+/// "constant:4": answers with the question's score that is nearest to 4, whatever the stimulus.
 class ConstantObserver final : public Observer {
  public:
   explicit ConstantObserver(double score) : score_(score) {}
@@ -81,7 +81,8 @@ std::unique_ptr<Observer> make_dropout(std::string_view specification, FeatureSo
                                            make_observer(rest.empty() ? "random" : rest, features));
 }
 
-/// The score 4 of "constant:4" or "dropout:0.2,constant:4"; none for other observers.
+/// The score of a constant observer, such as 4 for "constant:4" and "dropout:0.2,constant:4"; none for other
+/// observers.
 std::optional<double> constant_of(std::string_view specification) {
   std::size_t at = 0;
   if (specification.starts_with(dropout))

@@ -20,7 +20,7 @@ Answer answer_of(const Observer& observer, const Question& question, const Occas
   return {feigned ? *question.stop_at - 1 : score, ""};
 }
 
-/// Time until an answer, s.
+/// Response time, s: 0 unless the question is timed (kind Reaction).
 double answering_s(const Question& question, const Answer& answer, const Occasion& occasion) {
   if (!traits_of(question.kind).timed) return 0;
   const double u =

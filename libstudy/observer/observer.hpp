@@ -1,6 +1,7 @@
 #pragma once
 /// Base of all simulated observers. Reading a page and answering questions take no time of the clock; pauses
-/// wait on it. The response time is 0, or of a Reaction made up: Observer::ask().
+/// wait on the clock. The response time of an answer is 0, except for a question of kind Reaction: see
+/// Observer::ask().
 
 #include <memory>
 #include <string>
@@ -18,13 +19,14 @@ namespace study {
 class Observer : public Participant {
  public:
   void read(const Block&, double, Clock&, const Check&) final {}
-  /// A press to a Reaction comes after 0.2 s and an exponential time of mean 0.1 s.
+  /// The response time of a press to a Reaction is 0.2 s plus an exponential time of mean 0.1 s, at most the
+  /// question's timeout.
   std::vector<TimedAnswer> ask(const Block& block, std::span<const Question> questions,
                                const Occasion& occasion, Clock& clock, const Check& check) final;
   void pause(const Pause& pause, Clock& clock, const Check& check) final;
 
-  /// Returns one of the question's scores. Never called for a question of kind Text or with `accept`.
-  /// `judges`: true for the first question of a listed kind after the stimulus of a trial.
+  /// Returns one of the question's scores. Never called for a question that is not scored (Text) or that has
+  /// `accept`. `judges`: true for the first question of a listed kind on a page that follows a stimulus.
   virtual int score(const Question& question, const Occasion& occasion, bool judges) const = 0;
   /// True if the observer models symptom scores. Otherwise a score that would stop the session is lowered to
   /// stop_at - 1.
@@ -35,7 +37,8 @@ class Observer : public Participant {
 /// normal (Box and Muller 1958).
 double uniform_of(std::uint64_t key, std::uint64_t counter);
 double normal_of(std::uint64_t key, std::uint64_t counter);
-/// Keys of random streams: one for the participant, one for this question to this participant.
+/// Keys of random streams, computed from the seed: one key for each participant, and one for each question to
+/// each participant.
 std::uint64_t person_key(const Occasion& occasion);
 std::uint64_t question_key(const Occasion& occasion, const Question& question);
 
@@ -44,8 +47,8 @@ std::uint64_t question_key(const Occasion& occasion, const Question& question);
 bool asks_symptom(const Question& question);
 /// The question's score that is nearest to x. Thresholds lie halfway between neighbouring scores.
 int nearest_score(const Question& question, double x);
-/// The score of a rating by its latent value: points above the middle of the scale. A Vas has six points, as
-/// the distance between the ends of the paper's scale of 1 to 7.
+/// The score of a rating whose latent value lies `latent` points above the middle of the scale. A point is
+/// one score; on a Vas it is a sixth of the line, because the paper's scale of 1 to 7 has six steps.
 int rated_score(const Question& question, double latent);
 /// Draws a score of the question; every score is equally likely.
 int random_score(const Question& question, const Occasion& occasion);
@@ -60,8 +63,9 @@ std::unique_ptr<Observer> make_observer(std::string_view specification, FeatureS
 
 /// For a constant observer such as "constant:9" (alone or after "dropout"): one sentence for each rating
 /// scale of the trials that does not contain the observer's score. On such a scale the observer gives the
-/// nearest score. Empty for other kinds of observers. base::Error if the score is outside the scale of every
-/// question of the protocol.
+/// nearest score. Empty for other kinds of observers. base::Error if there is such a scale and no question
+/// with listed answers in the whole protocol has the score; questions that decide on participation do not
+/// count.
 std::vector<std::string> scales_beyond(std::string_view specification, const Protocol& protocol);
 
 }  // namespace study

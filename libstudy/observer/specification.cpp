@@ -32,7 +32,10 @@ double read_observer_number(std::string_view specification, std::size_t at, std:
                             double max, const std::string& mend) {
   const double value = parse_number(specification, at, text, mend);
   if (value < min || value > max)
-    fail_observer(specification, at, std::string(text) + " is out of range", mend);
+    fail_observer(
+        specification, at,
+        std::string(text) + " is out of range: " + shortest_number(min) + " to " + shortest_number(max),
+        mend);
   return value;
 }
 
@@ -54,8 +57,11 @@ void read_observer_keys(std::string_view specification, std::size_t at, std::spa
     const std::string_view text = pair.substr(equals + 1);
     const double value = parse_number(specification, at + equals + 1, text, mend);
     if (value < key->min || value > key->max || (key->open_min && value == key->min)) {
-      fail_observer(specification, at + equals + 1, name + " = " + std::string(text) + " is out of range",
-                    mend);
+      fail_observer(
+          specification, at + equals + 1,
+          name + " = " + std::string(text) + " is out of range: " + (key->open_min ? "above " : "from ") +
+              shortest_number(key->min) + (std::isinf(key->max) ? "" : " to " + shortest_number(key->max)),
+          mend);
     }
     *key->value = value;
     at = end + 1;

@@ -28,7 +28,8 @@ struct ObserverKey {
 void read_observer_keys(std::string_view specification, std::size_t at, std::span<const ObserverKey> keys,
                         const std::string& mend);
 
-/// Reads one number without a key, such as "4" in "constant:4".
+/// Reads one number without a key, such as "4" in "constant:4". base::Error if it is no number from min to
+/// max.
 double read_observer_number(std::string_view specification, std::size_t at, std::string_view text, double min,
                             double max, const std::string& mend);
 

@@ -23,7 +23,7 @@ namespace study {
 namespace {
 
 constexpr std::size_t most_capture_bytes = 1 << 28;
-constexpr double slow_share = 0.05;  // of frames in a "5 % low"
+constexpr double slow_share = 0.05;  // share of the frames that count in a "5 % low"
 
 std::string folded_name(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -72,7 +72,7 @@ class CaptureReader {
       }
       read_row(line);
     }
-    if (names_.empty()) fail("is empty");
+    if (names_.empty()) fail("is empty, or has only comment lines");
     return std::move(out_);
   }
 
@@ -103,7 +103,7 @@ class CaptureReader {
       if (!base::is_plain_line(name)) fail("is no text in UTF-8");
     named_ = !number_in(names_.front());
     if (!named_) {
-      if (names_.size() > 1) fail("holds numbers where the names of columns belong");
+      if (names_.size() > 1) fail("holds numbers where the first line must name the columns");
       if (!wanted_.empty()) fail("has no names of columns", "remove --column");
       return;
     }
@@ -122,10 +122,12 @@ class CaptureReader {
     for (const char* name : {"MsBetweenPresents", "FrameTime", "MsBetweenDisplayChange"})
       if (const auto place = place_of(name)) return *place;
     fail("has no column MsBetweenPresents, FrameTime or MsBetweenDisplayChange",
-         "name the column with the frame times: --column " + base::shortened(names_.front()));
+         "name the column with the frame times by --column; the first column of this file is " +
+             base::shortened(names_.front()));
   }
 
-  /// The place of a column; none: no column has this name, which is an error for the wanted one.
+  /// The index of the column with this name; none if no column has it. base::Error if two columns have the
+  /// name, or if it is that of the option --column and no column has it.
   std::optional<std::size_t> place_of(const std::string& wanted) const {
     std::optional<std::size_t> found;
     std::vector<std::string> shown;
@@ -185,7 +187,7 @@ class CaptureReader {
   FrameCapture out_;
 };
 
-/// Keeps the first frames that fill the time.
+/// Keeps the first frames that last `seconds` together. base::Error if all frames last less.
 void cut(FrameCapture& capture, double seconds, const std::string& file) {
   double time_s = 0;
   std::size_t count = 0;
@@ -203,8 +205,11 @@ FrameCapture read_capture(const std::filesystem::path& file, const std::string& 
   FrameCapture out = CaptureReader(file, column).read();
   if (seconds) cut(out, *seconds, file.string());
   if (out.frame_ms.size() < 2 || out.frame_ms.size() > most_trace_frames)
-    throw base::Error(file.string(), "holds " + std::to_string(out.frame_ms.size()) + " frames",
-                      "give 2 to " + std::to_string(most_trace_frames) + ", or less of it with --seconds");
+    throw base::Error(
+        file.string(),
+        "holds " + std::to_string(out.frame_ms.size()) + " frames" +
+            (seconds ? " in the time of --seconds" : ""),
+        "give a capture of 2 to " + std::to_string(most_trace_frames) + " frames, or change --seconds");
   return out;
 }
 

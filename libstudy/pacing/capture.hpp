@@ -11,7 +11,7 @@ namespace study {
 struct FrameCapture {
   std::string column;            ///< name of the column that was read; empty: the file has no names
   std::vector<double> frame_ms;  ///< in their order, rounded to microseconds; at least two
-  std::int64_t left_out = 0;     ///< rows of frames that were never shown, or before which no frame was
+  std::int64_t left_out = 0;     ///< rows without a frame time: frames never shown, or the first frame
 };
 
 /// Reads a CSV file: of PresentMon or CapFrameX, or any table with a column of frame times in ms, or one
@@ -23,8 +23,9 @@ struct FrameCapture {
 /// that fill this time; none: all frames.
 ///
 /// Zeros and "NA" are left out in the first row and in columns of displayed times, where they mark frames
-/// that were never shown. base::Error at file:line for any other value out of range, for rows of a second
-/// process or swap chain, and for a capture of fewer than two frames or of more than a protocol may hold.
+/// that were never shown. base::Error at file:line for a file that is no such table, for any other value out
+/// of range, and for rows of a second process or swap chain. base::Error at the file for a capture shorter
+/// than `seconds`, with fewer than two frames, or with more than a protocol may hold.
 FrameCapture read_capture(const std::filesystem::path& file, const std::string& column,
                           std::optional<double> seconds);
 

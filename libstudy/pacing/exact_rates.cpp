@@ -87,7 +87,7 @@ std::vector<double> solve_open(const Problem& problem) {
     problem.fail(fmt::format("no truncated normal above {:.4g} frames/s has this mean and sd: with sd {:.4g} "
                              "the mean is at least {:.4g}",
                              problem.low, sd, least),
-                 "lower fps_min (and raise max_interval_ms), lengthen the trial, or lower the sd");
+                 "lower fps_min and raise max_interval_ms, lengthen the trial, or lower the sd");
   }
   return rates(root_of(problem, excess, bell, exponential));
 }
@@ -110,7 +110,7 @@ std::vector<double> with_mean(const Problem& problem, double width) {
         fmt::format(
             "the mean is too near the lowest or highest rate ({:.4g} and {:.4g} frames/s) for so few frames",
             problem.low, problem.high),
-        "lower fps_min or raise fps_max");
+        "lower fps_min and raise max_interval_ms, raise fps_max, or lengthen the trial");
   }
   return rates(root_of(problem, excess, left, right));
 }
@@ -127,7 +127,7 @@ std::vector<double> solve_capped(const Problem& problem) {
     problem.fail(fmt::format("no truncated normal between {:.4g} and {:.4g} frames/s has this mean and sd: "
                              "at this mean the sd is at most {:.4g}",
                              problem.low, problem.high, problem.setting.sd + excess(flat)),
-                 "raise fps_max, lower fps_min, or lower the sd");
+                 "raise fps_max, lower fps_min and raise max_interval_ms, or lower the sd");
   }
   return with_mean(problem, std::exp(root_of(problem, excess, flat, narrow)));
 }
@@ -136,7 +136,7 @@ void check_constant(const Problem& problem) {
   if (problem.setting.mean >= problem.low && problem.setting.mean <= problem.high) return;
   problem.fail(fmt::format("a constant {:.4g} frames/s lies outside {:.4g} to {:.4g} frames/s",
                            problem.setting.mean, problem.low, problem.high),
-               "lower fps_min, raise max_interval_ms or raise fps_max");
+               "lower fps_min and raise max_interval_ms, or raise fps_max");
 }
 
 }  // namespace
@@ -160,13 +160,13 @@ std::vector<double> exact_rates(const FpsSetting& setting, const PacingRules& ru
     problem.fail(
         fmt::format("the mean is not between the lowest rate {:.4g} and the highest rate {:.4g} frames/s",
                     problem.low, problem.high),
-        "lower fps_min, raise max_interval_ms or raise fps_max");
+        "lower fps_min and raise max_interval_ms, or raise fps_max");
   }
   auto rates = std::isfinite(problem.high) ? solve_capped(problem) : solve_open(problem);
   const double mean_error = std::abs(problem.mean_of(rates) / setting.mean - 1);
   const double sd_error = std::abs(population_sd(rates) / setting.sd - 1);
   if (!(mean_error <= 1e-9 && sd_error <= 1e-9)) {
-    problem.fail(fmt::format("mean and sd were met only with a relative error of {:.4g}",
+    problem.fail(fmt::format("mean and sd were met only with a relative error of {:.4g}, more than 1e-9",
                              std::max(mean_error, sd_error)),
                  "choose a mean further from fps_min and fps_max, or another sd");
   }

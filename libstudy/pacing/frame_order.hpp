@@ -16,7 +16,7 @@ double lag1(std::span<const double> values);
 /// The values in the order that the rules specify; equal seeds give equal orders. white: a uniform shuffle.
 /// ar1: the ranks of a Gaussian AR(1) sequence, whose coefficient is tuned to bring the lag-1 autocorrelation
 /// of the ordered values as near to rules.ar1 as possible. trace: the ranks of the trace's rates, which are
-/// repeated or cut to the number of values. Ties are ranked at random.
+/// repeated or cut to the number of values; ascending without a trace. Ties are ranked at random.
 std::vector<double> ordered(std::vector<double> values, const PacingRules& rules, std::uint64_t seed);
 
 }  // namespace study

@@ -20,7 +20,7 @@ class Holds {
     recount();
   }
 
-  /// Number of edges. Edge 0 ... edges() - 1 separates hold shortest + edge from the next longer hold.
+  /// Number of edges. Edge e (from 0) separates the hold of shortest + e periods from the next longer hold.
   int edges() const { return static_cast<int>(counts_.size()) - 1; }
   std::int64_t total() const { return total_; }
   double rate(int edge) const { return target_.refresh_hz / (target_.shortest + edge); }
@@ -50,7 +50,8 @@ class Holds {
     return by > 0 ? counts_[at] < counts_[at + 1] : counts_[at] > (edge ? counts_[at - 1] : 0);
   }
 
-  /// Moves one frame across an edge: by = 1 shortens the frame's hold by a period, -1 lengthens it.
+  /// Moves one frame across an edge (see edges()): by = 1 shortens the frame's hold by a period, -1 lengthens
+  /// it.
   void move(int edge, int by) {
     auto& count = counts_[static_cast<std::size_t>(edge)];
     const long double fast = rate(edge), slow = rate(edge + 1);
@@ -106,8 +107,8 @@ class Holds {
 
 /// Sets the holds that minimise sum_i (f_i - x_i)^2 + spread sum_i (f_i - m)^2 - 2 price sum_i f_i. f_i: rate
 /// of frame i; x_i: its target rate; m: target mean. For a harmonic mean, the last term is + 2 price (total
-/// of periods) instead. Frame i gets the shorter hold of an edge if x_i is above the edge's threshold.
-/// Updates mean() only; recount() updates the other sums.
+/// of periods) instead. Of two successive holds, frame i gets the shorter one if x_i is above the threshold
+/// between them. Updates mean() only; recount() updates the other sums.
 void place(Holds& holds, const HoldTarget& target, double spread, double price) {
   std::int64_t last = 0;
   const auto& x = target.rates;
@@ -140,7 +141,7 @@ void place_with_mean(Holds& holds, const HoldTarget& target, double spread) {
   holds.recount();
 }
 
-/// Bisects `spread` of place() until the target standard deviation is reached.
+/// Bisects `spread` of place() until the standard deviation is within its tolerance of the target.
 void place_with_moments(Holds& holds, const HoldTarget& target) {
   const auto sd_at = [&](double log_weight) {
     place_with_mean(holds, target, std::exp(log_weight) - 1);
@@ -157,7 +158,7 @@ void place_with_moments(Holds& holds, const HoldTarget& target) {
 }
 
 /// Changes the holds of single frames by one period until all holds sum to `total` periods; each step takes
-/// the change that raises the objective least.
+/// the change that raises the objective (distance2()) least.
 void fix_total(Holds& holds, std::int64_t total) {
   while (holds.total() != total) {
     const int by = holds.total() > total ? 1 : -1;
@@ -247,7 +248,8 @@ HoldList result(const Holds& holds, const HoldTarget& target, std::int64_t total
 }
 
 /// Calls descend() from every list of two different holds, one at most and one at least the mean hold: such
-/// lists have the extreme standard deviations. Stops once the excess is 0. Returns the best list.
+/// lists have the extreme standard deviations. Stops once the excess is 0. Returns the list with the least
+/// excess, perhaps the given `best`.
 HoldList from_pairs(const HoldTarget& target, std::int64_t total, HoldList best) {
   const auto n = static_cast<std::int64_t>(target.rates.size());
   const auto first = static_cast<std::int64_t>(target.shortest);

@@ -34,12 +34,13 @@ struct HoldList {
   std::vector<int> holds;
   double mean = 0, sd = 0;  ///< of the rates, frames/s; mean of the target's mean_kind
   double distance = 0;      ///< root of the objective, frames/s
-  double excess = 0;        ///< error of mean and sd beyond their tolerances; 0: both met
+  double excess = 0;        ///< sum of the errors of mean and sd beyond their tolerances; 0: both met
 };
 
 /// The best list found whose holds sum to `total` periods (this fixes a harmonic mean); total = 0: any sum.
-/// Deterministic: Lagrange multipliers for both moments, then exchanges of single periods between frames.
-/// Excess 0 proves that the target can be met. Excess > 0 does not prove the contrary; sd_bounds() may.
+/// If the best list has another sum, its excess is infinite. Deterministic: Lagrange multipliers for both
+/// moments, then exchanges of single periods between frames. Excess 0 proves that the target can be met.
+/// Excess > 0 does not prove the contrary; sd_bounds() may.
 HoldList search_holds(const HoldTarget& target, std::int64_t total);
 
 /// Bounds of the standard deviation, frames/s, of every list of any length with exactly the target's mean and

@@ -17,15 +17,15 @@ namespace study {
 enum class AtEnd { Loop, Hold };
 
 /// How content advances. real_time = false (per_frame, the paper's interpretation): frame i shows content
-/// step start_frame + i. real_time = true: frame i shows the content step of its scheduled time; both times
-/// count from the first frame. At its end, a process of finite length goes back to start_frame (Loop) or
-/// stays at its last step (Hold).
+/// step start_frame + i. real_time = true: frame i shows the content step of its scheduled time, or without a
+/// schedule of the time at which the program began to make it; times count from the first frame. At its end,
+/// a process of finite length goes back to start_frame (Loop) or stays at its last step (Hold).
 struct ContentRules {
   bool real_time = false;
   double content_step_s = 1.0 / 60;
   std::int64_t start_frame = 0;
   AtEnd at_end = AtEnd::Loop;
-  double latency_s = 0;  ///< real_time: the content lags behind the time of its frame by this
+  double latency_s = 0;  ///< real_time: the content lags behind the time of its frame by this, s
   /// real_time: the content's step between two frames differs from the frame's interval by this, alternately
   /// more and less, s. Content never runs backwards: where the error exceeds the interval, the content stands
   /// still.
@@ -64,8 +64,8 @@ struct ShowingBounds {
 /// deadline. No frame is skipped to catch up. The last frame stays on until the planned end of the trial; if
 /// it came after the planned end, it stays on for its whole interval. A frame that is ready later than
 /// overrun_ns after the planned end is not shown: the trial is cut, and ends when the interval of the frame
-/// before is over. `each` (may be empty) is called after every frame, for the journal. base::Error if there
-/// is no interval, if an interval is not positive, or if the content ends before start_frame.
+/// before is over. `each` (may be empty) is called after every shown frame. base::Error if there is no
+/// interval, if an interval is not positive, or if the content ends before start_frame.
 PlayedTrial play_trial(const std::vector<std::int64_t>& intervals_ns, const ContentRules& content,
                        Stimulus& stimulus, Display& display, Clock& clock, const ShowingBounds& bounds,
                        const std::function<void(const FrameRecord&)>& each);
@@ -111,7 +111,7 @@ struct TimingVerdict {
   /// Mean absolute difference between the content's step and the interval of a frame, ms; none if the content
   /// follows frames instead of time.
   std::optional<double> animation_error_ms;
-  double lag1 = 0;  ///< lag-1 autocorrelation of the realised rates; 0: all are equal
+  double lag1 = 0;  ///< lag-1 autocorrelation of the realised rates; see lag1()
   std::int64_t late = 0;
   double worst_late_ms = 0;
   bool cut = false;    ///< true: cut, because the trial overran

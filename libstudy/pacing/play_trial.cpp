@@ -9,7 +9,7 @@ namespace study {
 
 namespace {
 
-// Time from the end of the first frame's rendering to its deadline: long enough for the usual wait of
+// Least time from the end of the first frame's rendering to its deadline: long enough for the usual wait of
 // present().
 constexpr std::int64_t lead_ns = 2'000'000;
 

@@ -16,7 +16,7 @@ namespace study {
 namespace {
 
 constexpr std::array profile_words{"moments", "hitches", "floor", "trace"};
-constexpr double low_share = 0.05;  // of frames in a "5 % low"
+constexpr double low_share = 0.05;  // share of the frames that count in a "5 % low"
 
 [[noreturn]] void refuse(const std::string& problem) {
   throw base::Error("timing", problem, "change the numbers of this timing, or the length of the stimulus");
@@ -25,8 +25,8 @@ constexpr double low_share = 0.05;  // of frames in a "5 % low"
 std::vector<double> hitches(const TimingProfile& profile, double duration_s, std::uint64_t seed) {
   const double base_s = 1 / profile.mean_fps, hitch_s = 1e-3 * profile.hitch_ms;
   if (hitch_s < base_s)
-    refuse(fmt::format("a hitch of {:g} ms is shorter than a frame at {:g} frames/s", profile.hitch_ms,
-                       profile.mean_fps));
+    refuse(fmt::format("a hitch of {:g} ms is shorter than the {:.4g} ms of a frame at {:g} frames/s",
+                       profile.hitch_ms, 1e3 * base_s, profile.mean_fps));
   if (hitch_s + base_s > profile.period_s)
     refuse(fmt::format("a hitch of {:g} ms and a frame do not fit into a period of {:g} s", profile.hitch_ms,
                        profile.period_s));
@@ -57,8 +57,11 @@ std::vector<double> with_floor(const TimingProfile& profile, double duration_s, 
   const double low_s = static_cast<double>(low) / profile.low_fps;
   const double left_s = static_cast<double>(count) / profile.mean_fps - low_s;
   if (profile.low_fps > profile.mean_fps || count <= low || left_s <= 0)
-    refuse(fmt::format("a mean of {:g} frames/s cannot have a 5 % low of {:g} frames/s", profile.mean_fps,
-                       profile.low_fps));
+    refuse(fmt::format(
+        "{} frames with a mean of {:g} frames/s cannot have a 5 % low of {:g} frames/s: it must be "
+        "above {:.4g} and at most {:g}",
+        count, profile.mean_fps, profile.low_fps,
+        profile.mean_fps * static_cast<double>(low) / static_cast<double>(count), profile.mean_fps));
   std::vector<double> out(count, left_s / static_cast<double>(count - low));
   std::fill_n(out.begin(), low, 1 / profile.low_fps);
   RandomStream random(seed);

@@ -25,7 +25,7 @@ struct TimingProfile {
   double mean_fps = 60;  ///< Moments, Floor: harmonic mean. Hitches: rate between hitches. Frames/s
   double sd_fps = 0;     ///< Moments
   double hitch_ms = 0;   ///< Hitches: time for which the long frame stays on; at least 1000 / mean_fps
-  double period_s = 1;   ///< Hitches: one hitch in each period, in its middle when jitter is 0
+  double period_s = 1;   ///< Hitches: period, s; one hitch in each, in its middle when jitter is 0
   /// Hitches: share of the period, around its middle, over which the hitch is uniform, 0 to 1
   double jitter = 0;
   double low_fps = 0;                 ///< Floor: "5 % low", at most mean_fps

@@ -18,7 +18,7 @@ constexpr double sd_absolute = 0.25;  // frames/s
 constexpr double approximate_mean = 0.005;
 constexpr double arithmetic_mean_met = 1e-4;
 constexpr double harmonic_mean_met = 1e-9;
-constexpr double exact_interval = 0.01;  // largest move of a pattern's interval, as a share of itself
+constexpr double exact_interval = 0.01;  // largest change of a pattern's interval, as a share of the interval
 constexpr double whole = 1e-6;           // rounding tolerance of period counts; relative in is_whole()
 
 HoldTarget target_for(const FpsSetting& setting, const PacingRules& rules, double refresh_hz) {
@@ -110,8 +110,8 @@ std::string what_bounds_sd(const HoldTarget& target) {
   return {};
 }
 
-/// Words that say which moments the list `best` misses, by how much, and why. `tried`: a list with exactly
-/// the target mean. `target` has the tolerances of an exact list.
+/// Words that say which moments the list `best` misses, by how much, and why. `tried`: the result of
+/// exact_list(). `target` has the tolerances of an exact list.
 std::string what_misses(const HoldTarget& target, const HoldList& tried, const HoldList& best) {
   std::string words;
   if (best.holds.empty())

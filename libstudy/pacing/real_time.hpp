@@ -5,12 +5,12 @@
 
 namespace study {
 
-/// During its lifetime, the calling thread has a timer slack of 1 ns and, where the system allows it,
-/// SCHED_FIFO with the lowest real-time priority (RLIMIT_RTPRIO or CAP_SYS_NICE), else a raised nice level.
-/// If /dev/cpu_dma_latency can be opened, processors avoid idle states that are slow to leave. Threads that
-/// the calling thread starts do not inherit SCHED_FIFO. A refused request is no error: note() lists the
-/// granted and refused requests for the session's record. Memory is not locked, because this would pin a
-/// mapped bake as well.
+/// During its lifetime, the calling thread has a timer slack of 1 ns and, where the system allows it
+/// (RLIMIT_RTPRIO or CAP_SYS_NICE), SCHED_FIFO with the lowest real-time priority. Without SCHED_FIFO it asks
+/// for the nice level -10, a raised priority. If /dev/cpu_dma_latency can be opened, processors avoid idle
+/// states that are slow to leave. Threads that the calling thread starts do not inherit SCHED_FIFO. A refused
+/// request is no error: note() lists the granted and refused requests for the session's record. Memory is not
+/// locked, because this would pin a mapped bake as well.
 class RealTimeScheduling {
  public:
   RealTimeScheduling();

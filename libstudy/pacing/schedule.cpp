@@ -114,7 +114,7 @@ FpsSetting setting_of(const TimingProfile& profile, double duration_s) {
   if (!has_pattern(out)) return out;
   const stats::FpsMoments moments = stats::fps_moments(pattern_intervals(profile, duration_s, 0));
   out.mean = moments.mean;
-  out.sd = moments.sd > 1e-9 ? moments.sd : 0;  // rounding of equal intervals
+  out.sd = moments.sd > 1e-9 ? moments.sd : 0;  // a smaller sd is a rounding error of equal intervals
   return out;
 }
 

@@ -61,11 +61,11 @@ struct Schedule {
   std::vector<std::int64_t> intervals_ns;  ///< whole nanoseconds
 };
 
-/// Makes the schedule of a setting without a fixed refresh. Its frame rates are N = round(mean * duration)
-/// stratified quantiles of a truncated normal, whose parameters are solved so that the list has exactly the
-/// requested mean and sd. `seed` and the rules determine their order. base::Error naming the setting if there
-/// is no solution. For a setting with a pattern, the schedule has the pattern's intervals, and the rules are
-/// not applied.
+/// Makes the schedule of a setting for a display without a fixed refresh. Its N = round(mean * duration)
+/// frame rates are stratified quantiles of a truncated normal, whose parameters are solved so that the list
+/// has exactly the requested mean and sd. `seed` and the rules determine their order. base::Error naming the
+/// setting if there is no solution. For a setting with a pattern, the schedule has the pattern's intervals,
+/// and the rules are not applied.
 Schedule compile_schedule(const FpsSetting& setting, const PacingRules& rules, std::uint64_t seed);
 
 enum class Feasibility { Exact, Approximate, Unreachable };
@@ -74,7 +74,7 @@ enum class Feasibility { Exact, Approximate, Unreachable };
 struct RefreshVerdict {
   Feasibility feasibility = Feasibility::Unreachable;
   std::int64_t frames = 0;  ///< number N of frames
-  double mean = 0;          ///< of the best list, frames/s; harmonic or arithmetic by the rules
+  double mean = 0;          ///< of the best list, frames/s; harmonic for a pattern, else as the rules say
   double sd = 0;            ///< of the best list, frames/s
   double distance = 0;      ///< 2-Wasserstein distance to the unquantised rates, frames/s
   int longest_hold = 0;     ///< longest hold, refresh periods
@@ -86,12 +86,12 @@ struct RefreshVerdict {
 /// Finds the holds (whole numbers of refresh periods) of N = round(mean * duration) frames on a display with
 /// the fixed refresh R = refresh_hz > 0.
 ///
-/// exact: the holds sum to exactly R N / mean periods, the sd is within max(2 %, 0.25 frames/s), and no hold
-/// exceeds max_interval_ms, 1 / fps_min or the longest interval of exact_rates() rounded up to a period. An
-/// arithmetic mean need only be within 0.01 %, because sums of R / k seldom equal a given number.
-/// approximate: the mean is within 0.5 %, the sd is as near as possible, and the same bounds on holds apply.
-/// unreachable: neither, or exact_rates() fails. Among lists that meet mean and sd, the search aims at the
-/// list nearest to exact_rates() (hold_search.hpp). Applies for_display().
+/// exact: the holds sum to exactly R N / mean periods, and the sd is within max(2 %, 0.25 frames/s). No hold
+/// exceeds max_interval_ms, 1 / fps_min or the longest interval of exact_rates() rounded up to a period, and
+/// no rate exceeds fps_max. An arithmetic mean need only be within 0.01 %, because sums of R / k seldom equal
+/// a given number. approximate: the mean is within 0.5 %, the sd is as near as the search comes, and the same
+/// bounds on holds apply. unreachable: neither, or exact_rates() fails. Among lists that meet mean and sd,
+/// the search aims at the list nearest to exact_rates() (hold_search.hpp). Applies for_display().
 ///
 /// With a pattern, each deadline moves to the nearest period, but to at least one period after the deadline
 /// before; the rules are not applied. exact: no interval changed by more than 1 % of itself. approximate: the

@@ -5,15 +5,16 @@
 /// Each line is a JSON object: a table row as it is after a commit (journal_rows.hpp), or a mark such as
 /// {"ready": n}. If a row has several lines, the last one is valid. The journal contains the answers and all
 /// data that decide which answers count: plans, exclusions, endings, notes, permissions and the event log. It
-/// omits frames, slots, head poses and gaze because they have too many rows. Personal answers are in the
-/// personal file only.
+/// omits frames, slots, head poses and gaze, which have too many rows, and eye-tracker validations, exports
+/// and chores. Personal answers are in the personal file only.
 ///
 /// Order of writing for each commit: append the rows and the line {"ready": n}, flushed to disk if the batch
-/// contains answers; commit; append the line {"kept": n}. So every acknowledged row is in both files. If the
-/// last batch has "ready" but no "kept", the program ended during its commit. The next AnswerJournal commits
-/// this batch, so its answers are neither lost nor asked again. A truncated last line is ignored. If the
-/// database lacks a row marked as kept, the file at its path is not the database that was written: opening it
-/// for writing is then an error that names vip-study salvage.
+/// contains answers or other rows that must not be lost (journal::Table::answers); commit; append the line
+/// {"kept": n}. So every acknowledged row is in both files. If the last batch has "ready" but no "kept", the
+/// program ended during its commit. The next AnswerJournal commits this batch, so its answers are neither
+/// lost nor asked again. A truncated last line is ignored. If the database lacks a row marked as kept, the
+/// file at its path is not the database that was written: opening it for writing is then an error that names
+/// vip-study salvage.
 ///
 /// For code that writes the database:
 /// - Store::commit() writes the journal too; every method of Store that changes rows must end with it.
@@ -80,9 +81,10 @@ class AnswerJournal {
   bool blank_ = true;      // the database has no run, and no batch was committed
 };
 
-/// Call before a transaction that changes the whole database. Appends to the journal a line that announces
-/// the change and names the `persons` who withdraw. After that line, a journal that does not match the
-/// database is rewritten instead of refused, and salvage omits these people. base::Error as AnswerJournal().
+/// Call before a transaction that changes the whole database. If there is a journal, appends a line to it
+/// that announces the change and names the `persons` who withdraw. After that line, a journal that does not
+/// match the database is rewritten instead of refused, and salvage omits these people. base::Error as
+/// AnswerJournal().
 void prepare_rewrite(sqlite::Connection& database, const std::vector<std::string>& persons = {});
 /// Replaces the journal by one with the database's current rows, and overwrites the old journal's bytes.
 void rewrite_journal(sqlite::Connection& database);

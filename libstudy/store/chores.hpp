@@ -31,8 +31,8 @@ class ChorePlan {
   /// Plans to delete a person from the backups and the personal file beside the database. `participant` is
   /// the person's code in the personal file.
   void forget(const std::string& person, const std::string& participant);
-  /// A change of a participant's code in the personal file beside the database. rename() plans all changes of
-  /// `people`, by person, as one chore.
+  /// A change of a participant's code in the personal file beside the database. rename() plans the changes of
+  /// all `people` as one chore; the key of the map is the person.
   struct Rename {
     std::string before, now;
   };

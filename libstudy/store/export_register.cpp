@@ -42,7 +42,7 @@ void check_writable(const fs::path& file) {
     return;
   throw base::Error(
       file.string(),
-      "is not writable for you: each export is registered in it, so that a withdrawal finds the export",
+      "you may not write to it or to its folder, and each export is registered in it for withdrawals",
       "ask somebody to export who may write to the database and its folder");
 }
 

@@ -256,8 +256,10 @@ void Store::mark_excluded(std::int64_t session, std::int64_t trial, const std::s
 }
 
 void Store::throw_no_trial() const {
-  throw base::Error(path_.string(), "lacks the trial of this session that was to be changed",
-                    "restore a backup of it");
+  throw base::Error(
+      path_.string(),
+      "lacks the trial of this session that was to be changed, or the trial has its answer already",
+      "continue with vip-study resume; if this repeats, restore a backup of it");
 }
 
 void Store::choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second) {

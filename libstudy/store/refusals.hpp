@@ -31,7 +31,8 @@ bool is_gaze_allowed(sqlite::Connection& database, std::int64_t session);
 
 std::int64_t count_gaze(sqlite::Connection& database, const std::string& person);
 std::set<std::string> people_with_gaze(sqlite::Connection& database);
-/// The persons who refuse gaze now in at least one session.
+/// The persons with at least one session in which gaze is not allowed now: refused, not answered or not
+/// asked.
 std::set<std::string> people_without_gaze(sqlite::Connection& database);
 
 /// Files outside the database that may still contain gaze of a person. The experimenter must delete them: no

@@ -224,10 +224,11 @@ void Store::write_answers(std::int64_t session, const OpenUnit& unit, int attemp
     const bool taken = insert.step();
     insert.reset();
     if (!taken) {
-      throw base::Error(path_.string(),
-                        "takes no answer to question '" + kept.question +
-                            "' here: the question is unknown, personal or already answered",
-                        "run vip-study resume, which asks what is open");
+      throw base::Error(
+          path_.string(),
+          "takes no answer to question '" + kept.question +
+              "' here: the question is unknown, personal or already answered, or its page is done",
+          "run vip-study resume, which asks what is open");
     }
   }
   for (const KeptAnswer& kept : answers) answer_over_change(session, kept.question, now);

@@ -1,6 +1,6 @@
 #pragma once
 /// Writes a study's database during sessions: first the whole plan, then each page of answers in a commit of
-/// its own. All failures are base::Error and name the file; earlier commits stay in the database.
+/// its own. Failures of the database are base::Error and name the file; earlier commits stay in the database.
 
 #include <atomic>
 #include <cstdint>
@@ -103,8 +103,8 @@ struct OpenRun {
 enum class EarlyEnd {
   Refused,      ///< the participant did not consent
   NotEligible,  ///< the answers to the screening ruled the participant out
-  Stopped,      ///< a stop rule or the participant ended the session; the data stay
-  DroppedOut    ///< the participant did not come back; the slot is free again
+  Stopped,      ///< a stop rule, the participant or the experimenter ended the session
+  DroppedOut    ///< the participant left (Left); the slot is free again
 };
 
 struct Ending {
@@ -173,7 +173,8 @@ class Store {
   /// last stored distance.
   void add_ipd(std::int64_t session, std::int64_t clock_ns, double ipd_mm);
 
-  /// The latest UTC time stored in the database, from any computer's clock; empty if there is none.
+  /// The latest UTC time of an event, a run's start or an answer in the database, from any computer's clock;
+  /// empty if there is none.
   std::string newest_utc();
 
   /// The runs that have unfinished sessions. First marks as interrupted the presentations that an earlier
@@ -190,8 +191,8 @@ class Store {
 
   /// Commits the cells that an adaptive procedure chose for a trial that is not done.
   void choose_cells(std::int64_t session, std::int64_t trial, int first, std::optional<int> second);
-  /// The answers of a session to a question of its stimulus block, in the order of presentation. Answers to
-  /// trials that were excluded or set aside do not count.
+  /// The answers of a session to a question of its stimulus block, in the order of the trials' positions.
+  /// Answers to trials that were excluded or set aside do not count.
   std::vector<TrackAnswer> track_answers(std::int64_t session, const std::string& question);
 
   /// Commits that a stimulus is about to be shown; returns the presentation's id. interval: 0 for the first
@@ -232,7 +233,7 @@ class Store {
   /// judge; 0 for a page outside a trial. `last` true: marks the unit as done, unless the trial was set aside
   /// after that showing; a session is done with its last unit. `ending`: an early end that the answers
   /// caused, stored with them. Answers about permissions take effect at once. base::Error, with nothing
-  /// stored, if a question is personal, unknown or already answered in this unit.
+  /// stored, if a question is personal, unknown or already answered in this unit, or if the unit is done.
   void answer(std::int64_t session, const OpenUnit& unit, int attempt, std::span<const KeptAnswer> answers,
               bool last, std::int64_t clock_ns, const std::optional<Ending>& ending = {});
   /// Commits that a unit is done, for units without questions.
@@ -250,7 +251,8 @@ class Store {
   void leave_out_trial(std::int64_t session, const OpenUnit& unit, const std::string& reason);
   /// Marks a trial as excluded from analyses.
   void exclude_trial(std::int64_t session, std::int64_t trial, const std::string& reason);
-  /// Stores a note of the experimenter in the table `note`, not in the event log. A withdrawal deletes it.
+  /// Stores a note of the experimenter in the table `note`; the event log records only that there is one. A
+  /// withdrawal deletes both.
   void note(std::int64_t session, std::optional<std::int64_t> unit, const std::string& words);
   /// Appends an event to the event log. `detail` must not contain answers or free text of participants.
   void log(std::optional<std::int64_t> session, const std::string& kind, const std::string& detail,

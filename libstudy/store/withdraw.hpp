@@ -29,15 +29,15 @@ struct Withdrawal {
 /// does the withdrawal.
 inline constexpr const char* withdrawal_request = "withdrawal wished";
 
-/// Codes of the participants with an event withdrawal_request. base::Error as read_tasks().
+/// Codes of the participants with an event withdrawal_request. base::Error as open_study().
 std::vector<std::string> requested_withdrawals(const StudyFile& study);
 std::vector<std::string> requested_withdrawals(sqlite::Connection& database);
 
-/// Deletes a participant's data from `database`, its log, its backups, the personal file and every registered
-/// export, and overwrites the bytes. Only a tombstone stays: a row that says who withdrew. The participant's
-/// slot in the assignment is free again. If a kill interrupts the withdrawal, repeat it or open the database
-/// for writing. Repeating also retries clean-ups that failed. base::Error if the participant is unknown or
-/// the database is in use.
+/// Deletes a participant's data from `database`, its log, its journal of answers, its backups and the
+/// personal file, and overwrites the bytes. Also deletes registered exports (delete_exports_of_withdrawn()).
+/// Only a tombstone stays: a row that says who withdrew. The participant's slot in the assignment is free
+/// again. If a kill interrupts the withdrawal, repeat it or open the database for writing. Repeating also
+/// retries clean-ups that failed. base::Error if the participant is unknown or the database is in use.
 Withdrawal withdraw(const std::filesystem::path& database, const std::string& participant);
 /// withdraw() for a database that is already open for writing under its WriterLock.
 Withdrawal withdraw(sqlite::Connection& database, const std::string& participant);

@@ -23,8 +23,9 @@ std::int64_t Store::session_of(std::int64_t presentation) {
 
 void Store::require_gaze_allowed(std::int64_t session) {
   if (allows_gaze(session)) return;
-  throw base::Error(path_.string(), "stores no gaze of a participant who has not allowed it",
-                    "ask the question gaze_kept in a block of kind consent of the protocol");
+  throw base::Error(path_.string(), "stores no gaze of a participant who refused it or was not asked",
+                    "record no gaze after a refusal; to ask, put the question gaze_kept in a block of kind "
+                    "consent of the protocol");
 }
 
 void Store::add_gaze(std::int64_t presentation, std::int64_t start_ns, GazeOrigin origin,

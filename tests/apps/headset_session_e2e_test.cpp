@@ -113,7 +113,7 @@ class HeadsetSessionE2e : public test::HeadsetRuns {
     const auto ended =
         real ? real_session("at=115:hang/60") : session("at=850:hang/60", pilot("[10, 30]", "[0]"), "2");
     EXPECT_EQ(ended.exit_code, 1) << ended.out;
-    EXPECT_THAT(ended.err, HasSubstr("the runtime has held a frame for 10 s\n  mend: "));
+    EXPECT_THAT(ended.err, HasSubstr("the runtime has let no frame begin for 10 s\n  mend: "));
     EXPECT_EQ(ended.err.find("mend: "), ended.err.rfind("mend: ")) << "one error: " << ended.err;
     EXPECT_THAT(ended.err, HasSubstr("vip-study resume"));
     EXPECT_EQ(count("response WHERE attempt > 0"), real ? 0 : 1);

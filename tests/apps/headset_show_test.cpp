@@ -124,7 +124,7 @@ TEST_F(HeadsetShowE2e, TheRuntimeMayAskToLeave) {
 TEST_F(HeadsetShowE2e, AWaitThatNeverReturnsIsGivenUp) {
   const auto ended = show("at=10:hang/60", {"--patience", "0.5"});
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_THAT(ended.err, HasSubstr("the runtime has held a frame for 0.5 s"));
+  EXPECT_THAT(ended.err, HasSubstr("the runtime has let no frame begin for 0.5 s"));
   EXPECT_THAT(ended.err, HasSubstr("mend: "));
   EXPECT_THAT(ended.out, HasSubstr("frames      10, "));
 }

@@ -97,7 +97,7 @@ std::int64_t SessionTime::onset_of(std::int64_t start_ns, std::optional<std::int
   if (!zero_ns_)
     zero_ns_ = start_ns;
   else if (start_ns - *zero_ns_ < end_ns_)
-    zero_ns_ = start_ns - end_ns_;  // start_ns is on the clock of a new process
+    zero_ns_ = start_ns - end_ns_;  // the clock of a new process began anew
   const std::int64_t onset = start_ns - *zero_ns_;
   end_ns_ = std::max(onset, end_ns ? *end_ns - *zero_ns_ : onset);
   return onset;

@@ -52,8 +52,9 @@ class Writer {
   const ExportDraft& draft_;
 };
 
-/// Time since the first stimulus of a session, across all processes that played the session. The time of a
-/// later process continues at the end of the process before; the pause between them is omitted.
+/// Time since the first stimulus of a session, across all processes that played the session. If a
+/// presentation starts before the end of the presentation before, the clock began anew (another computer, a
+/// restart, a virtual clock). The time then continues at that end, without the pause; otherwise pauses count.
 class SessionTime {
  public:
   /// Onset of the session's next presentation, ns. start_ns and end_ns are on the clock of the presentation's
@@ -74,7 +75,7 @@ std::map<std::int64_t, std::int64_t> onsets_of(sqlite::Connection& database, std
 /// rate, or 0 if that rate is unknown.
 double rate_hz(sqlite::Connection& database, std::int64_t session, const std::vector<std::int64_t>& times_ns);
 
-/// The facts of a session's headset and the interpupillary distances as JSON; empty without a headset.
+/// The latest facts of a session's headset and its interpupillary distances as JSON; empty without a headset.
 Json headset_of(sqlite::Connection& database, std::int64_t session);
 /// Writes head poses as a motion recording ("motion/..._tracksys-headset_motion.tsv").
 void write_motion(sqlite::Connection& database, const LabelledSession& session, Writer& writer);

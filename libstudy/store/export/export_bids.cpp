@@ -86,7 +86,8 @@ struct FactorEvent {
   Json meaning;
 };
 
-/// The levels, the timing profile and the moments that such profiles need; none without factors.
+/// The columns of a protocol with factors: the level of each factor, the timing profile, and p99_ms, hitches
+/// and animation_error_ms. Empty without factors.
 std::vector<FactorEvent> factor_events(Connection& database, const LabelledSession& session,
                                        const Json& columns) {
   std::set<std::string> taken{"timing", "p99_ms", "hitches", "animation_error_ms"};

@@ -10,8 +10,8 @@
 namespace study {
 
 /// Writes a public export, which contains only shared_sessions(), into `folder`. Folder and base::Error as
-/// for export_csv(). The files for each session, besides README.md, dataset_description.json and
-/// materials/setting_*:
+/// for export_csv(), but the umask decides who can read the files. The files for each session, besides
+/// README.md, dataset_description.json and materials/setting_*:
 /// - data/study-<protocol>_subject-<code>_session-<protocol>v<visit>_data.csv: the session's rows of the
 ///   table of ratings (rating_table.hpp).
 /// - ..._description-pages_data.csv: answers on pages, without free text.

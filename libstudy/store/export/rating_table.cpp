@@ -117,7 +117,8 @@ std::string sql_text(const std::string& text) {
   return out + "'";
 }
 
-/// A name of letters, digits and '_' that is not in `taken`, and adds it there.
+/// Makes a column's name from a factor's name: its letters, digits and '_', with "_level" behind them while
+/// `taken` has the name. Adds the name to `taken`.
 std::string column_name(const std::string& factor, std::set<std::string>& taken) {
   std::string name;
   for (const char c : factor) {
@@ -128,7 +129,7 @@ std::string column_name(const std::string& factor, std::set<std::string>& taken)
   return name;
 }
 
-/// The columns that protocols with factors need, of the first or the second stimulus of a trial.
+/// Adds the columns of a protocol with factors about the first or the second stimulus of a trial.
 void add_factor_columns(const std::vector<FactorColumn>& factors, const std::string& prefix,
                         const std::string& cell, const std::string& shown, std::vector<RatingColumn>& out) {
   for (const FactorColumn& one : factors)

@@ -38,8 +38,8 @@ struct FactorColumn {
 std::vector<FactorColumn> factor_columns(sqlite::Connection& database, const std::string& condition,
                                          std::set<std::string> taken);
 
-/// The columns for the sessions that `condition` selects. Only if a protocol of these has factors: columns of
-/// levels, timing profiles and of the moments that such profiles need.
+/// The columns for the sessions that `condition` selects. If a protocol of these sessions has factors, also
+/// the columns of their levels, the timing profile, p99_ms, hitches and animation_error_ms.
 std::vector<RatingColumn> rating_columns(sqlite::Connection& database, const std::string& condition = "1");
 
 /// Meanings of a showing's columns `counts` and `why_not`, as every export describes them.

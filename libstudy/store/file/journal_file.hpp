@@ -22,10 +22,10 @@ struct JournalContent {
   JournalRows kept;                    ///< last version of each row that is marked as kept (committed)
   JournalRows pending;                 ///< rows of the last batch if it is ready but not marked as kept
   bool torn = false;                   ///< the last batch has unreadable lines: it was never complete
-  bool rewriting = false;              ///< the last line announces a rewrite
+  bool rewriting = false;              ///< a rewrite is announced, and no batch follows
   std::vector<std::string> forgotten;  ///< persons whose withdrawal caused the announced rewrite
   std::int64_t last_number = 0;        ///< largest batch number n in a line {"ready": n}
-  std::uintmax_t end = 0;              ///< number of bytes up to the end of the last valid line
+  std::uintmax_t end = 0;              ///< bytes up to the end of the last mark, e.g. {"kept": n}
   std::int64_t unreadable = 0;         ///< number of lines before `end` that are not journal lines
 };
 

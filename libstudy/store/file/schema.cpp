@@ -125,7 +125,8 @@ Schema schema_of(Connection& database) {
     const Key key{row.text(0), row.text(1)};
     const SchemaObject object{row.text(2), without_comments(row.text(3))};
     if (!schema.emplace(key, object).second) refuse_schema(database, "lists the " + named(key) + " twice");
-    if (schema.size() > most_objects) refuse_schema(database, "lists thousands of tables");
+    if (schema.size() > most_objects)
+      refuse_schema(database, "lists thousands of tables, indexes, views or triggers");
   }
   return schema;
 }

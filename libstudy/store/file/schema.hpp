@@ -53,8 +53,8 @@ std::unique_ptr<sqlite::Connection> without_foreign_parts(sqlite::Connection& fo
                                                           const SchemaSteps& steps, std::int64_t version,
                                                           std::vector<std::string>& left_out);
 
-/// A name from a file in printable form: at most 60 characters, with "?" for each apostrophe, control
-/// character and non-ASCII byte.
+/// A name from a file in printable form: its first 60 bytes, with "?" for each apostrophe, control character
+/// and non-ASCII byte, and "..." if the name is longer.
 std::string printable(const std::string& name);
 
 }  // namespace study

@@ -81,7 +81,7 @@ void check_is_file(const fs::path& path, Open how) {
   std::error_code ignored;
   const fs::file_status found = fs::status(path, ignored);
   if (how != Open::Create && !fs::exists(found))
-    throw base::Error(path.string(), "there is no such database", "check the path of --db");
+    throw base::Error(path.string(), "there is no such database", "check the path that you gave");
   if (fs::is_directory(found)) throw base::Error(path.string(), "is a folder, not a database", "name a file");
   if (fs::exists(found) && !fs::is_regular_file(found))
     throw base::Error(path.string(), "is not a regular file", "name the file that vip-study run wrote");

@@ -59,7 +59,7 @@ bool leads_to(const fs::path& path, int fd) {
 
 [[noreturn]] void throw_unopened(const fs::path& path, int problem) {
   if (problem == ENOENT && !fs::is_symlink(path) && fs::is_directory(fs::absolute(path).parent_path()))
-    throw base::Error(path.string(), "there is no such database", "check the path of --db");
+    throw base::Error(path.string(), "there is no such database", "check the path that you gave");
   if (problem == EISDIR) throw base::Error(path.string(), "is a folder, not a database", "name a file");
   throw base::Error(path.string(), std::string("cannot be opened for writing: ") + std::strerror(problem),
                     "use a file and a folder that you may write to");

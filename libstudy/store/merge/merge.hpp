@@ -50,10 +50,12 @@ struct Merge {
 ///
 /// Sessions under equal protocol hashes form one dataset. Of several copies of a session, only the copy with
 /// the most progress is used; base::Error if two copies diverged. If several people have the same code, each
-/// gets the code "<code>-<station>", or "<code>-<four hexadecimal digits>" if the former is not distinct.
+/// gets the code "<code>-<station>". If there is no station, or this code is too long or not distinct, the
+/// person gets "<code>-<four hexadecimal digits>".
 ///
-/// A person who withdrew in one database is deleted from the result, from backups and personal data beside
-/// `into`, and from every registered export. Personal data stay at their stations.
+/// A person who withdrew in one database is deleted from the result and from backups and personal data beside
+/// `into`, and registered exports with the person are deleted (delete_exports_of_withdrawn()). Personal data
+/// stay at their stations.
 ///
 /// The result does not depend on the order of sources; merging again changes nothing. The sources stay
 /// unchanged. `into` changes in one transaction or not at all; this transaction also stores the chores for

@@ -50,7 +50,8 @@ std::vector<SessionCopy> choose_sessions(Content& content);
 std::map<std::string, std::string> name_people(const Content& content);
 
 /// Reasons why the stations' shares of the assignment overlap: two sources have the same station number or no
-/// number, or were recorded with different numbers of stations. Each is a sentence without a full stop.
+/// number, sessions were recorded with different numbers of stations, or only some of them have a station
+/// number. Each is a sentence without a full stop.
 std::vector<std::string> station_troubles(const Content& content);
 
 /// Writes the chosen sessions, with the people's new codes `names`, into `target`, an empty database of the

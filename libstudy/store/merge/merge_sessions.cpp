@@ -31,8 +31,8 @@ constexpr const char* merged_sessions_sql =
     "(SELECT count(*) FROM gaze_validation v WHERE v.session_id = s.session_id) "
     "FROM session s JOIN run r USING (run_id) JOIN protocol p USING (protocol_id) ORDER BY s.session_id";
 
-/// The events of a session as text, without permission changes. These may happen in any copy of the session;
-/// add_permissions() joins them.
+/// The events of a session as text, without permission changes: permissions may change in any copy of the
+/// session, and add_permissions() joins the changes.
 std::vector<std::string> log_of(Connection& source, std::int64_t session) {
   Statement row(source,
                 "SELECT utc || ' ' || coalesce(clock_ns, '') || ' ' || kind || ' ' || detail FROM event "
@@ -166,7 +166,8 @@ struct Person {
   std::string uid, code, station;
 };
 
-/// All people including those who withdrew, each with the code and station of the person's first session.
+/// All people, each with the code and station of the person's first session or, for a person who withdrew, of
+/// the tombstone.
 std::vector<Person> people_of(const Content& content) {
   std::map<std::string, Person> people;
   // By person: planned_utc and uid of the person's first session.

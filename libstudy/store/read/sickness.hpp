@@ -51,7 +51,7 @@ struct SicknessSession {
 };
 
 /// Every session with an answer to SSQ or FMS, by protocol, participant and visit. base::Error for an answer
-/// outside its scale.
+/// outside its scale or to an unknown SSQ item.
 std::vector<SicknessSession> read_sickness(sqlite::Connection& database);
 /// base::Error as read_tasks().
 std::vector<SicknessSession> read_sickness(const StudyFile& study);

@@ -22,7 +22,7 @@ namespace study {
 struct TaskShowing {
   StimulusSpec what;
   FpsSetting nominal;              ///< mean and sd 0: as fast as the method ran
-  bool played = false;             ///< true: the stimulus was shown, and the members below are set
+  bool played = false;             ///< true: the stimulus was shown; false: it has no timing
   std::optional<Verdict> verdict;  ///< timing verdict; none: there was no schedule
   TimingGrade grade = TimingGrade::CpuSubmit;
   std::string reason;  ///< why the verdict is not pass
@@ -93,8 +93,9 @@ struct TaskSession {
   std::string stimulus;                 ///< description of the stimuli from the session's plan
   std::vector<RunSetting> settings;     ///< solver settings of the live fluid
   std::vector<FrameCosts> frame_costs;  ///< latest frame costs measured for the session; empty: not measured
-  /// Latest time stored in the database when the session was planned. The session's first answer came later,
-  /// whatever the station's clock says. Empty: not known.
+  /// The latest time stored in the database when the session was planned, or the start of the session's run
+  /// if that is later. The session's first answer came later, whatever the station's clock says. Empty: not
+  /// known.
   std::string not_before_utc = {};
   std::string uid = {};  ///< recognises the session in copies of the database
 };
@@ -136,7 +137,8 @@ struct TaskStudy {
 
 /// Reads all protocols, sessions, trials and answers. If a trial was shown several times, the schema's view
 /// trial_showing selects the showing that counts. base::Error, which names the file, if the file is missing,
-/// damaged, not a database of vip-study, or written by a newer program.
+/// damaged, not a database of vip-study, or written by a newer program, or if it lacks rows of its journal of
+/// answers (open_study()).
 TaskStudy read_tasks(const StudyFile& file);
 /// Adds the answers to TaskProtocol::about_people. Personal answers come from the personal file, other
 /// answers from the database. base::Error as read_tasks().

@@ -24,7 +24,8 @@ struct Salvage {
   std::vector<std::string> different;
   /// Number of missing answers to questions of units that are done, by participant.
   std::map<std::string, std::int64_t> answers_lost;
-  /// Number of rows omitted because their parent row was not found, by table.
+  /// Number of rows omitted because their parent row was not found, by table; not counted if a person
+  /// withdrew.
   std::map<std::string, std::int64_t> rows_lost;
   /// Parts of the database that are not from vip-study: tables, views, triggers and columns, and a log of
   /// another database.
