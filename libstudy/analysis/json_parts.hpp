@@ -29,8 +29,8 @@ inline constexpr double highest_rate = 1000;
 int interval_decimals(const std::array<double, 2>& interval, int decimals);
 /// {"refused": reason}.
 Json json_refused(const std::string& reason);
-/// Replaces the numbers of methods in a reason from stats ("method0, method2", "item 1", "items 1, 3") by
-/// their names.
+/// Replaces references to methods in a reason from stats by the methods' names: "method0" (counted from 0),
+/// and "item 1" or "items 1, 3" (counted from 1).
 std::string with_names(const std::string& reason, const std::vector<std::string>& methods);
 /// Stars of significance for p: "***", "**", "*" or ""; "" if p is empty.
 std::string json_stars(const std::optional<double>& p);

@@ -17,7 +17,8 @@ enum class TaskKind {
   Pilot,  ///< one method under several frame rates, rated on a scale
   Task1,  ///< methods shown one by one, rated for realism
   Task2,  ///< pairs of methods, with a choice of one
-  Own     ///< any other design: its answers are described, and no hypothesis is tested
+  Own  ///< any other design: its answers are described; `vip-stats study` tests hypotheses of a design with
+       ///< factors
 };
 /// Name in JSON and in options: "pilot", "task1", "task2", "own".
 const char* task_name(TaskKind task);
@@ -71,9 +72,9 @@ struct ChosenTask {
 /// the scale 'realism', in Task 2 every choice of two, in another design the protocol's first question.
 bool is_main_question(const TaskProtocol& protocol, const Question& question);
 
-/// One entry for each protocol that matches the selection and each of its main questions (or the selected
-/// question). Protocols without real answers are set aside if another match has some. Refused with the reason
-/// if nothing matches.
+/// One entry for each protocol that matches the selection and each of its main questions. A selected question
+/// replaces the main questions; it must be one of them unless the design is TaskKind::Own. Protocols without
+/// real answers are set aside if another match has some. Refused with the reason if nothing matches.
 stats::Result<std::vector<ChosenTask>> choose_tasks(const TaskStudy& study, const TaskSelection& selection);
 
 /// The protocol and question that match the selection. Refused with the reason if none or several match,

@@ -74,7 +74,8 @@ struct Report {
 /// indices of scenes, n_* and methods refer to the lists in `protocol`.
 struct TaskData {
   TaskKind task = TaskKind::Task1;
-  TaskProtocol protocol;  ///< its sessions are those left after removal of test data and observer models
+  TaskProtocol
+      protocol;  ///< its sessions without those counted in flow.test_left_out and flow.simulated_left_out
   std::vector<SetAside> set_aside;
   bool test_data = false;                 ///< true if test data are analysed, since there are no real data
   std::vector<std::string> participants;  ///< codes of the participants with an analysed answer
@@ -96,10 +97,11 @@ struct TaskData {
   std::vector<stats::PilotRating> ratings;  ///< pilot: analysed ratings
   Question question;                        ///< the analysed question
   /// Response times of the analysed answers in s, by question id: from the display of the page to the last
-  /// change of the answer.
+  /// change of the answer. Reactions without a press are left out.
   std::map<std::string, std::vector<double>> response_times;
   /// Repeated trials: by question id, each pair of the answer to the original and the answer to the repeat.
-  /// For a choice an answer is 1 or 2, the chosen interval.
+  /// For a choice or yes-or-no question an answer is 1 for the first anchor (in a pair the first interval)
+  /// and 2 for any other.
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 
   /// The reason why H1 and H5, which compare adaptive methods with FovFluid, cannot be tested: gaze was not

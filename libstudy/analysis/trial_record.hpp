@@ -7,8 +7,8 @@
 
 namespace study {
 
-/// Score of the trial's answer to the question. For a choice it is 1 or 2, the chosen interval. NaN if
-/// unanswered.
+/// Score of the trial's answer to the question. For a choice or yes-or-no question it is 1 for the first
+/// anchor (in a pair the first interval) and 2 for any other. NaN if unanswered.
 double answer_to(const TaskTrial& trial, const Question& question);
 
 /// The trial's record. `question`: the analysed question.

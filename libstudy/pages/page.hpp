@@ -20,7 +20,7 @@ struct PageItem {
   std::optional<int> chosen;           ///< chosen score of a listed kind or of a Reaction; none at first
   std::optional<int> cursor;           ///< score marked by the arrow keys, not yet chosen
   std::string typed;                   ///< typed content of a Number or Text
-  std::int64_t changed_ns = 0;         ///< time of the last change
+  std::int64_t changed_ns = 0;         ///< time of the last change, without the periods of leave_out()
   std::optional<AnswerInput> input{};  ///< input device of the last change
 };
 
@@ -30,7 +30,7 @@ struct PageItem {
 class PageState {
  public:
   static constexpr std::int64_t guard_ns = 300'000'000;
-  static constexpr std::size_t most_bytes = 2000;  ///< longest content of a Text
+  static constexpr std::size_t most_bytes = 2000;  ///< longest content of a Text, bytes
 
   /// Without questions, the page is a text to read. The page can be confirmed least_s seconds after shown_ns
   /// at the earliest.
@@ -39,9 +39,10 @@ class PageState {
   /// Sets the input device of the following calls; default: keyboard.
   void use(AnswerInput input) { input_ = input; }
   /// Handles a key. Enter chooses the score that the arrow keys mark; pressed again, it goes to the next
-  /// question, or confirms a page with a single question; at the button to go on, it confirms the page.
-  /// On a Vas, the arrow keys set the mark: Left and Right move it by 1 % of the line, Up, Down, FarLeft and
-  /// FarRight by 10 %. The first one sets it at an end.
+  /// question, or confirms a page with a single question; at the button to go on, it confirms the page. Enter
+  /// does nothing at a required question without a valid answer. On a Vas (visual analogue scale), the arrow
+  /// keys set the mark: Left and Right move it by 1 % of the line, Up, Down, FarLeft and FarRight by 10 %.
+  /// The first one sets it at an end.
   void press(PageKey key, std::int64_t now_ns);
   /// Handles a typed digit, 0 to 9: chooses this score if all scores have one digit; appends it to a Number.
   void digit(int digit, std::int64_t now_ns);

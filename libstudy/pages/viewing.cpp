@@ -21,7 +21,11 @@ void check_length(const std::string& what, double mm, double low_mm, double high
 
 double picture_height_mm(double picture_width_mm, int width_px, int height_px) {
   check_length("width of the picture", picture_width_mm, 10, 20'000);
-  if (width_px < 1 || height_px < 1) throw base::Error("picture", "has no pixels", "give it a size");
+  if (width_px < 1 || height_px < 1)
+    throw base::Error(
+        "picture",
+        "of " + std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels has no area",
+        "make it at least 1 x 1 pixel");
   return picture_width_mm * height_px / width_px;
 }
 

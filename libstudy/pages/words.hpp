@@ -12,7 +12,7 @@ struct DeskPage {
   std::string title, text, button;
 };
 
-/// Texts of a page with a choice of two answers; the first answer is the harmless one.
+/// Texts of a page with a choice of two answers; the second answer ends, deletes or leaves out something.
 struct DeskChoice {
   std::string title, text, question, first, second;
 };

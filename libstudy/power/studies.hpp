@@ -40,8 +40,9 @@ Estimated quantile_of(std::span<const double> values, double share);
 struct TestCount {
   std::int64_t holds = 0, uncorrected = 0, against = 0, refused = 0;  ///< numbers of studies, see TestPoint
   std::int64_t estimates = 0;                                         ///< number of studies with an estimate
-  std::int64_t estimate_units = 0;                          ///< sum of the estimates in units of 1e-9
-  int participants_least = 1 << 30, participants_most = 0;  ///< of participants with both answers
+  std::int64_t estimate_units = 0;  ///< sum of the estimates in units of 1e-9
+  int participants_least = 1 << 30,
+      participants_most = 0;  ///< smallest and largest number of participants with both answers in a study
 
   void add(const TestCount& other);
   double mean_estimate() const;  ///< mean of the estimates; 0 without an estimate

@@ -26,8 +26,8 @@ using Qualities = std::array<double, 5>;  // quality of each method in methods_b
 
 constexpr double middle_of_realism = 4, middle_of_sickness = 1.5;
 
-/// Scenario of Task 1. A method's mean differs from the middle of the scale by its quality times unit_realism
-/// points, or minus its quality times unit_sickness points.
+/// Scenario of Task 1. A method's mean realism is the middle of the scale plus its quality times unit_realism
+/// points. Its mean sickness is the middle of the scale minus its quality times unit_sickness points.
 Scenario by_quality(const ShownFactors& factors, std::vector<std::string> hypotheses,
                     const Qualities& quality, double unit_realism, double unit_sickness) {
   Scenario out{std::move(hypotheses), {}, {}, {}};

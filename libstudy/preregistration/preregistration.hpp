@@ -26,7 +26,7 @@ struct BundleRequest {
 /// power.json if requested; about.json; PREREGISTRATION.txt for people; MANIFEST.sha256 for `sha256sum -c`.
 /// Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and no folder is left, if
 /// `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same name or
-/// different levels for one question, or if `power` is no JSON.
+/// different levels for one question, if `power` is no JSON, or if the folder cannot be written.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
 /// The hypotheses of H1 to H6 that the requested protocols do not test, each with the reason: "H1 of task1:

@@ -43,8 +43,9 @@ struct Procedure {
   std::vector<double> lapses{0, 0.02, 0.04};
   /// QuestPlus, Ptpe: a level is chosen at most this often in a track.
   int most_of_one = 1000;
-  /// QuestPlus: the first trials of a track show levels spread evenly over the factor. Ptpe: they show the
-  /// standard deviations between the smallest and the largest. They allow checks of the model.
+  /// QuestPlus, Ptpe: number of trials at the start of a track whose level the answers do not choose.
+  /// QuestPlus spreads them evenly over the levels. Ptpe gives them the standard deviations between the
+  /// smallest and the largest. They allow checks of the model.
   int fixed = 0;
 };
 

@@ -37,11 +37,20 @@ TimingTolerance read_timing(const base::TomlTable& table) {
   timing.fail_sd_absolute = table.number_or("fail_sd_absolute_fps", timing.fail_sd_absolute, {0, 1000});
   if (table.has("overrun_s")) timing.overrun_s = table.number("overrun_s", pause_range);
   if (timing.fail_mean_relative < timing.mean_relative)
-    table.fail("fail_mean_relative", "is tighter than mean_relative", "make it at least as wide");
+    table.fail("fail_mean_relative",
+               "= " + shown(timing.fail_mean_relative) +
+                   " is tighter than mean_relative = " + shown(timing.mean_relative),
+               "make it at least as wide");
   if (timing.fail_sd_relative < timing.sd_relative)
-    table.fail("fail_sd_relative", "is tighter than sd_relative", "make it at least as wide");
+    table.fail(
+        "fail_sd_relative",
+        "= " + shown(timing.fail_sd_relative) + " is tighter than sd_relative = " + shown(timing.sd_relative),
+        "make it at least as wide");
   if (timing.fail_sd_absolute < timing.sd_absolute)
-    table.fail("fail_sd_absolute_fps", "is tighter than sd_absolute_fps", "make it at least as wide");
+    table.fail("fail_sd_absolute_fps",
+               "= " + shown(timing.fail_sd_absolute) +
+                   " is tighter than sd_absolute_fps = " + shown(timing.sd_absolute),
+               "make it at least as wide");
   return timing;
 }
 
@@ -84,7 +93,8 @@ void check_cuts(const base::TomlTable& table, const PacingRules& rules,
                    shown(1000 / rules.max_interval_ms));
   }
   if (rules.fps_max && *rules.fps_max < rules.fps_min)
-    table.fail("fps_max", "is below fps_min = " + shown(rules.fps_min), "raise fps_max or lower fps_min");
+    table.fail("fps_max", "= " + shown(*rules.fps_max) + " is below fps_min = " + shown(rules.fps_min),
+               "raise fps_max or lower fps_min");
   for (const auto& setting : settings) {
     const bool below = setting.sd > 0 ? setting.mean <= rules.fps_min : setting.mean < rules.fps_min;
     if (below) {
@@ -143,7 +153,8 @@ HeadsetRules read_headset(const base::TomlTable& table) {
 int read_format(const base::TomlTable& root) {
   const std::int64_t format = root.integer("format");
   if (format != 2 && format != Protocol::newest_format) {
-    root.fail("format", "is neither of the formats that this program reads (2 and 3)",
+    root.fail("format",
+              "= " + std::to_string(format) + " is neither of the formats that this program reads (2 and 3)",
               "use the program that the protocol was written for");
   }
   return static_cast<int>(format);

@@ -123,14 +123,15 @@ struct Protocol {
   /// True: the texts instruct participants to look at the middle of the picture, so the gaze point is known
   /// before the session.
   bool fixation = false;
-  /// The hypotheses H1 and H5 need gaze: without tracked gaze in the data, reports label them not testable.
+  /// True: the study needs tracked gaze; the console and the notes of a power calculation say so. Reports
+  /// label H1 and H5 not testable without tracked gaze, whatever the value.
   bool needs_gaze = false;
   /// True: the camera uses the visual angle of the picture instead of each scene's angle.
   bool true_angle = false;
   /// True if an option such as --trial-seconds changed the protocol: its data are marked as test data, and
   /// the hash differs.
   bool test_data = false;
-  /// Argument of override_trial_seconds(); none = trial lengths of the file. `text` and `trial_seconds`
+  /// Argument of override_trial_seconds(); none: the durations of the file. `text` and `trial_seconds`
   /// together rebuild the protocol.
   std::optional<double> trial_seconds;
 
@@ -150,8 +151,8 @@ enum class ProtocolUse { New, Stored };
 /// or two keys that contradict each other. `name` names the file in messages.
 Protocol parse_protocol(std::string_view text, const std::string& name, ProtocolUse use = ProtocolUse::New);
 Protocol read_protocol(const std::filesystem::path& path);
-/// Sets the length of every trial, 0.1 to 3600 s; changes the hash and marks the data as test. Equal texts
-/// and seconds give equal hashes.
+/// Sets the duration of every stimulus, 0.1 to 3600 s; changes the hash and marks the data as test. Equal
+/// texts and seconds give equal hashes.
 void override_trial_seconds(Protocol& protocol, double seconds);
 
 }  // namespace study

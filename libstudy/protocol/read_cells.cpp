@@ -85,7 +85,8 @@ class PublishedMoments {
       if (moments.second > 0 && moments.second < least_sd_fps)
         row.fail("sd_fps", too_small(moments.second), use_more());
       if (moments.second >= moments.first)
-        row.fail("sd_fps", "is not below mean_fps", "name a standard deviation smaller than the mean");
+        row.fail("sd_fps", "= " + shown(moments.second) + " is not below mean_fps = " + shown(moments.first),
+                 "name a standard deviation smaller than the mean");
       if (!moments_.emplace(key_of(what), moments).second)
         row.fail("method", "names a cell for the second time", "name each cell once");
     }

@@ -215,8 +215,8 @@ std::string level_of(const Design& design, const Cell& cell, const std::string& 
   return shown(factor == "mean_fps" ? cell.setting.mean : cell.setting.sd);
 }
 
-/// Refuses a factor if more than half of a group's trials share a level: every order then has neighbours with
-/// this level.
+/// Refuses a factor if more than half (rounded up) of a group's cells share a level: every order then has
+/// neighbours with this level.
 void check_never_adjacent(const base::TomlTable& table, const Design& design) {
   const auto group = cell_groups(design).front();
   for (std::size_t i = 0; i < design.never_adjacent.size(); ++i) {

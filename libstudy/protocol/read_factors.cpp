@@ -193,8 +193,9 @@ Cell cell_of(const base::TomlTable& root, const StimulusKeys& keys, double durat
   Cell cell;
   cell.stimulus = {needed(keys.scene, "scene"), needed(keys.method, "method"), needed(keys.n_star, "n_star"),
                    keys.effects.value_or("")};
+  const TimingProfile timing = needed(keys.timing, "timing");
   try {
-    cell.setting = setting_of(needed(keys.timing, "timing"), duration_s);
+    cell.setting = setting_of(timing, duration_s);
   } catch (const base::Error& error) {
     const std::string words = error.what();
     root.fail("factor", "makes a " + words.substr(0, words.find('\n')),
@@ -244,7 +245,9 @@ void check_groups_alike(const base::TomlTable& root, const base::TomlTable& tabl
                "add a within-subject factor, or remove pairs");
   const int trials = trials_of_group(design);
   if (trials > most_trials)
-    table.fail("repetitions", "and the factors make " + std::to_string(trials) + " trials of one participant",
+    table.fail("repetitions",
+               "(with [procedure]: its trials) and the factors make " + std::to_string(trials) +
+                   " trials of one participant",
                "use fewer, for at most " + std::to_string(most_trials));
 }
 
@@ -257,7 +260,8 @@ TimingProfile read_profile(const base::TomlTable& table) {
     out.mean_fps = table.number("mean_fps", fps_range);
     out.sd_fps = table.number_or("sd_fps", 0, {0, fps_range.max});
     if (out.sd_fps >= out.mean_fps)
-      table.fail("sd_fps", "is not below mean_fps", "name a smaller standard deviation");
+      table.fail("sd_fps", "= " + shown(out.sd_fps) + " is not below mean_fps = " + shown(out.mean_fps),
+                 "name a smaller standard deviation");
   } else if (word == "hitches") {
     out.kind = ProfileKind::Hitches;
     out.mean_fps = table.number("base_fps", fps_range);

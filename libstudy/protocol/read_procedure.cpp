@@ -13,7 +13,8 @@ namespace {
 constexpr std::array procedure_words{"staircase", "quest_plus", "ptpe"};
 constexpr base::Range track_range{1, 500};
 
-/// The profile that a cell with this level of the factor has.
+/// The timing profile of the cells with this level of the factor; base::Error if they have different
+/// profiles.
 const TimingProfile& profile_of(const base::TomlTable& table, const Design& design, std::size_t factor,
                                 int level) {
   const TimingProfile* found = nullptr;

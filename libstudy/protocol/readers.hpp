@@ -42,9 +42,10 @@ std::vector<EffectSet> effect_sets_of(const base::TomlTable& design, const std::
                                       const std::function<void(std::size_t)>& no_table);
 inline constexpr const char* effect_set_mend =
     "add [[design.effect_set]] with this name, or use none or scene";
-/// Reads [procedure]; the cells, pairs and order are known.
+/// Reads [procedure]. `design` must already have its cells, pairs, order and repetitions.
 Procedure read_procedure(const base::TomlTable& table, const Design& design);
-/// Checks that the trials ask the procedure's question, with answers that it understands.
+/// Checks that the trials ask the procedure's question, that its answers suit the procedure, and that no
+/// block repeats trials.
 void check_procedure_question(const base::TomlTable& table, const Design& design,
                               const std::vector<Block>& blocks);
 /// Reads a timing profile.
@@ -73,8 +74,8 @@ void check_question_ids(const std::vector<base::TomlTable>& tables, const std::v
 std::vector<Question> read_questions(const base::TomlTable& block, BlockKind kind,
                                      const std::string& language);
 /// Checks what involves several blocks: unique ids, equal stop_at of all fms blocks, `accept` only before the
-/// first trials, the ids in `like` and `ask`, and `count`. Copies steps and the policy for interruptions to
-/// practice and repeat blocks. tables: the blocks' TOML tables.
+/// first trials, reactions alone on their pages, the ids in `like` and `ask`, and `count`. Copies steps and
+/// the policy for interruptions to practice and repeat blocks. tables: the blocks' TOML tables.
 void join_blocks(const std::vector<base::TomlTable>& tables, const Design& design,
                  std::vector<Block>& blocks);
 

@@ -71,8 +71,8 @@ std::string roster(const Field& roster) {
          (table.empty() ? "" : table.html());
 }
 
-/// A cell's distribution as "answer: count; ...". Scores that were never given are omitted, which keeps the
-/// line of a long scale short.
+/// A cell's distribution as "answer: count; ...". Numeric scores that were never given are omitted, which
+/// keeps the line of a long scale short. Labels are always listed.
 std::string distribution(const Field& cell) {
   std::string out;
   for (const Field& one : cell["distribution"].entries()) {

@@ -51,7 +51,7 @@ std::string curve_line(const Field& track, const Scale& scale) {
   return svg::path(moves, svg::attribute("stroke", svg::colour::blue) + " stroke-width=\"2\" fill=\"none\"");
 }
 
-/// Circles whose area is proportional to the number of trials.
+/// Circles whose area is proportional to the number of trials, but with at least smallest_radius.
 std::string points(const Field& track, const Scale& scale) {
   double most = 1;
   for (const Field& point : track["points"].entries()) most = std::max(most, point["trials"].number());

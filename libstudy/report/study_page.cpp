@@ -30,7 +30,7 @@ std::string table_badge(const Field& part) {
 
 std::string note(const std::string& html) { return "<p class=\"note\">" + html + "</p>\n"; }
 
-/// A number with enough digits for its size: shares with three, thresholds in ms with one.
+/// A number with three decimals if its absolute value is below 2, two if below 20, else one.
 std::string value_of_scale(const Field& field) {
   const double size = field.number() < 0 ? -field.number() : field.number();
   return fixed(field, size < 2 ? 3 : size < 20 ? 2 : 1);

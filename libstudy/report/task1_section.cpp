@@ -106,7 +106,7 @@ std::string other_tests(const Field& task1, const Field& score) {
   return table_html.empty() ? "" : table_html + note;
 }
 
-/// Sentences in APA style on the t tests with an uncorrected p below .05.
+/// Sentences in APA style on the t tests and exact sign tests with an uncorrected p below .05.
 std::string score_apa_lines(const Field& task1, const std::string& score) {
   std::vector<std::string> lines;
   bool any_tested = false;

@@ -46,7 +46,7 @@ class FrameJournal {
   /// thread, such as a full disk.
   void add(const FrameRecord& frame, const Recorded& recorded);
   /// Ends the thread, commits the rest of the recordings and `last`, and returns the frames that are not yet
-  /// in the store.
+  /// in the store. Rethrows as add() does.
   std::vector<FrameRecord> finish(const Recorded& last);
 
  private:

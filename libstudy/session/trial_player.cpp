@@ -40,7 +40,7 @@ FpsSetting shown_setting(FpsSetting setting, FpsMean mean, const std::vector<std
 }
 
 /// Mean absolute difference, ms, between the simulated time and the display time from one frame to the next.
-/// Rewinds do not count. 0 for fewer than two frames.
+/// Rewinds and frames before the content first advances do not count. 0 if no pair of frames counts.
 double animation_error_ms(const PlayedTrial& played, TimingGrade grade) {
   double sum_s = 0;
   int count = 0;

@@ -18,7 +18,7 @@ enum class SweepError {
   Front,    ///< E1: root mean square distance between the water's fronts, over the tank's length
   Centre,   ///< E3: root mean square distance between the centres of mass, over the tank's length
   Kinetic,  ///< E4: root mean square difference in kinetic energy, over the reference's maximum
-  Density,  ///< E2: mean over the instants of max(rho / rho_0 - 1, 0); needs no reference
+  Density,  ///< E2: mean over particles and instants of max(rho / rho_0 - 1, 0); needs no reference
   Picture,  ///< this error and those below: see PictureError
   Fovea,
   Salient,
@@ -117,8 +117,8 @@ struct PriceList {
 PriceList price_list(const std::vector<StoredCell>& cells, const SweepPlan& plan, const SweepOrigin& origin,
                      double tank_length_m);
 
-/// The Pareto front: indices of the settings for which no other setting has both a smaller mean time and a
-/// smaller error. Fastest first.
+/// The Pareto front: indices of the settings with a smaller error than every other setting whose mean time is
+/// equal or smaller. Fastest first; settings without this error are left out.
 std::vector<std::size_t> pareto_front(const std::vector<SettingResult>& settings, SweepError error);
 
 /// Cells with seeds 1 to `seeds` of each setting that is on the Pareto front of some error, in the order of

@@ -52,9 +52,9 @@ GLFWmonitor* find_monitor(int index, const std::string& mend) {
   int count = 0;
   GLFWmonitor** all = glfwGetMonitors(&count);
   if (index < 0 || index >= count) {
-    fail("there is no monitor " + std::to_string(index) +
-             "; monitors, counted from 0: " + std::to_string(count),
-         mend);
+    fail("there is no monitor " + std::to_string(index) + "; the machine has " + std::to_string(count) +
+             " of them",
+         count > 0 ? "choose a monitor from 0 to " + std::to_string(count - 1) : mend);
   }
   return all[index];
 }

@@ -27,6 +27,7 @@ class QuestPlus {
   /// Differences below 1e-15 count as equal, so rounding does not decide.
   int next(std::span<const int> allowed = {}) const;
   /// Bayes' rule. An outcome that every parameter point excludes leaves the posterior unchanged.
+  /// std::invalid_argument for an index outside the grids.
   void update(int stimulus, int outcome);
 
   /// Probability of each parameter point; the sum is 1.

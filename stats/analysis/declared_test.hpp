@@ -70,11 +70,11 @@ struct TestOutcome {
   std::string note = {};
 };
 
-/// Tests one value of each participant. Of a kind of difference: a[i] and b[i] are of one participant; a
-/// comparison with a constant has it in all of `b`. of_groups(): a and b are different participants. Sums are
-/// NaN where a value is missing. std::invalid_argument: of_answers(), unequal lengths of paired values, a
-/// margin that is not above 0, one with a two-sided or an unfit test, or Tost without one. Refused as the
-/// test itself is.
+/// Tests one value of each participant. Tests of differences: a[i] and b[i] are of one participant; in a
+/// comparison with a constant, every value of `b` is the constant. of_groups(): a and b are different
+/// participants. Sums are NaN where a value is missing. std::invalid_argument: of_answers(), unequal lengths
+/// of paired values, a margin that is not above 0, a margin with any test but Tost and one-sided t tests, and
+/// Tost without a margin or with a side. Refused as the test itself is.
 Result<TestOutcome> run_declared(const DeclaredTest& test, std::span<const ExactMean> a,
                                  std::span<const ExactMean> b);
 

@@ -30,8 +30,8 @@ enum class RepeatedPairs {
 
 struct ExclusionRules {
   TimingRule timing = TimingRule::Fail;
-  /// Smallest share of catch pages answered correctly, in [0, 1]; empty: no such rule. Applies only to
-  /// participants who saw catch pages.
+  /// Smallest share of catch pages answered correctly, in [0, 1]; empty: no such rule. Applies only to visits
+  /// with answered catch pages.
   std::optional<double> min_catch_correct = 0.5;
   /// Largest mean |difference| between a repeated showing and its original, points of the main rating; empty:
   /// no such rule. On seven points random answers differ by 2.3 on average, so 3 excludes only answers that

@@ -45,13 +45,15 @@ struct BootstrapInterval {
 /// n or n - 1 values drawn from x; the result is refused if it is not finite for a resample. NaN in x =
 /// missing. Refused: fewer than two values; so few that even their range covers the centre less often than
 /// the confidence (1 - 2^(1 - n): below 6 values at .95); infinite values; all values equal; all resamples on
-/// one side of the estimate; the same estimate in every resample or without any one value (acceleration
-/// undefined). std::invalid_argument if the confidence is outside (0, 1) or resamples < 2.
+/// one side of the estimate; the same estimate whichever one value is left out, or one that is not finite
+/// (acceleration undefined); an acceleration so large that it reverses the tails. std::invalid_argument if
+/// the confidence is outside (0, 1) or resamples < 2.
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              const BootstrapOptions& options = {});
 
 /// The same interval from given resamples. `indices` are indices into x, one resample after the other, each
-/// of x.size() indices. std::invalid_argument if x has missing values or an index is out of range.
+/// of x.size() indices. std::invalid_argument also if x has missing values, an index is out of range or the
+/// indices do not fill at least two whole resamples.
 Result<BootstrapInterval> bootstrap_interval(std::span<const double> x, const Statistic& statistic,
                                              std::span<const int> indices, double confidence = 0.95);
 

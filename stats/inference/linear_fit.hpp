@@ -20,7 +20,8 @@ struct LinearFit {
   double df = 0;                      ///< n - number of coefficients
   std::optional<double> residual_sd;  ///< sqrt(rss / df)
   std::optional<double> r2;  ///< about the mean with an intercept, about zero without; empty if y is constant
-  std::optional<double> f, f_p;  ///< F test that all slopes are zero
+  /// F test that all slopes are zero. Empty without slopes, or if y is constant or fitted perfectly.
+  std::optional<double> f, f_p;
 };
 
 /// Fits y by a linear combination of columns of equal length. Householder QR with scaled columns in

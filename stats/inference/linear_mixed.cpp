@@ -19,8 +19,8 @@ namespace {
 using Vector = std::vector<double>;
 using Lambda = std::array<double, 2>;
 
-/// A column counts as a combination of the earlier ones if its squared length orthogonal to them is below
-/// this share.
+/// A column counts as a combination of the earlier ones if at most this share of its squared length is
+/// orthogonal to them.
 constexpr double least_new = 1e-10;
 /// Largest accepted lambda, the ratio of a random effect's standard deviation to the residual's. Beyond it a
 /// participant's answers agree so closely that no residual is left.
@@ -179,8 +179,8 @@ double form(const Vector& matrix, std::span<const double> w) {
   return sum;
 }
 
-/// Fills the fit from the criterion's minimum `best`. Returns false if the Hessian at the minimum is not
-/// positive definite.
+/// Fills the fit from the criterion's minimum `best`. Returns false if the criterion has no positive definite
+/// Hessian at the minimum.
 bool fill_fit(const RestrictedLikelihood& likelihood, const Best& best, bool replicated,
               LinearMixedFit& fit) {
   const auto at = *likelihood.at(best.lambda);

@@ -13,7 +13,7 @@ namespace stats {
 /// degrees of freedom, where the items are essentially parallel and the values normal.
 struct CronbachAlpha {
   int items = 0, n = 0, n_missing = 0;  ///< n_missing: people left out because they lack an item
-  double alpha = 0;                     ///< below 0 if the items contradict one another
+  double alpha = 0;                     ///< below 0 if the items' covariances sum to less than 0
   std::array<double, 2> ci{};
 };
 

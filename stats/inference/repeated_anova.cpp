@@ -11,7 +11,7 @@ namespace stats {
 
 namespace {
 
-/// The table of participants by conditions as y = origin + scale * value, with |value| at most 1, decomposed
+/// The table of participants by conditions as y = origin + scale * value, with |value| below 2, decomposed
 /// into means and residuals. long double, since differences may be tiny compared with the offset.
 struct Decomposition {
   double origin = 0, scale = 0;
@@ -82,7 +82,7 @@ Result<RepeatedAnova> repeated_anova(std::span<const double> rows, int k) {
   const long double conditions = table.n * squares_about(d.condition_means, d.grand_mean);
   const long double subjects = table.k * squares_about(d.subject_means, d.grand_mean);
   const long double error = squares_about(d.residuals, 0);
-  // The scaled values are at most 1, so a smaller sum of squares is only the rounding of data and means.
+  // The scaled values are below 2, so a smaller sum of squares is only the rounding of data and means.
   constexpr long double rounding = 4 * std::numeric_limits<double>::epsilon();
   if (error <= static_cast<long double>(d.residuals.size()) * rounding * rounding)
     return Refusal{"no variation within participants is left beside the conditions' means"};

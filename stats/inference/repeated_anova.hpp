@@ -19,7 +19,7 @@ struct RepeatedAnova {
   double df1 = 0, df2 = 0;  ///< degrees of freedom before any correction
   double p = 0;             ///< valid if the differences between conditions have equal variances (sphericity)
   double epsilon_gg = 0;    ///< Greenhouse and Geisser 1959, 1 / (k-1) to 1; 1 means sphericity
-  /// Huynh and Feldt 1976, not capped: may exceed 1. Empty if its denominator is 0 (n = 2).
+  /// Huynh and Feldt 1976, not capped: may exceed 1. Empty if its denominator is 0, as always for n = 2.
   std::optional<double> epsilon_hf{};
   /// The value used to correct degrees of freedom: at most 1, since 1 already means sphericity.
   std::optional<double> epsilon_hf_capped() const {
@@ -34,8 +34,8 @@ struct RepeatedAnova {
 
 /// Tests if the means of k conditions differ. `rows`: participants by conditions, row after row, each of k
 /// values; NaN = missing. Refused: fewer than two conditions or complete participants, infinite values, no
-/// variation within participants beyond the conditions' means (F would divide by zero). std::invalid_argument
-/// when the values do not fill whole rows or k < 1.
+/// variation within participants beyond the conditions' means (F would divide by zero), sums of squares
+/// beyond the range of double. std::invalid_argument when the values do not fill whole rows or k < 1.
 Result<RepeatedAnova> repeated_anova(std::span<const double> rows, int k);
 
 }  // namespace stats

@@ -14,19 +14,20 @@ namespace stats {
 
 class RestrictedLikelihood {
  public:
-  /// `columns` (of X) and y have one length; `participant` counts from 0, `thing` is any number.
+  /// `columns` (of X), y, `participant` and `thing` have one length. Participants and things may have any
+  /// numbers.
   RestrictedLikelihood(std::span<const std::vector<double>> columns, std::span<const double> y,
                        std::span<const int> participant, std::span<const int> thing);
 
   /// The parts of the likelihood at one pair of lambdas. V is the covariance matrix of y divided by sigma^2,
   /// and r = y - X beta.
   struct At {
-    std::vector<double> beta;       ///< the estimate by generalised least squares
-    std::vector<double> inverse;    ///< (X' V^-1 X)^-1, row-major
-    double residual = 0;            ///< r' V^-1 r
-    double log_determinants = 0;    ///< log |V| + log |X' V^-1 X|
-    std::array<double, 2> slope{};  ///< derivatives of log_determinants with respect to each lambda
-    std::array<double, 2> residual_slope{};
+    std::vector<double> beta;                ///< the estimate by generalised least squares
+    std::vector<double> inverse;             ///< (X' V^-1 X)^-1, row-major
+    double residual = 0;                     ///< r' V^-1 r
+    double log_determinants = 0;             ///< log |V| + log |X' V^-1 X|
+    std::array<double, 2> slope{};           ///< derivatives of log_determinants with respect to each lambda
+    std::array<double, 2> residual_slope{};  ///< derivatives of `residual`
     std::array<std::vector<double>, 2> inverse_slope;  ///< derivatives of `inverse`
   };
   /// Empty if X' V^-1 X is singular or the fit leaves no residual.

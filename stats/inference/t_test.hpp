@@ -3,9 +3,9 @@
 ///
 /// NaN = missing: a pair is dropped if x or y is missing, and an independent group drops its missing values.
 /// Means and variances are exact to double-double, so t depends only on the doubles given, whatever their
-/// offset or scale. Refused: too few values, an infinite value, and data that are constant up to rounding
-/// (standard error below 10 eps of the largest mean, as R's t.test does). std::invalid_argument: pairs of
-/// different length, confidence outside (0, 1), null value not finite.
+/// offset or scale. Refused: too few values, an infinite value, data that are constant up to rounding
+/// (standard error below 10 eps of the largest mean, as R's t.test does), and a t beyond the range of double.
+/// std::invalid_argument: pairs of different length, confidence outside (0, 1), null value not finite.
 
 #include <array>
 #include <cstddef>
@@ -64,7 +64,7 @@ struct IndependentTTest : TTest {
   double sd_pooled = 0;
   double cohen_ds = 0;                  ///< difference / pooled sd (refused if the pooled sd is zero)
   std::optional<double> hedges_gs;      ///< ds times Hedges' factor; empty with one degree of freedom
-  std::optional<double> glass_delta;    ///< difference / sd of y; empty when y is constant
+  std::optional<double> glass_delta;    ///< difference / sd of y; empty if y is constant or one value
   std::array<double, 2> cohen_ds_ci{};  ///< by the noncentral t; always two-sided
 };
 

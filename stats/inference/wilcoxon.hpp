@@ -13,7 +13,8 @@
 namespace stats {
 
 /// Exact p-values are conditional on the observed midranks, so they are valid with ties; without ties they
-/// equal the classical p-values. They are omitted beyond n = 1000, where the normal p-values suffice.
+/// equal the classical p-values. They are omitted beyond 1000 differences (zeros count for Pratt's version
+/// only), where the normal p-values suffice.
 struct SignedRank {
   std::size_t n = 0, n_nonzero = 0, n_missing = 0;
   double w_plus = 0, w_minus = 0;  ///< sums of midranks of |d|, zeros dropped (Wilcoxon 1945)
@@ -25,7 +26,7 @@ struct SignedRank {
   /// The p to report: exact if there is one, else normal.
   double p() const { return p_exact.value_or(p_normal); }
   /// Pratt's (1959) version: zeros are ranked with the other differences, and the ranks of the zeros are then
-  /// dropped.
+  /// dropped. pratt_p_normal has no continuity correction.
   double pratt_w_plus = 0, pratt_z = 0, pratt_p_normal = 0;
   std::optional<double> pratt_p_exact;
   double hodges_lehmann = 0;  ///< median of all Walsh averages (d_i + d_j) / 2, i <= j, zeros included

@@ -206,7 +206,7 @@ namespace {
 constexpr double largest_sd = 30;
 
 std::string too_few(const OrdinalRows& rows) {
-  if (rows.participants < 2) return "one participant has no spread of participants";
+  if (rows.participants < 2) return "fewer than two participants: their spread cannot be estimated";
   std::vector<int> ratings(static_cast<std::size_t>(rows.participants));
   for (const int p : rows.participant) ++ratings[static_cast<std::size_t>(p)];
   if (*std::max_element(ratings.begin(), ratings.end()) < 2)
@@ -283,9 +283,10 @@ Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> rating
                                                   std::span<const Predictor> predictors,
                                                   std::span<const int> participants, Link link, int points,
                                                   Separation separation) {
-  if (points < 1 || points > 101) throw std::invalid_argument("1 to 101 nodes of quadrature");
+  if (points < 1 || points > 101)
+    throw std::invalid_argument("the nodes of quadrature must be 1 to 101, not " + std::to_string(points));
   if (separation == Separation::Penalise && link != Link::Logit)
-    throw std::invalid_argument("the penalty is one of log odds");
+    throw std::invalid_argument("a penalised fit needs the logit link");
   if (participants.size() != ratings.size())
     throw std::invalid_argument("ratings and participants differ in length");
   const auto rows = ordinal_rows(ratings, predictors, participants);

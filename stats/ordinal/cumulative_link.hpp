@@ -36,8 +36,8 @@ struct CategoryTerm {
   double up_up = 0, lo_lo = 0, up_lo = 0;  ///< second derivatives with respect to the thresholds
 };
 
-/// lower < upper; either may be infinite. log_p is -infinity where P is below the smallest double, and the
-/// derivatives are then zero.
+/// lower < upper; either may be infinite. log_p is -infinity where P is below the smallest normal double, and
+/// the derivatives are then zero.
 CategoryTerm category_term(Link link, double lower, double upper, double location);
 
 /// One column of the design; NaN = missing.
@@ -96,9 +96,10 @@ struct MixedOrdinalFit : OrdinalFit {
 /// Maximum likelihood by adaptive Gauss-Hermite quadrature with `points` nodes over each participant's effect
 /// (Pinheiro and Bates 1995; 1 = Laplace), 1 to 101 (std::invalid_argument). Refused as
 /// fit_cumulative_link(), and also: fewer than two participants; one rating from each participant, from which
-/// sd_participant cannot be separated from the scatter of single ratings; an unbounded sd_participant.
-/// Separation::Penalise changes nothing if the ratings are not separated; it requires beta to be log odds
-/// (std::invalid_argument with the probit link), and the covariance is that of the penalised likelihood.
+/// sd_participant cannot be separated from the scatter of single ratings; an unbounded sd_participant; no
+/// convergence. Separation::Penalise changes nothing if the ratings are not separated; it requires beta to be
+/// log odds (std::invalid_argument with the probit link), and the covariance is that of the penalised
+/// likelihood.
 Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> ratings,
                                                   std::span<const Predictor> predictors,
                                                   std::span<const int> participants, Link link = Link::Logit,

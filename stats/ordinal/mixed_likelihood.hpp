@@ -22,9 +22,10 @@ class MixedLikelihood {
   /// category in [0, levels), participant in [0, participants) for each row; points >= 1.
   MixedLikelihood(std::span<const int> category, std::span<const int> participant, Link link, int points);
 
-  /// Log-likelihood and its gradient. -infinity if a rating has probability zero or the thresholds do not
-  /// ascend; the gradient is then invalid. Effects are sd u with u ~ N(0, 1), so the likelihood is the same
-  /// for sd and -sd. Not thread-safe: each call starts from the modes that the previous call found.
+  /// Log-likelihood and its gradient. -infinity if a rating has probability zero, the thresholds do not
+  /// ascend or sd is not finite; the gradient is then invalid. Effects are sd u with u ~ N(0, 1), so the
+  /// likelihood is the same for sd and -sd. Not thread-safe: each call starts from the modes that the
+  /// previous call found.
   double evaluate(std::span<const double> thresholds, std::span<const double> location, double sd,
                   MixedGradient& gradient);
 

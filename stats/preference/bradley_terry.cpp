@@ -66,7 +66,8 @@ bool all(const std::vector<bool>& members) {
   return std::find(members.begin(), members.end(), false) == members.end();
 }
 
-/// The smallest set of items that no other item ever beat (for `worst`: that never beat any other).
+/// The smallest set of items that no item outside it ever beat (for `worst`: that never beat an item outside
+/// it).
 std::vector<bool> unbeaten(const Wins& wins, bool worst) {
   std::vector<bool> best(static_cast<std::size_t>(wins.items), true);
   for (int i = 0; i < wins.items; ++i) {

@@ -24,7 +24,8 @@ struct ConnectionReport {
   std::string reason;  ///< e.g. "item 5 wins every comparison with the others"; empty when Strong
 };
 /// `wins`: items by items, row after row; entry (i, j) is how often i was preferred to j.
-/// std::invalid_argument unless there are items^2 entries, all finite and >= 0.
+/// std::invalid_argument unless items >= 1 and there are items^2 entries, all finite and >= 0, and 0 for (i,
+/// i).
 ConnectionReport connection(std::span<const double> wins, int items);
 
 enum class BradleyTerryMethod {
@@ -80,7 +81,7 @@ struct BradleyTerry {
 /// Fits the model to counts of wins. Refused: fewer than two items, no comparison, items never compared, and
 /// for MaximumLikelihood an infinite estimate (the reason names the items). For BiasReduced, likelihood-ratio
 /// tests use the bias-reduced strengths in the ordinary likelihood. std::invalid_argument as for
-/// connection(), and for an entry (i, i) > 0 or a confidence outside (0, 1).
+/// connection(), and for a confidence outside (0, 1).
 Result<BradleyTerry> bradley_terry(std::span<const double> wins, int items,
                                    BradleyTerryMethod method = BradleyTerryMethod::Automatic,
                                    double confidence = 0.95);

@@ -21,8 +21,9 @@ struct CircularTriads {
 };
 
 /// Counts the circular triads of one participant. `wins`: items by items, row after row; exactly one of (i,
-/// j) and (j, i) is 1, the other 0. Refused: fewer than three items, a pair unanswered or answered twice (the
-/// reason names it; items from 1). std::invalid_argument unless there are items^2 entries.
+/// j) and (j, i) is 1, the other 0. Refused: fewer than three or more than 1,000 items, a pair unanswered or
+/// answered twice (the reason names it; items from 1). std::invalid_argument unless there are items^2
+/// entries.
 Result<CircularTriads> circular_triads(std::span<const double> wins, int items);
 
 struct GroupTriads {

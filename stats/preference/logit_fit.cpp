@@ -173,7 +173,7 @@ void check_trials(std::span<const Comparison> trials, int items) {
   const auto outside = [items](int item) { return item < 0 || item >= items; };
   for (const auto& t : trials) {
     if (outside(t.first) || outside(t.second) || t.first == t.second || !std::isfinite(t.position))
-      throw std::invalid_argument("a comparison of items outside the list, or without a position");
+      throw std::invalid_argument("a comparison needs two different items of the list and a finite position");
   }
 }
 

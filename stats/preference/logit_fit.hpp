@@ -35,8 +35,8 @@ enum class LogitBias {
 };
 
 /// Fits the coefficients by Newton's method with step halving. All rows have the same number of coefficients,
-/// one or more. Refused: coefficients that the rows do not determine, separation (LogitBias::AsIs), no
-/// convergence.
+/// one or more. Refused: no rows, coefficients that the rows do not determine, separation (LogitBias::AsIs),
+/// no convergence.
 Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias = LogitBias::AsIs);
 
 /// One 2AFC trial.

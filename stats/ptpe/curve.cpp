@@ -16,7 +16,7 @@ double Curve::mu(double delta) const { return std::exp(log_a + b * delta); }
 
 double jackknife_covariance(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size() || x.size() < 2)
-    throw std::invalid_argument("a jackknife needs at least two values and pairs of them");
+    throw std::invalid_argument("a jackknife needs at least two values of each estimate, and equally many");
   const double n = static_cast<double>(x.size());
   double mean_x = 0, mean_y = 0, sum = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

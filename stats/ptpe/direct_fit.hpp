@@ -45,10 +45,11 @@ class DirectModel {
   int participants() const { return static_cast<int>(sums_.size()); }
 
   /// Least squares: the smallest minimum that the Levenberg-Marquardt method reaches from several starts.
-  /// With `start`, for resamples, it starts from `start` and from the straight form only. The fitted surface
-  /// may equal the level on two lines; the curve is the line at which the score rises with mu. Refused:
-  /// settings that do not determine the surface; scores that do not rise with the frame rate all along the
-  /// curve; a curve outside the settings shown ("no contour").
+  /// With `start`, an estimate from the same ratings with other weights, it starts from `start` and from the
+  /// straight form only. The fitted surface may equal the level on two lines; the curve is the line at which
+  /// the score rises with mu. Refused: settings that do not determine the surface; scores that are equal or
+  /// do not depend on the mean frame rate; scores that do not rise with the frame rate all along the curve; a
+  /// curve outside the settings shown ("no contour").
   Result<DirectFit> fit(std::span<const double> weights = {}, const DirectFit* start = nullptr) const;
 
   /// m = q = 0: ordinary least squares of the score on log mu and delta.
@@ -84,7 +85,7 @@ struct DirectEstimate {
   Result<DirectFit> fit = Refusal{"not computed"};
   std::vector<double> out_of_reach;  ///< nominal deltas whose settings are excluded, ascending
   int far_above = 0;                 ///< number of settings excluded as far above the curve
-  int in_reach = 0;                  ///< number of deltas at which the curve lies among the frame rates shown
+  int in_reach = 0;                  ///< number of nominal deltas at which the curve is within reach_margin
   Result<CurveSpread> jackknife = Refusal{"not computed"};  ///< recommended: see docs/statistics.md
   Result<PilotSpread> bootstrap = Refusal{"not computed"};
   Result<LackOfFit> lack_of_fit = Refusal{"not computed"};
@@ -111,22 +112,23 @@ inline constexpr double far_factor = 2.46;
 struct Reach {
   std::vector<PilotObservation> kept;
   std::vector<double> left_out;  ///< nominal deltas, ascending
-  int in_reach = 0;              ///< number of deltas at which the curve lies among the frame rates shown
+  int in_reach = 0;              ///< number of nominal deltas at which the curve is within reach_margin
   int far_above = 0;             ///< number of settings above far_factor times the curve
 };
 
 /// Selects the settings that determine the curve. At a delta where the curve fitted to all settings lies
-/// outside the frame rates shown, the settings do not determine the curve and only bias it (without them the
-/// bias of b at a = 31 frames/s, b = 0.035 s/frame falls from 12 to 4 %). Such deltas are excluded, except
-/// for the three with the smallest distance between curve and frame rates, so that a fit remains. Then the
-/// settings far above the curve fitted to the remaining settings are excluded, unless no fit is possible
-/// without them. If the fit to all settings is refused, everything is kept.
+/// outside the frame rates shown by more than reach_margin, the settings do not determine the curve and only
+/// bias it (without them the bias of b at a = 31 frames/s, b = 0.035 s/frame falls from 12 to 4 %). Such
+/// deltas are excluded. If fewer than three deltas are within reach, those with the smallest distance between
+/// curve and frame rates are kept as well, to make up three, so that a fit remains. Then the settings far
+/// above the curve fitted to the remaining settings are excluded, unless no fit is possible without them. If
+/// the fit to all settings is refused, everything is kept.
 Reach within_reach(std::span<const PilotObservation> observations, double level);
 
 /// Fits the settings that within_reach() keeps, with a jackknife-t and an expanded percentile bootstrap over
-/// whole participants (options.resamples = 0: no bootstrap). The intervals are refused with fewer than
-/// least_participants and if there is no fit without one of the participants; the bootstrap also if more than
-/// largest_failed_share of the resamples have no fit.
+/// whole participants (options.resamples = 0: no bootstrap). The intervals and tests are refused with fewer
+/// than least_participants and if there is no fit without one of the participants; the bootstrap also if more
+/// than largest_failed_share of the resamples have no fit.
 DirectEstimate estimate_direct(std::span<const PilotObservation> observations, double level,
                                const BootstrapOptions& options);
 

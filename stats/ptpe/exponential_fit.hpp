@@ -30,10 +30,10 @@ struct ExponentialFit {
 /// Global minimum over a and b with the trust-region solver of GSL (gsl_multifit_nlinear,
 /// Levenberg-Marquardt, analytic Jacobian) from several starts on centred and scaled data. The smallest
 /// residual sum of squares is taken, but only if the residuals are orthogonal to the tangent plane (Bates and
-/// Watts 1981, relative offset), since the driver may report success elsewhere. Pairs with a NaN are dropped.
-/// x, y and weights (empty = all 1; each finite and positive) have equal length (std::invalid_argument).
-/// Refused: fewer than two pairs, infinite values, all x equal, all y zero, no finite minimum, no
-/// convergence.
+/// Watts 1981, relative offset), since the driver may report success elsewhere. Pairs with a NaN in x, y or
+/// weights are dropped. x, y and weights (empty = all 1) have equal length (std::invalid_argument). Refused:
+/// fewer than two pairs, infinite values, a weight that is not positive, all x equal, all y zero, no finite
+/// minimum, no convergence, a result beyond the range of double.
 Result<ExponentialFit> fit_exponential(std::span<const double> x, std::span<const double> y,
                                        std::span<const double> weights = {});
 

@@ -85,7 +85,7 @@ double rss_at_a(const Pairs& data, double sign, double log_a, double b) {
 }
 
 /// The first zero of `excess` beyond `from`, where `excess` is negative; searched in steps of `stride`.
-/// Infinite if 400 steps do not reach it.
+/// Infinite if 400 steps do not reach it, or if `excess` is not finite before it.
 double end_of(const std::function<double(double)>& excess, double from, double stride) {
   double inside = from;
   for (int i = 0; i < 400; ++i) {

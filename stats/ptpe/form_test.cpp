@@ -129,7 +129,7 @@ Result<Place> checked(const Place& at) {
 Result<Place> fit(const Sums& sums) {
   const auto start = plane(sums);
   if (!start)
-    return Refusal{"the settings rated do not determine a curve with a bend, or no score rises over them"};
+    return Refusal{"the settings rated do not determine a curve with a bend, or the scores do not rise"};
   Place best;
   double least = std::numeric_limits<double>::infinity();
   for (const double alpha : {start->alpha, -0.4, 0.0, 0.4}) {

@@ -4,9 +4,9 @@
 ///
 ///   log mu(delta) = log a + b delta + c (e^2 - 1/2),   e = (delta - middle) / half
 ///
-/// where middle and half are the middle and half width of the range of the standard deviations shown: 10 and
-/// 10 for 0 to 20 frames/s. At c > 0 the curve lies c / 2 above an exponential at both ends, as a share of
-/// mu, and c / 2 below it in the middle. At c < 0 it levels off.
+/// where middle and half are the middle and half width of the range of the nominal standard deviations that
+/// the test uses: 10 and 10 for 0 to 20 frames/s. At c > 0 the curve lies c / 2 above an exponential at both
+/// ends, as a share of mu, and c / 2 below it in the middle. At c < 0 it levels off.
 
 #include <array>
 #include <span>
@@ -58,7 +58,7 @@ inline constexpr double far_below_factor = 2.46;
 /// direct estimate. Excludes settings far below the curve, and standard deviations at which the curve lies
 /// above the frame rates shown. Refused: fewer than least_participants; fewer than three standard deviations
 /// left; settings that do not determine the surface; scores that do not rise with the frame rate along the
-/// curve; participants whose estimates are all equal.
+/// curve, for all participants or without one of them; participants whose estimates are all equal.
 Result<FormTest> form_test(std::span<const PilotObservation> observations, const Curve& curve, double level,
                            double confidence);
 

@@ -29,9 +29,9 @@ struct OrdinalPilotFit {
 };
 
 /// Maximum likelihood with adaptive quadrature of `points` nodes (1 = Laplace), started from the direct fit.
-/// Repeated ratings enter one by one. Refused: no direct fit to start from; all scores equal; the level not
-/// between the lowest and the highest score given; no convergence; scores that do not rise with the frame
-/// rate along the curve.
+/// Repeated ratings enter one by one. Refused: no ratings; no direct fit to start from; all scores equal; the
+/// level not between the lowest and the highest score given; no convergence; scores that do not rise with the
+/// frame rate along the curve.
 Result<OrdinalPilotFit> fit_ordinal_pilot(std::span<const PilotRating> ratings, PilotMean mean, double level,
                                           int points = 1);
 

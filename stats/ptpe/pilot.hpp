@@ -92,7 +92,8 @@ inline constexpr int least_participants = 4;
 inline constexpr double largest_failed_share = 0.05;
 
 /// Summarises the resampled estimates of a and b. Resamples without a fit are missing from `a` and `b`;
-/// refused if they are more than largest_failed_share of options.resamples.
+/// refused if they are more than largest_failed_share of options.resamples, or if fewer than two resamples
+/// have a fit.
 Result<PilotSpread> pilot_spread(std::span<const double> a, std::span<const double> b, int participants,
                                  const BootstrapOptions& options);
 

@@ -75,7 +75,7 @@ std::vector<double> over_people(const std::vector<Scores>& people, const Measure
 }
 
 /// One-sided p of a t test against a mean of zero. If all values are equal, there is no t; p is then 0 or 1
-/// by their sign.
+/// by their sign. p is 1 for fewer than two values.
 double one_sided_p(const std::vector<double>& values, Alternative alternative) {
   const auto test = t_test_one(values, {.alternative = alternative, .effect_intervals = false});
   if (test) return test->p;

@@ -152,8 +152,8 @@ std::vector<double> expected_scores(std::span<const PilotRating> ratings) {
 }
 
 /// Standard deviation of answers about their expected scores. Only expected scores in the middle half of the
-/// scale count, since answers near its ends scatter less. Residuals are clipped at `clip`, so that lapses
-/// hardly increase the standard deviation.
+/// range of scores given count, since answers near its ends scatter less. Residuals are clipped at `clip`, so
+/// that lapses hardly increase the standard deviation.
 Result<double> spread_about(std::span<const PilotRating> ratings, const std::vector<double>& expected,
                             double lowest, double highest) {
   constexpr double clip = 2.5;

@@ -27,7 +27,7 @@ struct PersonSlope {
   double t = 0;         ///< slope / its standard error; infinite without residuals
   int df = 0;
   double p = 1;           ///< one-sided, for a slope below zero
-  bool reversed = false;  ///< p < reverse_level / participants
+  bool reversed = false;  ///< p < reverse_level / number of slopes
 };
 
 /// Drift from the first to the last trial of a session, in points of the scale: t test of the participants'
@@ -49,11 +49,11 @@ struct LapseCount {
   double expected = 0;  ///< expected number of `lapsed` without lapses
   double p = 1;         ///< Poisson probability of `lapsed` or more such answers
   double rate = 0;      ///< share of answers that are lapses, 0 or more
-  double lowest = 1;    ///< the lowest score
+  double lowest = 1;    ///< the lowest score given
   bool found() const;
 };
 
-/// Level of PersonSlope::reversed, divided by the number of participants (Bonferroni).
+/// Level of PersonSlope::reversed, divided by the number of participants with a slope (Bonferroni).
 inline constexpr double reverse_level = 0.01;
 inline constexpr double drift_level = 0.05;   ///< level of SessionDrift::found(), two-sided
 inline constexpr double lapse_tail = 0.005;   ///< below this probability the lowest score is improbable

@@ -81,7 +81,8 @@ Placement::Placement(std::vector<PlacementSetting> settings, const PlacementPrio
       lowest_(prior.lowest),
       quest_(make_quest(settings_, prior)) {
   if (!(rules.bracket > 1) || rules.between < 0 || rules.most_of_one < 1)
-    throw std::invalid_argument("the rules of the placement are out of range");
+    throw std::invalid_argument(
+        "a placement needs bracket above 1, between of at least 0 and most_of_one of at least 1");
   for (const PlacementSetting& one : settings_) deltas_.push_back(one.delta);
   std::ranges::sort(deltas_);
   deltas_.erase(std::unique(deltas_.begin(), deltas_.end()), deltas_.end());

@@ -37,16 +37,17 @@ struct PlacementPrior {
 
 /// Grids of a and b. a runs from half the lowest mean of the settings to the highest mean, in equal ratios. b
 /// runs from 0 to the value at which a contour rises from the lowest to the highest mean over the largest
-/// delta, but at most to 0.1. std::invalid_argument: fewer than two settings, settings of one mean, or a mean
-/// that is not above 0.
+/// delta, but at most to 0.1; it is 0 alone if every delta is 0. std::invalid_argument: fewer than two
+/// settings, settings of one mean, or a mean that is not above 0.
 PlacementPrior placement_prior(std::span<const PlacementSetting> settings);
 
 /// Rules of one session.
 struct PlacementRules {
-  /// The first trials use the standard deviations between the smallest and the largest, in turn. Without such
-  /// trials the form of the contour cannot be checked, and estimate_direct() has no fit.
+  /// Number of first trials, which use the standard deviations between the smallest and the largest in turn.
+  /// Without such trials the form of the contour cannot be checked, and estimate_direct() has no fit.
   int between = 3;
-  double bracket = 1.35;      ///< a setting lies by this factor above or below the estimated contour; above 1
+  double bracket =
+      1.35;  ///< factor above or below the estimated contour at which a setting is sought; above 1
   int most_of_one = 1000000;  ///< times that a setting is shown at most in a session
 };
 
@@ -60,7 +61,8 @@ class Placement {
 
   /// Index of the next setting. std::logic_error if every setting was shown as often as the rules allow.
   int next() const;
-  /// Adds a rating of a setting. std::invalid_argument if the score is not on the scale.
+  /// Adds a rating of a setting. std::invalid_argument if there is no such setting or the score is not on the
+  /// scale.
   void add(int setting, int score);
 
   /// Posterior of this person's a and b.

@@ -8,13 +8,14 @@
 
 namespace stats {
 
-/// How the simulated people differ from the model that the placement assumes.
+/// How the simulated people differ from the model that the placement assumes. In every case, each person's
+/// scores are also shifted by a normal amount with an sd of 0.5 scores.
 enum class PlacementTruth {
-  Model,   ///< as assumed: score = level + slope (mu - a exp(b delta)) + noise, rounded; a varies between
-           ///< people
+  Model,   ///< as assumed: score = level + slope (mu - a exp(b delta)) + noise, rounded; all people have the
+           ///< same a and b
   Linear,  ///< the contour is a straight line with the same values at delta = 0 and 20 frames/s
   Lapses,  ///< a tenth of the ratings are random scores
-  Drift    ///< ratings fall by one score from the first to the last trial
+  Drift    ///< ratings fall steadily, by about one score over the session
 };
 
 /// "model", "linear", "lapses", "drift".
@@ -42,7 +43,7 @@ struct PlacementSummary {
 
 /// `fixed`: the settings of studies that are not adaptive; `candidates`: those that an adaptive study may
 /// show. Equal seeds give equal summaries, whatever the number of threads. Under Linear the covered shares
-/// are of a and of the exponential through the line's ends.
+/// are of a and b of the exponential through the line's ends.
 PlacementSummary simulate_placement(const PlacementStudy& study, const std::vector<PlacementSetting>& fixed,
                                     const std::vector<PlacementSetting>& candidates, int studies,
                                     std::uint64_t seed);

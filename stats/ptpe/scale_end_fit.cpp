@@ -137,7 +137,7 @@ Normal normal_equations(const std::vector<Group>& groups, const EndScale& scale,
 }
 
 /// Damped Gauss-Newton steps (Marquardt 1963) until the steps vanish. Empty if they do not within 200
-/// iterations.
+/// iterations, or if no step improves the fit and the parameters are not determined there.
 std::optional<CurvePlace> descend(const std::vector<Group>& groups, const EndScale& scale, CurvePlace at) {
   double value = squares(groups, scale, at), damping = 1e-3;
   for (int iteration = 0; iteration < 200; ++iteration) {
@@ -167,7 +167,8 @@ std::optional<CurvePlace> descend(const std::vector<Group>& groups, const EndSca
 }
 
 /// The standard deviation of a rating about its setting's mean, without the part that is due to rounding to
-/// whole scores. Counts only settings whose mean lies in the middle half of the scale.
+/// whole scores. Counts only settings whose mean lies in the middle half of the scale. The squared result is
+/// at least 0.1.
 Result<double> error_sd(std::span<const PilotObservation> observations, const ScaleEnds& ends) {
   struct Setting {
     double n = 0, sum = 0, squares = 0;

@@ -30,9 +30,9 @@ inline constexpr double solver_confidence = 0.95;
 /// Least squares over all settings except those at direct.out_of_reach, started from the direct estimate's
 /// curve, with the jackknife over participants. The variance of the normal error is the pooled variance of
 /// ratings within one setting, over settings whose mean score lies in the middle half of the scale, minus
-/// that of rounding. Refused: no direct fit; fewer than least_participants; a level outside the scale; all
-/// ratings equal within each setting used for that variance; a search that does not converge; scores that do
-/// not rise along the curve, for all participants or without one of them.
+/// that of rounding, and at least 0.1. Refused: no direct fit; fewer than least_participants; a level that is
+/// not inside the scale; all ratings equal within each setting used for that variance; a search that does not
+/// converge; scores that do not rise along the curve, for all participants or without one of them.
 Result<CurveSpread> scale_end_curve(std::span<const PilotObservation> observations,
                                     const DirectEstimate& direct, double level, const ScaleEnds& ends);
 

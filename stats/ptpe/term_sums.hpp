@@ -74,8 +74,9 @@ struct TermSums {
   }
 };
 
-/// A local minimum by Marquardt's (1963) method: damped Gauss-Newton steps until they vanish. The type Place
-/// provides `terms`, `parameters`, coefficients(), jacobian() (one row for each parameter) and moved(step).
+/// A local minimum by Marquardt's (1963) method: damped Gauss-Newton steps until they vanish or none improves
+/// the fit, at most 200. The type Place provides `terms`, `parameters`, coefficients(), jacobian() (one row
+/// for each parameter) and moved(step).
 template <class Place>
 Place descend(const TermSums<Place::terms>& sums, Place at) {
   constexpr std::size_t T = Place::terms, P = Place::parameters;

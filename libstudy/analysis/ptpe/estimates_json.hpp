@@ -6,7 +6,7 @@
 
 namespace study {
 
-/// Adds to `json` if the fit converged, and a and b with their standard errors and intervals; null where
+/// Adds to `json` the boolean "converged", and a and b with their standard errors and intervals; null where
 /// undefined.
 void add_estimate(base::Json& json, const MainEstimate& estimate);
 /// The direct estimate with its jackknife and bootstrap.
@@ -18,6 +18,7 @@ base::Json contour_estimate_json(const stats::PilotEstimate& estimate);
 base::Json estimators_json(const PilotFit& fit);
 /// A list of mu(delta) by the direct estimate, with its pointwise and simultaneous interval and the band for
 /// the solver. For each level, delta goes from the smallest to the largest shown in steps of 1 frame/s.
+/// Levels without a jackknife are left out.
 base::Json bands_json(const PilotFit& fit);
 /// The entry "form": the test that mu(delta) is an exponential, at the fit's level, and the curve fitted
 /// without this assumption, at each 1 frame/s of delta.

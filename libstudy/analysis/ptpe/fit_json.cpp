@@ -67,8 +67,9 @@ Json cells_json(const PilotFit& fit) {
   return cells;
 }
 
-/// The protocol, counts of analysed showings by timing verdict and by grade, and counts of excluded answers
-/// by rule.
+/// The protocol, the question, counts of analysed showings by timing verdict and by grade, and counts of data
+/// that are left out: answers excluded by rule, trials of practice, repeats and trials without an answer, and
+/// sessions of test data and observer models.
 Json data_json(const TaskData& data) {
   std::map<std::string, int> verdicts, grades, rules;
   for (const auto& one : data.showings) {

@@ -152,8 +152,9 @@ std::string unusable(const PilotFit& fit, const TaskData& data, const stats::Pil
   if (!main.fit) return main.fit.reason();
   if (!main.spread) return main.spread.reason();
   if (!(main.fit->a >= 1e-3 && main.fit->a <= 1e4 && std::abs(main.fit->b) <= 1)) {
-    return "the curve is none that a solver can use: a = " + std::to_string(main.fit->a) +
-           ", b = " + std::to_string(main.fit->b);
+    return "a solver cannot use the curve: it needs a from 0.001 to 10000 frames/s and b from -1 to 1 "
+           "s/frame, and the fit has a = " +
+           std::to_string(main.fit->a) + ", b = " + std::to_string(main.fit->b);
   }
   return "";
 }

@@ -38,7 +38,8 @@ Sums sums_of(std::span<const CellAnswer> answers) {
   return out;
 }
 
-/// The mean of the means in the cells, as a sum over a common denominator where that is small.
+/// The mean of the participant's means in the cells, as a sum and a count if the common denominator is at
+/// most 1,000,000. NaN if a cell has no answer.
 ExactMean mean_of_cells(const Sums& sums, int participant, const std::vector<int>& cells) {
   constexpr long long largest = 1'000'000;
   long long common = 1;
@@ -78,7 +79,7 @@ std::vector<int> in_group(const std::vector<int>& cells, const std::vector<int>&
 
 double constant_of(const DeclaredHypothesis& hypothesis) { return hypothesis.against.value_or(0.5); }
 
-/// Indicators of the levels of factor f among the rows' cells, against the first that occurs.
+/// Indicators of the levels of factor f among the rows' cells, against the lowest level that occurs.
 void add_level_terms(std::vector<stats::Predictor>& terms, const Design& design, std::size_t f,
                      const std::vector<int>& cells) {
   std::vector<double> levels;

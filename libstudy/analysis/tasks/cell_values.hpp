@@ -20,19 +20,20 @@ struct CellAnswer {
   /// Index into Design::cells. Pairs with a standard: the comparison. Other pairs: the lower of both.
   int cell = 0;
   std::optional<int> other;  ///< pairs without a standard: the higher of both
-  double value = 0;          ///< NaN: a choice of several without a score whose share is meant
+  double value = 0;  ///< NaN: a choice among labels for which no score is declared whose share is taken
   int score = 0;
 };
 
 /// The analysed answers to the question, in the order of participants, visits and trials. The value is that
 /// of value_of(): the score; 1 or 0 for OutcomeValue::Share; for a choice between the intervals 1 if the
-/// comparison (or cell `cell`) was chosen. `positive` as DeclaredHypothesis::positive.
+/// comparison (without a standard: cell `cell`) was chosen, else 0. `positive` as
+/// DeclaredHypothesis::positive.
 std::vector<CellAnswer> cell_answers(const TaskData& data, const Question& question,
                                      std::optional<int> positive);
 
 /// An adaptive track of the design: the cells that differ only in the procedure's factor.
 struct DesignTrack {
-  int cell = 0;      ///< its first cell, without the standard
+  int cell = 0;      ///< the cell of the lowest level that is not the standard
   std::string name;  ///< levels of the other factors; empty if there are none
 };
 std::vector<DesignTrack> tracks_of(const Design& design);
@@ -53,13 +54,14 @@ std::vector<CellAnswer> threshold_values(const TaskData& data, std::span<const P
 /// For each participant, the index in cell_groups() of the group whose cells the participant saw; -1: none.
 std::vector<int> groups_of_people(const TaskData& data);
 
-/// Values of the two conditions, one of each participant who was to see both, or of groups one of each
-/// participant who was to see it.
+/// Values of the two conditions. If the factor varies within participants, `a` and `b` have one value for
+/// each participant whose cells include both conditions. If it varies between participants, each has one
+/// value for each participant whose cells include this condition.
 struct ConditionValues {
   std::vector<stats::ExactMean> a, b;  ///< NaN: an answer about one of the condition's cells is missing
 };
-/// Means over the cells of each condition of the participant's means in the cell. A single condition has the
-/// constant `against` in all of `b`.
+/// Means over the cells of each condition of the participant's means in the cell. For a single condition,
+/// every value of `b` is the constant `against` (default 0.5).
 ConditionValues condition_values(const TaskData& data, const stats::DeclaredHypothesis& hypothesis,
                                  std::span<const CellAnswer> answers);
 

@@ -112,7 +112,7 @@ stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const Shown& shown)
   try {
     scene = sim::read_scene(base::find_input(path));
   } catch (const base::Error&) {
-    return stats::Refusal{"the scene's file is not here"};
+    return stats::Refusal{"the scene's file cannot be found or read here"};
   }
   for (const auto& stimulus : shown.stimuli)
     if (stimulus.find(scene.sha256) == std::string::npos)

@@ -106,7 +106,8 @@ struct Mean {
   Json json() const { return count > 0 ? Json(sum / count) : Json(); }
 };
 
-/// Sums over the showings of one scene, n_*, method and frame rate: one line of the timing table.
+/// Sums over the showings of one line of a timing table: of one scene, n_*, method and frame rate, or of one
+/// cell of a design with factors.
 struct TimedCell {
   int showings = 0, pass = 0, degraded = 0, fail = 0, unjudged = 0;
   std::map<std::string, int> grades;

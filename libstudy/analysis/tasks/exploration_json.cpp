@@ -21,7 +21,8 @@ namespace {
 using Scores = std::vector<double>;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// The lowest score of each tenth of a line, or every score of another scale.
+/// The lowest score of each tenth of a visual analogue scale with more than 11 scores; for any other
+/// question, every score.
 std::vector<int> counted_scores(const Question& question) {
   const int range = question.scale_max - question.scale_min;
   if (!traits_of(question.kind).line || range <= 10) return scores_of(question);

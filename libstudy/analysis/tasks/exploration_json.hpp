@@ -13,8 +13,8 @@
 
 namespace study {
 
-/// Counts of each score: for Task 1 by question, n_* and method, for a pilot by frame-rate setting. Empty for
-/// other tasks.
+/// Counts of each score (on a visual analogue scale, of each tenth): for Task 1 by rated question, n_* and
+/// method, for a pilot by frame-rate setting. Empty for other tasks.
 Json distributions_json(const TaskData& data);
 
 /// One entry for each question with recorded response times in s. The times are null if a participant was
@@ -34,8 +34,8 @@ Json score_by_scene_json(const TaskData& data, const stats::ScoreTable& table, d
 /// methods.
 Json n_star_differences_json(const std::vector<stats::ScoreTable>& tables, const stats::AnalysisPlan& plan);
 
-/// Power with which a test must detect an effect for detectable_scores_json() and
-/// detectable_preference_json().
+/// The power at which detectable_scores_json() and detectable_preference_json() give the smallest effect that
+/// a test detects.
 inline constexpr double detectable_power = 0.8;
 Json detectable_scores_json(const std::vector<stats::ScoreTable>& tables,
                             const std::vector<stats::ScoreAnalysis>& analyses,

@@ -39,7 +39,8 @@ std::string score_of(const Question& question, const std::string& answer) {
   return answer;
 }
 
-/// Adds mean, SD and range of the answers. The range is added only for typed numbers.
+/// Adds mean, SD and range of the answers; if they are fewer than fewest_numbers, adds the refusal instead.
+/// The range is added only for typed numbers.
 void add_numbers(Json& json, const Question& question, std::vector<std::string> answers) {
   for (std::string& answer : answers) answer = score_of(question, answer);
   std::vector<double> values;

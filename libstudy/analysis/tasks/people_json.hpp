@@ -21,14 +21,15 @@ inline constexpr int fewest_numbers = 5;
 /// The next smallest groups are pooled with them until pooled_people is at least smallest_group. So the count
 /// of a small group cannot be derived from the total.
 struct GroupCounts {
-  std::vector<std::pair<std::string, int>> shown;  ///< answers with their counts, in the order given
+  std::vector<std::pair<std::string, int>>
+      shown;  ///< answers with their counts, in the order given, without those of count 0
   std::vector<std::string> pooled;
   int pooled_people = 0;
 };
 GroupCounts pool_small_groups(std::vector<std::pair<std::string, int>> counts);
 
-/// One entry for each of `parts` that asks participants about themselves. Only analysed participants are
-/// counted. `answers`: TaskStudy::about_people.
+/// One entry for each of `parts` that asks participants about themselves and has analysed participants. Only
+/// analysed participants are counted. `answers`: TaskStudy::about_people.
 Json people_json(const std::vector<const TaskData*>& parts, const std::vector<PersonalEntry>& answers);
 
 }  // namespace study

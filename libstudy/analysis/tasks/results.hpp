@@ -45,7 +45,8 @@ struct Results {
 
 /// Makes the results of a study that was already read. `request.database` is used only for its name.
 Results make_results(const TaskStudy& study, const ResultsRequest& request);
-/// Reads the database and makes its results. base::Error if the database cannot be read.
+/// Reads the database and makes its results. base::Error if the database cannot be read, or if it lacks
+/// answers of its journal and `incomplete` is false.
 Results study_results(const ResultsRequest& request);
 
 }  // namespace study

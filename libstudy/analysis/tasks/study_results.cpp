@@ -69,7 +69,8 @@ TestedHypothesis test_hypothesis(const TaskData& data, const DeclaredHypothesis&
   return out;
 }
 
-/// Adjusts p within each family. A refused test counts as p = 1.
+/// Adjusts p within each family; a hypothesis without a family is adjusted alone. A refused test counts as p
+/// = 1.
 void adjust_families(std::vector<TestedHypothesis>& tested) {
   std::map<std::string, std::vector<std::size_t>> families;
   for (std::size_t i = 0; i < tested.size(); ++i) {
@@ -94,7 +95,8 @@ std::vector<TestedHypothesis> test_all(const TaskData& data, const stats::Analys
   return out;
 }
 
-/// Share of the interval of a hypothesis.
+/// Confidence of a hypothesis's interval. For TOST it is 2 c - 1 at confidence c, since each of its two tests
+/// is one-sided.
 double ci_confidence(const DeclaredHypothesis& one) {
   return one.test.kind == TestKind::Tost ? 2 * one.test.confidence - 1 : one.test.confidence;
 }
@@ -165,15 +167,17 @@ std::set<std::string> sessions_of(const Json& document, const std::string& sha25
     throw base::Error(name, std::string("is no result of schema ") + study_schema,
                       "give a file that vip-stats study --json wrote");
   if (document.at("study").at("protocols").at(0).at("sha256") != sha256)
-    throw base::Error(name, "is about another protocol", "give the result of the same protocol");
+    throw base::Error(name, "is about another protocol than this analysis, SHA-256 " + sha256.substr(0, 12),
+                      "give an earlier result of vip-stats study --json about this protocol");
   std::set<std::string> out;
   for (const Json& person : document.at("participants"))
     for (const Json& session : person.at("sessions")) out.insert(session.at("uid").get<std::string>());
   return out;
 }
 
-/// The entry "preregistration": true if the bundle is intact, holds the protocol and is older than the first
-/// answer; with all reasons against it.
+/// The entry "preregistration". Its member "preregistered" is true if the bundle is intact, holds the
+/// protocol and was frozen before the first answer, and if no session's clock is in doubt. "problems" lists
+/// the reasons against it.
 Json preregistration_json(const FrozenFacts& frozen, const TaskData& data) {
   Json problems = Json::array();
   if (!frozen.altered.empty())
@@ -192,7 +196,8 @@ Json preregistration_json(const FrozenFacts& frozen, const TaskData& data) {
           {"problems", problems}};
 }
 
-/// What is new since the earlier document.
+/// Date and number of participants of the earlier document, and the number of participants without a session
+/// in it.
 Json since_json(const Json& participants, const Json& earlier, const std::string& file) {
   int fresh = 0;
   for (const Json& person : participants) fresh += person.at("new").get<bool>() ? 1 : 0;
@@ -202,7 +207,7 @@ Json since_json(const Json& participants, const Json& earlier, const std::string
           {"new", fresh}};
 }
 
-/// One line for each entry of the list `name` of each object, after the object's other fields.
+/// One line for each entry of the list `name` of each object: the object's other fields, then the entry's.
 Json unfolded(const Json& list, const std::string& name) {
   Json out = Json::array();
   for (const Json& one : list) {
@@ -229,9 +234,9 @@ const TaskProtocol& factor_protocol(const TaskStudy& study, const std::string& b
   }
   const auto& chosen = real.empty() ? all : real;
   if (chosen.empty())
-    throw base::Error(database,
-                      "holds no protocol with factors" + (by.empty() ? "" : " that is '" + by + "'"),
-                      "use vip-stats report for protocols of formats 1 and 2");
+    throw base::Error(
+        database, "holds no protocol with factors" + (by.empty() ? "" : " that is '" + by + "'"),
+        "name a protocol of format 3 with --protocol, or use vip-stats report for other protocols");
   if (chosen.size() == 1) return *chosen.front();
   std::vector<std::string> names;
   for (const TaskProtocol* one : chosen) names.push_back(hashed_name(*one));

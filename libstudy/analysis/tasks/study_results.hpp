@@ -29,8 +29,8 @@ struct FactorStudyRequest {
   std::string since_file = {};     ///< its name for display
 };
 
-/// The protocol with factors that `by` denotes (is_meant(); empty: any). Protocols without real answers give
-/// way to one with some. base::Error if there is none, or more than one.
+/// The protocol with factors that `by` denotes (is_meant(); empty: any). Protocols without real answers are
+/// ignored if another such protocol has real answers. base::Error if there is none, or more than one.
 const TaskProtocol& factor_protocol(const TaskStudy& study, const std::string& by,
                                     const std::string& database);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Tables of a study with factors that no hypothesis declares: answers by cell, thresholds, participants.
+/// Descriptive tables of a study with factors: design, groups, answers by cell, thresholds, participants.
 
 #include <set>
 #include <span>
@@ -17,14 +17,14 @@ Json design_json(const Design& design);
 /// Analysed participants by group of the between-subject factors; empty without such a factor.
 Json groups_json(const TaskData& data);
 
-/// Each question in each cell: participants, trials, and over participants mean, SD and interval of their
-/// means; counts of each score. `declared`: outcomes of declared hypotheses; the tables of other questions
-/// are exploratory.
+/// Each question in each cell with answers: participants, trials, and over participants mean, SD and interval
+/// of their means; counts of each score. `declared`: outcomes of declared hypotheses; the tables of other
+/// questions are exploratory.
 Json answers_by_cell_json(const TaskData& data, double confidence, const std::vector<std::string>& declared);
 
-/// Threshold and shape of each track of each participant, their mean over participants, and by track the
-/// share of positive answers at each level with the mean psychometric function. Null without a procedure
-/// that estimates a threshold.
+/// Threshold and shape of each track of each participant; by track the mean threshold over participants, the
+/// share of positive answers at each level, and the mean psychometric function. Null without `tracks`.
+/// `declared`: true if a hypothesis tests the thresholds, which then are not marked as exploratory.
 Json thresholds_json(const TaskData& data, std::span<const PersonTrack> tracks, double confidence,
                      bool declared);
 

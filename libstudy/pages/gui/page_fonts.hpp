@@ -27,9 +27,9 @@ struct FontFile {
   std::string path;
   int number = 0;
 };
-/// Fonts that together have the needed characters: first find_font(), then system fonts (chosen by
-/// fontconfig, if built with it). The list ends when all characters are found, or when no other font has a
-/// missing one. Without fontconfig, all installed fonts of a fixed list follow.
+/// Fonts for the needed characters: first find_font(). If there is none, or if a character is not a usual one
+/// (see PageType), system fonts follow. fontconfig adds fonts until they have all needed characters or no
+/// other font has a missing one. Without fontconfig, all installed fonts of a fixed list follow.
 std::vector<FontFile> find_fonts(const PageCharacters& needed);
 
 /// Adds the pages' fonts to an atlas of Dear ImGui, which the caller then builds. They have the usual

@@ -128,7 +128,8 @@ void PageView::draw_line(PageState& state, std::size_t i, std::int64_t now_ns) {
   ImGui::PushID(static_cast<int>(i));
   ImGui::InvisibleButton("line", {column_, height});
   if (ImGui::IsItemHovered()) {
-    // Another target wherever the gaze moves on, so that looking on at one place sets the mark.
+    // The target changes when the gaze moves along the line by more than dwell_reach. The dwell then begins
+    // again, so only a gaze that stays sets the mark.
     if (std::abs(at - looked_at_) > dwell_reach) looked_at_ = at;
     gui_.point_at(ImGui::GetID(std::to_string(looked_at_).c_str()));
   }

@@ -23,8 +23,8 @@ struct PageEvent {
   bool pressed = false;    ///< true: a key, button or trigger went down; it answers a Reaction
   float lines = 0;         ///< number of lines to scroll down
   bool text_only = false;  ///< true: `lines` applies only to pages without questions
-  /// Input device. A keyboard event is ignored while a field has the keyboard focus, unless its key leaves
-  /// the field.
+  /// Input device. While a field has the keyboard focus, a keyboard event is ignored unless it leaves the
+  /// field or opens the stop dialog.
   AnswerInput input = AnswerInput::Keyboard;
   std::string letters{};  ///< typed letters, lower case from a window; Dear ImGui also gets those of a window
 };

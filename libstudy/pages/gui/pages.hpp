@@ -39,8 +39,8 @@ class Pages {
 
   /// The session polls this. Returns the request of `others`, or the end of the session if the participant
   /// stopped. A request to stop during a stimulus opens the stop dialog here; afterwards the session ends, or
-  /// the trial is cut and shown again. A trial is also cut if its stimulus could not be seen; then this waits
-  /// until the surface is visible, and the trial is shown again.
+  /// the trial is cut and shown again. A trial is also cut if its stimulus could not be seen; the next call
+  /// then waits until the surface is visible, and the trial is shown again.
   Request request(const std::function<Request()>& others);
 
   const DeskWords& words() const { return words_; }

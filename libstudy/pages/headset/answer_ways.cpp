@@ -9,7 +9,8 @@ const char* const usual_answer_ways = "ray,stick,keyboard";
 
 AnswerWays parse_answer_ways(const std::string& words) {
   AnswerWays ways;
-  const std::string known = "use ray, stick, dwell and keyboard with commas between";
+  const std::string known =
+      "name one or more of ray, stick, dwell and keyboard, with commas between, but not both ray and dwell";
   for (const std::string& word : base::split(words)) {
     bool* const way = word == "ray"        ? &ways.ray
                       : word == "stick"    ? &ways.stick

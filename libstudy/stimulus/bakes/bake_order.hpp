@@ -29,8 +29,8 @@ struct BakeOrder {
 sim::BakeHeader header_of(const BakeOrder& order);
 
 /// Differences between the fluid of a bake and the wanted fluid, such as "n_* 2048 instead of 32768": scene,
-/// method, n_*, effects, content step and too few frames. Compares foam, painted temperatures, tau and gaze
-/// only where the wanted bake needs them. Empty: none.
+/// method, n_*, effects, content step and too few frames. Compares foam, tau and gaze only where the wanted
+/// bake needs them; painted temperatures also if the bake has pictures. Empty: none.
 std::vector<std::string> fluid_departures(const sim::BakeHeader& found, const sim::BakeHeader& wanted);
 
 /// Differences between the views of two bakes (camera, picture size and angles). A bake has a view if it

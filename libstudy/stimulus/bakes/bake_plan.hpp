@@ -24,9 +24,9 @@ struct PlannedStimulus {
   std::string live;         ///< reason why the stimulus runs live; empty: it can be baked
 };
 
-/// The stimuli in the order of the protocol's cells. A stimulus can be baked unless its timing is native, its
-/// levels follow the gaze and the protocol has no gaze = "fixation", or it has more frames than a bake can
-/// store. base::Error: unknown method or n_*.
+/// The stimuli in the order of the protocol's cells. A stimulus cannot be baked if its timing is native, if
+/// its levels follow the gaze and the protocol lacks gaze = "fixation", or if it has more frames than a bake
+/// can store. All others can. base::Error: unknown method or n_*.
 std::vector<PlannedStimulus> plan_bakes(const Protocol& protocol);
 
 /// Settings of a session's stimuli and picture.

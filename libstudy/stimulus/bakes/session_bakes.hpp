@@ -41,7 +41,8 @@ class SessionBakes {
   /// For a folder: lines about the stimuli that have a bake, the stimuli that run live with the reason, and
   /// the missing bakes. protocol_file: path as on the command line.
   std::vector<std::string> notes(const std::string& protocol_file) const;
-  /// Text for the record. For a folder: each stimulus with the hash of its bake, or "live".
+  /// Text for the record of a folder: each stimulus with the hash of its bake, or "live". Empty for a single
+  /// file.
   std::string description() const;
 
  private:

@@ -11,7 +11,7 @@ namespace study {
 WaterSample sample_of(double time_s, const std::vector<sim::ParticleState>& water);
 
 /// Runs the cell. The state of the water is measured between frames, outside the timing. base::Error if the
-/// simulation becomes unstable.
+/// simulation's state has non-finite values at the end.
 CellRun run_cell(const SweepCell& cell, const sim::Scene& scene, sim::Backend backend);
 
 }  // namespace study
