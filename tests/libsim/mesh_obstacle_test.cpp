@@ -69,7 +69,7 @@ TEST(MeshObstacles, ErrorsNameThePlaceAndTheMend) {
   EXPECT_THAT(error(inline_brick() + "scale = 1e-5\n"), HasSubstr("m long on one side"));
   EXPECT_THAT(error(inline_brick() + "scale = 20.0\n"), HasSubstr("outside the tank"));
   EXPECT_THAT(error(inline_brick() + "spacing_m = 1.0\n"), HasSubstr("half of the mesh's shortest side"));
-  EXPECT_THAT(error(inline_brick() + "spacing_m = 1e-3\n"), HasSubstr("use at most 2097152"));
+  EXPECT_THAT(error(inline_brick() + "spacing_m = 1e-3\n"), HasSubstr("at most 2097152"));
   EXPECT_THAT(error(inline_brick() + "radius_m = 1.0\n"), HasSubstr("radius_m"));
   EXPECT_THAT(fluid_test::scene_error(mesh_with("file = \"open.obj\"\n")),
               HasSubstr("comes without a folder"));
