@@ -63,7 +63,7 @@ void check_given(const std::string& database) {
 CLI::Option* add_plan(CLI::App& command, std::string& plan) {
   return command.add_option(
       "--plan", plan,
-      "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, seed; "
+      "Analysis plan (TOML): decision rule, tests, margins, level, exclusion rules, hypotheses, seed; "
       "without: the defaults");
 }
 

@@ -76,7 +76,7 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (!command.plan.empty()) request.plan = study::read_plan(command.plan);
   request.protocol = study::read_protocol(study::find_protocol(command.protocol));
   request.file = command.protocol;
-  const study::PowerKind kind = study::power_kind(request.protocol);
+  const study::PowerKind kind = study::power_kind(request.protocol, request.plan.plan);
   request.question = command.choice.question;
   request.level = command.choice.level;
   check_kind(request, kind, options);

@@ -58,6 +58,9 @@ study::Json results_of_study(const StudyCommand& command) {
   const auto study = study::read_tasks(command.file());
   const auto& protocol = study::factor_protocol(study, command.choice.protocol, command.database);
   if (!command.plan.empty()) request.plan = study::read_plan(command.plan, protocol.whole.get());
+  if (!request.plan.plan.claims.empty())
+    throw base::Error(command.plan, "lists hypotheses with task, which vip-stats study does not test",
+                      "remove them here; task1, task2 and report test them");
   if (!command.bundle.empty()) {
     request.frozen = frozen_facts(command.bundle);
     request.plan =

@@ -145,11 +145,11 @@ void print_test(const study::Json& test) {
 
 void print_hypotheses(const study::Json& json) {
   for (const auto& one : json.at("hypotheses")) {
-    const study::Json& paper = one.at("paper");
-    std::printf("\n%s %s\n  %s. %s\n  By the paper's rule (%s): %s\n", word(one.at("id")).c_str(),
-                word(one.at("title")).c_str(), word(one.at("status")).c_str(),
-                word(one.at("status_text")).c_str(), word(paper.at("rule")).c_str(),
-                word(paper.at("text")).c_str());
+    std::printf("\n%s %s\n  %s. %s\n", word(one.at("id")).c_str(), word(one.at("title")).c_str(),
+                word(one.at("status")).c_str(), word(one.at("status_text")).c_str());
+    if (one.contains("paper"))
+      std::printf("  By the paper's rule (%s): %s\n", word(one.at("paper").at("rule")).c_str(),
+                  word(one.at("paper").at("text")).c_str());
     for (const auto& test : one.at("tests")) print_test(test);
   }
 }
@@ -252,8 +252,10 @@ void add_command(CLI::App& app, study::TaskKind task, const char* what) {
 }  // namespace
 
 void add_task_commands(CLI::App& app) {
-  add_command(app, study::TaskKind::Task1, "Realism and cybersickness of the methods, H1 to H3");
-  add_command(app, study::TaskKind::Task2, "Which of two methods is preferred, H4 to H6");
+  add_command(app, study::TaskKind::Task1,
+              "Realism and cybersickness of the methods, and the hypotheses about them");
+  add_command(app, study::TaskKind::Task2,
+              "Which of two methods is preferred, and the hypotheses about that");
 }
 
 }  // namespace apps

@@ -111,7 +111,7 @@ base::Json analyses_json(const study::Protocol& protocol) {
   for (const auto& one : shown.claims) tested.push_back(one.id);
   for (const auto& question : study::curve_questions(protocol))
     fitted.push_back({{"question", question.id}, {"level", study::fitted_level(question)}});
-  for (const auto& [id, reason] : shown.left_out) not_tested.push_back({{"id", id}, {"reason", reason}});
+  for (const auto& [id, reason, ids] : shown.left_out) not_tested.push_back({{"id", id}, {"reason", reason}});
   return {{"tested", tested}, {"fitted", fitted}, {"not_tested", not_tested}};
 }
 

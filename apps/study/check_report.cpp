@@ -10,6 +10,7 @@
 
 #include "libsim/scene/scene.hpp"
 #include "libstudy/analysis/claims.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "libstudy/stimulus/bakes/bake_plan.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -49,7 +50,7 @@ void print_analyses(const study::Protocol& protocol) {
   for (const auto& question : study::curve_questions(protocol))
     std::printf("fitted: the curve of question %s, at level %g of %d to %d\n", question.id.c_str(),
                 study::fitted_level(question), question.scale_min, question.scale_max);
-  for (const auto& [id, reason] : shown.left_out)
+  for (const auto& [id, reason, ids_left_out] : shown.left_out)
     std::printf("not tested: %s, as %s\n", id.c_str(), reason.c_str());
 }
 
@@ -232,7 +233,10 @@ void print_stimuli(const CheckReport& report) {
   const bool hypotheses = report.protocol.design.factors.empty();
   std::printf("gaze: %s%s\n", report.protocol.needs_gaze ? "needed" : "not needed",
               report.protocol.needs_gaze && hypotheses
-                  ? "; without tracked gaze H1 and H5 are labelled not testable"
+                  ? ("; without tracked gaze " +
+                     study::ids_with(study::shipped_claims(), &stats::MethodClaim::needs_gaze) +
+                     " are labelled not testable")
+                        .c_str()
                   : "");
   if (!report.measured) {
     std::printf("live methods: not measured; --measure says whether this machine shows them in time%s\n",

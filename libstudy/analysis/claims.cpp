@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "libstudy/protocol/method_claims.hpp"
+
 namespace study {
 
 namespace {
@@ -33,11 +35,11 @@ bool asks_scale(const std::vector<Question>& asked, const std::string& id) {
                      [&](const Question& one) { return one.id == id && traits_of(one.kind).rated(); });
 }
 
-/// The reason why none of H1 to H6 applies to the protocol; empty if some may apply.
-std::string why_none(const Protocol& protocol) {
+/// The reason why no hypothesis about methods applies to the protocol; empty if some may apply.
+std::string why_none(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (!protocol.design.effects.empty())
-    return "effects are a factor, and H1 to H6 are about methods alone; what each level is worth is "
-           "exploratory";
+    return "effects are a factor, and " + ids_in_short(ids_of(claims_in_force(plan))) +
+           " are about methods alone; what each level is worth is exploratory";
   if (protocol.design.timing == TimingSource::Settings)
     return curve_questions(protocol).empty() ? "no scale is asked about the frame rates"
                                              : "the study estimates a and b of mu = a exp(b delta)";
@@ -49,6 +51,13 @@ bool asks_choice_of_pair(const Protocol& protocol) {
   return std::any_of(asked.begin(), asked.end(), [](const Question& one) {
     return traits_of(one.kind).labelled && one.anchors.size() == 2;
   });
+}
+
+stats::ShownClaims all_left_out(const stats::AnalysisPlan& plan, std::optional<int> task,
+                                const std::string& reason) {
+  stats::ShownClaims out;
+  leave_out(out.left_out, plan, task, reason);
+  return out;
 }
 
 struct Shown {
@@ -64,11 +73,11 @@ Shown shown_by(const Protocol& protocol) {
   return out;
 }
 
-/// Claims H1 to H3, which compare ratings of methods shown one by one.
+/// Claims that compare ratings of methods shown one by one.
 stats::ShownClaims claims_of_ratings(const Protocol& protocol, const stats::AnalysisPlan& plan) {
-  if (protocol.design.pairs) return {{}, {{"H1 to H3", methods_in_pairs}}};
-  if (const std::string missing = missing_items(asked_questions(protocol)); !missing.empty())
-    return {{}, {{"H1 to H3", missing}}};
+  const std::string missing =
+      protocol.design.pairs ? methods_in_pairs : missing_items(asked_questions(protocol));
+  if (!missing.empty()) return all_left_out(plan, 1, missing);
   const Shown shown = shown_by(protocol);
   stats::ScoreScale realism, sickness;
   realism.code = "realism";
@@ -79,15 +88,15 @@ stats::ShownClaims claims_of_ratings(const Protocol& protocol, const stats::Anal
   sickness.min = 0;
   sickness.higher_is_better = false;
   return stats::claims_about(
-      stats::task1_hypotheses({realism, {}, 0, shown.n_stars, shown.methods},
+      stats::task1_hypotheses(claims_in_force(plan), {realism, {}, 0, shown.n_stars, shown.methods},
                               {sickness, {}, 0, shown.n_stars, shown.methods}, plan, ""),
       shown.methods);
 }
 
-/// Claims H4 to H6, which compare choices between pairs of methods.
+/// Claims that compare choices between pairs of methods.
 stats::ShownClaims claims_of_pairs(const Protocol& protocol, const stats::AnalysisPlan& plan) {
-  if (!protocol.design.pairs) return {{}, {{"H4 to H6", no_pairs}}};
-  if (!asks_choice_of_pair(protocol)) return {{}, {{"H4 to H6", no_choice_of_pair}}};
+  if (!protocol.design.pairs) return all_left_out(plan, 2, no_pairs);
+  if (!asks_choice_of_pair(protocol)) return all_left_out(plan, 2, no_choice_of_pair);
   const auto methods = shown_by(protocol).methods;
   std::vector<stats::PairPreference> pairs;
   for (int a = 0; a < static_cast<int>(methods.size()); ++a) {
@@ -98,10 +107,18 @@ stats::ShownClaims claims_of_pairs(const Protocol& protocol, const stats::Analys
       pairs.back().test = stats::Refusal{"no data"};
     }
   }
-  return stats::claims_about(stats::task2_hypotheses(pairs, methods, plan, ""), methods);
+  return stats::claims_about(stats::task2_hypotheses(claims_in_force(plan), pairs, methods, plan, ""),
+                             methods);
 }
 
 }  // namespace
+
+void leave_out(std::vector<stats::ShownClaims::LeftOut>& left_out, const stats::AnalysisPlan& plan,
+               std::optional<int> task, const std::string& reason) {
+  const MethodClaims& all = claims_in_force(plan);
+  const auto ids = ids_of(task ? claims_of_task(all, *task) : all);
+  if (!ids.empty()) left_out.push_back({ids_in_short(ids), reason, ids});
+}
 
 std::string missing_items(const std::vector<Question>& asked) {
   std::vector<std::string> missing;
@@ -133,7 +150,7 @@ bool compares_scores(const Protocol& protocol, const std::vector<std::string>& i
 }
 
 stats::ShownClaims hypotheses_of(const Protocol& protocol, const stats::AnalysisPlan& plan) {
-  if (const std::string why = why_none(protocol); !why.empty()) return {{}, {{"H1 to H6", why}}};
+  if (const std::string why = why_none(protocol, plan); !why.empty()) return all_left_out(plan, {}, why);
   auto out = claims_of_ratings(protocol, plan);
   auto of_pairs = claims_of_pairs(protocol, plan);
   std::move(of_pairs.claims.begin(), of_pairs.claims.end(), std::back_inserter(out.claims));

@@ -1,6 +1,7 @@
 #pragma once
 /// Finds the hypotheses that the built-in analyses can test for a protocol. No data are needed.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@
 
 namespace study {
 
-/// Reasons why H1 to H3 or H4 to H6 do not apply to a protocol.
+/// Reasons why hypotheses on ratings or on pairs do not apply to a protocol.
 inline constexpr const char* methods_in_pairs = "methods are shown in pairs and not rated one by one";
 inline constexpr const char* no_pairs = "no pairs of methods are shown";
 inline constexpr const char* no_choice_of_pair =
@@ -18,19 +19,23 @@ inline constexpr const char* no_choice_of_pair =
 /// Items of the cybersickness score without unrealism.
 inline const std::vector<std::string> items_without_unrealism{"disorientation", "dizziness", "confusion"};
 
-/// Returns H1 to H3 if the protocol shows methods one by one and asks for realism and cybersickness. Returns
-/// H4 to H6 if it asks for a choice between pairs of methods. Every hypothesis that is not returned is listed
-/// in `left_out` with the reason, such as a method that the protocol does not show. None of the six is
-/// returned if effects or frame rates vary.
+/// Returns the plan's hypotheses of Task 1 if the protocol shows methods one by one and asks for realism and
+/// cybersickness, those of Task 2 if it asks for a choice between pairs of methods. Every hypothesis that is
+/// not returned is listed in `left_out` with the reason, such as a method that the protocol does not show.
+/// None is returned if effects or frame rates vary.
 stats::ShownClaims hypotheses_of(const Protocol& protocol, const stats::AnalysisPlan& plan);
+
+/// Adds all hypotheses of a task (1 or 2; empty: both) to `left_out` as one entry; nothing if there are none.
+void leave_out(std::vector<stats::ShownClaims::LeftOut>& left_out, const stats::AnalysisPlan& plan,
+               std::optional<int> task, const std::string& reason);
 
 /// True if participants rate several treatments (methods, or methods with levels of effects) one by one, for
 /// realism and for each of `items`. Only then does the analysis plan's margin for the mean of the items have
 /// an effect.
 bool compares_scores(const Protocol& protocol, const std::vector<std::string>& items);
 
-/// A sentence that names the questions needed for H1 to H3 but missing from `asked`; empty if none is
-/// missing.
+/// A sentence that names the questions that hypotheses of Task 1 need but that are missing from `asked`;
+/// empty if none is missing.
 std::string missing_items(const std::vector<Question>& asked);
 
 /// True if the question belongs to the FMS or the SSQ. Sickness questions have their own analysis.

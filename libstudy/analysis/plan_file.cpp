@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libstudy/analysis/plan_hypotheses.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -19,7 +20,6 @@ constexpr std::array timing_names{"none", "fail", "degraded"};
 constexpr std::array repeated_names{"refuse", "warn", "share", "first"};
 constexpr std::array decision_names{"intersection-union", "holm"};
 constexpr std::array tests_names{"paired", "mixed"};
-constexpr const char* as_once_frozen = "H2, H3 and H6";
 
 /// Reads a number or "none".
 std::optional<double> optional_number(const base::TomlTable& table, const char* key,
@@ -53,13 +53,19 @@ void read_exclusions(const base::TomlTable& table, stats::ExclusionRules& rules)
   rules.min_answered = table.number_or("min_answered", rules.min_answered, share);
 }
 
+/// The value of `directional` for stats::Directional::Once: the ids of the hypotheses; empty if there are
+/// none.
+std::string as_once_frozen(const stats::AnalysisPlan& plan) {
+  return ids_with(claims_in_force(plan), &stats::MethodClaim::once_one_sided);
+}
+
 /// A plan file with the key `protocols` was written by a preregistration. If it lacks `decision` or
 /// `directional`, an older version of the program wrote it. Each missing key then has that version's rule:
-/// Holm for `decision`, one-sided tests in H2, H3 and H6 only for `directional`.
+/// Holm for `decision`, one-sided tests in hypotheses with once_one_sided alone for `directional`.
 void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   const bool frozen = root.has("protocols");
   if (frozen && !root.has("decision")) plan.decision = stats::DecisionRule::Holm;
-  if (frozen && !root.has("directional")) plan.directional = stats::Directional::H2H3H6;
+  if (frozen && !root.has("directional")) plan.directional = stats::Directional::Once;
   const auto* const fallback = decision_names[static_cast<std::size_t>(plan.decision)];
   const auto decision = root.choice_or("decision", fallback, {decision_names.begin(), decision_names.end()});
   plan.decision = static_cast<stats::DecisionRule>(index_of_name(decision_names, decision));
@@ -67,18 +73,19 @@ void read_decision(const base::TomlTable& root, stats::AnalysisPlan& plan) {
   plan.tests = static_cast<stats::ScoreTests>(index_of_name(tests_names, tests));
   if (!root.has("directional")) return;
   if (root.is_text("directional")) {
-    if (root.string("directional") != as_once_frozen)
+    const std::string once = as_once_frozen(plan);
+    if (once.empty() || root.string("directional") != once)
       root.fail("directional", "is '" + root.string("directional") + "'",
-                "use true or false, without quotes, or \"" + std::string(as_once_frozen) + "\"");
-    plan.directional = stats::Directional::H2H3H6;
+                "use true or false, without quotes" + (once.empty() ? "" : ", or \"" + once + "\""));
+    plan.directional = stats::Directional::Once;
   } else {
     plan.directional = root.boolean("directional") ? stats::Directional::All : stats::Directional::None;
   }
 }
 
-Json directional_json(stats::Directional directional) {
-  if (directional == stats::Directional::H2H3H6) return as_once_frozen;
-  return directional == stats::Directional::All;
+Json directional_json(const stats::AnalysisPlan& plan) {
+  const std::string once = plan.directional == stats::Directional::Once ? as_once_frozen(plan) : "";
+  return once.empty() ? Json(plan.directional == stats::Directional::All) : Json(once);
 }
 
 stats::PilotRules read_pilot(const base::TomlTable& table) {
@@ -96,6 +103,8 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
   if (root.has("protocols")) protocols = root.strings("protocols");
   constexpr base::Range inside{1e-6, 0.499999};
   plan.alpha = root.number_or("alpha", plan.alpha, inside);
+  const auto tables = root.tables("hypothesis");
+  plan.claims = read_method_claims(tables);
   read_decision(root, plan);
   plan.confidence = root.number_or("confidence", plan.confidence, {0.5, 0.999999});
   plan.resamples = static_cast<int>(root.integer_or("resamples", plan.resamples, {100, 1000000}));
@@ -115,8 +124,21 @@ stats::AnalysisPlan read_keys(const base::TomlTable& root, std::vector<std::stri
     const auto levels = root.table("levels");
     for (const auto& question : levels.keys()) plan.levels[question] = levels.number(question);
   }
-  plan.hypotheses = read_hypotheses(root, plan.confidence, protocol);
+  plan.hypotheses = read_hypotheses(tables, plan.confidence, protocol);
   return plan;
+}
+
+/// A hypothesis about methods as declared.
+Json claim_json(const stats::MethodClaim& one) {
+  return {{"id", one.id},
+          {"text", one.text},
+          {"task", "task" + std::to_string(one.task)},
+          {"outcome", one.task == 1 ? Json(one.scores) : Json("choice")},
+          {"compare", {one.a, one.b}},
+          {"test", claim_test_word(one.kind)},
+          {"kind", stats::kind_name(one.kind)},
+          {"margin", one.margins.empty() ? Json() : Json(one.margins)},
+          {"needs_gaze", one.needs_gaze}};
 }
 
 /// The file's [pilot] table as text; empty if all of the pilot's rules have their defaults.
@@ -166,14 +188,16 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
   const auto& rules = plan.exclusions;
   std::string list;
   for (const auto& one : protocols) list += (list.empty() ? "" : ", ") + base::toml_quoted(one);
+  const std::string scores = ids_in_short(ids_of(claims_of_task(claims_in_force(plan), 1)));
   return "format = 1\nprotocols = [" + list +
          "]                # SHA-256 of the protocols\nalpha = " + base::shortest(plan.alpha) +
          "                    # of each claim\ndecision = \"" +
          decision_names[static_cast<std::size_t>(plan.decision)] +
          "\"  # a claim needs all of its tests, each at alpha; or \"holm\": each after Holm\ndirectional = " +
-         directional_json(plan.directional).dump() + "             # true: tests are one-sided\ntests = \"" +
-         tests_names[static_cast<std::size_t>(plan.tests)] +
-         "\"                # of H1 to H3: paired t tests, or the \"mixed\" model of all answers\nconfidence "
+         directional_json(plan).dump() + "             # true: tests are one-sided\ntests = \"" +
+         tests_names[static_cast<std::size_t>(plan.tests)] + "\"                # of " +
+         (scores.empty() ? "ratings" : scores) +
+         ": paired t tests, or the \"mixed\" model of all answers\nconfidence "
          "= " +
          base::shortest(plan.confidence) +
          "               # of intervals\nresamples = " + std::to_string(plan.resamples) +
@@ -196,7 +220,8 @@ std::string format_plan(const stats::AnalysisPlan& plan, const std::vector<std::
          std::to_string(rules.straight_lining_answers) +
          "     # one and the same answer to so many trials and all; 0: no such rule\nmin_answered = " +
          base::shortest(rules.min_answered) + "                # share of a visit's trials\n" +
-         format_pilot(plan.pilot) + format_levels(plan.levels) + format_hypotheses(plan.hypotheses);
+         format_pilot(plan.pilot) + format_levels(plan.levels) + format_method_claims(plan.claims) +
+         format_hypotheses(plan.hypotheses);
 }
 
 Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& protocols) {
@@ -212,7 +237,7 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
             {"preregistered", registered},
             {"alpha", plan.alpha},
             {"decision", decision_names[static_cast<std::size_t>(plan.decision)]},
-            {"directional", directional_json(plan.directional)},
+            {"directional", directional_json(plan)},
             {"tests", tests_names[static_cast<std::size_t>(plan.tests)]},
             {"confidence", plan.confidence},
             {"margins", {{"realism", plan.margin_realism}, {"sickness", plan.margin_sickness}}},
@@ -227,6 +252,7 @@ Json plan_json(const PlanInForce& in_force, const std::vector<std::string>& prot
             {"resamples", plan.resamples},
             {"seed", plan.seed}};
   if (!plan.levels.empty()) json["levels"] = plan.levels;
+  for (const auto& one : plan.claims) json["hypotheses"].push_back(claim_json(one));
   for (const auto& one : plan.hypotheses) json["hypotheses"].push_back(declared_json(one));
   if (!format_pilot(plan.pilot).empty())
     json["pilot"] = {{"reverse_coders", plan.pilot.exclude_reverse_coders ? "exclude" : "keep"},

@@ -263,11 +263,11 @@ std::vector<int> cells_with(const Design& design, const stats::DeclaredHypothesi
   return out;
 }
 
-std::vector<stats::DeclaredHypothesis> read_hypotheses(const base::TomlTable& root, double confidence,
-                                                       const Protocol* protocol) {
+std::vector<stats::DeclaredHypothesis> read_hypotheses(const std::vector<base::TomlTable>& tables,
+                                                       double confidence, const Protocol* protocol) {
   std::vector<DeclaredHypothesis> out;
-  const auto tables = root.tables("hypothesis");
   for (std::size_t i = 0; i < tables.size(); ++i) {
+    if (tables[i].has("task")) continue;
     // Read once: each call makes new tables, whose keys were not looked up yet.
     const Tables compare = tables[i].tables("compare");
     DeclaredHypothesis one = read_hypothesis(tables[i], compare, confidence);

@@ -35,17 +35,18 @@ bool compares_groups(const Design& design, const stats::DeclaredHypothesis& hypo
 /// Indices of the cells that have these levels; with a standard, without that one.
 std::vector<int> cells_with(const Design& design, const stats::DeclaredHypothesis::Levels& levels);
 
-/// Reads [[hypothesis]]. `confidence`: default of `confidence`. `protocol`: its factors, levels and questions
+/// Reads those of the tables [[hypothesis]] that lack the key `task`, which read_method_claims() does not
+/// read. `confidence`: default of `confidence`. `protocol`: its factors, levels and questions
 /// must be those that the tables name; null: they are not checked. base::Error at file:line:column.
-std::vector<stats::DeclaredHypothesis> read_hypotheses(const base::TomlTable& root, double confidence,
-                                                       const Protocol* protocol);
+std::vector<stats::DeclaredHypothesis> read_hypotheses(const std::vector<base::TomlTable>& tables,
+                                                       double confidence, const Protocol* protocol);
 
 /// The tables as text, which read_hypotheses() reads back.
 std::string format_hypotheses(const std::vector<stats::DeclaredHypothesis>& hypotheses);
 
 /// Name of the test for display; a paired t test of one condition is a "one-sample t test".
 std::string test_title(const stats::DeclaredHypothesis& hypothesis);
-/// "H1: stall, hitch h50 against hitch none, paired t test, two-sided": one hypothesis in one line.
+/// "seen: stall, hitch h50 against hitch none, paired t test, two-sided": one hypothesis in one line.
 std::string declared_text(const stats::DeclaredHypothesis& hypothesis);
 /// The levels of a condition: "hitch h50, content dam"; "all cells" without levels.
 std::string condition_text(const stats::DeclaredHypothesis::Levels& levels);

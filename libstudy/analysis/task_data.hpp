@@ -104,7 +104,7 @@ struct TaskData {
   /// and 2 for any other.
   std::map<std::string, std::vector<std::array<double, 2>>> repeats;
 
-  /// The reason why H1 and H5, which compare adaptive methods with FovFluid, cannot be tested: gaze was not
+  /// The reason why hypotheses that need gaze cannot be tested: gaze was not
   /// tracked in every session. Empty if gaze was tracked in every session.
   std::string gaze_problem() const;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libstudy/console/console_text.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "libstudy/store/names.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/text.hpp"
@@ -59,7 +60,8 @@ void Console::begin(const OpenSession& session) {
                   session.units.size(), session.planned, left(), 1e-3 * free_mb(database_)));
   say("gaze: " + session.plan.gaze_source +
       (protocol_.needs_gaze && session.plan.gaze_source != "tracked"
-           ? "; H1 and H5 are not testable without tracked gaze"
+           ? "; " + ids_with(shipped_claims(), &stats::MethodClaim::needs_gaze) +
+                 " are not testable without tracked gaze"
            : ""));
   say("keys: p pause, r repeat, x exclude, n note, e end, m method and setting, ? help");
 }

@@ -1,5 +1,6 @@
 #include "libstudy/power/power_json.hpp"
 #include "libstudy/analysis/claims.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 
 #include <filesystem>
 
@@ -20,8 +21,11 @@ Json power_notes(const PowerRequest& request, PowerKind kind) {
       Json::array({"Every figure's *_se is its Monte-Carlo standard error; shares of k of n studies use (k + "
                    "1) / (n + 2).",
                    "No dropouts and no exclusions are simulated: add the share that you expect to lose."});
-  if (request.protocol.needs_gaze && kind != PowerKind::Pilot && request.protocol.design.effects.empty())
-    notes.push_back("Gaze is taken to be tracked: without it H1 and H5 are not testable whatever the power.");
+  const std::string ids = ids_with(claims_in_force(request.plan.plan), &stats::MethodClaim::needs_gaze);
+  if (request.protocol.needs_gaze && kind != PowerKind::Pilot && request.protocol.design.effects.empty() &&
+      !ids.empty())
+    notes.push_back("Gaze is taken to be tracked: without it " + ids +
+                    " are not testable whatever the power.");
   if (kind != PowerKind::Pilot)
     notes.push_back(
         "n_for_power is the first n from which the power is reached at every n that was asked "
@@ -163,7 +167,7 @@ void add_lines(std::string& out, const std::string& lead, const Json& point, con
 }  // namespace
 
 Json studies_json(const PowerRequest& request) {
-  const auto kind = power_kind(request.protocol);
+  const auto kind = power_kind(request.protocol, request.plan.plan);
   Json out{{"program", base::program_words()},
            {"protocol", request.protocol.sha256},
            {"plan", format_plan(request.plan.plan, {})},
@@ -174,7 +178,7 @@ Json studies_json(const PowerRequest& request) {
 }
 
 Json power_json(const PowerRequest& request, const std::vector<WorldPower>& worlds) {
-  Json out = head_json(request, power_kind(request.protocol));
+  Json out = head_json(request, power_kind(request.protocol, request.plan.plan));
   out["worlds"] = Json::array();
   for (const auto& world : worlds) {
     Json one{{"id", world.id}, {"words", world.words}, {"hypotheses", Json::array()}};

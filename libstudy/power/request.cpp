@@ -6,6 +6,7 @@
 #include "libstudy/analysis/claims.hpp"
 #include "libstudy/analysis/json_parts.hpp"
 #include "libstudy/analysis/task_choice.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/json.hpp"
@@ -35,15 +36,17 @@ bool has_question(const Protocol& protocol, const std::string& id) {
                      [&](const auto& question) { return question.second->id == id; });
 }
 
-/// base::Error if the protocol neither varies effects nor tests one of H1 to H6: worlds exist for these only.
-void check_claims(const Protocol& protocol) {
+/// base::Error if the protocol neither varies effects nor tests one of the plan's hypotheses about methods:
+/// worlds exist for these only.
+void check_claims(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (!protocol.design.effects.empty()) return;
-  const auto shown = hypotheses_of(protocol, {});
+  const auto shown = hypotheses_of(protocol, plan);
   if (!shown.claims.empty()) return;
   std::string why;
-  for (const auto& [id, reason] : shown.left_out) why += (why.empty() ? "" : "; ") + id + ": " + reason;
+  for (const auto& [id, reason, ids] : shown.left_out) why += (why.empty() ? "" : "; ") + id + ": " + reason;
   throw base::Error("protocol " + protocol.name,
-                    "tests none of H1 to H6, and power is computed for these alone (" + why + ")",
+                    "tests none of " + ids_in_short(ids_of(claims_in_force(plan))) +
+                        ", and power is computed for these alone (" + why + ")",
                     "simulate it: vip-study run with --observer for several numbers of participants, then "
                     "vip-stats report, which describes the answers of any protocol");
 }
@@ -92,7 +95,7 @@ const char* power_kind_name(PowerKind kind) {
   return "pilot";
 }
 
-PowerKind power_kind(const Protocol& protocol) {
+PowerKind power_kind(const Protocol& protocol, const stats::AnalysisPlan& plan) {
   if (!protocol.design.effects.empty() && !protocol.design.pairs) {
     throw base::Error("protocol " + protocol.name,
                       "varies effects of rated stimuli, and power can simulate effects only where pairs are "
@@ -101,7 +104,7 @@ PowerKind power_kind(const Protocol& protocol) {
                       "participants, then vip-stats report");
   }
   if (protocol.design.pairs) {
-    check_claims(protocol);
+    check_claims(protocol, plan);
     return PowerKind::Task2;
   }
   if (protocol.design.timing == TimingSource::Settings) return PowerKind::Pilot;
@@ -112,7 +115,7 @@ PowerKind power_kind(const Protocol& protocol) {
                         "cybersickness) or Task 2 (pairs)");
     }
   }
-  check_claims(protocol);
+  check_claims(protocol, plan);
   return PowerKind::Task1;
 }
 

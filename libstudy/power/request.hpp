@@ -17,8 +17,9 @@ namespace study {
 enum class PowerKind { Task1, Task2, Pilot };
 /// Name in JSON: "task1", "task2", "pilot".
 const char* power_kind_name(PowerKind kind);
-/// base::Error unless the protocol is a pilot, tests one of H1 to H6, or shows pairs that vary effects.
-PowerKind power_kind(const Protocol& protocol);
+/// base::Error unless the protocol is a pilot, tests one of the plan's hypotheses about methods, or shows
+/// pairs that vary effects.
+PowerKind power_kind(const Protocol& protocol, const stats::AnalysisPlan& plan = {});
 
 /// The answers that simulated people give in Task 1.
 enum class AnswerScale {

@@ -240,7 +240,8 @@ std::vector<PowerCell> power_cells(const PowerRequest& request) {
 }
 
 StudyOutcomes simulate_studies(const PowerRequest& request, StudyRange studies) {
-  if (power_kind(request.protocol) == PowerKind::Pilot) return simulate_pilots(request, studies);
+  if (power_kind(request.protocol, request.plan.plan) == PowerKind::Pilot)
+    return simulate_pilots(request, studies);
   return count_task_studies(request, studies);
 }
 

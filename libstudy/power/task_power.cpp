@@ -9,6 +9,7 @@
 #include "libstudy/power/answers.hpp"
 #include "libstudy/power/effect_levels.hpp"
 #include "libstudy/power/request.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "stats/analysis/hypotheses.hpp"
 #include "stats/analysis/task2.hpp"
 #include "stats/inference/power.hpp"
@@ -150,11 +151,7 @@ class Simulation {
       for (const auto& scenario : world.scenarios) {
         for (auto& hypothesis : analyse(scenario, {}, 0)) {
           Judged one{&scenario, std::move(hypothesis), {}, {}};
-          for (auto& test : one.hypothesis.tests) {
-            if (one.hypothesis.kind == stats::HypothesisKind::Equivalence ||
-                one.hypothesis.kind == stats::HypothesisKind::NonInferiority)
-              test.margin = higher_is_better(test) ? request_.plan.plan.margin_realism
-                                                   : request_.plan.plan.margin_sickness;
+          for (const auto& test : one.hypothesis.tests) {
             one.truths.push_back(truth_of(scenario, factors_, test));
             one.claims.push_back(claim_is_true(one.hypothesis.kind, test, one.truths.back()));
           }
@@ -194,7 +191,7 @@ class Simulation {
     const stats::ScoreTable sickness(
         {"sickness", "", true, scatter_.item_min, scatter_.item_max, false, {}, plan.margin_sickness},
         of_first(answers.task1.sickness, n), n, factors_.n_stars, factors_.methods);
-    return stats::task1_hypotheses(realism, sickness, plan, "");
+    return stats::task1_hypotheses(claims_in_force(plan), realism, sickness, plan, "");
   }
 
   std::vector<stats::Hypothesis> analyse_task2(const Answers& answers, int n) const {
@@ -202,7 +199,7 @@ class Simulation {
     if (!factors_.effects.empty()) return {effect_hypothesis(of_first(answers.task2, n), factors_, plan)};
     const auto pairs =
         stats::count_preferences(of_first(answers.task2, n), static_cast<int>(factors_.methods.size()), plan);
-    return stats::task2_hypotheses(pairs, factors_.methods, plan, "");
+    return stats::task2_hypotheses(claims_in_force(plan), pairs, factors_.methods, plan, "");
   }
 
   /// Counts of 0 for every hypothesis.

@@ -1,6 +1,6 @@
 #pragma once
-/// Computes the power of H1 to H6 (or of levels of effects). Studies with the protocol's plan are answered by
-/// simulated people and analysed like real data.
+/// Computes the power of hypotheses about methods (or of levels of effects). Studies with the protocol's plan
+/// are answered by simulated people and analysed like real data.
 
 #include <optional>
 #include <string>

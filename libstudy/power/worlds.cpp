@@ -6,14 +6,16 @@
 
 #include "libstudy/analysis/claims.hpp"
 #include "libstudy/power/effect_levels.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "stats/base/error.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
 namespace {
 
-/// Methods from worst to best. H1 and H4 to H6 claim this order; LoRes, which they do not mention, comes
-/// first.
+/// Methods from worst to best. The paper's hypotheses claim this order; LoRes, which they do not mention,
+/// comes first.
 constexpr std::array<const char*, 5> methods_by_rank{"LoRes", "FovFluid", "Ours", "Ours-TSp", "HiRes"};
 
 /// Index of the method in methods_by_rank; -1 if it is not there.
@@ -22,6 +24,7 @@ int rank_of(const std::string& method) {
   return found == methods_by_rank.end() ? -1 : static_cast<int>(found - methods_by_rank.begin());
 }
 
+using stats::HypothesisKind;
 using Qualities = std::array<double, 5>;  // quality of each method in methods_by_rank
 
 constexpr double middle_of_realism = 4, middle_of_sickness = 1.5;
@@ -54,8 +57,8 @@ constexpr std::array<PaperMeans, 2> paper_means{
     {{"16k", {2.4, 3.5, 4.3, 5.0, 4.9}, {1.70, 1.40, 1.05, 0.90, 0.95}},
      {"32k", {2.6, 3.7, 4.6, 4.9, 5.2}, {1.60, 1.35, 1.00, 1.05, 0.85}}}};
 
-Scenario paper_task1(const ShownFactors& factors) {
-  Scenario out{{"H1", "H2", "H3"}, {}, {}, {}};
+Scenario paper_task1(const ShownFactors& factors, std::vector<std::string> hypotheses) {
+  Scenario out{std::move(hypotheses), {}, {}, {}};
   for (const auto& n_star : factors.n_stars) {
     const auto* const means = std::find_if(paper_means.begin(), paper_means.end(),
                                            [&](const PaperMeans& one) { return n_star == one.n_star; });
@@ -73,42 +76,127 @@ Scenario paper_task1(const ShownFactors& factors) {
   return out;
 }
 
-World task1_world(const PowerRequest& request, const ShownFactors& factors, const std::string& id) {
-  const std::vector<std::string> all{"H1", "H2", "H3"};
-  if (id == "null") {
-    return {id,
-            "all methods are alike: H1's claims are false, H2's and H3's true",
-            {by_quality(factors, all, {}, 0, 0)}};
+std::vector<std::string> ids_of_kinds(const MethodClaims& claims,
+                                      std::initializer_list<HypothesisKind> kinds) {
+  std::vector<std::string> out;
+  for (const stats::MethodClaim& one : claims)
+    if (std::find(kinds.begin(), kinds.end(), one.kind) != kinds.end()) out.push_back(one.id);
+  return out;
+}
+
+/// "A's and B's".
+std::string possessive(const std::vector<std::string>& ids) {
+  std::string out;
+  for (const std::string& id : ids) out += (out.empty() ? "" : " and ") + id + "'s";
+  return out;
+}
+
+/// The differences of quality a - b of the methods that the claim compares.
+std::vector<double> differences(const stats::MethodClaim& claim, const Qualities& quality) {
+  const auto of = [&](const std::string& method) {
+    const int rank = rank_of(method);
+    return rank < 0 ? 0 : quality[static_cast<std::size_t>(rank)];
+  };
+  std::vector<double> out;
+  for (const std::string& a : claim.a)
+    for (const std::string& b : claim.b) out.push_back(of(a) - of(b));
+  return out;
+}
+
+std::string words_of_null(const MethodClaims& claims) {
+  const auto no = ids_of_kinds(claims, {HypothesisKind::Superiority}),
+             yes = ids_of_kinds(claims, {HypothesisKind::Equivalence, HypothesisKind::NonInferiority});
+  std::string out = "all methods are alike: ";
+  if (!no.empty()) out += possessive(no) + " claims are false" + (yes.empty() ? "" : ", ");
+  if (!yes.empty()) out += possessive(yes) + (no.empty() ? " claims are true" : " true");
+  return out;
+}
+
+/// base::Error unless the world's qualities are what words_of_margin() says of the claim.
+void check_at_margin(const stats::MethodClaim& claim, const Qualities& quality,
+                     const stats::AnalysisPlan& plan) {
+  const double expected = claim.kind == HypothesisKind::Superiority ? 1 : -1;
+  const auto found = differences(claim, quality);
+  bool fits = std::all_of(found.begin(), found.end(), [&](double one) { return one == expected; });
+  for (const auto& [score, margin] : claim.margins)
+    fits = fits && margin == (score == "realism" ? plan.margin_realism : plan.margin_sickness);
+  if (!fits)
+    throw base::Error("--world margin", "is not made for the methods or margins of " + claim.id,
+                      "choose --world null, effect or paper");
+}
+
+std::string words_of_margin(const MethodClaims& claims) {
+  std::string better, worse;
+  for (const stats::MethodClaim& one : claims) {
+    std::string& out = one.kind == HypothesisKind::Superiority ? better : worse;
+    out += out.empty() ? "" : " and ";
+    const std::string b = base::joined(one.b);
+    out += one.kind == HypothesisKind::Superiority   ? one.id + "'s methods better by it than " + b
+           : one.kind == HypothesisKind::Equivalence ? one.id + "'s worse by it than " + b
+                                                     : base::joined(one.a) + " worse by it than " + b;
   }
+  if (worse.empty()) return better;
+  return better + (better.empty() ? "" : "; ") + worse + ", so that " +
+         possessive(ids_of_kinds(claims, {HypothesisKind::Equivalence, HypothesisKind::NonInferiority})) +
+         " claims are just false";
+}
+
+/// Which claims are true if differences are positive multiples of those of the qualities.
+std::string words_of_effect(const MethodClaims& claims, const Qualities& quality) {
+  std::vector<std::string> sure;
+  for (const stats::MethodClaim& one : claims) {
+    const auto found = differences(one, quality);
+    const bool holds = std::all_of(found.begin(), found.end(), [&](double d) {
+      return one.kind == HypothesisKind::Superiority   ? d > 0
+             : one.kind == HypothesisKind::Equivalence ? d == 0
+                                                       : d >= 0;
+    });
+    if (holds) sure.push_back(one.id);
+  }
+  if (sure.size() == claims.size()) return "all of " + base::joined(sure) + " are true";
+  return "true whatever the margins: " + (sure.empty() ? "none" : base::joined(sure));
+}
+
+World task1_world(const PowerRequest& request, const ShownFactors& factors, const std::string& id) {
+  const MethodClaims claims = claims_of_task(claims_in_force(request.plan.plan), 1);
+  const auto all = ids_of(claims);
+  if (id == "null") return {id, words_of_null(claims), {by_quality(factors, all, {}, 0, 0)}};
   if (id == "margin") {
     const double realism = request.plan.plan.margin_realism, sickness = request.plan.plan.margin_sickness;
-    return {id,
-            fmt::format("differences of exactly the margin ({:.4g} on realism, {:.4g} on cybersickness): "
-                        "H1's methods better "
-                        "by it than FovFluid; H2's worse by it than HiRes and Ours-TSp worse by it than "
-                        "Ours, so that H2's "
-                        "and H3's claims are just false",
-                        realism, sickness),
-            {by_quality(factors, {"H1", "H2"}, {-1, -1, 0, 0, 1}, realism, sickness),
-             by_quality(factors, {"H3"}, {-1, -1, 0, -1, 0}, realism, sickness)}};
+    constexpr Qualities ours_between{-1, -1, 0, 0, 1}, accelerated_worse{-1, -1, 0, -1, 0};
+    for (const stats::MethodClaim& claim : claims) {
+      const bool naive = claim.kind == HypothesisKind::NonInferiority;
+      check_at_margin(claim, naive ? accelerated_worse : ours_between, request.plan.plan);
+    }
+    return {
+        id,
+        fmt::format("differences of exactly the margin ({:.4g} on realism, {:.4g} on cybersickness): ",
+                    realism, sickness) +
+            words_of_margin(claims),
+        {by_quality(factors, ids_of_kinds(claims, {HypothesisKind::Superiority, HypothesisKind::Equivalence}),
+                    ours_between, realism, sickness),
+         by_quality(factors, ids_of_kinds(claims, {HypothesisKind::NonInferiority}), accelerated_worse,
+                    realism, sickness)}};
   }
   if (id == "paper") {
     return {id,
             "as the paper's words on its Fig. 9 can be read (it prints no means): see docs/statistics.md",
-            {paper_task1(factors)}};
+            {paper_task1(factors, all)}};
   }
   if (!request.effect && !request.difference) {
     throw base::Error("--world effect", "no effect was given",
                       "add --effect (in standard deviations of the differences) or --difference (points)");
   }
   const double d = request.effect ? *request.effect : *request.difference / request.sd_realism;
+  constexpr Qualities fov_worse{-1, -1, 0, 0, 0};
   return {
       id,
       fmt::format(
           "Ours, Ours-TSp and HiRes alike, FovFluid worse by {:.4g} on realism and {:.4g} on cybersickness "
-          "({:.4g} standard deviations of the differences): all of H1, H2, H3 are true",
-          d * request.sd_realism, d * request.sd_sickness, d),
-      {by_quality(factors, all, {-1, -1, 0, 0, 0}, d * request.sd_realism, d * request.sd_sickness)}};
+          "({:.4g} standard deviations of the differences): ",
+          d * request.sd_realism, d * request.sd_sickness, d) +
+          words_of_effect(claims, fov_worse),
+      {by_quality(factors, all, fov_worse, d * request.sd_realism, d * request.sd_sickness)}};
 }
 
 /// Preferences in which the better of any two methods (methods_by_rank) is chosen with probability p.
@@ -154,8 +242,9 @@ std::vector<double> paper_preference(const ShownFactors& factors) {
 }
 
 World task2_world(const PowerRequest& request, const ShownFactors& factors, const std::string& id) {
+  const auto ids = ids_of(claims_of_task(claims_in_force(request.plan.plan), 2));
   const auto world = [&](const std::string& words, std::vector<double> preferred) {
-    return World{id, words, {{{"H4", "H5", "H6"}, {}, {}, std::move(preferred)}}};
+    return World{id, words, {{ids, {}, {}, std::move(preferred)}}};
   };
   if (id == "null")
     return world("every preference is .5: all claims are false", equal_preference(factors, 0.5));

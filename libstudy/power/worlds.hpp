@@ -11,7 +11,7 @@ namespace study {
 
 /// Assumed true means or preferences, and the hypotheses that are tested under them.
 struct Scenario {
-  std::vector<std::string> hypotheses;    ///< ids: "H1" to "H6", or "effects"
+  std::vector<std::string> hypotheses;    ///< ids of hypotheses about methods, or "effects"
   std::vector<double> realism, sickness;  ///< Task 1: mean answers, row-major: row n_*, column method
   std::vector<double> preferred;          ///< Task 2: P(row's method is chosen over column's), row-major
 };

@@ -114,7 +114,7 @@ bool same_protocol(const Bundle& bundle, const ProtocolRow& used, bool pilot, Js
   return false;
 }
 
-/// Compares two objects key by key. Adds each difference, such as "H2, margin: preregistered 0.5, tested
+/// Compares two objects key by key. Adds each difference, such as "NAME, margin: preregistered 0.5, tested
 /// 0.4". Returns false if there is one.
 bool same_part(const std::string& name, const Json& planned, const Json& tested, Json& differences) {
   bool same = true;

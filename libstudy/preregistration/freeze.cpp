@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <set>
@@ -35,14 +36,7 @@ std::vector<Protocol> read_protocols(const std::vector<fs::path>& paths) {
   return out;
 }
 
-/// True if `ids` has all hypotheses of the range, which is written "H1" or "H1 to H3".
-bool all_among(const std::string& range, const std::set<std::string>& ids) {
-  for (char number = range.at(1); number <= range.back(); ++number)
-    if (!ids.contains(std::string("H") + number)) return false;
-  return true;
-}
-
-/// For each protocol, the hypotheses that it does not test, with the reason: "H1 of task1: ...". A hypothesis
+/// For each protocol, the hypotheses that it does not test, with the reason: "ID of task1: ...". A hypothesis
 /// is omitted if another protocol tests it, unless this protocol tests none at all.
 std::vector<std::string> untested_of(const std::vector<Protocol>& protocols,
                                      const stats::AnalysisPlan& plan) {
@@ -54,8 +48,9 @@ std::vector<std::string> untested_of(const std::vector<Protocol>& protocols,
   }
   std::vector<std::string> out;
   for (std::size_t i = 0; i < protocols.size(); ++i) {
-    for (const auto& [id, reason] : shown[i].left_out)
-      if (shown[i].claims.empty() || !all_among(id, tested))
+    for (const auto& [id, reason, ids] : shown[i].left_out)
+      if (shown[i].claims.empty() ||
+          !std::all_of(ids.begin(), ids.end(), [&](const auto& one) { return tested.contains(one); }))
         out.push_back(id + " of " + protocols[i].name + ": " + reason);
   }
   return out;

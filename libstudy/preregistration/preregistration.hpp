@@ -21,15 +21,15 @@ struct BundleRequest {
   std::optional<std::filesystem::path> power;  ///< JSON of `vip-stats power`
 };
 
-/// Writes the folder `out` with these files: a copy of each protocol; hypotheses.json (those of H1 to H6 that
-/// the protocols test, each test with its margin); plan.toml (margins, levels, exclusion rules, seed);
-/// power.json if requested; about.json; PREREGISTRATION.txt for people; MANIFEST.sha256 for `sha256sum -c`.
-/// Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and no folder is left, if
-/// `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same name or
-/// different levels for one question, if `power` is no JSON, or if the folder cannot be written.
+/// Writes the folder `out` with these files: a copy of each protocol; hypotheses.json (the hypotheses about
+/// methods that the protocols test, each with its margin); plan.toml (margins, levels, exclusion rules,
+/// seed); power.json if requested; about.json; PREREGISTRATION.txt for people; MANIFEST.sha256 for `sha256sum
+/// -c`. Returns the bundle's hash, which is the SHA-256 of MANIFEST.sha256. base::Error, and no folder is
+/// left, if `out` exists and is not an empty folder, if a protocol cannot be read, if two have the same name
+/// or different levels for one question, if `power` is no JSON, or if the folder cannot be written.
 std::string freeze_bundle(const BundleRequest& request, const std::filesystem::path& out);
 
-/// The hypotheses of H1 to H6 that the requested protocols do not test, each with the reason: "H1 of task1:
+/// The hypotheses about methods that the requested protocols do not test, each with the reason: "ID of task1:
 /// the protocol does not show FovFluid".
 std::vector<std::string> untested_claims(const BundleRequest& request);
 

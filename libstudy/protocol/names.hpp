@@ -11,7 +11,7 @@ namespace study {
 const std::vector<std::string>& method_names();
 
 /// Ids of questions that a program or a shipped analysis looks for: realism and the four items of
-/// cybersickness (H1 to H3), gaze_kept and data_shared.
+/// cybersickness, gaze_kept and data_shared.
 const std::vector<std::string>& known_question_ids();
 
 }  // namespace study

@@ -124,7 +124,7 @@ struct Protocol {
   /// before the session.
   bool fixation = false;
   /// True: the study needs tracked gaze; the console and the notes of a power calculation say so. Reports
-  /// label H1 and H5 not testable without tracked gaze, whatever the value.
+  /// label hypotheses with `needs_gaze` not testable without tracked gaze, whatever the value.
   bool needs_gaze = false;
   /// True: the camera uses the visual angle of the picture instead of each scene's angle.
   bool true_angle = false;

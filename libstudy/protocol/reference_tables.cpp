@@ -125,7 +125,7 @@ may stand beside them.
 | study | needs | and uses |
 |---|---|---|
 | pilot: one method at several frame rates | a question of kind scale or vas; `vip-stats fit-ptpe --question ID` takes one of several | |
-| Task 1: methods shown one by one | `realism`, of kind scale or vas; for H1 to H3 also `disorientation`, `unrealism`, `dizziness` and `confusion`, on one scale | |
+| Task 1: methods shown one by one | `realism`, of kind scale or vas; for hypotheses about methods also `disorientation`, `unrealism`, `dizziness` and `confusion`, on one scale | |
 | Task 2: pairs | a question of kind choice with two anchors or yes_no, the lower one for the first interval | |
 | all | | questions of kind number, choice, yes_no, scale and vas in blocks of kind demographics, screening and question, such as `age` and `gender`, unless a trial asks them too: the report gives the answers in summary |)"},
       {"block.question.anchors", "anchors",

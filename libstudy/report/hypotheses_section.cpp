@@ -67,12 +67,12 @@ std::string apa(const Field& test, bool preference) {
   return out + ", <i>p</i> " + p(test["p"]) + ", <i>p</i><sub>Holm</sub> " + p(test["p_holm"]);
 }
 
-/// A table of p values of preferences after Holm's correction over the hypothesis, over the paper's five
-/// pairs and over all ten pairs, since the result depends on the family.
+/// A table of p values of preferences after Holm's correction over the hypothesis, over the pairs
+/// of all hypotheses and over all pairs, since the result depends on the family.
 std::string families(const Field& hypothesis) {
   Table table("The same <i>p</i> in larger families",
-              {"Test", "<i>p</i>", "Holm over this family", "Holm over the five of the paper's figure",
-               "Holm over all ten pairs"});
+              {"Test", "<i>p</i>", "Holm over this family", "Holm over the pairs of all hypotheses",
+               "Holm over all pairs"});
   for (const Field& test : hypothesis["tests"].entries()) {
     if (!test["p_holm_of_five"].is_number() && !test["p_holm_of_ten"].is_number()) continue;
     table.row({words(test["label"]), p_bare(test["p"]), p_bare(test["p_holm"]),
@@ -114,12 +114,11 @@ std::string one(const Field& hypothesis, bool registered) {
                     count(hypothesis["family"]) + ", \xCE\xB1 = " + fixed(hypothesis["alpha"], 3) + ").");
   body += other_test(hypothesis);
   if (hypothesis["p_claim"].is_number())
-    body += paragraph(
-        "The claim as a whole: <i>p</i> " + p(hypothesis["p_claim"]) +
-        (hypothesis["p_claim_of_six"].is_number()
-             ? ", after Holm over the claims of H1 to H6 <i>p</i> " + p(hypothesis["p_claim_of_six"])
-             : "") +
-        ".");
+    body += paragraph("The claim as a whole: <i>p</i> " + p(hypothesis["p_claim"]) +
+                      (hypothesis["p_claim_of_six"].is_number()
+                           ? ", after Holm over all claims <i>p</i> " + p(hypothesis["p_claim_of_six"])
+                           : "") +
+                      ".");
   body += tests_table(hypothesis, hypothesis["tests"], "tests of the family").html() + families(hypothesis);
   std::vector<std::string> lines;
   for (const Field& test : hypothesis["tests"].entries()) lines.push_back(apa(test, preference));
@@ -147,9 +146,10 @@ std::string decision_words(const Field& plan) {
 
 std::string decisions_section(const Field& root) {
   if (root["hypotheses"].entries().empty()) return "";
-  Table table("Decisions on the hypotheses", {"Hypothesis", "Kind", "Plan", "Decision", "Tests that hold",
-                                              "In words", "<i>p</i> of the claim", "After Holm over H1 to H6",
-                                              "The paper's uncorrected procedure", "Published"});
+  Table table(
+      "Decisions on the hypotheses",
+      {"Hypothesis", "Kind", "Plan", "Decision", "Tests that hold", "In words", "<i>p</i> of the claim",
+       "After Holm over all claims", "The paper's uncorrected procedure", "Published"});
   for (const Field& hypothesis : root["hypotheses"].entries()) {
     table.row({words(hypothesis["id"]), words(hypothesis["kind"]),
                badge(preregistered(root, hypothesis["task"].words())),
@@ -167,13 +167,12 @@ std::string hypotheses_section(const Field& root) {
   for (const Field& hypothesis : root["hypotheses"].entries())
     body += one(hypothesis, preregistered(root, hypothesis["task"].words()));
   if (body.empty()) return "";
-  return section(
-      "hypotheses", "Hypotheses",
-      paragraph(decision_words(root["plan"]) +
-                "The claims of H1 to H6 are not corrected for one another; what Holm makes of them "
-                "stands beside. Stars: * <i>p</i> &lt; .05, ** <i>p</i> &lt; .01, *** "
-                "<i>p</i> &lt; .001.") +
-          body);
+  return section("hypotheses", "Hypotheses",
+                 paragraph(decision_words(root["plan"]) +
+                           "The claims are not corrected for one another; what Holm makes of them "
+                           "stands beside. Stars: * <i>p</i> &lt; .05, ** <i>p</i> &lt; .01, *** "
+                           "<i>p</i> &lt; .001.") +
+                     body);
 }
 
 std::string sensitivity_section(const Field& root) {

@@ -141,9 +141,9 @@ std::string tests_of_task1(const Field& root) {
                    [](const Field& one) { return one["task"].words() == "task1"; }))
     return "";
   return root["plan"]["tests"].words() == "mixed"
-             ? "H1 to H3 were tested by the mixed model of all answers with Satterthwaite's degrees of "
-               "freedom; paired <i>t</i> tests stand beside. "
-             : "H1 to H3 were tested by paired <i>t</i> tests. ";
+             ? "Hypotheses of Task 1 were tested by the mixed model of all answers with Satterthwaite's "
+               "degrees of freedom; paired <i>t</i> tests stand beside. "
+             : "Hypotheses of Task 1 were tested by paired <i>t</i> tests. ";
 }
 
 /// A sentence on the tests of Task 2's pairs.
@@ -190,8 +190,8 @@ std::string task1_text(const Field& root) {
          " resamples with seed " + count(plan["seed"]) + ". " + tests_of_task1(root);
 }
 
-/// Words on the direction of the tests: "two-sided", "one-sided, ...", or "two-sided, but one-sided for H2,
-/// H3 and H6".
+/// Words on the direction of the tests: "two-sided", "one-sided, ...", or "two-sided, but one-sided for" the
+/// hypotheses named.
 std::string sides(const Field& directional) {
   if (!directional.words().empty()) return "two-sided, but one-sided for " + words(directional);
   return directional.yes() ? "one-sided, in the direction claimed" : "two-sided";

@@ -111,7 +111,7 @@ std::string tipping(const Field& task1) {
 }
 
 std::string decisions_tipping(const Field& hypotheses) {
-  Table table("Tipping points of the tests of H1 to H3",
+  Table table("Tipping points of the tests of hypotheses",
               {"Test", "Planned", "Holds", "First: missing, worse by", "Second: missing, worse by"});
   for (const Field& hypothesis : hypotheses.entries()) {
     std::string group;

@@ -17,7 +17,7 @@ namespace stats {
 
 namespace {
 
-// Each test of H1 to H3 compares two methods at one size n_* of the water, by a paired t test (an exact sign
+// Each test of Task 1 compares two methods at one size n_* of the water, by a paired t test (an exact sign
 // test if all differences are equal) or by the mixed model.
 
 /// Difference of two methods' mean scores, a - b, with its standard error.
@@ -27,7 +27,7 @@ struct ScoreDifference {
   double p(Alternative side, double null = 0) const;
 };
 
-/// The data of one test of H1 to H3.
+/// The data of one test.
 struct ScoreContrast {
   HypothesisTest test;  ///< label, methods and n; its reason says why `difference` could not be computed
   std::optional<ScoreDifference> difference;
@@ -94,21 +94,26 @@ void set_interval(ScoreContrast& contrast, double confidence) {
   contrast.test.ci_confidence = confidence;
 }
 
-/// True if the uncorrected two-sided p, the only one in the paper, is below alpha.
-bool paper_differs(const ScoreContrast& contrast, const Family& family) {
-  return *contrast.test.paper_p < family.plan.alpha;
+/// Decides by the uncorrected two-sided p, as the paper does. The mixed model has no such p.
+void set_paper(ScoreContrast& contrast, const Family& family) {
+  HypothesisTest& test = contrast.test;
+  test.paper_holds =
+      test.paper_p && confirmed_as_in_paper(family.claim, *test.paper_p < family.plan.alpha,
+                                            is_better(contrast, contrast.difference->estimate));
 }
 
 double ScoreDifference::p(Alternative side, double null) const { return student_p(t(null), df, side); }
 
-/// The contrast of methods a and b at one n_*. `model` is the mixed model of all answers of the table; null
-/// means a paired test.
-ScoreContrast score_contrast(const ScoreTable& table, const Result<MixedScores>* model, int n_star,
-                             const std::string& a, const std::string& b) {
+/// The contrast of methods a and b at one n_*, with the margin of the claim or the table. `model` is the
+/// mixed model of all answers of the table; null means a paired test.
+ScoreContrast score_contrast(const MethodClaim& claim, const ScoreTable& table,
+                             const Result<MixedScores>* model, int n_star, const std::string& a,
+                             const std::string& b) {
   const std::string& block = table.n_stars()[static_cast<std::size_t>(n_star)];
   ScoreContrast out;
   out.higher_is_better = table.scale().higher_is_better;
-  out.margin = table.scale().margin;
+  const auto own = claim.margins.find(table.scale().code);
+  out.margin = own == claim.margins.end() ? table.scale().margin : own->second;
   out.test.method = model ? "t test of the mixed model" : "paired t test";
   out.test.label = a + " - " + b + ", " + table.scale().code + ", " + block;
   out.test.score = table.scale().code;
@@ -146,7 +151,7 @@ FamilyTest superiority(ScoreContrast contrast, const Family& family) {
   const bool better = is_better(contrast, d.estimate);
   test.t = d.t();
   test.p = d.p(one_sided ? better_side(contrast) : Alternative::TwoSided);
-  test.paper_holds = test.paper_p && paper_differs(contrast, family) && better;
+  set_paper(contrast, family);
   set_interval(contrast, 1 - 2 * level_of(family));
   return {test, one_sided || better};
 }
@@ -170,7 +175,7 @@ FamilyTest equivalence(ScoreContrast contrast, const Family& family) {
   const double lower = d.p(Alternative::Greater, -margin), upper = d.p(Alternative::Less, margin);
   test.t = d.t(lower > upper ? -margin : margin);
   test.p = larger(lower, upper);
-  test.paper_holds = test.paper_p && !paper_differs(contrast, family);
+  set_paper(contrast, family);
   set_interval(contrast, 1 - 2 * level_of(family));
   return {test};
 }
@@ -190,12 +195,12 @@ FamilyTest non_inferiority(ScoreContrast contrast, const Family& family) {
   const ScoreDifference& d = *contrast.difference;
   test.t = d.t(worst);
   test.p = d.p(side, worst);
-  test.paper_holds = test.paper_p && (!paper_differs(contrast, family) || is_better(contrast, d.estimate));
+  set_paper(contrast, family);
   set_interval(contrast, 1 - 2 * level_of(family));
   return {test, one_sided || is_better(contrast, d.estimate - worst)};
 }
 
-/// The data for the tests of H1 to H3.
+/// The data for the tests.
 struct Scores {
   const AnalysisPlan& plan;
   const ScoreTable &realism, &sickness;
@@ -214,58 +219,52 @@ std::string tests_of(const Scores& scores) {
   return scores.plan.tests == ScoreTests::Mixed ? "t tests of the mixed model" : "paired t tests";
 }
 
-/// Adds a test for each score, method and n_*.
-template <class Test>
-void add_tests(Family& family, const Scores& scores, const std::vector<std::string>& a, const std::string& b,
-               Test test) {
-  for (const ScoreTable* table : {&scores.realism, &scores.sickness}) {
-    const auto* model = scores.models.empty() ? nullptr : &scores.models[table == &scores.realism ? 0 : 1];
-    for (const std::string& method : a) {
-      for (int n_star = 0; n_star < static_cast<int>(table->n_stars().size()); ++n_star)
-        family.tests.push_back(test(score_contrast(*table, model, n_star, method, b), family));
+FamilyTest test_of(ScoreContrast contrast, const Family& family) {
+  switch (family.claim.kind) {
+    case HypothesisKind::Equivalence:
+      return equivalence(std::move(contrast), family);
+    case HypothesisKind::NonInferiority:
+      return non_inferiority(std::move(contrast), family);
+    case HypothesisKind::Superiority:
+    case HypothesisKind::Preference:  // of Task 2
+      break;
+  }
+  return superiority(std::move(contrast), family);
+}
+
+/// Adds a test for each score, pair of methods and n_*.
+void add_tests(Family& family, const Scores& scores) {
+  const MethodClaim& claim = family.claim;
+  for (const std::string& score : claim.scores) {
+    const bool first = score == "realism";
+    const ScoreTable& table = first ? scores.realism : scores.sickness;
+    const auto* model = scores.models.empty() ? nullptr : &scores.models[first ? 0 : 1];
+    for (const std::string& a : claim.a) {
+      for (const std::string& b : claim.b) {
+        for (int n_star = 0; n_star < static_cast<int>(table.n_stars().size()); ++n_star)
+          family.tests.push_back(test_of(score_contrast(claim, table, model, n_star, a, b), family));
+      }
     }
   }
 }
 
-Hypothesis test_h1(const Scores& scores, const std::string& untestable) {
-  Family family = begin_family("H1", HypothesisKind::Superiority, scores.plan, untestable);
-  family.out.title =
-      "Our method exhibits superior performance compared to FovFluid in various scenes and baseline "
-      "configurations.";
-  family.out.paper_rule = "every uncorrected t test significant, in the direction of better";
-  family.out.paper_published = "confirmed";
-  add_tests(family, scores, {ours, ours_tsp}, fov_fluid, superiority);
-  family.out.rule = rule_text(family.out,
-                              {tests_of(scores) + ", one-sided (in the direction of better)",
-                               tests_of(scores) + ", two-sided", "in the direction of better"},
-                              family.tests.size());
-  return finish(std::move(family));
+RuleWords rule_words(HypothesisKind kind, const std::string& tests) {
+  if (kind == HypothesisKind::Equivalence) {
+    const std::string rule = "two one-sided " + tests + " against the margins";
+    return {rule, rule + ", p doubled", ""};
+  }
+  if (kind == HypothesisKind::NonInferiority) {
+    const std::string rule = tests + " against the margins";
+    return {"one-sided " + rule, rule + ", two-sided", "on the side of not worse"};
+  }
+  return {tests + ", one-sided (in the direction of better)", tests + ", two-sided",
+          "in the direction of better"};
 }
 
-Hypothesis test_h2(const Scores& scores) {
-  Family family = begin_family("H2", HypothesisKind::Equivalence, scores.plan, "");
-  family.out.title =
-      "Our method achieves visual effects comparable to HiRes in various scenes and baseline configurations.";
-  family.out.paper_rule = "no uncorrected t test significant; absence of a difference is not shown by that";
-  family.out.paper_published =
-      "no conclusive evidence to fully support it; Ours-TSp comparable to HiRes or better at the low "
-      "baseline";
-  add_tests(family, scores, {ours, ours_tsp}, hi_res, equivalence);
-  const std::string rule = "two one-sided " + tests_of(scores) + " against the margins";
-  family.out.rule = rule_text(family.out, {rule, rule + ", p doubled", ""}, family.tests.size());
-  return finish(std::move(family));
-}
-
-Hypothesis test_h3(const Scores& scores) {
-  Family family = begin_family("H3", HypothesisKind::NonInferiority, scores.plan, "");
-  family.out.title = "Our acceleration strategy did not degrade visual perception of our naive strategy.";
-  family.out.paper_rule = "no uncorrected t test significant in the direction of worse";
-  family.out.paper_published = "holds true";
-  add_tests(family, scores, {ours_tsp}, ours, non_inferiority);
-  const std::string rule = tests_of(scores) + " against the margins";
-  family.out.rule =
-      rule_text(family.out, {"one-sided " + rule, rule + ", two-sided", "on the side of not worse"},
-                family.tests.size());
+Hypothesis test_claim(const MethodClaim& claim, const Scores& scores, const std::string& untestable) {
+  Family family = begin_family(claim, scores.plan, untestable);
+  add_tests(family, scores);
+  family.out.rule = rule_text(family.out, rule_words(claim.kind, tests_of(scores)), family.tests.size());
   return finish(std::move(family));
 }
 
@@ -283,14 +282,17 @@ void put_beside(Hypothesis& out, Hypothesis paired) {
 
 }  // namespace
 
-std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
-                                         const AnalysisPlan& plan, const std::string& untestable) {
+std::vector<Hypothesis> task1_hypotheses(std::span<const MethodClaim> claims, const ScoreTable& realism,
+                                         const ScoreTable& sickness, const AnalysisPlan& plan,
+                                         const std::string& untestable) {
   const Scores scores = scores_of(realism, sickness, plan);
-  std::vector<Hypothesis> out{test_h1(scores, untestable), test_h2(scores), test_h3(scores)};
+  std::vector<Hypothesis> out;
+  for (const MethodClaim& claim : claims)
+    if (claim.task == 1) out.push_back(test_claim(claim, scores, untestable));
   if (plan.tests == ScoreTests::Paired) return out;
   AnalysisPlan by_pairs = plan;
   by_pairs.tests = ScoreTests::Paired;
-  auto paired = task1_hypotheses(realism, sickness, by_pairs, untestable);
+  auto paired = task1_hypotheses(claims, realism, sickness, by_pairs, untestable);
   for (std::size_t i = 0; i < out.size(); ++i) put_beside(out[i], std::move(paired[i]));
   return out;
 }

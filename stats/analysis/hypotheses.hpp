@@ -1,7 +1,7 @@
 #pragma once
-/// H1 to H6 of the paper (section 5.3.1) as confirmatory tests. Each claim has its own family of tests,
-/// decided by the plan's rule. Each result also gives the verdict of the paper's procedure, without
-/// correction, on the same data.
+/// Confirmatory tests of hypotheses about methods. Each claim has its own family of tests, decided by the
+/// plan's rule. Each result also gives the verdict of the procedure of the claim's paper, without correction,
+/// on the same data.
 
 #include <array>
 #include <optional>
@@ -25,10 +25,6 @@ enum class HypothesisStatus {
 };
 /// "supported", "partly supported", ...
 const char* status_name(HypothesisStatus status);
-
-enum class HypothesisKind { Superiority, Equivalence, NonInferiority, Preference };
-/// "superiority", "equivalence", "non-inferiority", "preference".
-const char* kind_name(HypothesisKind kind);
 
 struct HypothesisTest {
   std::string label;
@@ -69,8 +65,8 @@ struct PairedVerdict {
 };
 
 struct Hypothesis {
-  std::string id;     ///< "H1"
-  std::string title;  ///< the paper's words
+  std::string id;     ///< of its claim
+  std::string title;  ///< in words
   int task = 1;
   HypothesisKind kind = HypothesisKind::Superiority;
   double alpha = 0.05;
@@ -88,35 +84,39 @@ struct Hypothesis {
   std::optional<double> p_claim_of_six;  ///< see correct_over_claims
   std::vector<HypothesisTest> tests;
   std::optional<PairedVerdict> paired;
-  std::string paper_rule, paper_text;
+  std::string paper_rule, paper_text;  ///< empty: the claim has no paper
   bool paper_supported = false;
   std::string paper_published;  ///< the paper's verdict on its own data
 };
 
-/// Tests H1 to H3 within each n_*. The plan chooses paired t tests over participants or the mixed model of
-/// each score; with the mixed model the paired tests are reported too. The plan also chooses one-sided or
-/// two-sided tests. In the two-sided case p of H2 is twice the larger one-sided p, p of H3 is the two-sided p
-/// against its margin, and both give the interval of 1 - alpha. `untestable`: why H1 cannot be tested, such
-/// as gaze that was not tracked; empty if it can. The paper's rule is always applied to the paired tests.
-std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
-                                         const AnalysisPlan& plan, const std::string& untestable);
+/// Tests the claims of Task 1 within each n_*. The plan chooses paired t tests over participants or the mixed
+/// model of each score; with the mixed model the paired tests are reported too. The plan also chooses
+/// one-sided or two-sided tests. In the two-sided case p of equivalence is twice the larger one-sided p, p of
+/// non-inferiority is the two-sided p against its margin, and both give the interval of 1 - alpha.
+/// `untestable`: why claims that need gaze cannot be tested; empty if they can. The paper's rule is always
+/// applied to the paired tests.
+std::vector<Hypothesis> task1_hypotheses(std::span<const MethodClaim> claims, const ScoreTable& realism,
+                                         const ScoreTable& sickness, const AnalysisPlan& plan,
+                                         const std::string& untestable);
 
-/// Tipping points of the tests of H1 to H3: by how many points missing answers must be worse before the
+/// Tipping points of the tests of Task 1: by how many points missing answers must be worse before the
 /// plan's decision on the test (`holds`) changes, if the other tests and the standard error of this test stay
 /// as they are. `tables` must include those that the tests were computed from.
 void add_tipping_points(std::span<Hypothesis> hypotheses, std::span<const ScoreTable> tables);
 
-/// Tests H4 to H6 by exact binomial tests, or by share_test if PairPreference::shares is set. `untestable`:
-/// why H5 cannot be tested.
-std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
+/// Tests the claims of Task 2 by exact binomial tests, or by share_test if PairPreference::shares is set.
+/// `untestable`: why claims that need gaze cannot be tested.
+std::vector<Hypothesis> task2_hypotheses(std::span<const MethodClaim> claims,
+                                         std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,
                                          const std::string& untestable);
 
 /// The hypotheses whose methods a protocol shows, and the reason why each other hypothesis is left out.
 struct ShownClaims {
   struct LeftOut {
-    std::string id;      ///< "H1"
-    std::string reason;  ///< "the protocol does not show FovFluid"
+    std::string id;                     ///< or several in short: "A to C"
+    std::string reason;                 ///< "the protocol does not show FovFluid"
+    std::vector<std::string> ids = {};  ///< of the hypotheses
   };
   std::vector<Hypothesis> claims;
   std::vector<LeftOut> left_out;
@@ -124,11 +124,11 @@ struct ShownClaims {
 /// Leaves out each hypothesis with a test of a method that is not among `methods`.
 ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::string>& methods);
 
-/// Corrects p_claim by Holm over the claims H1 to H6; absent or untestable claims count as p = 1. The result
-/// is only displayed; the decisions use alpha for each claim.
-void correct_over_claims(std::span<Hypothesis> claims);
+/// Corrects p_claim by Holm over all claims of the plan, `of` in number; absent or untestable claims count as
+/// p = 1. The result is only displayed; the decisions use alpha for each claim.
+void correct_over_claims(std::span<Hypothesis> claims, std::size_t of);
 
-/// True for the pairs in the paper's Fig. 10.
-bool in_paper_figure_10(const std::string& a, const std::string& b);
+/// True if a claim of Task 2 compares the two methods.
+bool compares_pair(std::span<const MethodClaim> claims, const std::string& a, const std::string& b);
 
 }  // namespace stats

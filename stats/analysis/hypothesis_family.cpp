@@ -107,19 +107,35 @@ const char* kind_name(HypothesisKind kind) {
   return "preference";
 }
 
-Family begin_family(const char* id, HypothesisKind kind, const AnalysisPlan& plan,
-                    const std::string& untestable) {
-  Family family{plan, untestable, {}, {}};
+Family begin_family(const MethodClaim& claim, const AnalysisPlan& plan, const std::string& untestable) {
+  Family family{claim, plan, claim.needs_gaze ? untestable : "", {}, {}};
   Hypothesis& out = family.out;
-  out.id = id;
-  out.kind = kind;
-  out.task = kind == HypothesisKind::Preference ? 2 : 1;
+  out.id = claim.id;
+  out.title = claim.text;
+  out.kind = claim.kind;
+  out.task = claim.task;
   out.alpha = plan.alpha;
   out.decision = plan.decision;
   out.one_sided =
-      plan.directional == Directional::All ||
-      (plan.directional == Directional::H2H3H6 && (out.id == "H2" || out.id == "H3" || out.id == "H6"));
+      plan.directional == Directional::All || (plan.directional == Directional::Once && claim.once_one_sided);
+  if (claim.paper) {
+    out.paper_rule = claim.paper->rule;
+    out.paper_published = claim.paper->published;
+  }
   return family;
+}
+
+bool confirmed_as_in_paper(const MethodClaim& claim, bool significant, bool right) {
+  if (!claim.paper) return false;
+  switch (claim.paper->holds) {
+    case PaperHolds::Significant:
+      return significant && right;
+    case PaperHolds::NotSignificant:
+      return !significant;
+    case PaperHolds::NotWorse:
+      break;
+  }
+  return !significant || right;
 }
 
 std::string rule_text(const Hypothesis& hypothesis, const RuleWords& words, std::size_t tests) {
@@ -142,7 +158,7 @@ Hypothesis finish(Family family) {
   if (!family.untestable.empty())
     out.status_text =
         "Here " + family.untestable + "; the figures are shown all the same: " + out.status_text;
-  judge_as_the_paper(out);
+  if (family.claim.paper) judge_as_the_paper(out);
   return out;
 }
 
@@ -162,18 +178,19 @@ ShownClaims claims_about(std::vector<Hypothesis> all, const std::vector<std::str
       out.claims.push_back(std::move(one));
     } else {
       out.left_out.push_back(
-          {one.id, fmt::format("the protocol does not show {}", fmt::join(missing_methods, " and "))});
+          {one.id,
+           fmt::format("the protocol does not show {}", fmt::join(missing_methods, " and ")),
+           {one.id}});
     }
   }
   return out;
 }
 
-void correct_over_claims(std::span<Hypothesis> claims) {
-  constexpr std::size_t h1_to_h6 = 6;
+void correct_over_claims(std::span<Hypothesis> claims, std::size_t of) {
   std::vector<double> p;
   for (const Hypothesis& one : claims)
     p.push_back(one.status == HypothesisStatus::NotTestable ? no_p : one.p_claim.value_or(no_p));
-  const auto holm = adjust(p, Adjustment::Holm, h1_to_h6);
+  const auto holm = adjust(p, Adjustment::Holm, of);
   for (std::size_t i = 0; holm && i < p.size(); ++i) {
     if (!std::isnan(p[i])) claims[i].p_claim_of_six = holm->p[i];
   }

@@ -11,28 +11,27 @@
 
 namespace stats {
 
-inline constexpr const char* ours = "Ours";
-inline constexpr const char* ours_tsp = "Ours-TSp";
-inline constexpr const char* fov_fluid = "FovFluid";
-inline constexpr const char* hi_res = "HiRes";
-
 struct FamilyTest {
   HypothesisTest test;
   /// True if the estimate lies in the claimed direction. Always true for tests of equivalence and one-sided
-  /// tests of H1 and H3, which include the direction.
+  /// tests of superiority and non-inferiority, which include the direction.
   bool right = true;
 };
 
 struct Family {
+  const MethodClaim& claim;
   const AnalysisPlan& plan;
   std::string untestable;  ///< why the hypothesis cannot be tested; empty if it can
-  Hypothesis out;          ///< begin_family() and the caller set id, title and rules; finish() sets the rest
+  Hypothesis out;          ///< begin_family() and the caller set text and rules; finish() sets the rest
   std::vector<FamilyTest> tests;
 };
 
-/// A family without tests, with the plan's settings.
-Family begin_family(const char* id, HypothesisKind kind, const AnalysisPlan& plan,
-                    const std::string& untestable);
+/// A family without tests, with the claim's texts and the plan's settings. `untestable`: why claims that need
+/// gaze cannot be tested.
+Family begin_family(const MethodClaim& claim, const AnalysisPlan& plan, const std::string& untestable);
+
+/// True if the procedure of the claim's paper counts a test as confirmed; false without a paper.
+bool confirmed_as_in_paper(const MethodClaim& claim, bool significant, bool right);
 
 /// Parts of a decision rule in words, as in "paired t tests, two-sided, all significant and in the direction
 /// of better": the test when one-sided and when two-sided, and the side that a two-sided result must lie on

@@ -56,7 +56,7 @@ enum class DecisionRule {
   Holm,  ///< each test must hold after Holm; bundles frozen before the key `decision` existed use this rule
 };
 
-/// The kind of tests for H1 to H3.
+/// The kind of tests of scores in Task 1.
 enum class ScoreTests {
   Paired,  ///< paired t tests of participants' means
   Mixed,   ///< t tests of the mixed model of all answers (mixed_scores.hpp)
@@ -64,9 +64,44 @@ enum class ScoreTests {
 
 /// Which hypotheses are tested one-sided. Every hypothesis claims a direction.
 enum class Directional {
-  None,    ///< two-sided: the interval of 1 - alpha must lie wholly in the claimed range
-  All,     ///< one-sided: the interval of 1 - 2 alpha must lie in the claimed range
-  H2H3H6,  ///< H2, H3 and H6 one-sided; bundles frozen before the key `directional` existed use this rule
+  None,  ///< two-sided: the interval of 1 - alpha must lie wholly in the claimed range
+  All,   ///< one-sided: the interval of 1 - 2 alpha must lie in the claimed range
+  Once,  ///< those with once_one_sided; bundles frozen before the key `directional` existed use this rule
+};
+
+enum class HypothesisKind { Superiority, Equivalence, NonInferiority, Preference };
+/// "superiority", "equivalence", "non-inferiority", "preference".
+const char* kind_name(HypothesisKind kind);
+
+/// When the paper's procedure counts a test as confirmed, by its uncorrected two-sided p.
+enum class PaperHolds {
+  Significant,     ///< p < alpha, in the direction claimed
+  NotSignificant,  ///< p >= alpha
+  NotWorse,        ///< p >= alpha, or in the direction of better
+};
+
+/// A hypothesis about methods, as declared in a plan file. Its tests are one family.
+struct MethodClaim {
+  /// The procedure that a paper used for it.
+  struct Paper {
+    std::string rule;  ///< in words
+    PaperHolds holds = PaperHolds::Significant;
+    std::string published;  ///< the paper's verdict on its own data
+  };
+
+  std::string id;    ///< a name without spaces
+  std::string text;  ///< the hypothesis in words
+  int task = 1;      ///< 1: ratings; 2: choices between two methods
+  HypothesisKind kind = HypothesisKind::Superiority;
+  std::vector<std::string> scores;  ///< Task 1: "realism", "sickness"
+  std::vector<std::string> a, b;    ///< methods; each of `a` is compared with each of `b`
+  /// Task 1: margin by score, in points; empty: those of the plan.
+  std::map<std::string, double> margins = {};
+  bool needs_gaze = false;       ///< not testable unless gaze was tracked
+  bool once_one_sided = false;   ///< see Directional::Once
+  bool larger_families = false;  ///< Task 2: p is also given after Holm over larger families of pairs
+  std::string called = {};       ///< Task 2: what the rule calls the methods `a`; empty: their names
+  std::optional<Paper> paper = {};
 };
 
 /// A hypothesis of a study with factors of its own, as declared in a plan file.
@@ -106,6 +141,7 @@ struct AnalysisPlan {
   std::map<std::string, double> levels = {};
   PilotRules pilot = {};  ///< how to treat reverse coders, drift and lapses in a pilot
   std::vector<DeclaredHypothesis> hypotheses = {};  ///< of studies with factors (`vip-stats study`)
+  std::vector<MethodClaim> claims = {};             ///< about methods; empty: those of the paper's file
 };
 
 }  // namespace stats

@@ -1,4 +1,8 @@
-/// H4 to H6: preferences between two methods.
+/// Claims of Task 2: preferences between two methods.
+
+#include <fmt/format.h>
+
+#include <algorithm>
 
 #include "stats/analysis/hypotheses.hpp"
 #include "stats/analysis/hypothesis_family.hpp"
@@ -9,7 +13,7 @@ namespace {
 
 /// The test of each person's share of choices of a, used if some answered more than once.
 FamilyTest shares_of(HypothesisTest test, const PairPreference& pair, bool forwards, Alternative side,
-                     double alpha) {
+                     const Family& family) {
   std::vector<PersonChoices> people = pair.people;
   for (auto& one : people)
     if (!forwards) one.k = one.n - one.k;
@@ -20,7 +24,7 @@ FamilyTest shares_of(HypothesisTest test, const PairPreference& pair, bool forwa
   test.p = own->p;
   test.paper_p = pair.shares->p;
   const bool right = own->share > 0.5;
-  test.paper_holds = *test.paper_p < alpha && right;
+  test.paper_holds = confirmed_as_in_paper(family.claim, *test.paper_p < family.plan.alpha, right);
   return {test, right};
 }
 
@@ -42,7 +46,7 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
     if (!forwards && !(first == b && second == a)) continue;
     test.n = static_cast<std::size_t>(pair.n);
     test.k = forwards ? pair.k : pair.n - pair.k;
-    if (pair.shares) return shares_of(std::move(test), pair, forwards, side, plan.alpha);
+    if (pair.shares) return shares_of(std::move(test), pair, forwards, side, family);
     test.reason = pair.test.reason();
     if (!pair.test) return {test};
     const auto own = binomial_test(*test.k, pair.n, 0.5, side, test.ci_confidence);
@@ -51,17 +55,19 @@ FamilyTest preference(std::span<const PairPreference> pairs, const std::vector<s
     test.p = own->p;
     test.paper_p = pair.test->p;
     const bool right = own->estimate > 0.5;
-    test.paper_holds = *test.paper_p < plan.alpha && right;
+    test.paper_holds = confirmed_as_in_paper(family.claim, *test.paper_p < plan.alpha, right);
     return {test, right};
   }
   test.reason = "the study does not show " + a + " and " + b;
   return {test};
 }
 
-/// Adds p after Holm over two larger families: the five pairs of the paper's Fig. 10, and all pairs.
-void add_larger_families(Hypothesis& hypothesis, std::span<const PairPreference> pairs,
-                         const std::vector<std::string>& methods) {
-  const auto five = holm_over_pairs(pairs, methods, in_paper_figure_10);
+/// Adds p after Holm over two larger families: the pairs of all claims, and all pairs.
+void add_larger_families(Hypothesis& hypothesis, std::span<const MethodClaim> claims,
+                         std::span<const PairPreference> pairs, const std::vector<std::string>& methods) {
+  const auto five = holm_over_pairs(pairs, methods, [&](const std::string& a, const std::string& b) {
+    return compares_pair(claims, a, b);
+  });
   for (HypothesisTest& test : hypothesis.tests) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const std::string& a = methods[static_cast<std::size_t>(pairs[i].a)];
@@ -75,53 +81,37 @@ void add_larger_families(Hypothesis& hypothesis, std::span<const PairPreference>
 
 }  // namespace
 
-std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
+std::vector<Hypothesis> task2_hypotheses(std::span<const MethodClaim> claims,
+                                         std::span<const PairPreference> pairs,
                                          const std::vector<std::string>& methods, const AnalysisPlan& plan,
                                          const std::string& untestable) {
-  const auto add = [&](Family& family, const char* a, const char* b) {
-    family.tests.push_back(preference(pairs, methods, a, b, family));
-  };
-  const auto words = [&](Family& family, const std::string& test, const std::string& chosen) {
+  std::vector<Hypothesis> out;
+  for (const MethodClaim& claim : claims) {
+    if (claim.task != 2) continue;
+    Family family = begin_family(claim, plan, untestable);
+    for (const std::string& a : claim.a)
+      for (const std::string& b : claim.b) family.tests.push_back(preference(pairs, methods, a, b, family));
+    const std::string test = family.tests.size() == 1 ? "exact binomial test" : "exact binomial tests";
+    const std::string chosen =
+        claim.called.empty() ? fmt::format("{}", fmt::join(claim.a, " or ")) : claim.called;
     family.out.rule = rule_text(
         family.out,
         {test + ", one-sided (" + chosen + " chosen more often)", test + ", two-sided", "more often chosen"},
         family.tests.size());
-  };
-  Family h4 = begin_family("H4", HypothesisKind::Preference, plan, "");
-  h4.out.title = "Users will prefer the acceleration strategy.";
-  h4.out.paper_rule = "uncorrected binomial test significant";
-  h4.out.paper_published = "not confirmed";
-  add(h4, ours_tsp, ours);
-  words(h4, "exact binomial test", ours_tsp);
-
-  Family h5 = begin_family("H5", HypothesisKind::Preference, plan, untestable);
-  h5.out.title = "When faced with FovFluid and our method, users will prefer our method.";
-  h5.out.paper_rule = "every uncorrected binomial test significant";
-  h5.out.paper_published = "supported (p = 0.029, p = 0.002)";
-  add(h5, ours, fov_fluid);
-  add(h5, ours_tsp, fov_fluid);
-  words(h5, "exact binomial tests", "ours");
-
-  Family h6 = begin_family("H6", HypothesisKind::Preference, plan, "");
-  h6.out.title = "When faced with HiRes and our method, users will tend to choose HiRes.";
-  h6.out.paper_rule =
-      "no uncorrected binomial test significant; that confirms nothing, though the paper says so";
-  h6.out.paper_published = "no significant difference, said to confirm it";
-  add(h6, hi_res, ours);
-  add(h6, hi_res, ours_tsp);
-  words(h6, "exact binomial tests", hi_res);
-  for (FamilyTest& one : h6.tests) one.test.paper_holds = one.test.paper_p && *one.test.paper_p >= plan.alpha;
-
-  std::vector<Hypothesis> out{finish(std::move(h4)), finish(std::move(h5)), finish(std::move(h6))};
-  add_larger_families(out[0], pairs, methods);
-  add_larger_families(out[1], pairs, methods);
+    out.push_back(finish(std::move(family)));
+    if (claim.larger_families) add_larger_families(out.back(), claims, pairs, methods);
+  }
   return out;
 }
 
-bool in_paper_figure_10(const std::string& a, const std::string& b) {
-  const auto pair = [&](const char* x, const char* y) { return (a == x && b == y) || (a == y && b == x); };
-  return pair(ours, ours_tsp) || pair(ours, fov_fluid) || pair(ours_tsp, fov_fluid) || pair(ours, hi_res) ||
-         pair(ours_tsp, hi_res);
+bool compares_pair(std::span<const MethodClaim> claims, const std::string& a, const std::string& b) {
+  const auto among = [](const std::vector<std::string>& list, const std::string& one) {
+    return std::find(list.begin(), list.end(), one) != list.end();
+  };
+  return std::any_of(claims.begin(), claims.end(), [&](const MethodClaim& claim) {
+    return claim.task == 2 &&
+           ((among(claim.a, a) && among(claim.b, b)) || (among(claim.a, b) && among(claim.b, a)));
+  });
 }
 
 }  // namespace stats

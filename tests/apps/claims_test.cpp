@@ -1,15 +1,19 @@
-/// Which of H1 to H6 a protocol tests, and the reasons for the others: before the study, in the bundle and on
-/// the page.
+/// Hypotheses about methods: those that a protocol tests, and the reasons for the others, before the study,
+/// in the bundle and on the page; and hypotheses that a plan lists in their place.
 
 #include "libstudy/analysis/claims.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/tasks/results.hpp"
+#include "libstudy/power/task_power.hpp"
 #include "libstudy/preregistration/preregistration.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "libstudy/protocol/protocol.hpp"
 #include "libstudy/report/page.hpp"
+#include "stats/base/error.hpp"
 #include "stats/base/file.hpp"
 #include "stats/base/new_file.hpp"
 #include "tests/apps/made_task_study.hpp"
@@ -48,7 +52,8 @@ std::string three_way() {
 
 std::vector<std::string> left_out_of(const std::string& text) {
   std::vector<std::string> out;
-  for (const auto& [id, reason] : study::hypotheses_of(study::parse_protocol(text, "a.toml"), {}).left_out)
+  for (const auto& [id, reason, ids] :
+       study::hypotheses_of(study::parse_protocol(text, "a.toml"), {}).left_out)
     out.push_back(id + ": " + reason);
   return out;
 }
@@ -119,6 +124,151 @@ TEST(Claims, PairsWithThreeAnswersLackTheChoiceOfTwo) {
                              Not(HasSubstr("asks no choice"))));
   const auto refused = study::select_task({{pairs}, 0}, {study::TaskKind::Task2, "", {}});
   EXPECT_THAT(refused.reason(), HasSubstr("a choice with exactly two anchors"));
+}
+
+study::PlanInForce plan_of(const std::string& text) {
+  const test::TemporaryFolder folder;
+  base::write_file_atomically(folder / "plan.toml", text);
+  auto out = study::read_plan(folder / "plan.toml");
+  out.plan.resamples = 200;
+  return out;
+}
+
+std::string shipped_hypotheses() {
+  return base::read_file(base::resource("protocols/plans/paper.toml"), 1 << 20);
+}
+
+std::string hypotheses_of_bundle(const stats::AnalysisPlan& plan) {
+  const test::TemporaryFolder folder;
+  study::report::BundleRequest request;
+  request.protocols = {"protocols/task1.toml", "protocols/task2.toml"};
+  request.plan = plan;
+  study::report::freeze_bundle(request, folder / "bundle");
+  return base::read_file(folder / "bundle" / "hypotheses.json", 1 << 20);
+}
+
+// The hashes are of the texts that the program wrote while these hypotheses were code.
+TEST(Claims, TheShippedFileGivesTheTextsRulesTestsAndMarginsOfTheCodeBeforeIt) {
+  EXPECT_EQ(base::sha256_hex(hypotheses_of_bundle({})),
+            "98f335271caa2d6fa7ebc10984350206925f8aeb0bb463b25453cba2b79e1f45");
+  stats::AnalysisPlan other;
+  other.directional = stats::Directional::All;
+  other.margin_realism = 1;
+  other.margin_sickness = 0.4;
+  EXPECT_EQ(base::sha256_hex(hypotheses_of_bundle(other)),
+            "f1c04cb257df32b129f10e017f7bc758715d4f1f86a23ea09c279ebeb5bf6bbf");
+  const auto listed = plan_of(shipped_hypotheses());
+  EXPECT_EQ(hypotheses_of_bundle(listed.plan), hypotheses_of_bundle({})) << "as a plan of one's own";
+  const std::string text = study::format_plan(listed.plan, {"ab"});
+  EXPECT_EQ(study::format_plan(plan_of(text).plan, {"ab"}), text);
+}
+
+TEST(Claims, ThePapersProcedureAndItsLargerFamiliesAreThoseOfTheCodeBeforeTheFile) {
+  const auto json = made_study::results_of({{made_study::task1(12), made_study::task2(12)}, 0});
+  for (const auto& hypothesis : json.at("hypotheses")) {
+    const std::string id = hypothesis.at("id");
+    for (const auto& test : hypothesis.at("tests")) {
+      const bool differs = test.at("paper_p").get<double>() < 0.05;
+      const double estimate = test.at("estimate"), none = test.contains("score") ? 0 : 0.5;
+      const bool better = test.value("score", "") == "sickness" ? estimate < none : estimate > none;
+      const bool confirmed = id == "H2" || id == "H6" ? !differs
+                             : id == "H3"             ? !differs || better
+                                                      : differs && better;
+      EXPECT_EQ(test.at("paper_holds"), confirmed) << id << ": " << test.at("label");
+      EXPECT_EQ(test.contains("p_holm_of_five") && test.contains("p_holm_of_ten"), id == "H4" || id == "H5");
+    }
+  }
+}
+
+/// The paper's file without its third hypothesis, with a name, a margin and a direction of one's own.
+std::string changed_hypotheses() {
+  std::string text = shipped_hypotheses();
+  const auto third = text.find("[[hypothesis]]\nid = \"H3\"");
+  text.erase(third, text.find("[[hypothesis]]\nid = \"H4\"") - third);
+  text = replaced(text, "id = \"H1\"", "id = \"worse\"");
+  text = replaced(text, "alternative = \"better\"", "alternative = \"worse\"");
+  return replaced(text, "margin = \"plan\"", "margin = {realism = 3, sickness = 1.5}");
+}
+
+TEST(Claims, APlanThatListsOthersChangesTheResultsAsItSays) {
+  const study::TaskStudy study{{made_study::task1(12), made_study::task2(12)}, 0};
+  const auto shipped = made_study::results_of(study),
+             own = made_study::results_of(study, plan_of(changed_hypotheses()));
+  const auto& list = own.at("hypotheses");
+  ASSERT_EQ(list.size(), 5u);
+  EXPECT_EQ(list[0].at("id"), "worse");
+  EXPECT_EQ(list[0].at("tests")[0].at("label"), "FovFluid - Ours, realism, 16k");
+  EXPECT_EQ(list[0].at("tests")[0].at("estimate").get<double>(),
+            -shipped.at("hypotheses")[0].at("tests")[0].at("estimate").get<double>());
+  EXPECT_EQ(list[1].at("id"), "H2");
+  EXPECT_EQ(list[1].at("tests")[0].at("margin"), 3);
+  EXPECT_EQ(list[1].at("status"), "supported") << "within half of the scale";
+  EXPECT_NE(shipped.at("hypotheses")[1].at("status"), "supported");
+  EXPECT_EQ(list[2], [&] {
+    auto same = shipped.at("hypotheses")[3];
+    same["p_claim_of_six"] = list[2].at("p_claim_of_six");
+    return same;
+  }()) << "what was not changed";
+  EXPECT_EQ(own.at("sensitivity")[0].at("hypotheses").size(), 2u);
+  EXPECT_EQ(own.at("plan").at("hypotheses").size(), 5u);
+  EXPECT_FALSE(shipped.at("plan").contains("hypotheses"));
+  const std::string page = study::report::results_page(own);
+  EXPECT_NE(page.find(">worse</span>"), std::string::npos);
+  EXPECT_EQ(page.find(">H3</span>"), std::string::npos);
+}
+
+TEST(Claims, PreregistrationAndPowerUseThePlansOwn) {
+  const auto own = plan_of(changed_hypotheses());
+  EXPECT_THAT(hypotheses_of_bundle(own.plan), AllOf(HasSubstr("\"worse\""), Not(HasSubstr("\"H3\""))));
+  study::PowerRequest request;
+  request.protocol = study::read_protocol(base::resource("protocols/task1.toml"));
+  request.n = {8};
+  request.studies = 5;
+  request.worlds = {"null", "paper"};
+  request.plan = own;
+  for (const auto& world : study::simulate_task_power(request)) {
+    ASSERT_EQ(world.hypotheses.size(), 2u);
+    EXPECT_EQ(world.hypotheses[0].id, "worse");
+    EXPECT_EQ(world.hypotheses[0].claims_true, 0) << world.words;
+    EXPECT_EQ(world.hypotheses[1].tests[0].margin, 3);
+  }
+  request.worlds = {"margin"};
+  EXPECT_THAT(
+      [&] { study::simulate_task_power(request); },
+      ::testing::ThrowsMessage<base::Error>(HasSubstr("is not made for the methods or margins of worse")));
+}
+
+TEST(Claims, MistakesInTheirTablesAreRefusedAtTheirPlace) {
+  const std::string good =
+      "format = 1\n[[hypothesis]]\nid = \"a\"\ntext = \"t\"\ntask = \"task1\"\noutcome = \"realism\"\n"
+      "compare = [{method = \"Ours\"}, {method = \"HiRes\"}]\ntest = \"paired_t\"\nalternative = "
+      "\"better\"\n";
+  EXPECT_EQ(plan_of(good).plan.claims.size(), 1u);
+  const auto refuse = [&](const char* from, const char* to, const char* words) {
+    try {
+      plan_of(replaced(good, from, to));
+      ADD_FAILURE() << to;
+    } catch (const base::Error& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("plan.toml:"), HasSubstr(words))) << to;
+    }
+  };
+  refuse("\"Ours\"", "\"Ourz\"", "plan.toml:7:");
+  refuse("\"Ours\"", "\"Ourz\"", "the nearest is \"Ours\"");
+  refuse("\"HiRes\"", "[\"Ours\", \"HiRes\"]", "compares Ours with itself");
+  refuse("\"HiRes\"", "[\"HiRes\", \"HiRes\"]", "stands there twice");
+  refuse(", {method = \"HiRes\"}", "", "holds 1 tables");
+  refuse("task1", "task3", "plan.toml:5:");
+  refuse("\"realism\"", "\"choice\"", "is no outcome of this task");
+  refuse("\"paired_t\"", "\"binomial\"", "plan.toml:8:");
+  refuse("\"paired_t\"", "\"tost\"", "needs a margin");
+  refuse("\"better\"", "\"two-sided\"", "plan.toml:9:");
+  refuse("test = ", "margin = \"wide\"\ntest = ", "plan.toml:8:");
+  refuse("test = ", "margin = {realism = -1}\ntest = ", "plan.toml:8:");
+  refuse("test = ", "margin = {realism = 1, sickness = 1}\ntest = ", "sickness");
+  refuse("test = ", "family = \"f\"\ntest = ", "family");
+  refuse("text = \"t\"\n", "", "text");
+  refuse("format = 1\n", ("format = 1\n" + good.substr(11)).c_str(), "is the id of another hypothesis");
+  refuse("format = 1\n", "format = 1\ndirectional = \"a\"\n", "use true or false");
 }
 
 }  // namespace

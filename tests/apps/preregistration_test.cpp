@@ -246,7 +246,7 @@ TEST(Preregistration, AnotherMarginIsNamed) {
 void freeze_as_before(const fs::path& folder) {
   auto request = both_tasks();
   request.plan.decision = stats::DecisionRule::Holm;
-  request.plan.directional = stats::Directional::H2H3H6;
+  request.plan.directional = stats::Directional::Once;
   study::report::freeze_bundle(request, folder);
   std::istringstream lines(base::read_file(folder / "plan.toml", 1 << 20));
   std::string plan;

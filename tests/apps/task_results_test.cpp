@@ -306,12 +306,12 @@ TEST(AnalysisPlan, AFrozenPlanWithoutADecisionRuleIsOneUnderHolm) {
   const auto frozen =
       plan_of("format = 1\nprotocols = [\"ab\"]\n[exclusions]\nstraight_lining_answers = 8\n");
   EXPECT_EQ(frozen.decision, stats::DecisionRule::Holm);
-  EXPECT_EQ(frozen.directional, stats::Directional::H2H3H6);
+  EXPECT_EQ(frozen.directional, stats::Directional::Once);
   EXPECT_EQ(frozen.tests, stats::ScoreTests::Paired);
   EXPECT_EQ(frozen.exclusions.straight_lining_answers, 8);
   const auto again = plan_of(study::format_plan(frozen, {}));
   EXPECT_EQ(again.decision, stats::DecisionRule::Holm);
-  EXPECT_EQ(again.directional, stats::Directional::H2H3H6);
+  EXPECT_EQ(again.directional, stats::Directional::Once);
   const auto today = plan_of(study::format_plan({}, {"ab"}));
   EXPECT_EQ(today.decision, stats::DecisionRule::IntersectionUnion);
   EXPECT_EQ(today.directional, stats::Directional::None);

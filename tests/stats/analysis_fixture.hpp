@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "libstudy/protocol/method_claims.hpp"
+#include "stats/analysis/hypotheses.hpp"
 #include "stats/analysis/score_table.hpp"
 #include "stats/analysis/task2.hpp"
 
@@ -56,3 +58,18 @@ inline void add_pair(std::vector<PairChoice>& choices, int a, int b, int k, int 
 }
 
 }  // namespace stats::test
+
+namespace stats {
+
+/// The hypotheses that ship with the programs.
+inline std::vector<Hypothesis> task1_hypotheses(const ScoreTable& realism, const ScoreTable& sickness,
+                                                const AnalysisPlan& plan, const std::string& untestable) {
+  return task1_hypotheses(study::shipped_claims(), realism, sickness, plan, untestable);
+}
+inline std::vector<Hypothesis> task2_hypotheses(std::span<const PairPreference> pairs,
+                                                const std::vector<std::string>& methods,
+                                                const AnalysisPlan& plan, const std::string& untestable) {
+  return task2_hypotheses(study::shipped_claims(), pairs, methods, plan, untestable);
+}
+
+}  // namespace stats

@@ -23,7 +23,7 @@ using ::testing::SizeIs;
 AnalysisPlan frozen_earlier() {
   AnalysisPlan plan;
   plan.decision = DecisionRule::Holm;
-  plan.directional = Directional::H2H3H6;
+  plan.directional = Directional::Once;
   return plan;
 }
 
@@ -165,7 +165,7 @@ TEST(PreferenceHypotheses, AClaimWithOneFalseTestIsSupportedAtTheLevelOfThatTest
 TEST(PreferenceHypotheses, TheSixClaimsAreCorrectedBesideTheDecisions) {
   auto claims = preferences(21, 19, 21, 13, 11, "gaze was not tracked");
   const double h4 = *claims[0].p_claim;
-  correct_over_claims(claims);
+  correct_over_claims(claims, 6);
   EXPECT_NEAR(*claims[0].p_claim_of_six, 6 * h4, 1e-15) << "H1 to H3 and H5 count as p = 1";
   EXPECT_FALSE(claims[1].p_claim_of_six.has_value()) << "what cannot be tested cannot be claimed";
   EXPECT_EQ(*claims[2].p_claim_of_six, 1);

@@ -1,4 +1,5 @@
 #include "libstudy/analysis/tasks/data_json.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +67,7 @@ bool refines(const TaskData& data) {
   });
 }
 
-std::vector<std::string> notes_of(const TaskData& data) {
+std::vector<std::string> notes_of(const TaskData& data, const stats::AnalysisPlan& plan) {
   const std::string task = std::string(task_title(data.task)) + ": ";
   std::vector<std::string> notes;
   if (data.test_data) notes.push_back(task + "these are test data, not a study.");
@@ -88,9 +89,13 @@ std::vector<std::string> notes_of(const TaskData& data) {
                     " of simulated observers left out beside those of people.");
   const std::string gaze = refines(data) ? data.gaze_problem() : "";
   if (!gaze.empty()) notes.push_back(task + gaze + ".");
-  if (!data.protocol.effects.empty() && (data.task == TaskKind::Task1 || data.task == TaskKind::Task2))
-    notes.push_back(task + "effects are a factor, so that " +
-                    (data.task == TaskKind::Task1 ? "H1 to H3" : "H4 to H6") +
+  const bool of_methods = data.task == TaskKind::Task1 || data.task == TaskKind::Task2;
+  const std::string ids =
+      of_methods
+          ? ids_in_short(ids_of(claims_of_task(claims_in_force(plan), data.task == TaskKind::Task1 ? 1 : 2)))
+          : "";
+  if (!data.protocol.effects.empty() && !ids.empty())
+    notes.push_back(task + "effects are a factor, so that " + ids +
                     ", which are about methods alone, are not tested.");
   return notes;
 }
@@ -154,7 +159,8 @@ Json timed_json(const TimedCell& cell) {
 
 }  // namespace
 
-Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks) {
+Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks,
+                const stats::AnalysisPlan& plan) {
   std::set<std::string> observers, simulated;
   std::map<std::string, int> gaze, stations, displays;
   bool test_data = true, follow_gaze = false, tracked = true;
@@ -171,7 +177,7 @@ Json study_json(const std::string& database, const std::vector<const TaskData*>&
       tracked = tracked && !data->gaze.empty() && data->gaze_problem().empty();
     }
     protocols.push_back(protocol_json(*data));
-    for (const std::string& note : notes_of(*data)) notes.push_back(note);
+    for (const std::string& note : notes_of(*data, plan)) notes.push_back(note);
   }
   return {{"database", database},
           {"test_data", test_data && !tasks.empty()},

@@ -11,7 +11,8 @@
 namespace study {
 
 /// The entry "study" for the given tasks. `database`: the database's name for display.
-Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks);
+Json study_json(const std::string& database, const std::vector<const TaskData*>& tasks,
+                const stats::AnalysisPlan& plan);
 /// Names of the exclusion rules that could exclude some of the data for some answers. A rule is missing if
 /// the data lack what it checks (timing verdicts, catch pages, repeated trials, enough trials), if it is for
 /// pairs and the study shows none (or the reverse), or if its limit is not below the scale's range.

@@ -65,12 +65,12 @@ Json hypothesis_json(const stats::Hypothesis& one) {
             {"confirmed_holm", one.confirmed_holm},
             {"p_claim", json_number(one.p_claim)},
             {"p_claim_of_six", json_number(one.p_claim_of_six)},
-            {"tests", tests_json(one.tests)},
-            {"paper",
-             {{"rule", one.paper_rule},
-              {"status", one.paper_supported ? "supported" : "not supported"},
-              {"text", one.paper_text},
-              {"published", one.paper_published}}}};
+            {"tests", tests_json(one.tests)}};
+  if (!one.paper_rule.empty())
+    json["paper"] = {{"rule", one.paper_rule},
+                     {"status", one.paper_supported ? "supported" : "not supported"},
+                     {"text", one.paper_text},
+                     {"published", one.paper_published}};
   if (one.status == stats::HypothesisStatus::NotTestable)
     json["status_if_testable"] = stats::status_name(one.status_if_testable);
   if (one.paired)

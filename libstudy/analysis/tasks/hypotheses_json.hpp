@@ -1,5 +1,5 @@
 #pragma once
-/// Writes hypotheses H1 to H6 as JSON for the results (docs/report.md).
+/// Writes hypotheses about methods as JSON for the results (docs/report.md).
 
 #include <vector>
 

@@ -13,6 +13,7 @@
 #include "libstudy/analysis/tasks/sensitivity.hpp"
 #include "libstudy/analysis/tasks/task1_json.hpp"
 #include "libstudy/analysis/tasks/task2_json.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "stats/base/file.hpp"
 #include "stats/gsl_errors.hpp"
 
@@ -55,15 +56,16 @@ std::string why_not_analysed(const TaskData& data) {
 }
 
 /// The analysis and the hypotheses that are left out for a design without a built-in analysis, with reasons.
-std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
+std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data,
+                                                         const stats::AnalysisPlan& plan) {
   std::vector<stats::ShownClaims::LeftOut> out{{"own design", why_not_analysed(data)}};
   if (varies_own_factors(data)) return out;
   const std::string lacks = what_it_lacks(data);
   if (data.protocol.methods.size() < 2) {
-    out.push_back({"H1 to H6", lacks});
+    leave_out(out, plan, {}, lacks);
   } else {
-    out.push_back({"H1 to H3", data.protocol.pairs ? methods_in_pairs : lacks});
-    out.push_back({"H4 to H6", data.protocol.pairs ? lacks : no_pairs});
+    leave_out(out, plan, 1, data.protocol.pairs ? methods_in_pairs : lacks);
+    leave_out(out, plan, 2, data.protocol.pairs ? lacks : no_pairs);
   }
   return out;
 }
@@ -73,7 +75,7 @@ std::vector<stats::ShownClaims::LeftOut> left_out_of_own(const TaskData& data) {
 stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   const TaskData& data = part.data;
   const stats::AnalysisPlan& plan = request.plan.plan;
-  if (data.task == TaskKind::Own) part.not_analysed = left_out_of_own(data);
+  if (data.task == TaskKind::Own) part.not_analysed = left_out_of_own(data, plan);
   if (const std::string nothing = nothing_counts(data); !nothing.empty()) return stats::Refusal{nothing};
   if (data.task == TaskKind::Own) return stats::Refusal{why_not_analysed(data)};
   if (data.task == TaskKind::Pilot) {
@@ -93,11 +95,12 @@ stats::Result<Json> results_of(TaskPart& part, const ResultsRequest& request) {
   }
   const auto methods = static_cast<int>(data.protocol.methods.size());
   const auto analysis = stats::analyse_preferences(data.choices, methods, plan);
-  // The paper's hypotheses compare methods, so they are not tested if effects vary.
+  // Claims compare methods, so they are not tested if effects vary.
   if (data.protocol.effects.empty()) {
-    auto claims = stats::claims_about(
-        stats::task2_hypotheses(analysis.pairs, data.protocol.methods, plan, data.gaze_problem()),
-        data.protocol.methods);
+    auto claims =
+        stats::claims_about(stats::task2_hypotheses(claims_in_force(plan), analysis.pairs,
+                                                    data.protocol.methods, plan, data.gaze_problem()),
+                            data.protocol.methods);
     part.hypotheses = std::move(claims.claims);
     part.not_analysed = std::move(claims.left_out);
   }
@@ -144,7 +147,7 @@ void append(Json& list, const Json& more) {
 
 Json not_analysed_json(const TaskPart& part) {
   Json list = Json::array();
-  for (const auto& [what, reason] : part.not_analysed)
+  for (const auto& [what, reason, ids] : part.not_analysed)
     list.push_back({{"task", task_name(part.data.task)},
                     {"protocol", part.data.protocol.name},
                     {"what", what},
@@ -164,7 +167,7 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
             {"versions", {{"vip_lab", base::version()}, {"gsl", stats::gsl_library_version()}}},
             {"date_utc", base::utc_now()},
             {"plan", plan_json(request.plan, protocols)},
-            {"study", study_json(request.database.filename().string(), data)},
+            {"study", study_json(request.database.filename().string(), data, request.plan.plan)},
             {"flow", Json::object()},
             {"exclusions", Json::array()},
             {"people", people_json(data, about_people)},
@@ -200,7 +203,7 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
     claims.insert(claims.end(), part.hypotheses.begin(), part.hypotheses.end());
     append(json["sensitivity"], part.sensitivity);
   }
-  stats::correct_over_claims(claims);
+  stats::correct_over_claims(claims, claims_in_force(request.plan.plan).size());
   for (const auto& hypothesis : claims) json["hypotheses"].push_back(hypothesis_json(hypothesis));
   return json;
 }

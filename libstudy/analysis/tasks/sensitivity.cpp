@@ -6,6 +6,7 @@
 
 #include "libstudy/analysis/tasks/hypotheses_json.hpp"
 #include "libstudy/analysis/tasks/task1_results.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 
 namespace study {
 
@@ -16,7 +17,8 @@ using Verdicts = std::vector<stats::Hypothesis>;
 stats::Result<Verdicts> verdicts(const TaskData& data, const stats::AnalysisPlan& plan) {
   if (data.task == TaskKind::Task1) return task1_verdicts(data, plan);
   const auto methods = static_cast<int>(data.protocol.methods.size());
-  return stats::claims_about(stats::task2_hypotheses(stats::count_preferences(data.choices, methods, plan),
+  return stats::claims_about(stats::task2_hypotheses(claims_in_force(plan),
+                                                     stats::count_preferences(data.choices, methods, plan),
                                                      data.protocol.methods, plan, data.gaze_problem()),
                              data.protocol.methods)
       .claims;

@@ -257,7 +257,7 @@ Json factor_study_json(const TaskStudy& study, const TaskProtocol& protocol,
             {"versions", {{"vip_lab", base::version()}, {"gsl", stats::gsl_library_version()}}},
             {"date_utc", base::utc_now()},
             {"plan", plan_json(request.plan, {protocol.sha256})},
-            {"study", study_json(request.database.filename().string(), {&data})},
+            {"study", study_json(request.database.filename().string(), {&data}, request.plan.plan)},
             {"design", design_json(protocol.whole->design)},
             {"flow", flow_json(data.flow)},
             {"exclusions", exclusions_json(data)}};

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libstudy/analysis/claims.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 
 namespace study {
 
@@ -80,15 +81,20 @@ const stats::ScoreTable* find_table(const std::vector<stats::ScoreTable>& tables
   return nullptr;
 }
 
-/// Tests H1 to H3. They need both realism and cybersickness; if one was not asked, they are left out with the
-/// reason.
+/// Tests the claims of Task 1. They need both realism and cybersickness; if one was not asked, they are left
+/// out with the reason.
 stats::ShownClaims shown_claims(const std::vector<stats::ScoreTable>& tables, const TaskData& data,
                                 const stats::AnalysisPlan& plan) {
   const auto* realism = find_table(tables, "realism");
   const auto* sickness = find_table(tables, "sickness");
-  if (!realism || !sickness) return {{}, {{"H1 to H3", missing_items(data.protocol.questions)}}};
-  return stats::claims_about(stats::task1_hypotheses(*realism, *sickness, plan, data.gaze_problem()),
-                             data.protocol.methods);
+  if (!realism || !sickness) {
+    stats::ShownClaims out;
+    leave_out(out.left_out, plan, 1, missing_items(data.protocol.questions));
+    return out;
+  }
+  return stats::claims_about(
+      stats::task1_hypotheses(claims_in_force(plan), *realism, *sickness, plan, data.gaze_problem()),
+      data.protocol.methods);
 }
 
 }  // namespace
@@ -122,7 +128,7 @@ std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats:
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan) {
   Task1Results out;
   out.tables = score_tables(data, plan);
-  // The paper's hypotheses compare methods, so they are not tested if effects vary.
+  // Claims compare methods, so they are not tested if effects vary.
   if (data.protocol.effects.empty()) {
     auto hypotheses = shown_claims(out.tables, data, plan);
     out.hypotheses = std::move(hypotheses.claims);

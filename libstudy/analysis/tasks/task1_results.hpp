@@ -1,5 +1,5 @@
 #pragma once
-/// Analyses Task 1: scores, their comparisons, and H1 to H3.
+/// Analyses Task 1: scores, their comparisons, and the hypotheses about them.
 
 #include <string>
 #include <vector>
@@ -35,11 +35,11 @@ std::vector<stats::ScoreTable> score_tables(const TaskData& data, const stats::A
 /// the answers to `items`; NaN if one is unanswered.
 std::vector<stats::MethodScore> report_scores(const TaskData& data, const std::vector<std::string>& items);
 
-/// Analyses each score whose items are asked, and tests those of H1 to H3 whose methods the protocol shows.
+/// Analyses each score whose items are asked, and tests the hypotheses whose methods the protocol shows.
 /// No hypothesis is tested if effects are a factor, or if an item of realism or cybersickness is not asked.
 Task1Results analyse_task1(const TaskData& data, const stats::AnalysisPlan& plan);
 
-/// Tests only those of H1 to H3 whose methods the protocol shows. Used by the sensitivity analysis.
+/// Tests only the hypotheses whose methods the protocol shows. Used by the sensitivity analysis.
 std::vector<stats::Hypothesis> task1_verdicts(const TaskData& data, const stats::AnalysisPlan& plan);
 
 }  // namespace study

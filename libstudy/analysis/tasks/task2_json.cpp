@@ -7,6 +7,7 @@
 
 #include "libstudy/analysis/tasks/exploration_json.hpp"
 #include "libstudy/analysis/tasks/factors_json.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "stats/analysis/hypotheses.hpp"
 
 namespace study {
@@ -98,7 +99,7 @@ Json pair_json(const stats::PairPreference& pair, const Names& methods) {
             {"several", pair.several},
             {"reason", pair.shares ? "" : pair.test.reason()},
             {"warning", pair.warning},
-            {"paper", stats::in_paper_figure_10(name(methods, pair.a), name(methods, pair.b))}};
+            {"paper", stats::compares_pair(shipped_claims(), name(methods, pair.a), name(methods, pair.b))}};
   if (pair.shares)
     json["by_person"] = {{"participants", pair.shares->participants},
                          {"share", pair.shares->share},

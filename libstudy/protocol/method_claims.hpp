@@ -1,0 +1,39 @@
+#pragma once
+/// Hypotheses about methods, which Task 1 and Task 2 test: the tables [[hypothesis]] of a plan file with the
+/// key `task`. The paper's ship with the programs (protocols/plans/paper.toml).
+
+#include <string>
+#include <vector>
+
+#include "stats/analysis/plan.hpp"
+#include "stats/base/toml.hpp"
+
+namespace study {
+
+using MethodClaims = std::vector<stats::MethodClaim>;
+
+/// Reads those of the tables that have the key `task`. base::Error at file:line:column for a wrong value and
+/// for an id that an earlier table has.
+MethodClaims read_method_claims(const std::vector<base::TomlTable>& tables);
+
+/// The claims as tables [[hypothesis]], which read_method_claims() reads back.
+std::string format_method_claims(const MethodClaims& claims);
+
+/// The claims of protocols/plans/paper.toml, read once. base::Error if the file is missing or malformed.
+const MethodClaims& shipped_claims();
+/// The plan's own claims, or the shipped ones if it lists none.
+const MethodClaims& claims_in_force(const stats::AnalysisPlan& plan);
+
+/// The claims of one task (1 or 2).
+MethodClaims claims_of_task(const MethodClaims& claims, int task);
+
+/// "A to D", "A and B", "A"; empty without ids.
+std::string ids_in_short(const std::vector<std::string>& ids);
+std::vector<std::string> ids_of(const MethodClaims& claims);
+/// The ids of the claims for which `flag` is true: "A, B and C".
+std::string ids_with(const MethodClaims& claims, bool stats::MethodClaim::*flag);
+
+/// The word in plan files: "paired_t", "tost" or "binomial".
+const char* claim_test_word(stats::HypothesisKind kind);
+
+}  // namespace study
