@@ -86,8 +86,8 @@ struct FoamPool {
 };
 
 /// Fills MeetingCells::meeting. A least-squares fit over a cell and the 26 around it gives the gradient G of
-/// the cells' mean velocities. Along the unit vector e, two points approach at (|G e| - e G e) times their
-/// distance (Ihmsen et al. 2012, Eq. 2). The result is the mean of |G e| - e G e over all e, times the share
+/// the cells' mean velocities. Ihmsen et al. (2012, Eq. 2) measure the approach of two points along the unit
+/// vector e by (|G e| - e G e) times their distance. The result is the mean of |G e| - e G e over all e, times the share
 /// of water in the surrounding cells, because air is trapped between water. Space behind walls or in
 /// obstacles is left out of the share. Bounds: Walls, or Solids in scenes with obstacles.
 template <class Bounds>

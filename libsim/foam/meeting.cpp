@@ -28,11 +28,12 @@ struct GradientFit {
     weight += w;
   }
 
-  /// Mean of |G e| - e G e over 13 evenly distributed unit vectors e.
+  /// Mean of |G e| over the 13 axes e through the faces, edges and corners of a cube, minus the mean of e G e
+  /// over all directions.
   SIM_FN float approach() const {
     if (!(weight > 0)) return 0;
-    // Across a thin sheet there are no cells to fit. This minimum keeps the system regular, and G is 0 across
-    // the sheet.
+    // `least` is added to the diagonal: in a thin sheet, across which there are no cells to fit, the system
+    // would otherwise be singular. G is then 0 across the sheet.
     const float least = 0.02f / 3 * weight;
     const float xx = diagonal.x + least;
     const float yy = diagonal.y + least;

@@ -1,6 +1,7 @@
 #pragma once
 /// Geometric multigrid for the low-frequency part of the pressure: -laplace q = C on the cells that contain
-/// fluid, q >= 0, q = 0 in the air and outside open faces, no flux through walls and a lid.
+/// fluid, C = rho / rho_0 - 1 of a cell's water, q >= 0, q = 0 in the air and outside open faces, no flux
+/// through walls and a lid.
 
 #include <vector>
 

@@ -116,8 +116,8 @@ Mat4 rigid_inverse(const Mat4& m) {
 
 View make_view(const Camera& camera, int width, int height) {
   if (width < 1 || height < 1)
-    throw base::Error("picture of a camera",
-                      "has " + std::to_string(width) + " x " + std::to_string(height) + " px",
+    throw base::Error("size of the picture",
+                      "is " + std::to_string(width) + " x " + std::to_string(height) + " px",
                       "make it at least 1 x 1 px");
   View view;
   view.view = look_at(camera.eye_m, camera.target_m);

@@ -138,7 +138,7 @@ const Question& outcome_question(const base::TomlTable& table, const Protocol& p
     ids.push_back(question->id);
   }
   if (protocol.design.procedure) ids.emplace_back(stats::threshold_outcome);
-  table.fail("outcome", "= " + base::toml_quoted(one.outcome) + " is no question with scores of the trials",
+  table.fail("outcome", "= " + base::toml_quoted(one.outcome) + " is not the id of a question with scores that the trials ask",
              base::use_one_of(one.outcome, ids));
 }
 
@@ -177,8 +177,10 @@ void check_levels(const base::TomlTable& table, const Tables& tables, const Desi
                        base::use_one_of(level, levels));
     }
     if (cells_with(design, one.compare[i]).empty())
-      table.fail_at("compare", i, "has no cell of the design",
-                    design.standard ? "name levels of a comparison: the standard is in every trial"
+      table.fail_at("compare", i,
+                    design.standard ? "matches no cell that is compared with the standard"
+                                    : "matches no cell of the design",
+                    design.standard ? "name levels that the protocol combines, and not those of the standard"
                                     : "name levels that the protocol combines");
   }
   const bool groups = compares_groups(design, one);

@@ -32,7 +32,7 @@ std::optional<int> positive_score(const Question& question, std::optional<int> d
 /// True if the two conditions of the hypothesis are seen by different people.
 bool compares_groups(const Design& design, const stats::DeclaredHypothesis& hypothesis);
 
-/// Indices of the cells that have these levels; with a standard, without that one.
+/// Indices of the cells that have these levels. Cells of the standard are left out.
 std::vector<int> cells_with(const Design& design, const stats::DeclaredHypothesis::Levels& levels);
 
 /// Reads those of the tables [[hypothesis]] that lack the key `task`, which read_method_claims() does not

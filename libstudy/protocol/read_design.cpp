@@ -20,8 +20,10 @@ bool needs_no_table(const std::string& level) {
 std::vector<std::string> read_levels(const base::TomlTable& design) {
   const auto levels = distinct_words(design, "effects");
   if (levels.size() < 2) {
-    design.fail("effects", "holds one level, and a factor needs at least two",
-                "name two levels or more, or list these effects in the scene's file and remove this key");
+    design.fail("effects",
+                "holds " + std::to_string(levels.size()) + " levels, and a factor needs at least two",
+                "name two levels or more; or remove this key and each [[design.effect_set]], and every cell has "
+                "the effects of its scene's file");
   }
   if (levels.size() > most_levels) {
     design.fail("effects", "holds " + std::to_string(levels.size()) + " levels",
@@ -116,7 +118,7 @@ std::vector<EffectSet> read_effect_sets(const base::TomlTable& design) {
   if (!design.has("effects")) {
     if (design.has("effect_set"))
       design.fail("effect_set", "is not used, because the key effects is missing",
-                  "write effects = [...] with its name");
+                  "write effects = [...] with its name and at least one more level");
     return {};
   }
   const auto levels = read_levels(design);

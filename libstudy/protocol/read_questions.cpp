@@ -170,7 +170,8 @@ Question read_question(const base::TomlTable& table, BlockKind block, const std:
   question.personal = table.boolean_or("personal", false);
   if (question.personal && (block == BlockKind::Stimulus || block == BlockKind::Catch)) {
     table.fail("personal", "= true is not allowed in a block of kind " + block_kind_name(block),
-               "ask it in a block of kind demographics");
+               block == BlockKind::Catch ? "remove it"
+                                         : "remove it, or ask the question in a block of kind demographics");
   }
   question.required = table.boolean_or("required", traits_of(question.kind).required);
   if (!traits_of(question.kind).scored) {

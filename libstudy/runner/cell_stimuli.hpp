@@ -16,8 +16,9 @@ namespace study {
 /// empty stimulus. Uses the stimulus of the last cell again if the next cell needs the same stimulus.
 class CellStimuli final : public StimulusSource {
  public:
-  /// base::Error if a solver setting is for a cell that is not computed live, or if a cell names an unknown
-  /// method, n_* or effect, or a scene that cannot be read.
+  /// base::Error if a solver setting is for a cell that is not computed live. Unless nothing is shown
+  /// (--display none), also if a cell names an unknown method, n_* or effect, if a scene cannot be read, or if
+  /// an obstacle of a live cell leaves the water too little space (sim::check_ways()).
   CellStimuli(const RunOptions& options, const Protocol& protocol, const stats::PtpeModel& model,
               Viewing viewing, SessionBakes bakes = {}, SessionSettings settings = {});
 

@@ -65,8 +65,8 @@ FramedScene frame_pictures(const sim::Scene& scene, const sim::BakeHeader& bake,
   out.view = sim::make_view(camera, width, height);
   out.shown = {to.x1 - to.x0, to.y1 - to.y0};
   out.framing.camera_deg = camera.vertical_fov_deg;
-  // The measured width of the screen is the width of the display, so the picture's angle follows from
-  // display.width.
+  // The measured width belongs to the whole display, so the angle is computed from display.width and not from
+  // the picture's width.
   if (viewing.visual_angle_deg)
     out.framing.visual_deg = viewing.visual_angle_deg(display.width, out.shown.height);
   out.renderer = bake.view.renderer;

@@ -143,8 +143,8 @@ Result<LogitFit> fit_logit(std::span<const LogitRow> rows, LogitBias bias) {
   at.information = *start;
   at.objective = objective(rows, at.beta, at.information, bias);
 
-  // Under separation the likelihood increases without end, and Newton's steps have a length of about 1. A
-  // linear predictor beyond `farthest` is therefore refused.
+  // Under separation the likelihood has no maximum: it keeps rising as the coefficients grow, and each of
+  // Newton's steps adds about 1 to a linear predictor. A linear predictor beyond `farthest` is refused.
   constexpr int most_steps = 200;
   constexpr double farthest = 30;
   for (int i = 0; i < most_steps; ++i) {

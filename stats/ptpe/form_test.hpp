@@ -19,7 +19,7 @@ namespace stats {
 
 /// log mu(delta) = level + slope e + bend e^2, with the jackknife's covariance of the three coefficients.
 struct FreeCurve {
-  double middle = 10, half = 10;       ///< e = (delta - middle) / half, frames/s
+  double middle = 10, half = 10;       ///< frames/s; e = (delta - middle) / half has no unit
   std::array<double, 3> at{};          ///< level, slope, bend
   std::array<double, 9> covariance{};  ///< row-major
   int participants = 0;

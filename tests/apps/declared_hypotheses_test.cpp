@@ -96,7 +96,7 @@ TEST(DeclaredHypotheses, WhatDoesNotFitTheProtocolIsRefusedAtItsPlace) {
   expect("h50", "h5", "use one of \"none\", \"h33\", \"h50\"");
   expect("\"stall\"", "\"stalls\"", "the nearest is \"stall\"");
   expect("hitch = \"h50\"}, {hitch", "hich = \"h50\"}, {hich", "is no factor of the protocol");
-  expect("\"stall\"", "\"stal\"", "is no question with scores");
+  expect("\"stall\"", "\"stal\"", "is not the id of a question with scores");
   expect("hitch = \"none\"", "hitch = \"h50\"", "is the same as the first table");
   expect("paired_t", "anova", "is not a known choice");
   expect("paired_t", "welch_t", "each participant sees both conditions");

@@ -8,8 +8,8 @@ namespace study {
 
 namespace {
 
-/// A factor of the design: the names of its levels, and for each treatment its level and the index of its
-/// level of the other factor.
+/// A factor of the design: the names of its levels, and for each treatment the indices of its levels of this
+/// factor and of the other one.
 struct Factor {
   const char* name;
   std::vector<std::string> levels;
