@@ -138,8 +138,10 @@ const Question& outcome_question(const base::TomlTable& table, const Protocol& p
     ids.push_back(question->id);
   }
   if (protocol.design.procedure) ids.emplace_back(stats::threshold_outcome);
-  table.fail("outcome", "= " + base::toml_quoted(one.outcome) + " is not the id of a question with scores that the trials ask",
-             base::use_one_of(one.outcome, ids));
+  table.fail(
+      "outcome",
+      "= " + base::toml_quoted(one.outcome) + " is not the id of a question with scores that the trials ask",
+      base::use_one_of(one.outcome, ids));
 }
 
 void check_choice(const base::TomlTable& table, const Design& design, const Question& question,

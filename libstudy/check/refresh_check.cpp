@@ -43,7 +43,7 @@ RefreshCheck check_refresh(const Protocol& protocol, double refresh_hz) {
     check.exact += verdict.feasibility == Feasibility::Exact;
     check.approximate += verdict.feasibility == Feasibility::Approximate;
     check.unreachable += verdict.feasibility == Feasibility::Unreachable;
-    check.distance += verdict.distance;
+    if (verdict.feasibility != Feasibility::Unreachable) check.distance += verdict.distance;
   }
   if (const int reached = check.exact + check.approximate; reached > 0) check.distance /= reached;
   return check;

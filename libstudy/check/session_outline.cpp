@@ -27,7 +27,7 @@ double reading_s(const std::string& text, const Pace& pace) {
 double page_s(const Block& block, const Pace& pace) {
   switch (block.kind) {
     case BlockKind::Stimulus:
-      return block.between_groups_s + pace.break_s;
+      return block.between_groups_s + block.break_s + pace.break_s;
     case BlockKind::Rest:
     case BlockKind::Black:
       return block.seconds;
@@ -112,7 +112,10 @@ std::string describe_block(const Protocol& protocol, const BlockOutline& outline
     std::string out = fmt::format("{} trials: ", outline.trials);
     for (const auto& step : block.steps)
       out += (&step == &block.steps.front() ? "" : ", ") + step_words(protocol, step);
-    if (outline.pages > 0) out += fmt::format("; {:g} s between groups", block.between_groups_s);
+    if (block.break_every > 0)
+      out += fmt::format("; a break of {:g} s after every {} trials", block.break_s, block.break_every);
+    else if (outline.pages > 0)
+      out += fmt::format("; {:g} s between groups", block.between_groups_s);
     return out;
   }
   std::string out;

@@ -55,7 +55,7 @@ double expected_s(const Protocol& protocol, const OpenUnit& unit, bool person,
     case BlockKind::Black:
       return block.seconds;
     case BlockKind::Stimulus:
-      return block.between_groups_s;
+      return block.between_groups_s + block.break_s;
     default: {
       if (!person) return block.seconds;
       double total = std::max(block.seconds, reading_s(block.text));

@@ -197,6 +197,15 @@ class Planner {
     plan_.trials.push_back(trial);
   }
 
+  /// Appends a trial of a Stimulus block, before it a break if one is due.
+  void add_trial_or_break(const PlannedTrial& trial) {
+    const int every = block(trial.block).break_every;
+    const auto before = std::count_if(plan_.trials.begin(), plan_.trials.end(),
+                                      [&](const PlannedTrial& one) { return one.block == trial.block; });
+    if (every > 0 && before > 0 && before % every == 0) add_page(trial.block);
+    add_trial(trial);
+  }
+
   std::uint64_t schedule_seed(const PlannedTrial& trial, int repetition) const {
     const auto cells = static_cast<std::uint64_t>(repetition) * counters_per_repetition +
                        static_cast<std::uint64_t>(trial.first) * 4096 +
@@ -214,7 +223,7 @@ class Planner {
       }
       const auto candidates = trials_of(static_cast<int>(g), index);
       for (const int i : order_of(candidates, static_cast<int>(g)))
-        add_trial(candidates[static_cast<std::size_t>(i)]);
+        add_trial_or_break(candidates[static_cast<std::size_t>(i)]);
     }
   }
 
@@ -228,7 +237,7 @@ class Planner {
       trial.block = index;
       trial.group = g;
       trial.schedule_seed = schedule_seed(trial, number++);
-      add_trial(trial);
+      add_trial_or_break(trial);
     }
   }
 

@@ -99,6 +99,8 @@ struct Block {
   std::string like;              ///< Practice, Repeat, Catch: id of a Stimulus block
   std::vector<TrialStep> steps;  ///< Practice, Stimulus, Repeat: steps of each trial
   double between_groups_s = 0;   ///< Stimulus: a break before each group of the design but the first
+  int break_every = 0;           ///< Stimulus, format 3: trials from one break to the next; 0 = no break
+  double break_s = 0;            ///< least duration of these breaks
   Interruption on_interruption = Interruption::Resume;  ///< Practice, Repeat: the policy of `like`
 };
 

@@ -185,9 +185,27 @@ Interruption read_interruption(const base::TomlTable& table) {
   return word == "invalidate" ? Interruption::Invalidate : Interruption::Resume;
 }
 
+/// A break after every so many trials of a study with factors.
+void read_breaks(const base::TomlTable& table, const Design& design, Block& block) {
+  block.break_every = static_cast<int>(table.integer_or("break_every", 0, {1, most_trials}));
+  if (block.break_every == 0) {
+    if (table.has("break_s"))
+      table.fail("break_s", "has no effect without break_every", "add break_every, or remove break_s");
+    return;
+  }
+  block.break_s = table.number("break_s", pause_range);
+  const int trials = design.groups * trials_of_group(design);
+  if (block.break_every >= trials)
+    table.fail("break_every",
+               "= " + std::to_string(block.break_every) + " makes no break: a participant has " +
+                   std::to_string(trials) + " trials",
+               "write a number below " + std::to_string(trials) + ", or remove break_every and break_s");
+}
+
 void read_trials(const base::TomlTable& table, const Design& design, Block& block) {
   block.steps = read_steps(table, design.pairs);
   block.between_groups_s = table.number_or("between_groups_s", 0, pause_range);
+  if (!design.factors.empty()) read_breaks(table, design, block);
   block.on_interruption = read_interruption(table);
   if (block.between_groups_s > 0 && design.groups == 1) {
     table.fail("between_groups_s", "has no effect: a participant sees only one group",

@@ -20,10 +20,12 @@ bool needs_no_table(const std::string& level) {
 std::vector<std::string> read_levels(const base::TomlTable& design) {
   const auto levels = distinct_words(design, "effects");
   if (levels.size() < 2) {
-    design.fail("effects",
-                "holds " + std::to_string(levels.size()) + " levels, and a factor needs at least two",
-                "name two levels or more; or remove this key and each [[design.effect_set]], and every cell has "
-                "the effects of its scene's file");
+    design.fail(
+        "effects",
+        "holds " + std::to_string(levels.size()) + (levels.size() == 1 ? " level" : " levels") +
+            ", and a factor needs at least two",
+        "name two levels or more; or remove this key and each [[design.effect_set]], and every cell has "
+        "the effects of its scene's file");
   }
   if (levels.size() > most_levels) {
     design.fail("effects", "holds " + std::to_string(levels.size()) + " levels",

@@ -286,6 +286,10 @@ const std::vector<KeyReference>& protocol_reference() {
        "of questions of a block of kind stimulus, question, ssq or fms)"},
       {"block", "between_groups_s", "number", "[0, 3600]", "0",
        "stimulus: a break before each group but the first, s"},
+      {"block", "break_every", "whole number", "[1, 1000]", "no break",
+       "stimulus, format 3: trials from one break to the next"},
+      {"block", "break_s", "number", "[0, 3600]", where_needed,
+       "needed by break_every: the least duration of each break, s; the participant ends it"},
       {"block", "on_interruption", "text", "\"resume\", \"restart_block\", \"invalidate\"", "\"resume\"",
        "stimulus, for its practice and repeats too: what `vip-study resume` does about a trial that was cut. "
        "resume shows it again, restart_block all trials of its block, invalidate none: it is excluded. What "

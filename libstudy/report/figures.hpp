@@ -67,6 +67,10 @@ svg::Picture fms_chart(const Field& fms, const std::string& id);
 /// `thresholds`: the entry "thresholds" of a study's results; `track`: an entry of its list "tracks".
 svg::Picture psychometric_chart(const Field& thresholds, const Field& track, const std::string& id);
 
+/// A row for each cell of a study with factors: its mean over participants with the interval. `question`: an
+/// entry of the results' list "descriptives", with at least one cell.
+svg::Picture cell_means_chart(const Field& question, const std::string& id);
+
 /// The pilot's heat map (paper Fig. 6). `pilot`: the entry "pilot" of the results, with estimates.
 svg::Picture pilot_map(const Field& pilot);
 

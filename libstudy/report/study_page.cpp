@@ -172,8 +172,12 @@ std::string tested_section(const Field& root) {
           notes + again.html());
 }
 
+/// Fewer cells need no figure, and the rows of more cells cannot be compared at a glance.
+constexpr std::size_t least_cells_drawn = 2, most_cells_drawn = 60;
+
 std::string answers_section(const Field& root) {
   std::string body;
+  std::size_t number = 0;
   for (const Field& question : root["descriptives"].entries()) {
     Table table(words(question["question"]) + ": " + words(question["text"]) + " (" +
                     words(question["value_text"]) + ")",
@@ -191,7 +195,14 @@ std::string answers_section(const Field& root) {
                  value_of_scale(cell["mean"]), value_of_scale(cell["sd"]), interval_of_scale(cell["ci"]),
                  given});
     }
-    if (!table.empty()) body += paragraph(table_badge(question)) + table.html();
+    if (table.empty()) continue;
+    body += paragraph(table_badge(question));
+    const std::size_t cells = question["cells"].entries().size();
+    if (cells >= least_cells_drawn && cells <= most_cells_drawn)
+      body += figure(cell_means_chart(question, "means-" + std::to_string(++number)),
+                     "Means over participants (points) with " + percent(root["plan"]["confidence"]) +
+                         " intervals (lines).");
+    body += table.html();
   }
   if (body.empty()) return "";
   const std::string chosen = root["design"]["procedure"].exists()

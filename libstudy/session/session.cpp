@@ -161,8 +161,8 @@ class SessionRun {
       case BlockKind::GazeValidation:
         validate_gaze(run_, block, check);
         break;
-      case BlockKind::Stimulus:  // between two groups
-        pause({PauseKind::Break, block.between_groups_s}, check);
+      case BlockKind::Stimulus:  // between two groups, or after every break_every trials
+        pause({PauseKind::Break, block.between_groups_s + block.break_s}, check);
         break;
       default: {
         auto ends = questioning_.ask(unit, 0, block.questions, run_.occasion(unit), true, check);

@@ -124,6 +124,22 @@ TEST(FactorStudy, TestsOneValueOfEachParticipant) {
   EXPECT_EQ(json.at("sensitivity").size(), 4u);
 }
 
+TEST(FactorStudy, IntervalsOfSharesStayWithinNoughtAndOne) {
+  MadeStudy made(shipped_text("hitches"));
+  for (int i = 0; i < 4; ++i) {
+    const std::string person = "P" + std::to_string(i);
+    made.answer(person, 2, {}, i == 0 ? 1 : 0);  // Student's t of 0, 0, 0, 1 begins at -0.55
+    made.answer(person, 4, {}, 0);               // nobody says yes
+  }
+  const Json cells = made.results("").at("descriptives").at(0).at("cells");
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_EQ(cells.at(0).at("ci").at(0), 0);
+  EXPECT_EQ(cells.at(0).at("ci").at(1), 1);
+  EXPECT_EQ(cells.at(1).at("ci").at(0), 0);
+  // Clopper and Pearson for 0 of 4: 1 - 0.025^(1/4).
+  EXPECT_NEAR(cells.at(1).at("ci").at(1).get<double>(), 1 - std::pow(0.025, 0.25), 1e-9);
+}
+
 TEST(FactorStudy, DescribesEachCellOverParticipants) {
   const auto made = made_hitches();
   const auto json = made.results("");

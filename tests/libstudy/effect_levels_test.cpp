@@ -106,7 +106,7 @@ std::string error_of(const std::string& text) {
 
 TEST(EffectLevels, OneLevelAloneIsRefused) {
   const std::string text = test::with_keys(test::shipped_text("foam"), {{"effects", "[\"foam\"]"}});
-  EXPECT_THAT(error_of(text), AllOf(HasSubstr("p.toml:15:11: "), HasSubstr("holds one level"),
+  EXPECT_THAT(error_of(text), AllOf(HasSubstr("p.toml:15:11: "), HasSubstr("holds 1 level"),
                                     HasSubstr("mend: name two levels or more")));
 }
 

@@ -149,6 +149,31 @@ content = "dam"
   EXPECT_THAT(names, ElementsAre("h33", "h67", "h150", "none", "h50", "h100")) << "grouped by content";
 }
 
+TEST(Factors, ABreakFollowsEverySoManyTrials) {
+  const std::string steps = "steps = ";
+  const auto plan_with = [&](const std::string& keys) {
+    return make_plan(read(changed(hitches_text, steps, keys + steps)), "p1", 5, 0);
+  };
+  const Plan none = plan_with(""), plan = plan_with("break_every = 25\nbreak_s = 30\n");
+  ASSERT_EQ(plan.trials.size(), none.trials.size());
+  for (std::size_t i = 0; i < none.trials.size(); ++i) {
+    EXPECT_EQ(plan.trials[i].first, none.trials[i].first) << "breaks do not change the order";
+    EXPECT_EQ(plan.trials[i].schedule_seed, none.trials[i].schedule_seed) << "nor the frame times";
+  }
+  std::vector<int> before;  // trials before each break
+  int trials = 0;
+  for (const PlannedUnit& unit : plan.units) {
+    const bool of_trials =
+        read(hitches_text).blocks[static_cast<std::size_t>(unit.block)].kind == BlockKind::Stimulus;
+    if (of_trials && !unit.trial) before.push_back(trials);
+    trials += unit.trial.has_value();
+  }
+  EXPECT_THAT(before, ElementsAre(25, 50)) << "of 60 trials";
+  EXPECT_THAT(error_of(changed(hitches_text, steps, "break_s = 30\n" + steps)), HasSubstr("add break_every"));
+  EXPECT_THAT(error_of(changed(hitches_text, steps, "break_every = 60\nbreak_s = 30\n" + steps)),
+              HasSubstr("makes no break: a participant has 60 trials"));
+}
+
 TEST(Factors, OrderMayKeepLevelsApart) {
   const Protocol protocol = read(
       changed(hitches_text, "order = \"shuffle\"", "order = \"constrained\"\nnever_adjacent = [\"hitch\"]"));
@@ -168,7 +193,7 @@ TEST(Factors, RefuseWhatTheyDoNotUnderstand) {
       {"method = \"HiRes\"", "method = \"HiRez\"", "HiRes"},
       {"method = \"HiRes\"\n", "", "names no method, and no factor sets it"},
       {"n_star = \"8k\"", "n_star = \"many\"", "is no number of particles"},
-      {"hitch_ms = 50", "hitch_ms = 5", "shorter than a frame"},
+      {"hitch_ms = 50", "hitch_ms = 5", "is shorter than the"},
       {"profile = \"hitches\"", "profile = \"hitch\"", "hitches"},
       {"hitch_ms = 50", "hitch_ms = 50, low_fps = 3", "low_fps"},
       {"duration_s = 4", "duration_s = 4\ntiming = \"equal\"", "timing"},

@@ -129,7 +129,7 @@ TEST(Gaze, IsRefusedByTheStoreWithoutPermission) {
         [&] {
           store.add_gaze(presentation, 0, GazeOrigin::Mouse, {&sample, 1});
         },
-        ThrowsMessage<base::Error>(HasSubstr("who has not allowed it")));
+        ThrowsMessage<base::Error>(HasSubstr("who refused it")));
   }
   store.add_gaze(2, 0, GazeOrigin::Mouse, {&sample, 1});
   EXPECT_THAT(test::column(folder / "study.db",

@@ -186,7 +186,7 @@ TEST(HeadsetRecords, OfHeadAndValidationAreRefusedWithoutPermission) {
   test::add_people(store, test::asking_protocol(), {{"P01", 0, 1}});
   ShownSlot slot{test::slot_at(6), {}};
   const ValidatedPoint point;
-  const auto refused = ThrowsMessage<base::Error>(HasSubstr("who has not allowed it"));
+  const auto refused = ThrowsMessage<base::Error>(HasSubstr("who refused it"));
   EXPECT_THAT([&] { store.add_slots(1, 0, {&slot, 1}); }, refused);
   EXPECT_THAT([&] { store.add_validation(1, {&point, 1}, true); }, refused);
   EXPECT_THAT(owners(folder / "study.db"), IsEmpty());

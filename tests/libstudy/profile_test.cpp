@@ -125,7 +125,7 @@ TEST(Profile, RefusesNumbersThatContradictEachOther) {
     }
     return std::string();
   };
-  EXPECT_THAT(error_of(hitching, [](auto& p) { p.hitch_ms = 10; }), HasSubstr("shorter than a frame"));
+  EXPECT_THAT(error_of(hitching, [](auto& p) { p.hitch_ms = 10; }), HasSubstr("is shorter than the"));
   EXPECT_THAT(error_of(hitching, [](auto& p) { p.hitch_ms = 1990; }), HasSubstr("do not fit into a period"));
   EXPECT_THAT(error_of(low, [](auto& p) { p.low_fps = 60; }), HasSubstr("cannot have a 5 % low of 60"));
   EXPECT_THAT(error_of(low, [](auto& p) { p.low_fps = 2; }), HasSubstr("cannot have a 5 % low of 2"));

@@ -1,6 +1,7 @@
 #include "libstudy/analysis/tasks/study_results.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -98,7 +99,9 @@ std::vector<TestedHypothesis> test_all(const TaskData& data, const stats::Analys
 /// Confidence of a hypothesis's interval. For TOST it is 2 c - 1 at confidence c, since each of its two tests
 /// is one-sided.
 double ci_confidence(const DeclaredHypothesis& one) {
-  return one.test.kind == TestKind::Tost ? 2 * one.test.confidence - 1 : one.test.confidence;
+  constexpr double digits = 1e12;  // 2 x 0.95 - 1 is 0.9, not 0.8999999999999999
+  return one.test.kind == TestKind::Tost ? std::round((2 * one.test.confidence - 1) * digits) / digits
+                                         : one.test.confidence;
 }
 
 Json tested_json(const TestedHypothesis& one, double alpha, bool preregistered) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/inference/binomial.hpp"
 #include "stats/inference/describe.hpp"
 #include "stats/mean_interval.hpp"
 
@@ -14,11 +15,25 @@ constexpr int curve_points = 61;
 /// A question with more scores lists only those that were given.
 constexpr std::size_t most_counted_scores = 21;
 
-/// n, mean, SD and interval of values of participants.
-Json over_people(const std::vector<double>& values, double confidence) {
+/// n, mean, SD and interval of values of participants. The interval is Student's t. That of shares ends at 0
+/// and 1, and is by Clopper and Pearson if all participants have the share 0, or all 1.
+Json over_people(const std::vector<double>& values, double confidence, bool shares = false) {
   Json json{{"n", values.size()}, {"mean", Json()}, {"sd", Json()}, {"ci", Json()}};
   if (values.empty()) return json;
-  const auto interval = stats::mean_interval(values, confidence);
+  auto interval = stats::mean_interval(values, confidence);
+  if (shares) {
+    interval.low = std::max(interval.low, 0.0);
+    interval.high = std::min(interval.high, 1.0);
+    if (interval.mean == 0 || interval.mean == 1) {
+      const auto n = static_cast<int>(values.size());
+      const auto exact =
+          stats::binomial_test(interval.mean == 1 ? n : 0, n, 0.5, stats::Alternative::TwoSided, confidence);
+      if (exact) {
+        interval.low = exact->clopper_pearson[0];
+        interval.high = exact->clopper_pearson[1];
+      }
+    }
+  }
   json["mean"] = json_number(interval.mean);
   const auto described = stats::describe(values);
   if (described) json["sd"] = json_number(described->sd);
@@ -72,7 +87,7 @@ Json cell_entry(const Design& design, const Question& question, const CellKey& k
     if (!std::isnan(sum.first)) means.push_back(sum.first / sum.second);
   json["trials"] = answers.size();
   json["participants"] = people.size();
-  const Json over = over_people(means, confidence);
+  const Json over = over_people(means, confidence, value_of(design, question) != OutcomeValue::Mean);
   for (const char* name : {"mean", "sd", "ci"}) json[name] = over.at(name);
   json["counts"] = score_counts(question, answers);
   return json;

@@ -99,4 +99,67 @@ svg::Picture psychometric_chart(const Field& thresholds, const Field& track, con
   return picture;
 }
 
+namespace {
+
+constexpr double row_height = 22;
+
+/// Scale of all means and intervals of the cells, from 0 to 1 for shares.
+Scale scale_of_cells(const std::vector<Field>& cells, bool shares) {
+  if (shares) return {0, 1};
+  Scale out{INFINITY, -INFINITY};
+  const auto widen = [&](const Field& field) {
+    if (!field.is_number()) return;
+    out.low = std::min(out.low, field.number());
+    out.high = std::max(out.high, field.number());
+  };
+  for (const Field& cell : cells) {
+    widen(cell["mean"]);
+    for (const Field& end : cell["ci"].entries()) widen(end);
+  }
+  if (out.high > out.low) return out;
+  return out.low == out.high ? Scale{out.low - 0.5, out.high + 0.5} : Scale{};
+}
+
+}  // namespace
+
+svg::Picture cell_means_chart(const Field& question, const std::string& id) {
+  const auto cells = question["cells"].entries();
+  std::vector<std::string> names;
+  for (const Field& cell : cells)
+    names.push_back(cell["cell"].words() +
+                    (cell["other"].words().empty() ? "" : " and " + cell["other"].words()));
+  const Scale scale = scale_of_cells(cells, question["value"].words() != "mean");
+  const double from = room_for(names) + 20, bottom = top + row_height * static_cast<double>(cells.size());
+  const auto x = [&](double value) { return from - left + scale.x(value); };
+  svg::Picture picture{.width = from + width + right, .height = bottom + 54, .id = id};
+  picture.title = "Means by cell: " + question["question"].words();
+  picture.description =
+      "The mean over participants in each cell, with its interval. The table below holds the numbers.";
+  std::string body = svg::text({8, 20}, picture.title, "font-size=\"15\" font-weight=\"bold\"");
+  const double step = step_of(scale.high - scale.low);
+  for (double value = std::ceil(scale.low / step) * step; value <= scale.high + 1e-9; value += step)
+    body += svg::line({x(value), top}, {x(value), bottom}, "stroke=\"#000000\" stroke-opacity=\"0.25\"") +
+            svg::text({x(value), bottom + 20},
+                      svg::number(value, step < 0.1 ? 3
+                                         : step < 1 ? 1
+                                                    : 0),
+                      "class=\"axis\" text-anchor=\"middle\" font-size=\"13\"");
+  body += svg::text({from + width / 2, bottom + 42}, question["value_text"].words(),
+                    "text-anchor=\"middle\" font-size=\"13\"");
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double y = top + row_height * (static_cast<double>(i) + 0.5);
+    body += svg::text({from - 10, y + 5}, names[i],
+                      "text-anchor=\"end\" font-size=\"13\"" + data_field(cells[i]["cell"]));
+    const auto ends = cells[i]["ci"].entries();
+    if (ends.size() == 2)
+      body += svg::line({x(ends[0].number()), y}, {x(ends[1].number()), y},
+                        svg::attribute("stroke", svg::colour::blue) + " stroke-width=\"2\"");
+    if (cells[i]["mean"].is_number())
+      body += svg::circle({x(cells[i]["mean"].number()), y}, 4.5,
+                          svg::attribute("fill", svg::colour::blue) + data_field(cells[i]["mean"]));
+  }
+  picture.body = body;
+  return picture;
+}
+
 }  // namespace study::report
