@@ -98,7 +98,9 @@ void complete(PowerCommand& command, const CLI::App& options) {
   if (request.worlds.empty()) {
     request.worlds = {"null", "margin", "paper"};
     if (request.effect || request.difference) request.worlds.insert(request.worlds.begin(), "effect");
-    if (kind == study::PowerKind::Task2) std::erase(request.worlds, "margin");  // equals "null" in Task 2
+    // In Task 2 "margin" equals "null". It is made for the methods and margins of the shipped hypotheses.
+    if (kind == study::PowerKind::Task2 || !request.plan.plan.claims.empty())
+      std::erase(request.worlds, "margin");
     if (!request.protocol.design.effects.empty())
       std::erase(request.worlds, "paper");  // the paper varies no effects
     return;
@@ -214,7 +216,8 @@ void add_request_options(CLI::App& sub, PowerCommand& command) {
   sub.add_option("--interval-bias", request.interval_bias, "Task 2: log odds for the second interval")
       ->check(number_in(-5, 5));
   sub.add_option("--world", request.worlds,
-                 "effect, null, margin or paper; may be repeated. Without: all that apply")
+                 "effect, null, margin or paper; may be repeated. Without: all that apply; margin not with "
+                 "hypotheses of one's own")
       ->check(CLI::IsMember({"effect", "null", "margin", "paper"}));
   sub.add_option(
       "--observer", command.observer,

@@ -116,7 +116,7 @@ std::string slower_words(const study::Protocol& protocol) {
   if (any([](const study::Block& block) { return !block.text.empty(); }))
     out += fmt::format("texts read at {:g} words/s", study::slow_pace.words_per_s);
   if (any([](const study::Block& block) {
-        return block.kind == study::BlockKind::Break || block.between_groups_s + block.break_s > 0;
+        return block.kind == study::BlockKind::Break || block.between_groups_s > 0 || block.break_every > 0;
       }))
     out += fmt::format("{}each break {:g} s longer than it must be", out.empty() ? "" : " and ",
                        study::slow_pace.break_s);

@@ -198,8 +198,10 @@ void check_fits(const base::TomlTable& table, const Tables& compare, const Proto
                 const DeclaredHypothesis& one) {
   const Design& design = protocol.design;
   if (design.factors.empty())
-    table.fail("id", "= " + base::toml_quoted(one.id) + " is about a protocol without [[factor]]",
-               "give a protocol of format 3, or remove the hypothesis");
+    table.fail(
+        "id", "= " + base::toml_quoted(one.id) + " is about a protocol without [[factor]]",
+        "add task = \"task1\" or \"task2\" for a hypothesis about methods; or give a protocol of format "
+        "3, or remove the hypothesis");
   if (design.pairs && !design.standard)
     table.fail("id", "= " + base::toml_quoted(one.id) + " is about pairs without a standard",
                "write standard in the protocol's [design], or remove the hypothesis");

@@ -9,6 +9,7 @@
 #include "libstudy/analysis/claims.hpp"
 #include "libstudy/analysis/plan_file.hpp"
 #include "libstudy/analysis/plan_hypotheses.hpp"
+#include "libstudy/protocol/method_claims.hpp"
 #include "stats/base/file.hpp"
 #include "stats/figures/svg.hpp"
 
@@ -113,7 +114,11 @@ ByOrder judge_by_order(const std::string& frozen, const Json& used) {
 
 }  // namespace
 
-std::string frozen_plan(const std::vector<Protocol>& protocols, const stats::AnalysisPlan& plan) {
+std::string frozen_plan(const std::vector<Protocol>& protocols, stats::AnalysisPlan plan) {
+  // The hypotheses that ship with the programs are frozen too, because another version may ship others.
+  if (std::any_of(protocols.begin(), protocols.end(),
+                  [&](const Protocol& one) { return !hypotheses_of(one, plan).claims.empty(); }))
+    plan.claims = claims_in_force(plan);
   std::vector<std::string> hashes;
   for (const auto& protocol : protocols) hashes.push_back(protocol.sha256);
   const auto idle = idle_rules(protocols, plan);

@@ -21,7 +21,7 @@ base::Json fixed_part(const base::Json& hypothesis);
 
 /// Text of a bundle's plan.toml. A key that has no effect in any of the protocols is written as a TOML
 /// comment with the reason.
-std::string frozen_plan(const std::vector<Protocol>& protocols, const stats::AnalysisPlan& plan);
+std::string frozen_plan(const std::vector<Protocol>& protocols, stats::AnalysisPlan plan);
 
 /// Text of a bundle's PREREGISTRATION.txt. `untested`: as returned by untested_claims(). `with_power`: true
 /// if the bundle holds power.json.

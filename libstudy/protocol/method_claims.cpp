@@ -87,8 +87,12 @@ void read_claim_test(const base::TomlTable& table, MethodClaim& out) {
              : equivalence ? HypothesisKind::Equivalence
              : margin      ? HypothesisKind::NonInferiority
                            : HypothesisKind::Superiority;
+  if (equivalence || table.choice("alternative", {"better", "worse"}) == "better") return;
+  if (table.has("called"))
+    table.fail("called", "names the methods that are chosen less often",
+               "write compare the other way round, and alternative = \"better\"");
   // "a is worse than b" is the same claim as "b is better than a".
-  if (!equivalence && table.choice("alternative", {"better", "worse"}) == "worse") std::swap(out.a, out.b);
+  std::swap(out.a, out.b);
 }
 
 MethodClaim::Paper read_paper(const base::TomlTable& table) {
@@ -130,6 +134,14 @@ std::string margin_toml(const MethodClaim& claim) {
   for (const auto& [score, margin] : claim.margins)
     out += (out.empty() ? "" : ", ") + score + " = " + base::shortest(margin);
   return out.empty() ? base::toml_quoted(margin_of_plan) : "{" + out + "}";
+}
+
+/// "A, B and C"
+std::string enumeration(const std::vector<std::string>& ids) {
+  std::string out;
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == ids.size() ? " and " : ", ") + ids[i];
+  return out;
 }
 
 MethodClaims read_shipped() {
@@ -206,9 +218,13 @@ MethodClaims claims_of_task(const MethodClaims& claims, int task) {
 }
 
 std::string ids_in_short(const std::vector<std::string>& ids) {
-  if (ids.empty()) return "";
-  if (ids.size() == 1) return ids.front();
-  return ids.front() + (ids.size() == 2 ? " and " : " to ") + ids.back();
+  if (ids.size() < 3) return enumeration(ids);
+  const std::string& first = ids.front();
+  const std::string stem = first.substr(0, first.find_last_not_of("0123456789") + 1);
+  const int number = stem.size() < first.size() ? std::atoi(first.c_str() + stem.size()) : -1;
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    if (number < 0 || ids[i] != stem + std::to_string(number + static_cast<int>(i))) return enumeration(ids);
+  return first + " to " + ids.back();
 }
 
 std::vector<std::string> ids_of(const MethodClaims& claims) {
@@ -221,10 +237,7 @@ std::string ids_with(const MethodClaims& claims, bool MethodClaim::*flag) {
   std::vector<std::string> ids;
   for (const MethodClaim& one : claims)
     if (one.*flag) ids.push_back(one.id);
-  std::string out;
-  for (std::size_t i = 0; i < ids.size(); ++i)
-    out += (i == 0 ? "" : i + 1 == ids.size() ? " and " : ", ") + ids[i];
-  return out;
+  return enumeration(ids);
 }
 
 }  // namespace study

@@ -27,7 +27,7 @@ const MethodClaims& claims_in_force(const stats::AnalysisPlan& plan);
 /// The claims of one task (1 or 2).
 MethodClaims claims_of_task(const MethodClaims& claims, int task);
 
-/// "A to D", "A and B", "A"; empty without ids.
+/// "H1 to H4" for three or more ids that are numbered in order, else "A, B and C"; empty without ids.
 std::string ids_in_short(const std::vector<std::string>& ids);
 std::vector<std::string> ids_of(const MethodClaims& claims);
 /// The ids of the claims for which `flag` is true: "A, B and C".

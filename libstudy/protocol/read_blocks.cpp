@@ -187,12 +187,12 @@ Interruption read_interruption(const base::TomlTable& table) {
 
 /// A break after every so many trials of a study with factors.
 void read_breaks(const base::TomlTable& table, const Design& design, Block& block) {
-  block.break_every = static_cast<int>(table.integer_or("break_every", 0, {1, most_trials}));
-  if (block.break_every == 0) {
+  if (!table.has("break_every")) {
     if (table.has("break_s"))
       table.fail("break_s", "has no effect without break_every", "add break_every, or remove break_s");
     return;
   }
+  block.break_every = static_cast<int>(table.integer("break_every", {1, most_trials}));
   block.break_s = table.number("break_s", pause_range);
   const int trials = design.groups * trials_of_group(design);
   if (block.break_every >= trials)

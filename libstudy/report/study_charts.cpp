@@ -103,6 +103,12 @@ namespace {
 
 constexpr double row_height = 22;
 
+/// A name that leaves the points their space; the table below the figure has the whole name.
+std::string shortened(const std::string& name) {
+  constexpr std::size_t most = 44;
+  return name.size() <= most ? name : name.substr(0, most - 3) + "...";
+}
+
 /// Scale of all means and intervals of the cells, from 0 to 1 for shares.
 Scale scale_of_cells(const std::vector<Field>& cells, bool shares) {
   if (shares) return {0, 1};
@@ -126,8 +132,8 @@ svg::Picture cell_means_chart(const Field& question, const std::string& id) {
   const auto cells = question["cells"].entries();
   std::vector<std::string> names;
   for (const Field& cell : cells)
-    names.push_back(cell["cell"].words() +
-                    (cell["other"].words().empty() ? "" : " and " + cell["other"].words()));
+    names.push_back(shortened(cell["cell"].words() +
+                              (cell["other"].words().empty() ? "" : " and " + cell["other"].words())));
   const Scale scale = scale_of_cells(cells, question["value"].words() != "mean");
   const double from = room_for(names) + 20, bottom = top + row_height * static_cast<double>(cells.size());
   const auto x = [&](double value) { return from - left + scale.x(value); };

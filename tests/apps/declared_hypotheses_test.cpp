@@ -121,7 +121,7 @@ TEST(DeclaredHypotheses, PairsAndProceduresHaveOutcomesOfTheirOwn) {
   const std::string chosen = "[[hypothesis]]\nid = \"a\"\noutcome = \"" + question +
                              "\"\ncompare = [{frames = \"captured\"}]\ntest = \"wilcoxon\"\n";
   EXPECT_EQ(plan_of(chosen, &pairs).hypotheses.size(), 1u) << "one half is the chance of a pair";
-  EXPECT_THAT(refused(chosen, "captured", "even", pairs), HasSubstr("the standard is in every trial"));
+  EXPECT_THAT(refused(chosen, "captured", "even", pairs), HasSubstr("and not those of the standard"));
 
   const auto quest = shipped("hitch_quest");
   const std::string threshold =

@@ -264,7 +264,7 @@ TEST(FactorStudyE2e, GoesFromSimulatedPeopleToThePage) {
   const auto report =
       typed("vip-stats report " + at("s.db") + " --json " + at("old.json") + " --plan " + at("plan.toml"));
   ASSERT_EQ(report.exit_code, 0) << report.err;
-  EXPECT_THAT(text_in(folder / "old.json"), HasSubstr("are tested by vip-stats study"));
+  EXPECT_THAT(text_in(folder / "old.json"), HasSubstr("it lacks the key task"));
 }
 
 TEST(FactorStudyE2e, RefusesOtherProtocols) {

@@ -77,8 +77,8 @@ TEST(HostileValues, OfAnyKeyOfAProtocolAreTakenOrRefusedWithPlaceAndMend) {
   const auto names = test::try_hostile_values(
       sound_protocols(),
       [](const std::string& text) { return study::parse_protocol(text, test::hostile_name); }, use);
-  // Every key of the reference must occur; tables and lists of tables occur through their keys. SCORE, KEY and
-  // FACTOR are placeholders for any name.
+  // Every key of the reference must occur; tables and lists of tables occur through their keys. SCORE, KEY
+  // and FACTOR are placeholders for any name.
   EXPECT_TRUE(names.contains("rate_per_s"));
   for (const auto& key : study::protocol_reference()) {
     const bool any_name = key.key == "SCORE" || key.key == "KEY" || key.key == "FACTOR";

@@ -6,7 +6,7 @@ namespace study {
 
 namespace {
 
-Json test_json(const stats::HypothesisTest& test) {
+Json test_json(const stats::HypothesisTest& test, bool has_paper) {
   Json json{{"label", test.label}};
   if (!test.score.empty()) {
     json["score"] = test.score;
@@ -35,16 +35,17 @@ Json test_json(const stats::HypothesisTest& test) {
   json["against"] = test.against;
   json["reason"] = test.reason;
   json["paper_p"] = json_number(test.paper_p);
-  json["paper_holds"] = test.paper_holds;
+  json["paper_holds"] = has_paper ? Json(test.paper_holds) : Json();
   if (test.p_holm_of_five) json["p_holm_of_five"] = *test.p_holm_of_five;
   if (test.p_holm_of_ten) json["p_holm_of_ten"] = *test.p_holm_of_ten;
   if (test.tipping) json["tipping"] = json_result(*test.tipping, tipping_json);
   return json;
 }
 
-Json tests_json(const std::vector<stats::HypothesisTest>& tests) {
+/// `has_paper`: the hypothesis has a verdict by the paper's rule.
+Json tests_json(const std::vector<stats::HypothesisTest>& tests, bool has_paper) {
   Json list = Json::array();
-  for (const auto& test : tests) list.push_back(test_json(test));
+  for (const auto& test : tests) list.push_back(test_json(test, has_paper));
   return list;
 }
 
@@ -65,7 +66,7 @@ Json hypothesis_json(const stats::Hypothesis& one) {
             {"confirmed_holm", one.confirmed_holm},
             {"p_claim", json_number(one.p_claim)},
             {"p_claim_of_six", json_number(one.p_claim_of_six)},
-            {"tests", tests_json(one.tests)}};
+            {"tests", tests_json(one.tests, !one.paper_rule.empty())}};
   if (!one.paper_rule.empty())
     json["paper"] = {{"rule", one.paper_rule},
                      {"status", one.paper_supported ? "supported" : "not supported"},
@@ -76,7 +77,7 @@ Json hypothesis_json(const stats::Hypothesis& one) {
   if (one.paired)
     json["paired"] = {{"status", stats::status_name(one.paired->status)},
                       {"confirmed", one.paired->confirmed},
-                      {"tests", tests_json(one.paired->tests)}};
+                      {"tests", tests_json(one.paired->tests, !one.paper_rule.empty())}};
   return json;
 }
 

@@ -180,10 +180,13 @@ Json assemble(const ResultsRequest& request, const std::vector<TaskPart>& parts,
   json["descriptives"] = Json::array();
   json["not_analysed"] = Json::array();
   for (const auto& one : request.plan.plan.hypotheses)
-    json["not_analysed"].push_back({{"task", "own"},
-                                    {"protocol", ""},
-                                    {"what", one.id},
-                                    {"reason", "hypotheses of the plan are tested by vip-stats study"}});
+    json["not_analysed"].push_back(
+        {{"task", "own"},
+         {"protocol", ""},
+         {"what", one.id},
+         {"reason",
+          "it lacks the key task, so that only vip-stats study tests it, in a study with "
+          "factors; a hypothesis about methods has task = \"task1\" or \"task2\""}});
   for (const TaskPart& part : parts) {
     json["flow"][task_name(part.data.task)] = flow_json(part.data.flow);
     append(json["exclusions"], exclusions_json(part.data));

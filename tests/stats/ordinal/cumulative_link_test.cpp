@@ -374,7 +374,9 @@ TEST(CumulativeLink, RefusesWithANamedReason) {
 
 TEST(CumulativeLink, RefusesSpreadsThatAreNone) {
   const std::vector<double> ratings{1, 2, 3, 2, 3, 1};
-  EXPECT_NE(fit_cumulative_link_mixed(ratings, {}, std::vector<int>(6, 1)).reason().find("one participant"),
+  EXPECT_NE(fit_cumulative_link_mixed(ratings, {}, std::vector<int>(6, 1))
+                .reason()
+                .find("fewer than two participants"),
             std::string::npos);
   EXPECT_NE(fit_cumulative_link_mixed(ratings, {}, std::vector<int>{1, 2, 3, 4, 5, 6})
                 .reason()
