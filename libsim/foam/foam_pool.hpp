@@ -87,9 +87,9 @@ struct FoamPool {
 
 /// Fills MeetingCells::meeting. A least-squares fit over a cell and the 26 around it gives the gradient G of
 /// the cells' mean velocities. Ihmsen et al. (2012, Eq. 2) measure the approach of two points along the unit
-/// vector e by (|G e| - e G e) times their distance. The result is the mean of |G e| - e G e over all e, times the share
-/// of water in the surrounding cells, because air is trapped between water. Space behind walls or in
-/// obstacles is left out of the share. Bounds: Walls, or Solids in scenes with obstacles.
+/// vector e by (|G e| - e G e) times their distance. The result is the mean of |G e| - e G e over all e,
+/// times the share of water in the surrounding cells, because air is trapped between water. Space behind
+/// walls or in obstacles is left out of the share. Bounds: Walls, or Solids in scenes with obstacles.
 template <class Bounds>
 void find_meeting(MeetingCells& cells, MovingView water, const Bounds& bounds);
 

@@ -29,8 +29,8 @@ struct Feelers {
   }
   SIM_FN int edges() const { return mesh || body.half.y == 0 ? 0 : is_box() ? 12 : 1; }
   SIM_FN int count() const { return corners() + edges(); }
-  /// Radius of a sphere about the body's centre that contains the body, m. Exact for a sphere, a capsule and a
-  /// box; for a mesh an upper bound, the corner of its box.
+  /// Radius of a sphere about the body's centre that contains the body, m. Exact for a sphere, a capsule and
+  /// a box; for a mesh an upper bound, the corner of its box.
   SIM_FN float reach() const { return length(body.half) + body.radius; }
 
   /// Position of corner k in the body's axes, m.

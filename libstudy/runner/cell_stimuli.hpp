@@ -17,8 +17,8 @@ namespace study {
 class CellStimuli final : public StimulusSource {
  public:
   /// base::Error if a solver setting is for a cell that is not computed live. Unless nothing is shown
-  /// (--display none), also if a cell names an unknown method, n_* or effect, if a scene cannot be read, or if
-  /// an obstacle of a live cell leaves the water too little space (sim::check_ways()).
+  /// (--display none), also if a cell names an unknown method, n_* or effect, if a scene cannot be read, or
+  /// if an obstacle of a live cell leaves the water too little space (sim::check_ways()).
   CellStimuli(const RunOptions& options, const Protocol& protocol, const stats::PtpeModel& model,
               Viewing viewing, SessionBakes bakes = {}, SessionSettings settings = {});
 

@@ -11,8 +11,8 @@ namespace {
 /// of this separation is not a motion of the fluid. So velocity changes near new particles are averaged over
 /// neighbours. The average conserves momentum, and does not alter changes that all particles share, such as
 /// those by gravity and pressure. Splits and merges also lift the water a little. It sinks back for a second
-/// or two, which sets it in motion, and an additional viscosity of water at rest damps this motion. Water that
-/// moved before is filtered less and gets no additional viscosity, because it would lose energy.
+/// or two, which sets it in motion, and an additional viscosity of water at rest damps this motion. Water
+/// that moved before is filtered less and gets no additional viscosity, because it would lose energy.
 struct NoFilter {
   static constexpr bool filters = false;
 };
