@@ -299,6 +299,8 @@ TEST(Preregistration, ATouchedFileTakesTheNameAway) {
   const TemporaryFolder folder;
   study::report::freeze_bundle(both_tasks(), folder / "bundle");
   auto plan = base::read_file(folder / "bundle/plan.toml", 1 << 20);
+  EXPECT_NE(plan.find("[[hypothesis]]\nid = \"H1\""), std::string::npos)
+      << "the shipped hypotheses are frozen";
   base::write_file_atomically(folder / "bundle/plan.toml", plan + "# \n");
   fs::remove(folder / "bundle/PREREGISTRATION.txt");
   const auto bundle = study::report::read_bundle(folder / "bundle");
