@@ -335,7 +335,7 @@ TEST(Preregistration, IsNeverWrittenOverAndLeavesNothingHalfDone) {
               ThrowsMessage<base::Error>(HasSubstr("never overwritten")));
   EXPECT_EQ(study::report::read_bundle(folder / "bundle").sha256, hash);
   auto request = both_tasks();
-  request.protocols.push_back("no_such_protocol.toml");
+  request.protocols.emplace_back("no_such_protocol.toml");
   EXPECT_THROW(study::report::freeze_bundle(request, folder / "other"), base::Error);
   request = both_tasks();
   request.protocols[1] = request.protocols[0];
