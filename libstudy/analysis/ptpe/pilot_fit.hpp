@@ -92,7 +92,7 @@ PilotFit fit_pilot(TaskData data, double level, const stats::BootstrapOptions& b
 base::Json failed_fit_json(std::optional<double> level, const std::string& reason);
 /// The content of fit.json: every number of the fit. An undefined value is null and has its reason beside it.
 base::Json fit_json(const PilotFit& fit);
-/// The content of the solver's file. Requires fit.ok().
+/// The fit as the file of a and b that the solver reads. Requires fit.ok().
 sim::PtpeFile ptpe_file(const PilotFit& fit);
 
 }  // namespace study

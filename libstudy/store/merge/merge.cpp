@@ -174,8 +174,8 @@ Merge sum_up(Connection& result, const Content& content, const std::vector<Sessi
   return merge;
 }
 
-/// Copies the chores that an earlier merge or withdrawal left over. Must run before plan_chores(): these
-/// chores use the codes from before this merge, so they must be done first.
+/// Copies the clean-up chores that an earlier merge or withdrawal left undone. Must run before plan_chores(),
+/// so that they are done first: they name participants by their codes from before this merge.
 void carry_chores_over(Connection& into, Connection& result) {
   Statement row(into, "SELECT kind, batch, person, participant, renamed FROM chore ORDER BY chore_id");
   Statement insert(result,
