@@ -34,7 +34,7 @@ struct StabilityOptions {
 
 /// One case with one method: a run at the case's usual numbers, and a search for the limit of each knob
 /// (frame step, iterations, or the quantity that the case scales).
-struct Job {
+struct CaseRun {
   const HardCase* hard_case;
   Setting setting;
   std::vector<measure::MapCell> cells = {};
@@ -91,7 +91,7 @@ std::string failure(const HardCase& hard_case, const Setting& setting) {
   }
 }
 
-void turn(const Job& job, const StabilityOptions& options, measure::MapCell& cell) {
+void turn(const CaseRun& job, const StabilityOptions& options, measure::MapCell& cell) {
   const HardCase& one = *job.hard_case;
   if (cell.knob == measure::Knob::Iterations) {
     const auto limit = measure::fewest(
@@ -119,7 +119,7 @@ void turn(const Job& job, const StabilityOptions& options, measure::MapCell& cel
 }
 
 /// Fills job.cells. Calls `step` after the run at the usual numbers and after each knob.
-void measure(Job& job, const StabilityOptions& options, const std::function<void()>& step) {
+void measure(CaseRun& job, const StabilityOptions& options, const std::function<void()>& step) {
   const HardCase& one = *job.hard_case;
   // Errors of this run are not caught: if the back end fails, its error ends the command.
   const std::string at_its_own = failure(run(one, job.setting));
@@ -146,7 +146,7 @@ void measure(Job& job, const StabilityOptions& options, const std::function<void
 
 /// Measures all jobs; on the CPU in parallel, one thread per job. Results do not depend on the number of
 /// threads.
-void measure_all(std::vector<Job>& jobs, const StabilityOptions& options, sim::Backend backend) {
+void measure_all(std::vector<CaseRun>& jobs, const StabilityOptions& options, sim::Backend backend) {
   base::Progress progress("cases", jobs.size() * steps_of_a_job);
   std::size_t done = 0;
   std::exception_ptr broken;
@@ -197,7 +197,7 @@ measure::StabilityMap map_of(const StabilityOptions& options) {
   out.effects = in_words(effects);
   const auto methods = methods_of(options.methods);
   for (const auto method : methods) out.methods.push_back(sim::method_name(method));
-  std::vector<Job> jobs;
+  std::vector<CaseRun> jobs;
   for (const HardCase* one : cases_of(options.cases)) {
     out.cases.emplace_back(one->id);
     for (const auto method : methods) {
@@ -210,7 +210,7 @@ measure::StabilityMap map_of(const StabilityOptions& options) {
     }
   }
   measure_all(jobs, options, backend);
-  for (const Job& job : jobs) out.cells.insert(out.cells.end(), job.cells.begin(), job.cells.end());
+  for (const CaseRun& job : jobs) out.cells.insert(out.cells.end(), job.cells.begin(), job.cells.end());
   return out;
 }
 

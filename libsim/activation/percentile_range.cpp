@@ -8,7 +8,7 @@ namespace {
 
 /// Computes the 1st and the 99th percentile, each interpolated within the bin in which the cumulative count
 /// reaches it.
-struct Place {
+struct PlaceInBin {
   BinCounts counts;
   ValueRange* now;
   int n;
@@ -44,7 +44,7 @@ struct FollowPercentiles {
   float share;
   template <class Block>
   SIM_FN void operator()(Block block, const BinCounts& counts) const {
-    block.each(counts.runs(), Place{counts, now, n});
+    block.each(counts.runs(), PlaceInBin{counts, now, n});
     block.each(1, Follow{now, range, share});
   }
 };

@@ -67,7 +67,7 @@ struct PlaceSum {
 
 /// Adds one run of run_length particles to one of the sums. Indices count the runs of the first sum, then
 /// those of the second sum, and so on.
-struct AddMomentum {
+struct AddCellMomentum {
   struct To {
     MomentumOf of;
     MomentumSum* sums;
@@ -140,11 +140,11 @@ struct FinishEnergy {
 }  // namespace
 
 void CellMomentum::measure(MovingView particles, const std::uint8_t* active, const MomentumOf* sums, int n) {
-  AddMomentum add{.position = particles.position(),
-                  .velocity = particles.velocity(),
-                  .level = particles.level(),
-                  .active = active,
-                  .n = particles.size()};
+  AddCellMomentum add{.position = particles.position(),
+                      .velocity = particles.velocity(),
+                      .level = particles.level(),
+                      .active = active,
+                      .n = particles.size()};
   const auto size_of = [&](int k) {
     const auto cells = static_cast<std::size_t>(sums[k].grid.cells());
     return sums[k].whose == Whose::Unused ? 0 : grid_levels * cells;

@@ -61,7 +61,7 @@ std::size_t CornerColumns::bytes() const {
 
 namespace {
 
-struct Weigh {
+struct SumMass {
   const int* taken;
   const std::uint8_t* level;
   int* mass;
@@ -173,7 +173,7 @@ int Exchange::run(Particles& particles, const LevelSupports& supports, const int
   const ExchangeView p(particles);
   const int n = p.size();
   mass_.resize(static_cast<std::size_t>(found));
-  for_each("weigh", found, Weigh{lowest_first, p.level(), mass_.data()});
+  for_each("weigh", found, SumMass{lowest_first, p.level(), mass_.data()});
   scanner_.inclusive_sum(mass_, mass_sum_);
   const std::int64_t layer_mass = static_cast<std::int64_t>(sites) << level;
   layers = static_cast<int>(std::min<std::int64_t>(layers, (reservoir + last_of(mass_sum_)) / layer_mass));

@@ -91,7 +91,7 @@ struct SumCurvature {
 
 /// Number of diffuse particles that each water particle emits: the emitted volume divided by the volume of a
 /// diffuse particle, randomly rounded.
-struct CountBirths {
+struct CountFoamBirths {
   const Vec4* position;
   const Vec4* velocity;
   const Vec4* normal;
@@ -130,7 +130,7 @@ struct CountBirths {
   }
 };
 
-struct MarkFree {
+struct MarkFreeFoam {
   const Vec4* place;
   int* free;
   SIM_FN void operator()(int slot) const { free[slot] = !(place[slot].w > 0); }
@@ -244,22 +244,22 @@ void find_foam_surface(FoamPool& pool, FoamView water, const Grid& grid, const B
 void count_foam_births(FoamPool& pool, FoamView water, const Grid& grid, const FoamRules& rules) {
   pool.births.resize(static_cast<std::size_t>(water.size()));
   for_each("foam potentials", water.size(),
-           CountBirths{.position = water.position(),
-                       .velocity = water.velocity(),
-                       .normal = water.normal(),
-                       .id = water.id(),
-                       .level = water.level(),
-                       .approach = pool.approach.data(),
-                       .water = {grid.cells(), water.position()},
-                       .rules = rules,
-                       .frame = pool.frame,
-                       .births = pool.births.data()});
+           CountFoamBirths{.position = water.position(),
+                           .velocity = water.velocity(),
+                           .normal = water.normal(),
+                           .id = water.id(),
+                           .level = water.level(),
+                           .approach = pool.approach.data(),
+                           .water = {grid.cells(), water.position()},
+                           .rules = rules,
+                           .frame = pool.frame,
+                           .births = pool.births.data()});
 }
 
 template <class Bounds>
 void emit_foam(FoamPool& pool, FoamView water, const Bounds& bounds, const FoamRules& rules) {
   pool.scanner.inclusive_sum(pool.births, pool.sums);
-  for_each("free foam", pool.capacity(), MarkFree{pool.place.data(), pool.free.data()});
+  for_each("free foam", pool.capacity(), MarkFreeFoam{pool.place.data(), pool.free.data()});
   pool.scanner.inclusive_sum(pool.free, pool.free_of);
   for_each("emit foam", pool.capacity(),
            Emit<Bounds>{.position = water.position(),

@@ -63,7 +63,7 @@ SIM_FN bool in_a_body(const Walls&, Vec3) { return false; }
 SIM_FN bool in_a_body(const Solids& solids, Vec3 x) { return solids.nearest_body(x) < 0; }
 
 template <class Bounds>
-struct Meet {
+struct MeetFoam {
   const MomentumSum* sums;
   GridFrame grid;
   Vec3 last;
@@ -129,8 +129,9 @@ struct Meet {
 template <class Bounds>
 void find_meeting(MeetingCells& cells, MovingView water, const Bounds& bounds) {
   cells.sums.measure(water, nullptr, {{Whose::All, cells.grid}});
-  for_each("foam cells", cells.grid.cells(),
-           Meet<Bounds>{cells.sums.of(0), cells.grid, cells.last, cells.full, bounds, cells.meeting.data()});
+  for_each(
+      "foam cells", cells.grid.cells(),
+      MeetFoam<Bounds>{cells.sums.of(0), cells.grid, cells.last, cells.full, bounds, cells.meeting.data()});
 }
 
 template void find_meeting(MeetingCells&, MovingView, const Walls&);

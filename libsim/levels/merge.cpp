@@ -90,7 +90,7 @@ SIM_FN PairKey pair_key(Vec4 a, Vec4 b, int id_a, int id_b) {
   const auto high = static_cast<std::uint32_t>(id_a < id_b ? id_b : id_a);
   return {dot(offset, offset), random_bits(low, high, 0)};
 }
-SIM_FN Vec3 middle(Vec4 a, Vec4 b) { return 0.5f * (xyz(a) + xyz(b)); }
+SIM_FN Vec3 midpoint(Vec4 a, Vec4 b) { return 0.5f * (xyz(a) + xyz(b)); }
 
 /// A neighbour as a possible merge partner. Candidates are ordered by the pair's key, then by their index in
 /// the neighbour list.
@@ -173,7 +173,7 @@ struct Propose {
 
   template <class Team>
   SIM_FN bool overlaps(int i, int j, Team team) const {
-    const Vec3 centre = middle(position[i], position[j]);
+    const Vec3 centre = midpoint(position[i], position[j]);
     return !free_of_bodies(walls, centre) ||
            overlaps_coarser(position, level, neighbours, i, level[i], centre, supports.h[level[i] + 1],
                             rules.merge_overlap, team);
@@ -207,14 +207,14 @@ struct KeepApart {
   template <class Team>
   SIM_FN bool early_beside(int i, int j, int member, Team team) const {
     const PairKey own = pair_key(position[i], position[j], id[i], id[j]);
-    const Vec3 centre = middle(position[i], position[j]);
+    const Vec3 centre = midpoint(position[i], position[j]);
     const int size = neighbours.size(member);
     const NeighbourRun run = neighbours.run(member);
     for (int k = team.rank(); k < size; k += Team::size) {
       const int a = run[k];
       if (a == i || a == j || !mutual(a)) continue;
       const int b = partner[a];
-      const Vec4 merged = with_w(middle(position[a], position[b]), supports.h[level[a] + 1]);
+      const Vec4 merged = with_w(midpoint(position[a], position[b]), supports.h[level[a] + 1]);
       if (clear_of(merged, centre, supports.h[level[i] + 1], rules.merge_overlap)) continue;
       if (pair_key(position[a], position[b], id[a], id[b]).before(own)) return true;
     }

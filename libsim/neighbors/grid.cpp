@@ -60,7 +60,7 @@ struct Meet {
   }
 };
 
-struct Place {
+struct PlaceInCell {
   const int* begin;
   const int* cell_of;
   const int* arrival;
@@ -207,7 +207,7 @@ void Grid::sort(Particles& particles, bool by_level) {
            CountCells{p.predicted(), by_level ? p.level() : nullptr, shape_, begin_.data(), cell_of_.data(),
                       arrival});
   scanner_.inclusive_sum(begin_, begin_);
-  for_each("place by cell", n, Place{begin_.data(), cell_of_.data(), arrival, placed_.data()});
+  for_each("place by cell", n, PlaceInCell{begin_.data(), cell_of_.data(), arrival, placed_.data()});
   for_each("order within cells", n,
            OrderWithinCells{begin_.data(), cell_of_.data(), placed_.data(), p.id(), order_.data()});
   particles.reorder(order_);

@@ -11,7 +11,7 @@ namespace sim {
 
 namespace {
 
-constexpr std::array<PictureEffectTraits, picture_effect_count> all_traits{{
+constexpr std::array<PictureEffectTraits, picture_effect_count> picture_traits{{
 #define SIM_TRAITS(Name, word, source) {#word, source},
     SIM_PICTURE_EFFECTS(SIM_TRAITS)
 #undef SIM_TRAITS
@@ -26,7 +26,7 @@ const PictureEffect* find(const std::vector<PictureEffect>& effects, PictureEffe
 }  // namespace
 
 const PictureEffectTraits& traits_of(PictureEffectKind kind) {
-  return all_traits[static_cast<std::size_t>(kind)];
+  return picture_traits[static_cast<std::size_t>(kind)];
 }
 
 float strength_of(const std::vector<PictureEffect>& effects, PictureEffectKind kind) {
@@ -36,7 +36,7 @@ float strength_of(const std::vector<PictureEffect>& effects, PictureEffectKind k
 
 std::vector<std::string> picture_effect_words() {
   std::vector<std::string> out;
-  for (const PictureEffectTraits& traits : all_traits) out.emplace_back(traits.word);
+  for (const PictureEffectTraits& traits : picture_traits) out.emplace_back(traits.word);
   return out;
 }
 

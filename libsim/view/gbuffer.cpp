@@ -30,7 +30,7 @@ struct Header {
 };
 
 /// Extracts the arrays of the file one after the other.
-struct Reader {
+struct PlaneReader {
   std::string_view rest;
   template <class T>
   void take(T* out, std::size_t count) {
@@ -70,7 +70,7 @@ std::string gbuffer_bytes(const GBuffer& g, const std::string& place) {
 GBuffer gbuffer_of(std::string_view bytes, const std::string& place) {
   const std::string mend = "write the file again with this version of the program";
   if (!bytes.starts_with(magic)) throw base::Error(place, "holds no G-buffer of version 1", mend);
-  Reader reader{bytes.substr(magic.size())};
+  PlaneReader reader{bytes.substr(magic.size())};
   if (reader.rest.size() < sizeof(Header))
     throw base::Error(place, "is cut short in the header of the G-buffer", mend);
   Header header;

@@ -60,12 +60,12 @@ stats::ShownClaims all_left_out(const stats::AnalysisPlan& plan, std::optional<i
   return out;
 }
 
-struct Shown {
+struct ShownMethods {
   std::vector<std::string> methods, n_stars;
 };
 
-Shown shown_by(const Protocol& protocol) {
-  Shown out;
+ShownMethods shown_by(const Protocol& protocol) {
+  ShownMethods out;
   for (const auto& cell : protocol.design.cells) {
     add_once(out.methods, cell.stimulus.method);
     add_once(out.n_stars, cell.stimulus.n_star);
@@ -78,7 +78,7 @@ stats::ShownClaims claims_of_ratings(const Protocol& protocol, const stats::Anal
   const std::string missing =
       protocol.design.pairs ? methods_in_pairs : missing_items(asked_questions(protocol));
   if (!missing.empty()) return all_left_out(plan, 1, missing);
-  const Shown shown = shown_by(protocol);
+  const ShownMethods shown = shown_by(protocol);
   stats::ScoreScale realism, sickness;
   realism.code = "realism";
   realism.margin = plan.margin_realism;

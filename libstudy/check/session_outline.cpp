@@ -79,7 +79,7 @@ std::string step_words(const Protocol& protocol, const TrialStep& step) {
   }
 }
 
-int rows_of(const Design& design) {
+int rows_of_square(const Design& design) {
   if (design.order == TrialOrder::Latin) return trials_of_group(design);
   if (design.order != TrialOrder::Williams) return 1;
   return williams_rows(trials_of_group(design));
@@ -160,7 +160,7 @@ PlannedBalance check_balance(const Protocol& protocol) {
     for (const auto& [pair, count] : difference)
       out.interval_difference = std::max(out.interval_difference, std::abs(count));
   }
-  out.even = out.sequences * rows_of(design) * (design.pairs && dealt ? 2 : 1);
+  out.even = out.sequences * rows_of_square(design) * (design.pairs && dealt ? 2 : 1);
   out.even_below = out.planned / out.even * out.even;
   out.even_above = out.even_below == out.planned ? out.planned : out.even_below + out.even;
   return out;

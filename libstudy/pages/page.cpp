@@ -28,8 +28,6 @@ int percent_of(PageKey key) {
   }
 }
 
-bool is_blank(const std::string& words) { return words.find_first_not_of(" \t\r\n") == std::string::npos; }
-
 }  // namespace
 
 bool one_digit_does(const Question& question) {
@@ -244,7 +242,7 @@ std::optional<int> PageState::number(std::size_t question) const {
 bool PageState::answered(std::size_t question) const {
   const AnswerKindTraits& traits = traits_of(questions_[question].kind);
   if (traits.listed || traits.timed) return items_[question].chosen.has_value();
-  return traits.typed() ? number(question).has_value() : !is_blank(items_[question].typed);
+  return traits.typed() ? number(question).has_value() : !base::is_blank(items_[question].typed);
 }
 
 bool PageState::out_of_range(std::size_t question) const {

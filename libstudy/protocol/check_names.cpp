@@ -6,14 +6,13 @@
 #include "libstudy/protocol/names.hpp"
 #include "libstudy/protocol/readers.hpp"
 #include "stats/base/nearest.hpp"
+#include "stats/base/text.hpp"
 
 namespace study {
 
 namespace {
 
 /// True for a blank name. The readers of the design refuse blank names.
-bool is_blank(const std::string& word) { return word.find_first_not_of(" \t\r\n") == std::string::npos; }
-
 bool among(const std::vector<std::string>& known, const std::string& word) {
   return std::find(known.begin(), known.end(), word) != known.end();
 }
@@ -21,7 +20,7 @@ bool among(const std::vector<std::string>& known, const std::string& word) {
 void check_methods(const base::TomlTable& design) {
   const auto methods = design.strings("method");
   for (std::size_t i = 0; i < methods.size(); ++i) {
-    if (is_blank(methods[i]) || among(method_names(), methods[i])) continue;
+    if (base::is_blank(methods[i]) || among(method_names(), methods[i])) continue;
     design.fail_at("method", i, "= " + base::toml_quoted(methods[i]) + " is no method",
                    base::use_one_of(methods[i], method_names()));
   }
@@ -44,7 +43,7 @@ namespace {
 void check_particle_counts(const base::TomlTable& design) {
   const auto sizes = design.strings("n_star");
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    if (is_blank(sizes[i]) || is_particle_count(sizes[i])) continue;
+    if (base::is_blank(sizes[i]) || is_particle_count(sizes[i])) continue;
     design.fail_at("n_star", i, "= " + base::toml_quoted(sizes[i]) + " is no number of particles",
                    "write a whole number, or one with k for 1,024, for example \"32k\"");
   }

@@ -136,14 +136,6 @@ std::string margin_toml(const MethodClaim& claim) {
   return out.empty() ? base::toml_quoted(margin_of_plan) : "{" + out + "}";
 }
 
-/// "A, B and C"
-std::string enumeration(const std::vector<std::string>& ids) {
-  std::string out;
-  for (std::size_t i = 0; i < ids.size(); ++i)
-    out += (i == 0 ? "" : i + 1 == ids.size() ? " and " : ", ") + ids[i];
-  return out;
-}
-
 MethodClaims read_shipped() {
   const auto file = base::resource("protocols/plans/paper.toml");
   const auto root = base::parse_toml(base::read_file(file, largest_file), file.string());
@@ -218,12 +210,13 @@ MethodClaims claims_of_task(const MethodClaims& claims, int task) {
 }
 
 std::string ids_in_short(const std::vector<std::string>& ids) {
-  if (ids.size() < 3) return enumeration(ids);
+  if (ids.size() < 3) return base::enumerated(ids);
   const std::string& first = ids.front();
   const std::string stem = first.substr(0, first.find_last_not_of("0123456789") + 1);
   const int number = stem.size() < first.size() ? std::atoi(first.c_str() + stem.size()) : -1;
   for (std::size_t i = 0; i < ids.size(); ++i)
-    if (number < 0 || ids[i] != stem + std::to_string(number + static_cast<int>(i))) return enumeration(ids);
+    if (number < 0 || ids[i] != stem + std::to_string(number + static_cast<int>(i)))
+      return base::enumerated(ids);
   return first + " to " + ids.back();
 }
 
@@ -237,7 +230,7 @@ std::string ids_with(const MethodClaims& claims, bool MethodClaim::*flag) {
   std::vector<std::string> ids;
   for (const MethodClaim& one : claims)
     if (one.*flag) ids.push_back(one.id);
-  return enumeration(ids);
+  return base::enumerated(ids);
 }
 
 }  // namespace study

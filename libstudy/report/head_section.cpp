@@ -2,6 +2,7 @@
 
 #include "libstudy/report/html.hpp"
 #include "libstudy/report/sections.hpp"
+#include "stats/base/text.hpp"
 
 namespace study::report {
 
@@ -39,13 +40,6 @@ std::string observers(const Field& root) {
 
 }  // namespace
 
-std::string enumerated(const std::vector<std::string>& names) {
-  std::string out;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return out;
-}
-
 std::vector<Field> documents(const Field& root) {
   std::vector<Field> out{root};
   for (const Field& one : root["apart"].entries()) out.push_back(one);
@@ -63,13 +57,13 @@ std::string banners(const Field& root) {
            ": the database lacks them, and so do these results.</p>\n";
   const auto test = parts_where(root, [](const Field& protocol) { return protocol["test_data"].yes(); });
   if (!test.empty())
-    out += "<p class=\"warning\"><strong>Test data.</strong> There are no other data of " + enumerated(test) +
-           ": these results say nothing about people.</p>\n";
+    out += "<p class=\"warning\"><strong>Test data.</strong> There are no other data of " +
+           base::enumerated(test) + ": these results say nothing about people.</p>\n";
   const auto simulated =
       parts_where(root, [](const Field& protocol) { return protocol["simulated"].number() > 0; });
   if (!simulated.empty())
     out += "<p class=\"warning\"><strong>Simulated participants: " + count(study["simulated_people"]) +
-           "</strong> (" + observers(root) + "). All answers of " + enumerated(simulated) +
+           "</strong> (" + observers(root) + "). All answers of " + base::enumerated(simulated) +
            " come from a model: they say nothing about people.</p>\n";
   return out;
 }

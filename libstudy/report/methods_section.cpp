@@ -3,6 +3,7 @@
 
 #include "libstudy/report/html.hpp"
 #include "libstudy/report/sections.hpp"
+#include "stats/base/text.hpp"
 
 namespace study::report {
 
@@ -121,9 +122,9 @@ std::string exclusion_rules(const Field& root) {
   }
   std::string out;
   for (const auto& [text, parts] : groups)
-    out += text.empty() ? "No rule of exclusion could act on " + enumerated(parts) + ". "
+    out += text.empty() ? "No rule of exclusion could act on " + base::enumerated(parts) + ". "
            : parts.size() > 1
-               ? "The same rules of exclusion held for " + enumerated(parts) + ": " + text + ". "
+               ? "The same rules of exclusion held for " + base::enumerated(parts) + ": " + text + ". "
                : "Rules of exclusion for " + parts.front() + ": " + text + ". ";
   return out.empty() ? "" : out + "The rules see neither method, scene nor frame rate. ";
 }

@@ -3,6 +3,7 @@
 #include "libstudy/report/figures.hpp"
 #include "libstudy/report/html.hpp"
 #include "libstudy/report/sections.hpp"
+#include "stats/base/text.hpp"
 
 namespace study::report {
 
@@ -34,8 +35,9 @@ std::string untouched(const Field& root) {
     for (const Field& e : root["exclusions"].entries()) touched = touched || e["task"].words() == key;
     if (!touched) parts.emplace_back(title);
   }
-  return parts.empty() ? ""
-                       : paragraph("Nothing of " + enumerated(parts) + " was left out by rule or by hand.");
+  return parts.empty()
+             ? ""
+             : paragraph("Nothing of " + base::enumerated(parts) + " was left out by rule or by hand.");
 }
 
 bool any_judged(const Field& timing) {

@@ -2,6 +2,7 @@
 
 #include "libstudy/report/html.hpp"
 #include "libstudy/report/sections.hpp"
+#include "stats/base/text.hpp"
 
 namespace study::report {
 
@@ -34,7 +35,7 @@ std::string everything_else(const Field& root) {
   if (!root["task1"]["ordinal"].entries().empty()) parts.emplace_back("ordinal models");
   if (root["task2"]["bradley_terry"].exists()) parts.emplace_back("the Bradley-Terry model");
   if (!root["sensitivity"].entries().empty()) parts.emplace_back("sensitivity");
-  return enumerated(parts);
+  return base::enumerated(parts);
 }
 
 }  // namespace

@@ -20,9 +20,6 @@ inline constexpr std::array<Part, 4> all_parts{
 /// The main results document, followed by the documents in "apart".
 std::vector<Field> documents(const Field& root);
 
-/// Joins names: "Pilot, Task 1 and Task 2"; "" without names.
-std::string enumerated(const std::vector<std::string>& names);
-
 /// True if a task ("task1", "task2", "pilot") was preregistered: a bundle was given, it is intact, it holds
 /// the study's protocol and the hypotheses as they were tested, and it is older than the first answer.
 bool preregistered(const Field& root, const std::string& task);

@@ -18,7 +18,7 @@ using sqlite::Statement;
 
 namespace {
 
-constexpr int rounds = 5;
+constexpr int most_rounds = 5;
 
 bool is_of(const Row& row, const char* table) { return row.table->name == std::string(table); }
 
@@ -122,7 +122,7 @@ OpenedStudy open_study(const StudyFile& study) {
     auto database = open_database(path, Open::Read, read_schema_steps());
     database->execute("BEGIN");
     const Findings found = look(*database, content);
-    if (found.ahead && round < rounds) {
+    if (found.ahead && round < most_rounds) {
       // Read both again if the journal changed in the meantime, e.g. by a withdrawal.
       const JournalContent now = read_journal(journal_beside(path));
       if (now.rewriting || now.end != content.end) continue;

@@ -40,7 +40,7 @@ MethodCell describe_cell(const ScoreTable& table, int n_star, int method, const 
   return cell;
 }
 
-std::optional<double> mean_of(const std::vector<double>& values) {
+std::optional<double> mean_if_any(const std::vector<double>& values) {
   const auto summary = describe(values);
   if (!summary) return {};
   return summary->mean;
@@ -55,8 +55,8 @@ MethodComparison compare(const ScoreTable& table, int n_star, int a, int b, cons
   for (std::size_t i = 0; i < x.size(); ++i) out.n_missing += std::isnan(x[i]) != std::isnan(y[i]) ? 1 : 0;
   const PairedValues pairs = complete_pairs(x, y);
   out.n = pairs.x.size();
-  out.mean_a = mean_of(pairs.x);
-  out.mean_b = mean_of(pairs.y);
+  out.mean_a = mean_if_any(pairs.x);
+  out.mean_b = mean_if_any(pairs.y);
   const TTestOptions two_sided{Alternative::TwoSided, plan.confidence, 0};
   out.t = t_test_paired(pairs.x, pairs.y, two_sided);
   out.welch = t_test_welch(pairs.x, pairs.y, two_sided);

@@ -26,6 +26,12 @@ std::string shortened(std::string_view value, std::size_t most_bytes = 120);
 /// The words, separated by ", ".
 std::string joined(const std::vector<std::string>& words);
 
+/// The words as an English list: "A, B and C".
+std::string enumerated(const std::vector<std::string>& words);
+
+/// True if the text holds spaces, tabs and line ends alone, or nothing.
+bool is_blank(std::string_view text);
+
 /// The parts of a line between separators, such as the cells of CSV without quotes. An empty last part is
 /// left out.
 std::vector<std::string> split(const std::string& line, char separator = ',');

@@ -156,12 +156,12 @@ Plane gradient(const Plane& lightness, double pixels_per_degree, int order) {
 
 /// A picture as the eye resolves it: colours filtered with the contrast sensitivity, and the strengths of
 /// edges and points.
-struct Seen {
+struct SeenPicture {
   std::vector<Colour> colours;  ///< filtered; as returned by hunt_lab()
   Plane edges, points;
 };
 
-Seen seen(const ImageView& image, double pixels_per_degree) {
+SeenPicture seen(const ImageView& image, double pixels_per_degree) {
   std::array<Plane, 3> planes{plane_like(image), plane_like(image), plane_like(image)};
   Plane lightness = plane_like(image);
   for (std::size_t i = 0; i < image.pixels(); ++i) {
@@ -170,8 +170,8 @@ Seen seen(const ImageView& image, double pixels_per_degree) {
     for (std::size_t k = 0; k < 3; ++k) planes[k].values[i] = c[k];
     lightness.values[i] = (c[0] + 16) / 116;
   }
-  Seen out{std::vector<Colour>(image.pixels()), gradient(lightness, pixels_per_degree, 1),
-           gradient(lightness, pixels_per_degree, 2)};
+  SeenPicture out{std::vector<Colour>(image.pixels()), gradient(lightness, pixels_per_degree, 1),
+                  gradient(lightness, pixels_per_degree, 2)};
   for (std::size_t k = 0; k < 3; ++k)
     planes[k] = filtered(planes[k], sensitivity_kernel(sensitivities[k], pixels_per_degree));
   for (std::size_t i = 0; i < image.pixels(); ++i) {
@@ -196,7 +196,7 @@ ImageScore flip(const ImageView& a, const ImageView& b, double pixels_per_degree
   check_images(a, b, mask);
   if (!(pixels_per_degree > 0 && pixels_per_degree <= most_pixels_per_degree))
     throw std::invalid_argument("pixels a degree must be positive and at most 200");
-  const Seen first = seen(a, pixels_per_degree), second = seen(b, pixels_per_degree);
+  const SeenPicture first = seen(a, pixels_per_degree), second = seen(b, pixels_per_degree);
   double sum = 0;
   std::size_t pixels = 0;
   for (std::size_t i = 0; i < a.pixels(); ++i) {

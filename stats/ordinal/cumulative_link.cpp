@@ -205,7 +205,7 @@ namespace {
 /// resolve.
 constexpr double largest_sd = 30;
 
-std::string too_few(const OrdinalRows& rows) {
+std::string why_too_few(const OrdinalRows& rows) {
   if (rows.participants < 2) return "fewer than two participants: their spread cannot be estimated";
   std::vector<int> ratings(static_cast<std::size_t>(rows.participants));
   for (const int p : rows.participant) ++ratings[static_cast<std::size_t>(p)];
@@ -291,7 +291,7 @@ Result<MixedOrdinalFit> fit_cumulative_link_mixed(std::span<const double> rating
     throw std::invalid_argument("ratings and participants differ in length");
   const auto rows = ordinal_rows(ratings, predictors, participants);
   if (!rows) return Refusal{rows.reason()};
-  if (const auto reason = too_few(*rows); !reason.empty()) return Refusal{reason};
+  if (const auto reason = why_too_few(*rows); !reason.empty()) return Refusal{reason};
   // Ratings that are separated in the model without participants' effects are also separated in the model
   // with them.
   const auto fixed = fit_cumulative_link(ratings, predictors, link);

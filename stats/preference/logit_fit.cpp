@@ -50,14 +50,14 @@ double deviance(std::span<const LogitRow> rows, const Values& beta) {
 
 /// Inverse of the information matrix, and log determinant of the information matrix. information() is empty
 /// if the matrix is singular.
-struct Information {
+struct FitInformation {
   Values inverse;
   double log_determinant = 0;
 };
 
-std::optional<Information> information(std::span<const LogitRow> rows, const Values& beta) {
+std::optional<FitInformation> information(std::span<const LogitRow> rows, const Values& beta) {
   const std::size_t k = beta.size();
-  Information out{Values(k * k, 0.0)};
+  FitInformation out{Values(k * k, 0.0)};
   for (const auto& row : rows) {
     const double eta = predictor(row, beta);
     const double weight = row.trials * logistic(eta) * logistic(-eta);
@@ -99,13 +99,14 @@ Values score(std::span<const LogitRow> rows, const Values& beta, const Values& i
 
 /// The objective that Newton's method maximises: the log-likelihood, plus half the information's log
 /// determinant if the bias is reduced.
-double objective(std::span<const LogitRow> rows, const Values& beta, const Information& at, LogitBias bias) {
+double objective(std::span<const LogitRow> rows, const Values& beta, const FitInformation& at,
+                 LogitBias bias) {
   return log_likelihood(rows, beta) + (bias == LogitBias::Reduced ? at.log_determinant / 2 : 0);
 }
 
 struct Step {
   Values beta;
-  Information information;
+  FitInformation information;
   double objective = 0;
 };
 

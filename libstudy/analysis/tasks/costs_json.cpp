@@ -27,7 +27,7 @@ struct RunningMean {
 };
 
 /// All sessions' measurements of one stimulus, and the answers to it.
-struct Shown {
+struct ShownStimulus {
   StimulusSpec what;
   int sessions = 0, measured = 0;
   /// Mean and 95th percentile of the time in ms that the station needs to compute and draw a frame.
@@ -37,7 +37,7 @@ struct Shown {
   std::set<std::string> stimuli;        ///< texts by which the sessions recorded what they showed
   RunningMean said;                     ///< Task 1: scores; Task 2: 1 if the stimulus was chosen, else 0
 };
-using Stimuli = std::map<std::array<int, 3>, Shown>;  // scene, n_*, method
+using Stimuli = std::map<std::array<int, 3>, ShownStimulus>;  // scene, n_*, method
 
 std::array<int, 3> key_of(const TaskProtocol& protocol, const StimulusSpec& what) {
   return {place_in(protocol.scenes, what.scene), place_in(protocol.n_stars, what.n_star),
@@ -60,7 +60,7 @@ void add_session(const TaskProtocol& protocol, const TaskSession& session, Stimu
   const auto add = [&](const TaskShowing& showing) {
     if (!showing.played) return;
     const auto key = key_of(protocol, showing.what);
-    Shown& shown = out[key];
+    ShownStimulus& shown = out[key];
     if (showing.nominal.mean == 0 && showing.realised.mean > 0)
       shown.interval_ms.add(1000 / showing.realised.mean);
     if (!seen.insert(key).second) return;
@@ -103,7 +103,7 @@ void add_answers(const TaskData& data, Stimuli& out) {
 
 /// The stimulus's scene file as it is now. Refused if it is missing, if a session did not record this file's
 /// SHA-256, or if the stimulus has a level of effects other than the scene's.
-stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const Shown& shown) {
+stats::Result<sim::Scene> scene_of(const StimulusSpec& what, const ShownStimulus& shown) {
   if (!what.effects.empty() && what.effects != scene_effects_level)
     return stats::Refusal{"errors are measured with the scene's own effects, and this is level " +
                           what.effects + " of them"};
@@ -171,7 +171,7 @@ sim::SolverSetting usual_in(const sim::Scene& scene, const StimulusSpec& what, d
   return sim::setting_of(scene, options);
 }
 
-void add_made(Json& json, const Shown& shown) {
+void add_made(Json& json, const ShownStimulus& shown) {
   json["measured_sessions"] = shown.measured;
   json["made_ms"] = shown.made_ms.json();
   json["made_p95_ms"] = shown.made_p95_ms.json();
@@ -184,7 +184,7 @@ void add_made(Json& json, const Shown& shown) {
     json["shown_ms_reason"] = "every showing had a schedule, which says nothing of what a frame costs";
 }
 
-void add_said(Json& json, const TaskData& data, const Shown& shown) {
+void add_said(Json& json, const TaskData& data, const ShownStimulus& shown) {
   json["answers"] = shown.said.count;
   json["said"] = shown.said.json();
   if (shown.said.count > 0) return;
@@ -195,7 +195,7 @@ void add_said(Json& json, const TaskData& data, const Shown& shown) {
                             : "no answer counts";
 }
 
-void add_errors(Json& json, const TaskData& data, const StimulusSpec& what, const Shown& shown,
+void add_errors(Json& json, const TaskData& data, const StimulusSpec& what, const ShownStimulus& shown,
                 const SweepTables* sweep) {
   const std::string& text = shown.settings.begin()->first;
   const bool mixed = shown.settings.size() > 1, usual = text.empty();

@@ -26,17 +26,17 @@ struct ShownSetting {
 /// A line of the table. For a pair it holds both stimuli, sorted by the index of the method in the protocol,
 /// then by frame rate. Only a choice between the two stimuli is independent of their order. For any other
 /// question each order has a separate line.
-struct Cell {
+struct CellScores {
   std::size_t scene = 0, n_star = 0;
   std::vector<ShownSetting> shown;
   bool by_order = false;  ///< pair: the line covers one order of showing only
   bool turned = false;    ///< with by_order: true for the order that shows shown[1] first
-  auto operator<=>(const Cell&) const = default;  // NOLINT(modernize-use-nullptr): false positive
+  auto operator<=>(const CellScores&) const = default;  // NOLINT(modernize-use-nullptr): false positive
 };
 
 struct Given {
   std::vector<double> scores;
-  std::vector<bool> first_stands_first;  ///< pair: true if shown in the order of Cell::shown
+  std::vector<bool> first_stands_first;  ///< pair: true if shown in the order of CellScores::shown
   std::set<std::string> participants;
 };
 
@@ -50,7 +50,7 @@ class Describer {
   }
 
   Json describe(const Question& question) const {
-    std::map<Cell, Given> cells;
+    std::map<CellScores, Given> cells;
     for (const auto& trial : data_.answered) add(trial, question, cells);
     Json list = Json::array();
     for (const auto& [cell, given] : cells) list.push_back(entry(question, cell, given));
@@ -70,14 +70,14 @@ class Describer {
     return out;
   }
 
-  void add(const AnsweredTrial& trial, const Question& question, std::map<Cell, Given>& cells) const {
+  void add(const AnsweredTrial& trial, const Question& question, std::map<CellScores, Given>& cells) const {
     const auto answer = std::find_if(trial.answers.begin(), trial.answers.end(), [&](const auto& one) {
       return one.question == question.id && one.score.has_value();
     });
     if (answer == trial.answers.end()) return;
-    Cell cell{place(data_.protocol.scenes, trial.first.scene),
-              place(data_.protocol.n_stars, trial.first.n_star),
-              {shown(trial.first, trial.first_nominal)}};
+    CellScores cell{place(data_.protocol.scenes, trial.first.scene),
+                    place(data_.protocol.n_stars, trial.first.n_star),
+                    {shown(trial.first, trial.first_nominal)}};
     bool in_order = true;
     if (trial.second) {
       cell.shown.push_back(shown(*trial.second, trial.second_nominal));
@@ -99,7 +99,7 @@ class Describer {
 
   /// The cell in words: "LoRes" for one stimulus, "LoRes and HiRes" for a pair in both orders, "first HiRes,
   /// then LoRes" for a pair in one order.
-  std::string name(const Cell& cell) const {
+  std::string name(const CellScores& cell) const {
     if (cell.shown.size() == 1) return name(cell.shown[0]);
     if (!cell.by_order) return name(cell.shown[0]) + " and " + name(cell.shown[1]);
     return "first " + name(cell.shown[cell.turned ? 1 : 0]) + ", then " +
@@ -107,11 +107,11 @@ class Describer {
   }
 
   /// True if the question asks the participant to choose one stimulus of a pair.
-  bool is_choice_of_pair(const Question& question, const Cell& cell) const {
+  bool is_choice_of_pair(const Question& question, const CellScores& cell) const {
     return traits_of(question.kind).labelled && question.anchors.size() == 2 && cell.shown.size() == 2;
   }
 
-  Json distribution(const Question& question, const Cell& cell, const Given& given) const {
+  Json distribution(const Question& question, const CellScores& cell, const Given& given) const {
     Json list = Json::array();
     if (is_choice_of_pair(question, cell)) {
       int first = 0;
@@ -137,7 +137,7 @@ class Describer {
     return list;
   }
 
-  Json entry(const Question& question, const Cell& cell, const Given& given) const {
+  Json entry(const Question& question, const CellScores& cell, const Given& given) const {
     Json json{{"scene", data_.scenes.at(cell.scene)},
               {"n_star", data_.protocol.n_stars.at(cell.n_star)},
               {"shown", name(cell)},

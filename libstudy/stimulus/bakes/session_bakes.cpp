@@ -22,7 +22,7 @@ std::shared_ptr<const FoundBake> open_bake(const fs::path& path) {
   return std::make_shared<FoundBake>(FoundBake{path, bake.header(), bake.content_hash()});
 }
 
-std::string stimulus_words(const StimulusSpec& what) {
+std::string short_words(const StimulusSpec& what) {
   return fs::path(what.scene).stem().string() + " " + what.n_star + " " + what.method +
          (what.effects.empty() ? "" : " " + what.effects);
 }
@@ -165,7 +165,7 @@ std::vector<std::string> SessionBakes::notes(const std::string& protocol_file) c
   std::vector<std::string> baked, missing;
   std::map<std::string, std::vector<std::string>> live;
   for (const Source& source : sources_) {
-    const std::string name = stimulus_words(source.planned.what);
+    const std::string name = short_words(source.planned.what);
     if (source.bake) {
       baked.push_back(name);
     } else if (source.planned.live.empty()) {
@@ -188,7 +188,7 @@ std::string SessionBakes::description() const {
   if (!fs::is_directory(path_)) return "";
   std::string out;
   for (const Source& source : sources_) {
-    out += (out.empty() ? "" : "; ") + stimulus_words(source.planned.what);
+    out += (out.empty() ? "" : "; ") + short_words(source.planned.what);
     if (source.planned.rate) out += " at " + setting_name(*source.planned.rate);
     out += source.bake ? " bake " + source.bake->hash + " on " + source.bake->header.backend : " live";
   }
